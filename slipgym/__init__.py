@@ -1,0 +1,1 @@
+"""Gymnasium environments for slip-aware in-hand manipulation, with a friction estimator in the loop."""

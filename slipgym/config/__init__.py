@@ -1,0 +1,28 @@
+"""The configuration of the environments: typed, frozen, validated, with its defaults in configs/."""
+
+from slipgym.config.hardware import GripperConfig, ObjectConfig
+from slipgym.config.load import Overrides, load, names
+from slipgym.config.physics import ContactConfig, Material, NominalConfig, PhysicsConfig
+from slipgym.config.root import Config
+from slipgym.config.sensors import ForceTorqueConfig, SensorsConfig, SlipConfig
+from slipgym.config.tasks import HoldConfig, LinearSlipConfig, TaskConfig, TasksConfig
+
+__all__ = [
+    "Config",
+    "ContactConfig",
+    "ForceTorqueConfig",
+    "GripperConfig",
+    "HoldConfig",
+    "LinearSlipConfig",
+    "Material",
+    "NominalConfig",
+    "ObjectConfig",
+    "Overrides",
+    "PhysicsConfig",
+    "SensorsConfig",
+    "SlipConfig",
+    "TaskConfig",
+    "TasksConfig",
+    "load",
+    "names",
+]

@@ -1,0 +1,34 @@
+"""The ground of every configuration model: frozen, strict, and shy of NaN."""
+
+from typing import Annotated
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+
+
+class Frozen(BaseModel):
+    """A part of the configuration: immutable, no unknown keys, no silent conversions, finite numbers only."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+def _as_tuple(value: object) -> object:
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _ordered(pair: tuple[float, float]) -> tuple[float, float]:
+    if pair[0] > pair[1]:
+        raise ValueError(f"the lower end {pair[0]:g} lies above the upper end {pair[1]:g}")
+    return pair
+
+
+Positive = Annotated[float, Field(gt=0)]
+NonNegative = Annotated[float, Field(ge=0)]
+Count = Annotated[int, Field(ge=1)]
+
+# YAML has no tuples: a list becoming one is the only conversion.
+_LIST = BeforeValidator(_as_tuple)
+Point = Annotated[tuple[float, float], _LIST]
+Points = Annotated[tuple[Point, Point], _LIST]
+Size = Annotated[tuple[Positive, Positive, Positive], _LIST]
+Interval = Annotated[tuple[NonNegative, NonNegative], _LIST, AfterValidator(_ordered)]
+PositiveInterval = Annotated[tuple[Positive, Positive], _LIST, AfterValidator(_ordered)]

@@ -1,0 +1,64 @@
+"""The gripper and the object it holds."""
+
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from slipgym.config.base import Frozen, NonNegative, Point, Positive, Size
+
+
+class GripperConfig(Frozen):
+    """A parallel gripper with a force loop per finger, on a wrist that moves in the contact plane."""
+
+    pad_radius: Positive = Field(description="Radius of each disc-shaped pad [m]")
+    force_min: Positive = Field(description="Lower end of the force action, per finger [N]")
+    force_max: Positive = Field(description="Upper end of the force action, per finger [N]")
+    force_limit: Positive = Field(description="Hard limit of the force of one finger [N]")
+    open_below: NonNegative = Field(
+        description="Commands below this open the force loop: no force applied [N]"
+    )
+    lag: NonNegative = Field(description="Time constant of the closed force loop, first order [s]")
+    dead_time: NonNegative = Field(description="Dead time of the force loop, before its lag [s]")
+    finger_mass: Positive = Field(description="Mass of one finger with its pad [kg]")
+    wrist_speed_max: Positive = Field(description="Largest speed of the wrist in the contact plane [m/s]")
+    wrist_pitch_rate_max: Positive = Field(
+        description="Largest pitch rate of the wrist, about the grip axis [rad/s]"
+    )
+
+    @model_validator(mode="after")
+    def _forces_ascend(self) -> Self:
+        if not self.open_below <= self.force_min < self.force_max <= self.force_limit:
+            raise ValueError(
+                "needs open_below <= force_min < force_max <= force_limit, got "
+                f"{self.open_below:g}, {self.force_min:g}, {self.force_max:g}, {self.force_limit:g} N"
+            )
+        return self
+
+
+class ObjectConfig(Frozen):
+    """A box held by two opposite faces; x and z span the contact plane, y is the grip axis."""
+
+    mass: Positive = Field(description="Mass [kg]")
+    size: Size = Field(description="Extent along x, the grip axis and z [m]")
+    com_offset: Point = Field(description="Centre of mass (x, z) from the geometric centre [m]")
+    inertia: Positive | None = Field(
+        description="Inertia about the grip axis through the centre of mass; null: uniform box [kg m^2]"
+    )
+    grasp_offset: Point = Field(
+        description="Where the pads hold at reset (x, z), from the geometric centre [m]"
+    )
+
+    @property
+    def grip_axis_inertia(self) -> float:
+        """Moment of inertia about the grip axis through the centre of mass [kg m^2]."""
+        if self.inertia is not None:
+            return self.inertia
+        return self.mass * (self.size[0] ** 2 + self.size[2] ** 2) / 12.0
+
+    @model_validator(mode="after")
+    def _points_lie_inside(self) -> Self:
+        for name in ("com_offset", "grasp_offset"):
+            x, z = getattr(self, name)
+            if abs(x) > self.size[0] / 2 or abs(z) > self.size[2] / 2:
+                raise ValueError(f"{name} ({x:g}, {z:g}) m lies outside the object of size {self.size} m")
+        return self

@@ -1,0 +1,87 @@
+"""Defaults, a sensor preset and the user's overrides become one validated configuration."""
+
+import os
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from slipgym.config import files
+from slipgym.config.errors import SourceOf, explain, unknown
+from slipgym.config.root import Config
+
+Overrides = str | os.PathLike[str] | Mapping[str, Any]
+
+
+def load(overrides: Overrides | None = None, sensors: str = "realistic") -> Config:
+    """Loads the configuration of an environment.
+
+    Args:
+        overrides: What differs from the defaults, as a mapping or as the path of a YAML file; merged into
+            them key by key, at every depth. Lists are replaced as a whole.
+        sensors: The sensor preset to start from, one of ``names("sensors")``.
+
+    Raises:
+        FileNotFoundError: The overrides' file does not exist.
+        ValueError: A key is unknown or a value is not allowed. The message names the file or argument, the
+            dotted key, the value, and what is valid there.
+    """
+    if sensors not in names("sensors"):
+        raise ValueError(unknown("sensors", sensors, names("sensors")))
+    defaults, sources = _defaults(sensors)
+    config = _validate(
+        defaults, lambda location: sources.get(location[0], "configs") if location else "configs"
+    )
+    if overrides is None:
+        return config
+    if isinstance(overrides, Mapping):
+        source = "config argument"
+    elif isinstance(overrides, str | os.PathLike):
+        source, overrides = os.fspath(overrides), files.read(Path(overrides))
+    else:
+        raise ValueError(f"config argument: must be a mapping or a path, got {overrides!r}")
+    return _validate(_merge(defaults, overrides), lambda _: source)
+
+
+def names(kind: str) -> tuple[str, ...]:
+    """The names that the defaults know of a kind: "materials" or "sensors" (the presets).
+
+    Raises:
+        ValueError: There is no such kind.
+    """
+    if kind == "materials":
+        return tuple(sorted(files.read(files.folder() / "materials.yaml")))
+    if kind == "sensors":
+        return tuple(sorted(path.stem for path in (files.folder() / "sensors").glob("*.yaml")))
+    raise ValueError(unknown("kind of name", kind, ["materials", "sensors"]))
+
+
+@cache
+def _defaults(sensors: str) -> tuple[dict[str, Any], dict[str | int, str]]:
+    """The default values, and for each top-level key the file that it came from."""
+    preset = f"sensors/{sensors}.yaml"
+    values = files.read(files.folder() / "default.yaml")
+    sources: dict[str | int, str] = dict.fromkeys(values, "default.yaml")
+    for key, name in (("materials", "materials.yaml"), ("sensors", preset)):
+        values[key] = files.read(files.folder() / name)
+        sources[key] = name
+    return values, {key: str(files.folder() / name) for key, name in sources.items()}
+
+
+def _merge(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    merged = dict(base)
+    for key, value in overrides.items():
+        if isinstance(value, Mapping):
+            old = merged.get(key)
+            value = _merge(old if isinstance(old, Mapping) else {}, value)
+        merged[key] = value
+    return merged
+
+
+def _validate(values: dict[str, Any], source_of: SourceOf) -> Config:
+    try:
+        return Config.model_validate(values)
+    except ValidationError as error:
+        raise explain(error, source_of) from error

@@ -1,0 +1,55 @@
+"""Friction between pads and object, and the rates at which it is simulated."""
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from slipgym.config.base import Count, Frozen, NonNegative, Points, Positive
+
+
+class Material(Frozen):
+    """Friction coefficients of a material against the pads."""
+
+    mu_c: Positive = Field(description="Coulomb friction coefficient [-]")
+    mu_s: Positive = Field(description="Static friction coefficient, at least mu_c [-]")
+
+    @model_validator(mode="after")
+    def _static_is_larger(self) -> Self:
+        if self.mu_s < self.mu_c:
+            raise ValueError(f"needs mu_s >= mu_c, got mu_s {self.mu_s:g} < mu_c {self.mu_c:g}")
+        return self
+
+
+class NominalConfig(Material):
+    """The contact properties that a controller may assume when it is told nothing better."""
+
+    r: Positive = Field(description="Radius of the equivalent rim contact [m]")
+
+
+class ContactConfig(Frozen):
+    """The friction model of a pad, apart from the material's coefficients."""
+
+    model: Literal["ellipsoid", "distributed"] = Field(description="Friction model of the pads: a name [-]")
+    sigma_0: float = Field(ge=1e5, description="Bristle stiffness; softer reads as slip while sticking [1/m]")
+    sigma_1: NonNegative = Field(description="Bristle damping [s/m]")
+    sigma_2: NonNegative = Field(description="Viscous friction [s/m]")
+    stribeck_velocity: Positive = Field(
+        description="Scaled speed at which mu_s has decayed towards mu_c [m/s]"
+    )
+    radius: Positive = Field(description="Radius r of the equivalent rim contact [m]")
+    cop_offset: Points = Field(description="Centre of pressure (x, y) from the pad's centre, per finger [m]")
+
+
+class PhysicsConfig(Frozen):
+    """Gravity and the three nested rates: control step, engine step, friction sub-step."""
+
+    gravity: NonNegative = Field(description="Gravitational acceleration [m/s^2]")
+    control_rate: Count = Field(description="Environment steps per second [Hz]")
+    engine_steps: Count = Field(description="Rigid-body engine steps per control step [-]")
+    contact_substeps: Count = Field(description="Friction sub-steps per engine step [-]")
+    solver_iterations: Count = Field(description="Iterations of the engine's contact solver per step [-]")
+
+    @property
+    def contact_rate(self) -> int:
+        """Friction sub-steps per second [Hz]."""
+        return self.control_rate * self.engine_steps * self.contact_substeps

@@ -1,0 +1,61 @@
+"""The whole configuration of an environment."""
+
+from collections.abc import Mapping
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from slipgym.config.base import Frozen
+from slipgym.config.hardware import GripperConfig, ObjectConfig
+from slipgym.config.physics import ContactConfig, Material, NominalConfig, PhysicsConfig
+from slipgym.config.sensors import SensorsConfig
+from slipgym.config.tasks import TasksConfig
+
+
+class Config(Frozen):
+    """Everything that an environment can be told; its defaults live in ``configs/``."""
+
+    gripper: GripperConfig = Field(description="The gripper [-]")
+    object: ObjectConfig = Field(description="The object in the grip [-]")
+    contact: ContactConfig = Field(description="The friction model [-]")
+    materials: Mapping[str, Material] = Field(description="Friction coefficients, by the material's name [-]")
+    nominal: NominalConfig = Field(description="The friction that controllers may assume [-]")
+    physics: PhysicsConfig = Field(description="Gravity and rates [-]")
+    sensors: SensorsConfig = Field(description="The sensors of each finger [-]")
+    tasks: TasksConfig = Field(description="Parameters of the tasks [-]")
+
+    @model_validator(mode="after")
+    def _rates_fit(self) -> Self:
+        force_torque, slip = self.sensors.force_torque.rate, self.sensors.slip.rate
+        if self.physics.contact_rate % force_torque:
+            raise ValueError(
+                "physics.control_rate * engine_steps * contact_substeps must be a multiple of "
+                f"sensors.force_torque.rate, got {self.physics.contact_rate} and {force_torque} Hz"
+            )
+        if slip != self.physics.control_rate:
+            raise ValueError(
+                "one control step is one slip sample: sensors.slip.rate must equal physics.control_rate, "
+                f"got {slip} and {self.physics.control_rate} Hz"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _contact_fits_pad(self) -> Self:
+        if self.contact.radius > self.gripper.pad_radius:
+            raise ValueError(
+                "contact.radius must not exceed gripper.pad_radius, "
+                f"got {self.contact.radius:g} and {self.gripper.pad_radius:g} m"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _initial_forces_in_range(self) -> Self:
+        low, high = self.gripper.force_min, self.gripper.force_max
+        for name in type(self.tasks).model_fields:
+            force = getattr(self.tasks, name).initial_force
+            if not low <= force <= high:
+                raise ValueError(
+                    f"tasks.{name}.initial_force must lie within the gripper's {low:g} to {high:g} N, "
+                    f"got {force:g} N"
+                )
+        return self

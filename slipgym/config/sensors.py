@@ -1,0 +1,51 @@
+"""The two sensors behind each pad."""
+
+from pydantic import Field
+
+from slipgym.config.base import Count, Frozen, NonNegative, Positive
+
+
+class ForceTorqueConfig(Frozen):
+    """Six-axis force/torque sensor of one finger; of its axes the in-plane problem uses four."""
+
+    rate: Count = Field(description="Samples per second [Hz]")
+    noise_tangential: NonNegative = Field(description="White noise of each tangential force, sd [N]")
+    noise_normal: NonNegative = Field(description="White noise of the normal force, sd [N]")
+    noise_torque: NonNegative = Field(description="White noise of the torque about the normal, sd [N m]")
+    bias_tangential: NonNegative = Field(
+        description="Bias of each tangential force, constant per episode, sd [N]"
+    )
+    bias_normal: NonNegative = Field(description="Bias of the normal force, constant per episode, sd [N]")
+    bias_torque: NonNegative = Field(description="Bias of the torque, constant per episode, sd [N m]")
+    drift_tangential: NonNegative = Field(description="Random walk of each tangential force, sd [N/sqrt(s)]")
+    drift_normal: NonNegative = Field(description="Random walk of the normal force, sd [N/sqrt(s)]")
+    drift_torque: NonNegative = Field(description="Random walk of the torque, sd [N m/sqrt(s)]")
+    resolution_force: NonNegative = Field(description="Step of the force readings; 0: continuous [N]")
+    resolution_torque: NonNegative = Field(description="Step of the torque readings; 0: continuous [N m]")
+    force_range: Positive = Field(description="Tangential forces saturate here, either sign [N]")
+    normal_range: Positive = Field(description="The normal force saturates here [N]")
+    torque_range: Positive = Field(description="The torque saturates here, either sign [N m]")
+    latency: NonNegative = Field(description="Age of a reading when it arrives [s]")
+
+
+class SlipConfig(Frozen):
+    """Slip-velocity sensor of one finger: optical mouse chips on a circle, solved by least squares."""
+
+    rate: Count = Field(description="Samples per second; one per control step [Hz]")
+    counts: bool = Field(
+        description="Whether the chips report whole counts; if not, exact motion: true or false [-]"
+    )
+    count: Positive = Field(description="Motion per count [m]")
+    chip_radius: Positive = Field(description="Distance of the chips from the pad's centre [m]")
+    chips: int = Field(ge=2, description="Number of chips, evenly spaced on their circle [-]")
+    noise: NonNegative = Field(description="White noise per chip axis and sample, sd [counts]")
+    window: Count = Field(description="Length of the moving average [samples]")
+    latency_samples: int = Field(ge=0, description="Age of a reading when it arrives [samples]")
+    speed_max: Positive = Field(description="Each chip axis saturates here, either sign [m/s]")
+
+
+class SensorsConfig(Frozen):
+    """The sensors of each finger."""
+
+    force_torque: ForceTorqueConfig = Field(description="Force/torque sensor [-]")
+    slip: SlipConfig = Field(description="Slip-velocity sensor [-]")

@@ -1,0 +1,43 @@
+"""What each task asks for."""
+
+from pydantic import Field
+
+from slipgym.config.base import Frozen, Interval, NonNegative, Positive, PositiveInterval
+
+
+class TaskConfig(Frozen):
+    """What every task has."""
+
+    initial_force: Positive = Field(description="Force per finger at reset [N]")
+
+
+class LinearSlipConfig(TaskConfig):
+    """The object slides down between the pads by a given distance in a given time, then stays."""
+
+    distance: Positive = Field(description="Distance to slide [m]")
+    duration: Positive = Field(description="Time for the slide [s]")
+    settle: NonNegative = Field(description="Time before the slide, during which the object is held [s]")
+    hold: NonNegative = Field(description="Time after the slide, during which the object is held [s]")
+    tolerance: Positive = Field(description="Largest error of the final position for success [m]")
+
+
+class HoldConfig(TaskConfig):
+    """The object is to stay in the grip while the wrist shakes and something pokes the object."""
+
+    duration: Positive = Field(description="Length of an episode [s]")
+    tolerance: Positive = Field(description="Largest slip for success [m]")
+    mass_range: PositiveInterval = Field(description="The object's mass is drawn from this range [kg]")
+    shake_amplitude: NonNegative = Field(description="Amplitude of the wrist's shaking [m]")
+    shake_frequency: PositiveInterval = Field(
+        description="The shaking's frequency is drawn from this range [Hz]"
+    )
+    poke_impulse: Interval = Field(description="The impulse of a poke is drawn from this range [N s]")
+    poke_interval: PositiveInterval = Field(description="The time between pokes is drawn from this range [s]")
+    poke_duration: Positive = Field(description="Length of a poke [s]")
+
+
+class TasksConfig(Frozen):
+    """Parameters of the tasks, one group each."""
+
+    linear_slip: LinearSlipConfig = Field(description="slipgym/LinearSlip [-]")
+    hold: HoldConfig = Field(description="slipgym/Hold [-]")
