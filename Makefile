@@ -1,0 +1,59 @@
+# slipgym's house keeping. Every target sets up .venv by itself, once; `make help` lists them.
+
+PYTHON ?= $(firstword $(foreach p,python3.11 python3,$(shell $(p) -c 'import sys; sys.version_info < (3, 11) or print("$(p)")' 2>/dev/null)))
+JOBS ?= 2
+
+VENV := .venv
+RUN := $(VENV)/bin/python
+PIP := $(RUN) -m pip install --quiet --constraint constraints.txt
+PYTEST := OMP_NUM_THREADS=1 $(RUN) -m pytest -n $(JOBS)
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test test-all lint types wheel-smoke check benchmark validate clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+demo: $(VENV)/.eval ## a short evaluation with figures (needs no torch)
+	$(RUN) scripts/evaluate.py --demo
+
+test: $(VENV)/.dev ## the tests, without the slow ones
+	$(PYTEST) -m "not slow"
+
+test-all: $(VENV)/.dev ## all tests
+	$(PYTEST)
+
+lint: $(VENV)/.dev ## style and formatting
+	$(RUN) -m ruff check .
+	$(RUN) -m ruff format --check .
+
+types: $(VENV)/.dev ## static types
+	$(RUN) -m pyright --pythonpath $(RUN)
+
+wheel-smoke: $(VENV)/.dev ## build the wheel and use it from a clean environment
+	$(RUN) scripts/wheel_smoke.py
+
+check: lint types wheel-smoke test-all ## everything above
+
+benchmark: $(VENV)/.dev ## steps per second
+	$(RUN) scripts/benchmark.py
+
+validate: $(VENV)/.dev ## the acceptance figures of the physics
+	$(RUN) scripts/validate.py
+
+clean: ## remove the environment and everything built
+	rm -rf $(VENV) build dist .pytest_cache .ruff_cache .hypothesis
+	find slipgym estimator policies scripts tests -type d -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
+
+$(RUN):
+	@$(or $(PYTHON),false) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
+	  echo "error: slipgym needs Python 3.11 or newer$(if $(PYTHON),; $(PYTHON) is not). Say which: make PYTHON=/path/to/python3.11" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.eval: pyproject.toml constraints.txt | $(RUN)
+	$(PIP) --editable '.[eval]'
+	@touch $@
+
+$(VENV)/.dev: pyproject.toml constraints.txt | $(RUN)
+	$(PIP) --editable '.[dev,train]'
+	@touch $(VENV)/.eval $@
