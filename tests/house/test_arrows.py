@@ -1,0 +1,88 @@
+"""Imports run one way: estimator <- slipgym <- policies <- scripts; and `import slipgym` stays light."""
+
+import ast
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+LEARNING = {"torch", "stable_baselines3"}
+FORBIDDEN = {
+    "estimator": {"slipgym", "policies", "scripts", "pybullet", "gymnasium"} | LEARNING,
+    "slipgym": {"policies", "scripts"} | LEARNING,
+    "policies": {"scripts"},
+    "scripts": {"scripts"},
+    "tests": {"scripts"},
+}
+HEAVY = (
+    {"numba", "pybullet", "matplotlib", "scipy", "pandas", "pydantic", "estimator"} | LEARNING | {"policies"}
+)
+
+
+def imported(source: str) -> set[str]:
+    """The top-level names that a source imports anywhere, by a statement or a call with a literal name."""
+    names = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            names.add(node.module)
+        elif isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
+            called = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            if called in ("import_module", "__import__", "importorskip"):
+                names.add(str(node.args[0].value))
+    return {name.partition(".")[0] for name in names}
+
+
+def broken(room: Path, forbidden: set[str]) -> dict[str, set[str]]:
+    """For each source file of a room, the forbidden imports that it holds."""
+    found = {
+        str(path.relative_to(room)): imported(path.read_text()) & forbidden for path in room.rglob("*.py")
+    }
+    return {path: names for path, names in found.items() if names}
+
+
+@pytest.mark.parametrize("room", FORBIDDEN)
+def test_arrows_run_one_way(room):
+    assert broken(ROOT / room, FORBIDDEN[room]) == {}
+
+
+@pytest.mark.parametrize(
+    "planted",
+    [
+        "import torch",
+        "import numpy, torch.nn as nn",
+        "from torch import nn",
+        "from torch.nn import functional",
+        "def f():\n    import torch",
+        "try:\n    import torch\nexcept ImportError:\n    pass",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from torch import Tensor",
+        "import importlib\nimportlib.import_module('torch.nn')",
+        "torch = __import__('torch')",
+    ],
+)
+def test_a_planted_import_is_found(planted, tmp_path):
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "deep" / "bad.py").write_text(planted)
+    (tmp_path / "good.py").write_text("import torchlike\nfrom . import torch\nprint('import torch')")
+    assert broken(tmp_path, {"torch"}) == {str(Path("deep", "bad.py")): {"torch"}}
+
+
+def loaded_by(statement: str) -> set[str]:
+    """The top-level modules that a fresh interpreter holds after a statement."""
+    code = f"{statement}\nimport sys, json\nprint(json.dumps(list(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True, text=True)
+    return {name.partition(".")[0] for name in json.loads(done.stdout.splitlines()[-1])}
+
+
+def test_import_slipgym_is_light():
+    loaded = loaded_by("import slipgym")
+    assert "slipgym" in loaded
+    assert loaded & HEAVY == set()
+
+
+def test_a_heavy_import_is_found():
+    assert loaded_by("import slipgym, pydantic") & HEAVY == {"pydantic"}
