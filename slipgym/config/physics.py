@@ -46,10 +46,10 @@ class PhysicsConfig(Frozen):
     gravity: NonNegative = Field(description="Gravitational acceleration [m/s^2]")
     control_rate: Count = Field(description="Environment steps per second [Hz]")
     engine_steps: Count = Field(description="Rigid-body engine steps per control step [-]")
-    contact_substeps: Count = Field(description="Friction sub-steps per engine step [-]")
+    substep_max: Positive = Field(description="Longest friction sub-step within an engine step [s]")
     solver_iterations: Count = Field(description="Iterations of the engine's contact solver per step [-]")
 
     @property
-    def contact_rate(self) -> int:
-        """Friction sub-steps per second [Hz]."""
-        return self.control_rate * self.engine_steps * self.contact_substeps
+    def engine_rate(self) -> int:
+        """Rigid-body engine steps per second [Hz]."""
+        return self.control_rate * self.engine_steps

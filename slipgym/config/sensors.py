@@ -37,7 +37,7 @@ class SlipConfig(Frozen):
     )
     count: Positive = Field(description="Motion per count [m]")
     chip_radius: Positive = Field(description="Distance of the chips from the pad's centre [m]")
-    chips: int = Field(ge=2, description="Number of chips, evenly spaced on their circle [-]")
+    chips: int = Field(ge=2, le=4, description="Number of chips, evenly spaced on their circle [-]")
     noise: NonNegative = Field(description="White noise per chip axis and sample, sd [counts]")
     window: Count = Field(description="Length of the moving average [samples]")
     latency_samples: int = Field(ge=0, description="Age of a reading when it arrives [samples]")

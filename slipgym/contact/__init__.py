@@ -1,0 +1,5 @@
+"""Friction between a pad and an object in planar slip."""
+
+from slipgym.contact.ellipsoid import EllipsoidContact
+
+__all__ = ["EllipsoidContact"]

@@ -1,0 +1,147 @@
+"""One implicit friction step of an object held by several pads at once.
+
+The unknown is the motion q = (x, y, theta) of the object's centre of mass relative
+to the pads within the sub-step. It solves the momentum balance
+
+    M (q - q_free) / h^2 + sum_i S_i^T f_i(S_i q) = 0,
+
+with S_i the map from q to the scaled slip displacement at pad i's centre of pressure
+and f_i the friction of `slipgym.contact.kernel.respond`. The derivative of f_i is a
+multiple of the identity less a dyad, so its pull-back needs no matrix products.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from slipgym.contact.kernel import commit, release, respond, stribeck
+
+MAX_NEWTON = 30
+MAX_HALVINGS = 8
+FORCE_TOLERANCE = 1e-10  # of the friction limit; rounding reaches about 1e-13
+
+
+@njit(cache=True)
+def lever(pad, centre):
+    """Vector from the centre of mass to the pad's centre of pressure [m]."""
+    return pad.cop[0] - centre[0], pad.cop[1] - centre[1]
+
+
+@njit(cache=True)
+def scaled(pad, arm, motion):
+    """Scaled slip displacement S q at the centre of pressure."""
+    return (motion[0] - motion[2] * arm[1], motion[1] + motion[2] * arm[0], pad.r * motion[2])
+
+
+@njit(cache=True)
+def transposed(pad, arm, vector):
+    """Generalised force S^T f of a scaled friction vector f about the centre of mass."""
+    moment = arm[0] * vector[1] - arm[1] * vector[0] + pad.r * vector[2]
+    return vector[0], vector[1], moment
+
+
+@njit(cache=True)
+def assemble(pads, limits, inertia, centre, free, motion, h):
+    """Residual of the momentum balance and its symmetric derivative.
+
+    Returns:
+        Residual (3,) and derivative (xx, yy, tt, xy, xt, yt), as tuples.
+    """
+    jx, jt = inertia[0] / (h * h), inertia[1] / (h * h)
+    rx, ry, rt = jx * (motion[0] - free[0]), jx * (motion[1] - free[1]), jt * (motion[2] - free[2])
+    jy, jxy, jxt, jyt = jx, 0.0, 0.0, 0.0
+    for i in range(pads.shape[0]):
+        pad = pads[i]
+        if pad.normal <= 0.0:
+            continue
+        arm = lever(pad, centre)
+        force, isotropic, radial, direction, _ = respond(pad, scaled(pad, arm, motion), h, limits[i])
+        fx, fy, ft = transposed(pad, arm, force)
+        nx, ny, nt = transposed(pad, arm, direction)
+        rx, ry, rt = rx + fx, ry + fy, rt + ft
+        jx += isotropic - radial * nx * nx
+        jy += isotropic - radial * ny * ny
+        jt += isotropic * (arm[0] ** 2 + arm[1] ** 2 + pad.r**2) - radial * nt * nt
+        jxy -= radial * nx * ny
+        jxt -= isotropic * arm[1] + radial * nx * nt
+        jyt += isotropic * arm[0] - radial * ny * nt
+    return (rx, ry, rt), (jx, jy, jt, jxy, jxt, jyt)
+
+
+@njit(cache=True)
+def solve_symmetric(a, b):
+    """Solve the symmetric positive definite system a x = b, a = (xx, yy, tt, xy, xt, yt)."""
+    l10, l20 = a[3] / a[0], a[4] / a[0]
+    d1 = a[1] - l10 * a[3]
+    l21 = (a[5] - l20 * a[3]) / d1
+    d2 = a[2] - l20 * a[4] - l21 * l21 * d1
+    y1 = b[1] - l10 * b[0]
+    x2 = (b[2] - l20 * b[0] - l21 * y1) / d2
+    x1 = y1 / d1 - l21 * x2
+    return b[0] / a[0] - l10 * x1 - l20 * x2, x1, x2
+
+
+@njit(cache=True)
+def norm(residual, radius):
+    """Length of a residual, its torque divided by a radius [N]."""
+    return math.sqrt(residual[0] ** 2 + residual[1] ** 2 + (residual[2] / radius) ** 2)
+
+
+@njit(cache=True)
+def solve_motion(pads, limits, inertia, centre, free, motion, h):
+    """Damped semi-smooth Newton iteration for the motion that balances momentum and friction."""
+    tolerance = 0.0
+    for i in range(pads.shape[0]):
+        tolerance += FORCE_TOLERANCE * limits[i] * pads[i].normal
+    radius = pads[0].r
+    residual, jacobian = assemble(pads, limits, inertia, centre, free, motion, h)
+    error = norm(residual, radius)
+    for _ in range(MAX_NEWTON):
+        if error <= tolerance:
+            break
+        step = solve_symmetric(jacobian, residual)
+        share, start, before = 1.0, motion, error
+        for _ in range(MAX_HALVINGS):
+            motion = (start[0] - share * step[0], start[1] - share * step[1], start[2] - share * step[2])
+            residual, jacobian = assemble(pads, limits, inertia, centre, free, motion, h)
+            error = norm(residual, radius)
+            if error < before:
+                break
+            share *= 0.5
+    return motion
+
+
+@njit(cache=True)
+def step_pads(pads, inertia, centre, free, guess, h):
+    """Advance all pads and the object's motion relative to them by one sub-step.
+
+    Args:
+        pads: PAD records of the pads that hold the object, shape (p,); updated.
+        inertia: Mass [kg] and moment of inertia about the centre of mass [kg m^2].
+        centre: Centre of mass in the pad frame [m].
+        free: Motion (x, y, theta) of the centre of mass relative to the pads in this
+            sub-step if there were no friction [m, m, rad].
+        guess: First guess of the motion with friction.
+        h: Sub-step [s].
+
+    Returns:
+        Motion (x, y, theta) with friction [m, m, rad].
+    """
+    limits = np.empty(pads.shape[0])
+    held = False
+    for i in range(pads.shape[0]):
+        limits[i] = stribeck(pads[i], pads[i].slip_speed)
+        held = held or pads[i].normal > 0.0
+    motion = solve_motion(pads, limits, inertia, centre, free, guess, h) if held else free
+    for i in range(pads.shape[0]):
+        pad = pads[i]
+        delta = scaled(pad, lever(pad, centre), motion)
+        if pad.normal > 0.0:
+            force, _, _, _, shortening = respond(pad, delta, h, limits[i])
+            commit(pad, delta, h, force, shortening)
+        else:
+            release(pad, math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h)
+    return motion

@@ -1,0 +1,96 @@
+"""The ellipsoidal contact as an object, for a prescribed slip twist."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from slipgym.contact.kernel import prescribed_step
+from slipgym.contact.records import pads
+from slipgym.contact.validation import check_friction, finite_vector, positive
+
+
+class EllipsoidContact:
+    """Friction of one pad with an ellipsoidal limit surface, Stribeck effect and true stick.
+
+    The scaled twist (v_x, v_y, r omega) drives three bristle states; see
+    `slipgym.contact.kernel` for the equations and sources.
+
+    Args:
+        r: Radius of the equivalent rim contact [m], > 0.
+        mu_c: Coulomb friction [-], > 0.
+        mu_s: Static friction [-], >= mu_c.
+        stribeck_velocity: Velocity v_s of the Stribeck curve [m/s], > 0.
+        sigma_0: Bristle stiffness per normal force [1/m], > 0.
+        sigma_1: Bristle damping per normal force [s/m], >= 0.
+        sigma_2: Viscous friction per normal force [s/m], >= 0.
+
+    Raises:
+        ValueError: A parameter is outside its range; the message names it.
+    """
+
+    def __init__(
+        self,
+        r: float = 0.010,
+        mu_c: float = 0.4,
+        mu_s: float = 0.55,
+        stribeck_velocity: float = 1e-3,
+        sigma_0: float = 1e6,
+        sigma_1: float = 80.0,
+        sigma_2: float = 0.2,
+    ) -> None:
+        check_friction(mu_c, mu_s)
+        positive(r=r, stribeck_velocity=stribeck_velocity, sigma_0=sigma_0)
+        positive(allow_zero=True, sigma_1=sigma_1, sigma_2=sigma_2)
+        self._pads = pads(
+            1,
+            r=r,
+            mu_c=mu_c,
+            mu_s=mu_s,
+            stribeck_velocity=stribeck_velocity,
+            sigma_0=sigma_0,
+            sigma_1=sigma_1,
+            sigma_2=sigma_2,
+        )
+
+    @property
+    def effective_radius(self) -> float:
+        """Radius r of the equivalent rim contact [m]."""
+        return float(self._pads["r"][0])
+
+    @property
+    def bristles(self) -> np.ndarray:
+        """Copy of the bristle state z in scaled displacement (x, y, r theta), shape (3,) [m]."""
+        return self._pads["z"][0].copy()
+
+    def step(self, twist: Sequence[float], normal_force: float, dt: float) -> tuple[float, float, float]:
+        """Advance by dt at a prescribed slip twist.
+
+        Args:
+            twist: Slip twist (v_x, v_y, omega) of the object relative to the pad at the
+                centre of pressure [m/s, m/s, rad/s].
+            normal_force: Normal force [N], >= 0.
+            dt: Time step [s], > 0.
+
+        Returns:
+            Friction (f_x, f_y, tau) on the object [N, N, N m].
+
+        Raises:
+            ValueError: A value is not finite or outside its range.
+        """
+        velocity = finite_vector("twist", twist, 3)
+        positive(allow_zero=True, normal_force=normal_force)
+        positive(dt=dt)
+        self._pads["normal"] = normal_force
+        if normal_force == 0.0:
+            self.reset()
+        else:
+            prescribed_step(self._pads[0], velocity, dt)
+        f_x, f_y, tau = self._pads["wrench"][0]
+        return float(f_x), float(f_y), float(tau)
+
+    def reset(self) -> None:
+        """Forget the bristle state, as after a loss of contact."""
+        for field in ("z", "slip_speed", "wrench"):
+            self._pads[field] = 0.0

@@ -1,0 +1,97 @@
+"""The friction step: elasto-plastic return mapping onto an ellipsoidal limit surface.
+
+Each pad carries three bristle deflections z in the scaled displacement
+(x, y, r theta) at its centre of pressure. Friction per normal force is
+
+    f / f_n = sigma_0 z + sigma_1 dz/dt + sigma_2 u,        |z| <= g(v) / sigma_0,
+
+with u the scaled slip twist and g(v) the Stribeck curve of the plastic slip
+speed v. A sub-step adds the scaled slip displacement to z and projects the
+result back onto the ball of radius g / sigma_0 (closest-point return mapping,
+Simo & Hughes, Computational Inelasticity, 1998, ch. 3). Inside the ball the
+contact truly sticks: z is elastic and nothing drifts. On the ball z turns into
+the direction of slip, so steady slip lies on the ellipsoid (Waltersson &
+Karayiannidis, arXiv 2507.06824, eqs 1-2; LuGre form in arXiv 2308.01123).
+
+The step is backward Euler in the object's momentum, so it knows mass and
+inertia and has no stiffness limit. With g frozen over the sub-step each pad's
+force is the gradient of a convex function of the twist: the coupled problem of
+both pads has one solution, which a semi-smooth Newton iteration finds.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+
+
+@njit(cache=True)
+def stribeck(pad, slip_speed):
+    """Friction level g(v) = mu_c + (mu_s - mu_c) exp(-(v / v_s)^2) [-]."""
+    ratio = slip_speed / pad.stribeck_velocity
+    return pad.mu_c + (pad.mu_s - pad.mu_c) * math.exp(-ratio * ratio)
+
+
+@njit(cache=True)
+def respond(pad, delta, h, limit):
+    """Friction of one pad after a scaled slip displacement over time h.
+
+    Args:
+        pad: PAD record; read only.
+        delta: Scaled slip displacement (x, y, r theta) of the sub-step, tuple of 3 [m].
+        h: Sub-step [s].
+        limit: Frozen friction level g [-].
+
+    Returns:
+        force: Friction opposing `delta`, scaled components, tuple of 3 [N].
+        isotropic, radial, direction: Derivative of `force` by `delta`, as
+            isotropic I - radial direction direction^T [N/m].
+        shortening: Factor of the return mapping on the trial deflection (1 = stick).
+    """
+    y = (pad.z[0] + delta[0], pad.z[1] + delta[1], pad.z[2] + delta[2])
+    length = math.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
+    radius = limit / pad.sigma_0
+    elastic = pad.normal * (pad.sigma_0 + pad.sigma_1 / h)
+    damping = pad.normal * pad.sigma_1 / h
+    viscous = pad.normal * pad.sigma_2 / h
+    shortening, radial = 1.0, 0.0
+    if length > radius:
+        shortening = radius / length
+        radial = elastic * shortening / (length * length)
+    spring = elastic * shortening
+    force = (
+        spring * y[0] - damping * pad.z[0] + viscous * delta[0],
+        spring * y[1] - damping * pad.z[1] + viscous * delta[1],
+        spring * y[2] - damping * pad.z[2] + viscous * delta[2],
+    )
+    return force, spring + viscous, radial, y, shortening
+
+
+@njit(cache=True)
+def commit(pad, delta, h, force, shortening):
+    """Store bristle state, plastic slip speed and wrench that `respond` found."""
+    lost = 0.0
+    for a in range(3):
+        trial = pad.z[a] + delta[a]
+        pad.z[a] = shortening * trial
+        lost += ((1.0 - shortening) * trial) ** 2
+    pad.slip_speed = math.sqrt(lost) / h
+    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
+
+
+@njit(cache=True)
+def release(pad, slip_speed):
+    """Forget the bristle state of a pad without normal force."""
+    pad.z[:] = 0.0
+    pad.wrench[:] = 0.0
+    pad.slip_speed = slip_speed
+
+
+@njit(cache=True)
+def prescribed_step(pad, twist, h):
+    """Advance one pad by a prescribed slip twist (v_x, v_y, omega) at its centre of pressure."""
+    delta = (h * twist[0], h * twist[1], h * pad.r * twist[2])
+    force, _, _, _, shortening = respond(pad, delta, h, stribeck(pad, pad.slip_speed))
+    commit(pad, delta, h, force, shortening)

@@ -1,0 +1,1 @@
+"""Force/torque and slip-velocity sensors of the two fingers."""

@@ -1,0 +1,48 @@
+"""Force loop of a finger: dead time, first-order lag, limits (gripper paper, arXiv 2410.19660)."""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from slipgym.world.records import QUEUE
+
+
+@njit(cache=True)
+def command(finger, tick, force):
+    """Queue a force command [N]; it takes effect one dead time after `tick`."""
+    if force < finger.open_below:
+        force = 0.0
+    slot = finger.queued % QUEUE
+    finger.queue_tick[slot] = tick + finger.dead_ticks
+    finger.queue_force[slot] = min(force, finger.force_limit)
+    finger.queued += 1
+
+
+@njit(cache=True)
+def take_up(finger, tick):
+    """Put the commands that are due into effect."""
+    while finger.served < finger.queued and finger.queue_tick[finger.served % QUEUE] <= tick:
+        finger.command = finger.queue_force[finger.served % QUEUE]
+        finger.served += 1
+
+
+@njit(cache=True)
+def ticks_to_next(finger, tick, horizon):
+    """Ticks until the next queued command is due, at most `horizon`."""
+    if finger.served < finger.queued:
+        return min(horizon, finger.queue_tick[finger.served % QUEUE] - tick)
+    return horizon
+
+
+@njit(cache=True)
+def relax(finger, h):
+    """Advance the first-order lag by h; returns the mean force over h [N]."""
+    gap = finger.force - finger.command
+    if finger.lag <= 0.0:
+        finger.force = finger.command
+        return finger.command
+    decay = math.exp(-h / finger.lag)
+    finger.force = finger.command + gap * decay
+    return finger.command + gap * (1.0 - decay) * finger.lag / h

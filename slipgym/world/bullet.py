@@ -1,0 +1,228 @@
+"""PyBullet moves the bodies; friction and sensing between its steps are ours."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NoReturn
+
+import numpy as np
+import pybullet as p
+from numba import njit
+
+from slipgym.config import Config
+from slipgym.world import coupling, scene
+from slipgym.world.actuator import command
+from slipgym.world.plant import Plant
+from slipgym.world.scene import FINGER_LINKS, WRIST_FORCE, WRIST_JOINTS, Box
+
+
+@njit(cache=True)
+def _loads(worlds, pads, fingers, force_torque, noise, chips, pose, velocity, wrist, normals):
+    return coupling.step_loads(
+        worlds[0],
+        pads[0],
+        fingers[0],
+        force_torque[0],
+        noise[0],
+        chips[0],
+        pose[0],
+        pose[1],
+        velocity[0],
+        velocity[1],
+        wrist,
+        normals,
+    )
+
+
+@njit(cache=True)
+def _observe(worlds, fingers, pose, wrist, normals):
+    coupling.observe(worlds[0], fingers[0], pose[0], pose[1], wrist, normals)
+
+
+@njit(cache=True)
+def _command(worlds, fingers, force):
+    for f in range(2):
+        command(fingers[0, f], worlds[0].tick, force)
+
+
+class BulletWorld:
+    """One gripper and one box in a physics client of their own.
+
+    The scene is built once; an episode starts from a saved state of it, in which the pads
+    touch the box. Only another geometry builds another box.
+
+    Args:
+        config: Configuration; gripper, physics and the rates are read.
+        plant: Arrays of one world, shared with whoever senses or controls it.
+    """
+
+    def __init__(self, config: Config, plant: Plant) -> None:
+        self._config = config
+        self._plant = plant
+        self._client: int | None = scene.connect()
+        self._box: Box | None = None
+        self._gripper = self._body = self._saved = -1
+        self._reading: tuple[Any, ...] = ()
+
+    @property
+    def client(self) -> int:
+        """PyBullet's id of the physics client.
+
+        Raises:
+            RuntimeError: The world is closed.
+        """
+        if self._client is None:
+            raise RuntimeError("this environment is closed; make a new one")
+        return self._client
+
+    @property
+    def body(self) -> int:
+        """PyBullet's id of the box."""
+        return self._body
+
+    @property
+    def gripper(self) -> int:
+        """PyBullet's id of the gripper."""
+        return self._gripper
+
+    @property
+    def reading(self) -> tuple[Any, ...]:
+        """What the engine said after its last step: pose, velocity, wrist joints, normal forces."""
+        return self._reading
+
+    def reset(self, box: Box, force: float, wrist: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
+        """Start an episode: the box held still by both fingers.
+
+        Args:
+            box: The object.
+            force: Grip force per finger, already established [N].
+            wrist: Pad centre (x, z) and pitch [m, m, rad].
+        """
+        client = self.client
+        if self._box is None or _geometry(box) != _geometry(self._box):
+            self._build(box)
+        p.restoreState(stateId=self._saved, physicsClientId=client)
+        scene.weigh(client, self._body, box)
+        self._box = box
+        world, fingers = self._plant.world, self._plant.fingers
+        cos, sin = math.cos(wrist[2]), math.sin(wrist[2])
+        x, z = box.grasp_from_com
+        for field in ("tick", "velocity", "external", "wrist_velocity", "wrist_acceleration"):
+            world[field] = 0
+        for field in ("relative_velocity", "slip", "slip_twist"):
+            world[field] = 0.0
+        world["mass"], world["inertia"] = box.mass, box.inertia
+        world["half_thickness"] = box.size[1] / 2
+        world["wrist"] = world["wrist_plan"] = wrist
+        world["relative"] = -x, -z, 0.0
+        world["grasp_point"] = x, z
+        world["com"] = wrist[0] - cos * x + sin * z, wrist[1] - sin * x - cos * z
+        world["angle"] = wrist[2]
+        for field in ("queued", "served"):
+            fingers[field] = 0
+        for field in ("command", "force", "mean_force", "contact_mean_force", "contact_force"):
+            fingers[field] = force
+        for field in ("z", "slip_speed", "wrench"):
+            self._plant.pads[field] = 0.0
+        if any(wrist):
+            self._place(wrist)
+        pose, velocity, joints, _ = self._read()
+        self._reading = pose, velocity, joints, (force, force)
+
+    def command(self, force: float) -> None:
+        """Command a grip force per finger [N]; both fingers get the same."""
+        _command(self._plant.world, self._plant.fingers, force)
+
+    def command_wrist(self, velocity: np.ndarray, duration: float) -> None:
+        """Ramp the wrist velocity (x, z, pitch) to a target within `duration` [s]."""
+        world = self._plant.world
+        world["wrist_acceleration"] = (velocity - world["wrist_velocity"]) / duration
+
+    def disturb(self, wrench: np.ndarray) -> None:
+        """Apply a load (f_x, f_z, torque) to the object's centre of mass until told otherwise."""
+        self._plant.world["external"] = wrench
+
+    def step(self, noise: np.ndarray) -> None:
+        """Advance by one control step.
+
+        Args:
+            noise: Standard normal draws for the force/torque sensors, shape (1, 2, samples, 12).
+        """
+        client, body, gripper, plant = self.client, self._body, self._gripper, self._plant
+        for _ in range(self._config.physics.engine_steps):
+            pose, velocity, wrist, normals = self._reading
+            load, first, second, efforts, speeds = _loads(
+                plant.world,
+                plant.pads,
+                plant.fingers,
+                plant.force_torque,
+                noise,
+                plant.chips,
+                pose,
+                velocity,
+                wrist,
+                normals,
+            )
+            p.applyExternalForce(body, -1, load[0], pose[0], p.WORLD_FRAME, physicsClientId=client)
+            p.applyExternalTorque(body, -1, load[1], p.WORLD_FRAME, physicsClientId=client)
+            for link, (point, force, torque) in zip(FINGER_LINKS, (first, second), strict=True):
+                p.applyExternalForce(gripper, link, force, point, p.WORLD_FRAME, physicsClientId=client)
+                p.applyExternalTorque(gripper, link, torque, p.WORLD_FRAME, physicsClientId=client)
+            p.setJointMotorControlArray(
+                gripper, FINGER_LINKS, p.TORQUE_CONTROL, forces=efforts, physicsClientId=client
+            )
+            p.setJointMotorControlArray(
+                gripper,
+                WRIST_JOINTS,
+                p.VELOCITY_CONTROL,
+                targetVelocities=speeds,
+                forces=WRIST_FORCE,
+                physicsClientId=client,
+            )
+            p.stepSimulation(physicsClientId=client)
+            self._reading = self._read()
+        _observe(plant.world, plant.fingers, self._reading[0], self._reading[2], self._reading[3])
+
+    def close(self) -> None:
+        """Disconnect the client; the world cannot be used again. Closing twice is harmless."""
+        if self._client is not None:
+            p.disconnect(physicsClientId=self._client)
+            self._client = None
+
+    def __del__(self) -> None:
+        if getattr(self, "_client", None) is not None and p is not None:
+            self.close()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a BulletWorld cannot be copied or pickled: two copies would share one physics client")
+
+    def _read(self) -> tuple[Any, ...]:
+        client, gripper = self.client, self._gripper
+        pose = p.getBasePositionAndOrientation(self._body, physicsClientId=client)
+        velocity = p.getBaseVelocity(self._body, physicsClientId=client)
+        joints = p.getJointStates(gripper, WRIST_JOINTS, physicsClientId=client)
+        contacts = p.getContactPoints(self._body, gripper, physicsClientId=client)
+        # fsum: the engine may list the points in another order after a restore
+        normals = tuple(math.fsum(c[9] for c in contacts if c[4] == link) for link in FINGER_LINKS)
+        return pose, velocity, (joints[0][0], joints[1][0], joints[2][0]), normals
+
+    def _build(self, box: Box) -> None:
+        client = self.client
+        scene.clear(client, self._config)
+        self._gripper = scene.add_gripper(client, self._config, box.size[1])
+        self._body = scene.add_box(client, box)
+        self._saved = scene.settle(client, self._config, self._gripper)
+
+    def _place(self, wrist: tuple[float, float, float]) -> None:
+        client = self.client
+        for joint, position in zip(WRIST_JOINTS, wrist, strict=True):
+            p.resetJointState(self._gripper, joint, position, 0.0, physicsClientId=client)
+        x, z = self._plant.world["com"][0]
+        half = -0.5 * wrist[2]
+        p.resetBasePositionAndOrientation(
+            self._body, [x, 0.0, z], [0.0, math.sin(half), 0.0, math.cos(half)], physicsClientId=client
+        )
+
+
+def _geometry(box: Box) -> tuple[tuple[float, ...], ...]:
+    return box.size, box.com_offset, box.grasp_offset

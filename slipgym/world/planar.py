@@ -1,0 +1,140 @@
+"""The planar world: object, wrist and fingers between two engine steps, sub-stepped.
+
+The object's in-plane motion relative to the pads is stiff (14 000 rad/s in stick), so it
+is integrated here, implicitly and together with the friction of both pads. A rigid-body
+engine then follows by receiving the step's mean wrench.
+
+Positions, not velocities, decide about slip: a sub-step compares the object's pose in the
+pad frame before and after, with the pad's own motion taken exactly. An object that sticks
+therefore stays where it is in a turning or shaken gripper, to rounding.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba import njit
+
+from slipgym.contact.coupled import step_pads
+from slipgym.sensors.force_torque import sample_force_torque
+from slipgym.sensors.slip_velocity import accumulate_slip
+from slipgym.world.actuator import relax, take_up, ticks_to_next
+
+
+@njit(cache=True)
+def advance(world, pads, fingers, force_torque, noise, chips):
+    """Advance one world by one engine step.
+
+    Args:
+        world: WORLD record.
+        pads: PAD records (2,).
+        fingers: FINGER records (2,).
+        force_torque: FORCE_TORQUE records (2,).
+        noise: Standard normal draws for the force/torque samples of this control step,
+            shape (2, samples, 12).
+        chips: SLIP_SENSOR records (2,).
+    """
+    start = world.tick
+    end = start + world.engine_ticks
+    for f in range(2):
+        fingers[f].mean_force = 0.0
+        fingers[f].reaction[:] = 0.0
+    while world.tick < end:
+        ticks = min(world.substep_ticks, end - world.tick)
+        for f in range(2):
+            take_up(fingers[f], world.tick)
+            ticks = ticks_to_next(fingers[f], world.tick, ticks)
+            ticks = min(ticks, force_torque[f].period - world.tick % force_torque[f].period)
+        share = ticks / world.engine_ticks
+        substep(world, pads, fingers, chips, ticks * world.tick_length, share)
+        world.tick += ticks
+        for f in range(2):
+            if world.tick % force_torque[f].period == 0:
+                sample_force_torque(force_torque[f], pads[f], noise[f])
+
+
+@njit(cache=True)
+def substep(world, pads, fingers, chips, h, share):
+    """Advance wrist, fingers, friction and object by h, a `share` of the engine step."""
+    for f in range(2):
+        mean = relax(fingers[f], h)
+        fingers[f].mean_force += share * mean
+        pads[f].normal = normal_force(fingers[f])
+    move_wrist(world, h)
+    cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])
+    ax = world.external[0] / world.mass
+    az = world.external[1] / world.mass - world.gravity
+    at = world.external[2] / world.inertia
+    drift = relative_motion(world, cos, sin, 0.0, 0.0, 0.0, h)
+    free = relative_motion(world, cos, sin, ax, az, at, h)
+    centre = (world.relative[0], world.relative[1])
+    motion = step_pads(pads, (world.mass, world.inertia), centre, free, drift, h)
+    braking_x = (motion[0] - free[0]) / h
+    braking_y = (motion[1] - free[1]) / h
+    world.velocity[0] += h * ax + cos * braking_x - sin * braking_y
+    world.velocity[1] += h * az + sin * braking_x + cos * braking_y
+    world.velocity[2] += h * at + (motion[2] - free[2]) / h
+    world.com[0] += h * world.velocity[0]
+    world.com[1] += h * world.velocity[1]
+    world.angle += h * world.velocity[2]
+    for a in range(3):
+        world.relative[a] += motion[a]
+        world.relative_velocity[a] = motion[a] / h
+    slip = (motion[0] + motion[2] * centre[1], motion[1] - motion[2] * centre[0], motion[2])
+    for f in range(2):
+        accumulate_slip(chips[f], slip)
+        fx, fy, tau = pads[f].wrench
+        fingers[f].reaction[0] += share * (cos * fx - sin * fy)
+        fingers[f].reaction[1] += share * (sin * fx + cos * fy)
+        fingers[f].reaction[2] += share * tau
+
+
+@njit(cache=True)
+def normal_force(finger):
+    """Normal force now [N]: the engine's last mean, moved on by the actuator's change since."""
+    if finger.contact_force <= 0.0:
+        return 0.0
+    return max(0.0, finger.contact_force + finger.force - finger.contact_mean_force)
+
+
+@njit(cache=True)
+def move_wrist(world, h):
+    """Advance the commanded wrist motion by h (constant acceleration)."""
+    for a in range(3):
+        step = h * (world.wrist_velocity[a] + 0.5 * h * world.wrist_acceleration[a])
+        world.wrist[a] += step
+        world.wrist_plan[a] += step
+        world.wrist_velocity[a] += h * world.wrist_acceleration[a]
+
+
+@njit(cache=True)
+def relative_motion(world, cos, sin, ax, az, at, h):
+    """Motion of the centre of mass in the pad frame over h under a given acceleration.
+
+    The wrist has already moved; cos and sin are those of its new pitch.
+    """
+    x = world.com[0] + h * (world.velocity[0] + h * ax) - world.wrist[0]
+    z = world.com[1] + h * (world.velocity[1] + h * az) - world.wrist[1]
+    turned = world.angle + h * (world.velocity[2] + h * at) - world.wrist[2]
+    return (
+        cos * x + sin * z - world.relative[0],
+        cos * z - sin * x - world.relative[1],
+        turned - world.relative[2],
+    )
+
+
+@njit(cache=True)
+def locate(world):
+    """Update slip displacement and slip twist at the pad centre from the relative pose.
+
+    The displacement is that of the object's point that lay at the pad centre at the grasp.
+    """
+    cos, sin = math.cos(world.relative[2]), math.sin(world.relative[2])
+    px, py = world.grasp_point
+    world.slip[0] = world.relative[0] + cos * px - sin * py
+    world.slip[1] = world.relative[1] + sin * px + cos * py
+    world.slip[2] = world.relative[2]
+    vx, vy, omega = world.relative_velocity
+    world.slip_twist[0] = vx + omega * world.relative[1]
+    world.slip_twist[1] = vy - omega * world.relative[0]
+    world.slip_twist[2] = omega

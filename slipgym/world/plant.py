@@ -1,0 +1,134 @@
+"""The arrays of n worlds, filled from a configuration."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from slipgym.config import Config
+from slipgym.contact.records import PAD
+from slipgym.sensors.force_torque import FORCE_TORQUE
+from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
+from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
+from slipgym.sensors.slip_velocity import SLIP_SENSOR, chip_levers
+from slipgym.world.records import FINGER, QUEUE, WORLD
+
+MIRROR = (1.0, -1.0)  # finger 2 sees the grip axis from the other side
+
+
+@dataclass
+class Plant:
+    """State and parameters of n worlds as structured arrays with a leading batch axis.
+
+    Plain data: copying the arrays saves every bit of the planar state.
+    """
+
+    world: np.ndarray
+    """WORLD (n,)."""
+    pads: np.ndarray
+    """PAD (n, 2)."""
+    fingers: np.ndarray
+    """FINGER (n, 2)."""
+    force_torque: np.ndarray
+    """FORCE_TORQUE (n, 2)."""
+    chips: np.ndarray
+    """SLIP_SENSOR (n, 2)."""
+
+    def restore(self, other: Plant) -> None:
+        """Copy every array of another plant of the same size into this one."""
+        for field in fields(self):
+            getattr(self, field.name)[:] = getattr(other, field.name)
+
+
+def build(config: Config, n: int = 1) -> Plant:
+    """Return n worlds at rest with the configuration's default object and no friction yet."""
+    tick_rate = math.lcm(config.physics.engine_rate, config.sensors.force_torque.rate)
+    return Plant(
+        world=_world(config, n, tick_rate),
+        pads=_pads(config, n),
+        fingers=_fingers(config, n, tick_rate),
+        force_torque=_force_torque(config, n, tick_rate),
+        chips=_chips(config, n),
+    )
+
+
+def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
+    world = np.zeros(n, WORLD)
+    world["tick_length"] = 1.0 / tick_rate
+    world["engine_ticks"] = tick_rate // config.physics.engine_rate
+    world["substep_ticks"] = max(1, math.floor(config.physics.substep_max * tick_rate * (1 + 1e-9)))
+    world["gravity"] = config.physics.gravity
+    return world
+
+
+def _pads(config: Config, n: int) -> np.ndarray:
+    contact = config.contact
+    pads = np.zeros((n, 2), PAD)
+    for field in ("stribeck_velocity", "sigma_0", "sigma_1", "sigma_2"):
+        pads[field] = getattr(contact, field)
+    pads["r"] = contact.radius
+    pads["cop"] = contact.cop_offset
+    return pads
+
+
+def _fingers(config: Config, n: int, tick_rate: int) -> np.ndarray:
+    gripper = config.gripper
+    dead_ticks = round(gripper.dead_time * tick_rate)
+    if dead_ticks * config.physics.control_rate >= QUEUE * tick_rate:
+        raise ValueError(
+            f"gripper.dead_time = {gripper.dead_time:g} s must be below {QUEUE} control steps "
+            f"({QUEUE / config.physics.control_rate:g} s)"
+        )
+    fingers = np.zeros((n, 2), FINGER)
+    fingers["lag"] = gripper.lag
+    fingers["dead_ticks"] = dead_ticks
+    fingers["force_limit"] = gripper.force_limit
+    fingers["open_below"] = gripper.open_below
+    return fingers
+
+
+def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
+    sensor = config.sensors.force_torque
+    delay = round(sensor.latency * tick_rate)
+    if delay * sensor.rate >= FORCE_HISTORY * tick_rate:
+        raise ValueError(
+            f"sensors.force_torque.latency = {sensor.latency:g} s must be below {FORCE_HISTORY} samples "
+            f"({FORCE_HISTORY / sensor.rate:g} s)"
+        )
+
+    def six(tangential: float, normal: float, torque: float) -> tuple[float, ...]:
+        return (tangential, tangential, normal, torque, torque, torque)
+
+    array = np.zeros((n, 2), FORCE_TORQUE)
+    array["period"] = tick_rate // sensor.rate
+    array["delay"] = delay
+    array["mirror"] = MIRROR
+    array["noise"] = six(sensor.noise_tangential, sensor.noise_normal, sensor.noise_torque)
+    array["drift"] = six(sensor.drift_tangential, sensor.drift_normal, sensor.drift_torque)
+    array["drift"] /= math.sqrt(sensor.rate)
+    array["resolution"] = six(sensor.resolution_force, sensor.resolution_force, sensor.resolution_torque)
+    array["range"] = six(sensor.force_range, sensor.normal_range, sensor.torque_range)
+    return array
+
+
+def _chips(config: Config, n: int) -> np.ndarray:
+    sensor = config.sensors.slip
+    if sensor.window + sensor.latency_samples >= SLIP_HISTORY:
+        raise ValueError(
+            f"sensors.slip: window + latency_samples = {sensor.window + sensor.latency_samples} "
+            f"must be below {SLIP_HISTORY}"
+        )
+    levers = chip_levers(sensor.chip_radius, sensor.chips)
+    chips = np.zeros((n, 2), SLIP_SENSOR)
+    chips["mirror"] = MIRROR
+    chips["sample_time"] = 1.0 / sensor.rate
+    chips["count"] = sensor.count if sensor.counts else 0.0
+    chips["noise"] = sensor.noise * sensor.count
+    chips["range"] = sensor.speed_max / sensor.rate
+    chips["window"] = sensor.window
+    chips["delay"] = sensor.latency_samples
+    chips["lever"] = levers
+    chips["solve"] = np.linalg.pinv(levers)
+    return chips

@@ -1,0 +1,54 @@
+"""Plain-array state of the planar world: body, wrist, fingers and clock."""
+
+from __future__ import annotations
+
+import numpy as np
+
+QUEUE = 32  # force commands that can be under way in the dead time
+
+WORLD = np.dtype(
+    [
+        ("tick", "i8"),  # time in ticks since reset
+        ("tick_length", "f8"),  # [s]
+        ("engine_ticks", "i8"),  # ticks per engine step
+        ("substep_ticks", "i8"),  # longest friction sub-step in ticks
+        ("gravity", "f8"),  # [m/s^2], along -z
+        ("mass", "f8"),  # [kg]
+        ("inertia", "f8"),  # about the centre of mass and the grip axis [kg m^2]
+        ("half_thickness", "f8"),  # of the object along the grip axis [m]
+        ("com", "f8", 2),  # centre of mass in the world plane (x, z) [m]
+        ("angle", "f8"),  # of the object about the grip axis [rad]
+        ("velocity", "f8", 3),  # of the centre of mass, world [m/s, m/s, rad/s]
+        ("external", "f8", 3),  # disturbance on the centre of mass, world [N, N, N m]
+        ("wrist", "f8", 3),  # pad centre (x, z) and pitch as the engine has it
+        ("wrist_plan", "f8", 3),  # the same as commanded
+        ("wrist_velocity", "f8", 3),  # commanded, now
+        ("wrist_acceleration", "f8", 3),  # commanded, over this control step
+        ("relative", "f8", 3),  # centre of mass and angle in the pad frame
+        ("relative_velocity", "f8", 3),  # of the centre of mass in the pad frame, last sub-step
+        ("grasp_point", "f8", 2),  # body point at the pad centre at the grasp, from the com
+        ("slip", "f8", 3),  # slip displacement (x, y, theta) [m, m, rad]
+        ("slip_twist", "f8", 3),  # at the pad centre [m/s, m/s, rad/s]
+    ]
+)
+"""One object held by one gripper, seen along the grip axis from finger 1 to finger 2."""
+
+FINGER = np.dtype(
+    [
+        ("lag", "f8"),  # time constant of the force loop [s]
+        ("dead_ticks", "i8"),  # dead time in ticks
+        ("force_limit", "f8"),  # hard limit of the actuator [N]
+        ("open_below", "f8"),  # commands below it open the force loop [N]
+        ("queue_tick", "i8", QUEUE),  # when a command takes effect
+        ("queue_force", "f8", QUEUE),  # its value [N]
+        ("queued", "i8"),  # commands ever queued
+        ("served", "i8"),  # commands ever taken up
+        ("command", "f8"),  # command in effect [N]
+        ("force", "f8"),  # actuator force now [N]
+        ("mean_force", "f8"),  # actuator force, mean over the engine step [N]
+        ("contact_mean_force", "f8"),  # actuator force, mean over the step of `contact_force` [N]
+        ("contact_force", "f8"),  # normal force of the engine, mean over its last step [N]
+        ("reaction", "f8", 3),  # friction on the object, world, mean over the engine step
+    ]
+)
+"""One finger: force loop, normal contact and the friction impulse it passes on."""

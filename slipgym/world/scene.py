@@ -1,0 +1,173 @@
+"""Bodies of the PyBullet scene: a gripper on a moving wrist, and a box between its pads.
+
+Pads and box have no friction of Bullet's own and no damping; the box's frame is its
+centre of mass. Nothing is read from files, so an episode can change the box cheaply.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import pybullet as p
+
+from slipgym.config import Config
+
+WRIST_JOINTS = (0, 1, 2)
+FINGER_LINKS = (3, 4)
+WRIST_FORCE = (1e4, 1e4, 1e3)
+PAD_THICKNESS = 0.01
+_NO_ROTATION = (0.0, 0.0, 0.0, 1.0)
+_WRIST_MASS = 1.0
+_SETTLE_STEPS = 60
+_SETTLE_FORCES = (5.0, 5.0)
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box by its geometry and mass distribution; x and z span the contact plane."""
+
+    size: tuple[float, float, float]
+    """Extent along x, the grip axis and z [m]."""
+    com_offset: tuple[float, float]
+    """Centre of mass (x, z) from the geometric centre [m]."""
+    grasp_offset: tuple[float, float]
+    """Pad centre (x, z) at the grasp from the geometric centre [m]."""
+    mass: float
+    """[kg]."""
+    inertia: float
+    """Moment of inertia about the grip axis through the centre of mass [kg m^2]."""
+
+    @property
+    def grasp_from_com(self) -> tuple[float, float]:
+        """Pad centre (x, z) at the grasp from the centre of mass [m]."""
+        return self.grasp_offset[0] - self.com_offset[0], self.grasp_offset[1] - self.com_offset[1]
+
+    @property
+    def principal_inertia(self) -> tuple[float, float, float]:
+        """About x, grip axis and z; the out-of-plane ones are those of a uniform box [kg m^2]."""
+        x, y, z = self.size
+        return self.mass * (y * y + z * z) / 12.0, self.inertia, self.mass * (x * x + y * y) / 12.0
+
+
+def connect() -> int:
+    """Start a physics client of our own.
+
+    Raises:
+        RuntimeError: PyBullet has no client left.
+    """
+    client = p.connect(p.DIRECT)
+    if client < 0:
+        raise RuntimeError("PyBullet refused another physics client; close environments that are done")
+    return client
+
+
+def clear(client: int, config: Config) -> None:
+    """Empty the world and set its rate and solver."""
+    p.resetSimulation(physicsClientId=client)
+    p.setPhysicsEngineParameter(
+        fixedTimeStep=1.0 / config.physics.engine_rate,
+        numSolverIterations=config.physics.solver_iterations,
+        numSubSteps=0,
+        deterministicOverlappingPairs=1,
+        physicsClientId=client,
+    )
+
+
+def add_gripper(client: int, config: Config, thickness: float) -> int:
+    """Create wrist (x, z, pitch about -y) and two fingers that close on a box of this thickness."""
+    side = config.gripper.pad_radius * math.sqrt(0.5)  # square inscribed in the pad's disc
+    depth = PAD_THICKNESS / 2
+    pad = p.createCollisionShape(p.GEOM_BOX, halfExtents=[side, depth, side], physicsClientId=client)
+    look = p.createVisualShape(
+        p.GEOM_CYLINDER,
+        radius=config.gripper.pad_radius,
+        length=PAD_THICKNESS,
+        rgbaColor=[0.25, 0.28, 0.33, 1.0],
+        visualFrameOrientation=p.getQuaternionFromEuler([math.pi / 2, 0, 0]),
+        physicsClientId=client,
+    )
+    offset = thickness / 2 + depth
+    gripper = p.createMultiBody(
+        baseMass=0,
+        linkMasses=[_WRIST_MASS] * 3 + [config.gripper.finger_mass] * 2,
+        linkCollisionShapeIndices=[-1, -1, -1, pad, pad],
+        linkVisualShapeIndices=[-1, -1, -1, look, look],
+        linkPositions=[[0, 0, 0]] * 3 + [[0, offset, 0], [0, -offset, 0]],
+        linkOrientations=[_NO_ROTATION] * 5,
+        linkInertialFramePositions=[[0, 0, 0]] * 5,
+        linkInertialFrameOrientations=[_NO_ROTATION] * 5,
+        linkParentIndices=[0, 1, 2, 3, 3],
+        linkJointTypes=[p.JOINT_PRISMATIC] * 2 + [p.JOINT_REVOLUTE] + [p.JOINT_PRISMATIC] * 2,
+        linkJointAxis=[[1, 0, 0], [0, 0, 1], [0, -1, 0], [0, -1, 0], [0, 1, 0]],
+        physicsClientId=client,
+    )
+    for link in range(-1, 5):
+        _frictionless(client, gripper, link)
+    # Bullet starts every joint with a velocity motor; the fingers' must not resist
+    p.setJointMotorControlArray(
+        gripper, FINGER_LINKS, p.VELOCITY_CONTROL, forces=[0.0, 0.0], physicsClientId=client
+    )
+    return gripper
+
+
+def add_box(client: int, box: Box) -> int:
+    """Create the box with its grasp point at the origin."""
+    half = [extent / 2 for extent in box.size]
+    centre = [-box.com_offset[0], 0.0, -box.com_offset[1]]
+    shape = p.createCollisionShape(
+        p.GEOM_BOX, halfExtents=half, collisionFramePosition=centre, physicsClientId=client
+    )
+    look = p.createVisualShape(
+        p.GEOM_BOX,
+        halfExtents=half,
+        visualFramePosition=centre,
+        rgbaColor=[0.85, 0.62, 0.38, 1.0],
+        physicsClientId=client,
+    )
+    x, z = box.grasp_from_com
+    body = p.createMultiBody(box.mass, shape, look, [-x, 0.0, -z], physicsClientId=client)
+    _frictionless(client, body, -1)
+    weigh(client, body, box)
+    return body
+
+
+def settle(client: int, config: Config, gripper: int) -> int:
+    """Press the pads on the box without gravity until the normal contact rests.
+
+    Returns:
+        PyBullet's id of the saved state; gravity acts again.
+    """
+    p.setGravity(0.0, 0.0, 0.0, physicsClientId=client)
+    p.setJointMotorControlArray(
+        gripper, WRIST_JOINTS, p.VELOCITY_CONTROL, forces=WRIST_FORCE, physicsClientId=client
+    )
+    for _ in range(_SETTLE_STEPS):
+        p.setJointMotorControlArray(
+            gripper, FINGER_LINKS, p.TORQUE_CONTROL, forces=_SETTLE_FORCES, physicsClientId=client
+        )
+        p.stepSimulation(physicsClientId=client)
+    p.setGravity(0.0, 0.0, -config.physics.gravity, physicsClientId=client)
+    return p.saveState(physicsClientId=client)
+
+
+def weigh(client: int, body: int, box: Box) -> None:
+    """Give the body the box's mass and inertia."""
+    p.changeDynamics(
+        body, -1, mass=box.mass, localInertiaDiagonal=box.principal_inertia, physicsClientId=client
+    )
+
+
+def _frictionless(client: int, body: int, link: int) -> None:
+    p.changeDynamics(
+        body,
+        link,
+        lateralFriction=0.0,
+        spinningFriction=0.0,
+        rollingFriction=0.0,
+        linearDamping=0.0,
+        angularDamping=0.0,
+        jointDamping=0.0,
+        maxJointVelocity=1e3,
+        physicsClientId=client,
+    )
