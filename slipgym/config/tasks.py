@@ -11,6 +11,25 @@ class TaskConfig(Frozen):
     initial_force: Positive = Field(description="Force per finger at reset [N]")
 
 
+class LinearSlipReward(Frozen):
+    """Scales of the reward terms of LinearSlip."""
+
+    tracking: float = Field(description="Scale of exp(-(error / tolerance)^2) against the reference [-]")
+    sideways: float = Field(description="Scale of -(|x| + pad_radius |theta|) / tolerance [-]")
+    effort: float = Field(description="Scale of -(mean grip force / force_max) [-]")
+    smoothness: float = Field(description="Scale of -(change of the command / force_max)^2 [-]")
+    drop: float = Field(description="Scale of -1 on a drop [-]")
+
+
+class HoldReward(Frozen):
+    """Scales of the reward terms of Hold."""
+
+    still: float = Field(description="Scale of exp(-(slip / tolerance)^2) [-]")
+    effort: float = Field(description="Scale of -(mean grip force / force_max) [-]")
+    smoothness: float = Field(description="Scale of -(change of the command / force_max)^2 [-]")
+    drop: float = Field(description="Scale of -1 on a drop [-]")
+
+
 class LinearSlipConfig(TaskConfig):
     """The object slides down between the pads by a given distance in a given time, then stays."""
 
@@ -19,6 +38,7 @@ class LinearSlipConfig(TaskConfig):
     settle: NonNegative = Field(description="Time before the slide, during which the object is held [s]")
     hold: NonNegative = Field(description="Time after the slide, during which the object is held [s]")
     tolerance: Positive = Field(description="Largest error of the final position for success [m]")
+    reward: LinearSlipReward = Field(description="Scales of the reward terms [-]")
 
 
 class HoldConfig(TaskConfig):
@@ -27,13 +47,16 @@ class HoldConfig(TaskConfig):
     duration: Positive = Field(description="Length of an episode [s]")
     tolerance: Positive = Field(description="Largest slip for success [m]")
     mass_range: PositiveInterval = Field(description="The object's mass is drawn from this range [kg]")
-    shake_amplitude: NonNegative = Field(description="Amplitude of the wrist's shaking [m]")
+    shake_amplitude: NonNegative = Field(description="Amplitude of the wrist's shaking along x and z [m]")
+    shake_pitch: NonNegative = Field(description="Amplitude of the wrist's shaking in pitch [rad]")
     shake_frequency: PositiveInterval = Field(
         description="The shaking's frequency is drawn from this range [Hz]"
     )
     poke_impulse: Interval = Field(description="The impulse of a poke is drawn from this range [N s]")
+    poke_offset: NonNegative = Field(description="Lever of a poke about the centre of mass, at most [m]")
     poke_interval: PositiveInterval = Field(description="The time between pokes is drawn from this range [s]")
     poke_duration: Positive = Field(description="Length of a poke [s]")
+    reward: HoldReward = Field(description="Scales of the reward terms [-]")
 
 
 class TasksConfig(Frozen):
