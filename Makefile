@@ -28,7 +28,7 @@ lint: $(VENV)/.dev ## style and formatting
 	$(RUN) -m ruff format --check .
 
 types: $(VENV)/.dev ## static types
-	$(RUN) -m pyright --pythonpath $(RUN)
+	$(RUN) -m pyright --project pyproject.toml --pythonpath $(RUN)
 
 wheel-smoke: $(VENV)/.dev ## build the wheel and use it from a clean environment
 	$(RUN) scripts/wheel_smoke.py

@@ -37,7 +37,8 @@ def main() -> None:
         python = install(wheel, temporary / "venv")
         elsewhere = temporary / "elsewhere"
         elsewhere.mkdir()
-        subprocess.run([python, "-I", "-c", EPISODE], cwd=elsewhere, check=True)
+        if subprocess.call([python, "-I", "-c", EPISODE], cwd=elsewhere):
+            sys.exit("the installed wheel does not run an episode")
 
 
 def build(folder: Path) -> Path:
