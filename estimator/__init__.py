@@ -1,0 +1,18 @@
+"""Online estimation of contact properties from wrench and slip velocity.
+
+Estimates static friction mu_s, Coulomb friction mu_c and the radius r of the equivalent rim contact, one
+estimator per finger, from what a sensorised gripper measures. Needs numpy and numba only: it runs beside a
+simulator as well as on a real gripper.
+
+    import estimator
+
+    est = estimator.make("rls")
+    e = est.update(t, wrench, twist)
+    e.mu_s, e.mu_c, e.r
+"""
+
+from estimator.estimate import ESTIMATE, Estimate
+from estimator.registry import make, make_batch, names
+from estimator.rls.parameters import RlsParameters
+
+__all__ = ["ESTIMATE", "Estimate", "RlsParameters", "make", "make_batch", "names"]

@@ -1,0 +1,50 @@
+"""docs/estimator.md says what the code says, and its examples print what it prints."""
+
+import dataclasses
+import re
+from pathlib import Path
+
+import pytest
+from friction_oracle import ellipsoid
+
+import estimator
+
+PAGE = (Path(__file__).parents[2] / "docs" / "estimator.md").read_text(encoding="utf-8")
+FIELDS = dataclasses.fields(estimator.RlsParameters)
+
+
+def parameter_row(field: dataclasses.Field) -> str:
+    default = f"{field.default:.4g}" if isinstance(field.default, float) else str(field.default)
+    unit, within, doc = (field.metadata[key] for key in ("unit", "within", "doc"))
+    return f"| `{field.name}` | {default} | {unit} | {within} | {doc} |"
+
+
+@pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)
+def test_every_parameter_is_documented(field):
+    assert len(field.metadata["doc"].split()) >= 4
+    assert field.metadata["doc"].endswith(".")
+    assert parameter_row(field) in PAGE
+
+
+@pytest.mark.parametrize("name", estimator.Estimate._fields)
+def test_every_result_is_documented(name):
+    assert f"| `{name}` |" in PAGE
+
+
+def code_blocks() -> list[str]:
+    return re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
+
+
+def test_the_log_loop_runs(tmp_path, monkeypatch, capsys):
+    rows = [
+        ",".join(map(str, (t, *wrench, *twist))) for t, wrench, twist in ellipsoid(360, 0.02, 1.0, 0.4, 0.01)
+    ]
+    (tmp_path / "finger_1.csv").write_text("\n".join(["t,f_x,f_y,f_n,tau,v_x,v_y,omega", *rows]))
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code_blocks()[0], "log loop", "exec"), {})
+    assert capsys.readouterr().out == "mu_s 1.500  mu_c 0.400  r 0.0100 m\nsupport: 0.00  1.00  1.00\n"
+
+
+def test_the_figures_on_locking_out_are_printed_by_their_code(capsys):
+    exec(compile(code_blocks()[1], "locking out", "exec"), {})
+    assert f"```text\n{capsys.readouterr().out}```" in PAGE
