@@ -1,1 +1,5 @@
 """Gymnasium environments for slip-aware in-hand manipulation, with a friction estimator in the loop."""
+
+from slipgym.registration import register
+
+register()

@@ -26,7 +26,6 @@ import math
 from numba import njit
 
 
-
 @njit(cache=True)
 def stribeck(pad, slip_speed):
     """Friction level g(v) = mu_c + (mu_s - mu_c) exp(-(v / v_s)^2) [-]."""

@@ -1,0 +1,1 @@
+"""Worlds that move the object: a sub-stepped planar model, and PyBullet around it."""

@@ -12,6 +12,7 @@ from numba import njit
 from slipgym.config import Config
 from slipgym.world import coupling, scene
 from slipgym.world.actuator import command
+from slipgym.world.planar import locate
 from slipgym.world.plant import Plant
 from slipgym.world.scene import FINGER_LINKS, WRIST_FORCE, WRIST_JOINTS, Box
 
@@ -37,6 +38,7 @@ def _loads(worlds, pads, fingers, force_torque, noise, chips, pose, velocity, wr
 @njit(cache=True)
 def _observe(worlds, fingers, pose, wrist, normals):
     coupling.observe(worlds[0], fingers[0], pose[0], pose[1], wrist, normals)
+    locate(worlds[0])
 
 
 @njit(cache=True)
@@ -194,7 +196,9 @@ class BulletWorld:
             self.close()
 
     def __reduce__(self) -> NoReturn:
-        raise TypeError("a BulletWorld cannot be copied or pickled: two copies would share one physics client")
+        raise TypeError(
+            "a BulletWorld cannot be copied or pickled: two copies would share one physics client"
+        )
 
     def _read(self) -> tuple[Any, ...]:
         client, gripper = self.client, self._gripper

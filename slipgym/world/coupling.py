@@ -52,9 +52,18 @@ def step_loads(
     """Advance the planar world by one engine step and say what the engine must apply.
 
     Args:
-        world, pads, fingers, force_torque, noise, chips: As in `advance`.
-        position, orientation, wrist, normals: As in `observe`.
-        linear, angular: Engine velocity of the object [m/s, rad/s].
+        world: WORLD record.
+        pads: PAD records (2,).
+        fingers: FINGER records (2,).
+        force_torque: FORCE_TORQUE records (2,).
+        noise: As in `advance`.
+        chips: SLIP_SENSOR records (2,).
+        position: As in `observe`, like the next one.
+        orientation: Quaternion of the object.
+        linear: Engine velocity of the object [m/s].
+        angular: Engine angular velocity of the object [rad/s].
+        wrist: As in `observe`.
+        normals: As in `observe`.
 
     Returns:
         Force and torque on the object at its centre of mass; for either finger the point,

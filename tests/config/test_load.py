@@ -16,7 +16,7 @@ def test_defaults_are_the_papers_figures():
     assert (c.contact.sigma_0, c.contact.sigma_1, c.contact.sigma_2) == (1e6, 80.0, 0.2)
     assert c.contact.radius == pytest.approx(2 / 3 * c.gripper.pad_radius)
     assert (c.materials["wood"].mu_c, c.materials["wood"].mu_s) == (0.3623, 0.5155)
-    assert c.physics.contact_rate == 3000
+    assert c.physics.engine_rate == 480
 
 
 def test_presets_differ_in_what_they_say_they_do():

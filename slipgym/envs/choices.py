@@ -1,0 +1,32 @@
+"""Checks of an environment's keyword arguments and actions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from slipgym.config.errors import unknown
+
+
+def one_of(name: str, value: object, valid: Iterable[str]) -> str:
+    """Return `value` if it is one of the valid names, or raise ValueError."""
+    if not isinstance(value, str) or value not in tuple(valid):
+        raise ValueError(unknown(name, value, valid))
+    return value
+
+
+def check_action(action: Any) -> float:
+    """Return the single component of an action, clipped to [-1, 1].
+
+    Raises:
+        ValueError: The action has the wrong shape or is not finite.
+    """
+    array = np.asarray(action, dtype=np.float64)
+    if array.shape != (1,):
+        raise ValueError(f"action must have shape (1,), got {array.shape}: {action!r}")
+    value = array.item()
+    if not -np.inf < value < np.inf:
+        raise ValueError(f"action = {value!r} must be finite, within [-1, 1]")
+    return min(max(value, -1.0), 1.0)

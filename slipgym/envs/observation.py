@@ -1,0 +1,109 @@
+"""The observation: sensor part, task part, friction part."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from slipgym.config import Config
+from slipgym.tasks.task import Column, Task
+
+FRICTION_SOURCES = ("estimated", "true", "nominal", "none")
+FRICTION_COLUMNS = (
+    Column("mu_s", 0.0, 10.0, "-", "static friction"),
+    Column("mu_c", 0.0, 10.0, "-", "Coulomb friction"),
+    Column("r", 0.0, 1.0, "m", "radius of the equivalent rim contact"),
+    Column("support_mu_s", 0.0, 1.0, "-", "how much data stands behind mu_s"),
+    Column("support_mu_c", 0.0, 1.0, "-", "how much data stands behind mu_c"),
+    Column("support_r", 0.0, 1.0, "-", "how much data stands behind r"),
+)
+
+
+def sensor_columns(config: Config) -> tuple[Column, ...]:
+    """Sensor part: both fingers' wrench and twist, measured travel, commanded force."""
+    ft, speed = config.sensors.force_torque, config.sensors.slip.speed_max
+    spin = 2.0 * speed / config.sensors.slip.chip_radius
+    fingers = []
+    for f in (1, 2):
+        fingers += [
+            Column(f"f_x_{f}", -ft.force_range, ft.force_range, "N", f"tangential force on finger {f}"),
+            Column(f"f_y_{f}", -ft.force_range, ft.force_range, "N", f"tangential force on finger {f}"),
+            Column(f"f_n_{f}", -ft.normal_range, ft.normal_range, "N", f"normal force of finger {f}"),
+            Column(f"tau_{f}", -ft.torque_range, ft.torque_range, "N m", f"torque at finger {f}'s CoP"),
+            Column(f"v_x_{f}", -2 * speed, 2 * speed, "m/s", f"slip velocity at finger {f}'s CoP"),
+            Column(f"v_y_{f}", -2 * speed, 2 * speed, "m/s", f"slip velocity at finger {f}'s CoP"),
+            Column(f"omega_{f}", -spin, spin, "rad/s", f"slip rate about the grip axis at finger {f}"),
+        ]
+    return (
+        *fingers,
+        Column("travel_x", -1.0, 1.0, "m", "slip displacement, summed from the counts of both fingers"),
+        Column("travel_y", -1.0, 1.0, "m", "the same along the pads' y axis"),
+        Column("travel_theta", -10.0, 10.0, "rad", "the same about the grip axis"),
+        Column("command", 0.0, config.gripper.force_limit, "N", "grip force commanded in the last step"),
+    )
+
+
+def columns(config: Config, task: Task, friction_source: str) -> tuple[Column, ...]:
+    """All columns of the observation, in order."""
+    friction = () if friction_source == "none" else FRICTION_COLUMNS
+    return (*sensor_columns(config), *task.columns, *friction)
+
+
+@njit(cache=True)
+def combine(estimates, friction):
+    """Merge both fingers' estimates, each weighted by its support.
+
+    Args:
+        estimates: ESTIMATE (2 n,), finger by finger.
+        friction: Output (n, 6): mu_s, mu_c, r and their supports (the better finger's).
+    """
+    for i in range(friction.shape[0]):
+        a, b = estimates[2 * i], estimates[2 * i + 1]
+        friction[i, 0] = weigh(a.mu_s, b.mu_s, a.support_mu_s, b.support_mu_s)
+        friction[i, 1] = weigh(a.mu_c, b.mu_c, a.support_mu_c, b.support_mu_c)
+        friction[i, 2] = weigh(a.r, b.r, a.support_r, b.support_r)
+        friction[i, 3] = max(a.support_mu_s, b.support_mu_s)
+        friction[i, 4] = max(a.support_mu_c, b.support_mu_c)
+        friction[i, 5] = max(a.support_r, b.support_r)
+
+
+@njit(cache=True)
+def weigh(a, b, support_a, support_b):
+    """Mean of two values weighted by their support; plain if neither has any."""
+    total = support_a + support_b
+    return (a * support_a + b * support_b) / total if total > 0.0 else 0.5 * (a + b)
+
+
+@njit(cache=True)
+def observe(wrenches, twists, chips, episodes, task_part, friction, low, high, out):
+    """Write the observation, clipped to its bounds.
+
+    Args:
+        wrenches: As from `measure`, (n, 2, 4).
+        twists: As from `measure`, (n, 2, 3).
+        chips: SLIP_SENSOR (n, 2), for the travel.
+        episodes: EPISODE (n,), for the command.
+        task_part: (n, k).
+        friction: (n, 6); used as far as `out` has room for it.
+        low: Lower bounds (m,).
+        high: Upper bounds (m,).
+        out: Output (n, m), float32.
+    """
+    for i in range(out.shape[0]):
+        at = 0
+        for f in range(2):
+            for k in range(4):
+                out[i, at + k] = wrenches[i, f, k]
+            for k in range(3):
+                out[i, at + 4 + k] = twists[i, f, k]
+            at += 7
+        for k in range(3):
+            out[i, at + k] = 0.5 * (chips[i, 0].travel[k] + chips[i, 1].travel[k])
+        out[i, at + 3] = episodes[i].command
+        at += 4
+        for k in range(task_part.shape[1]):
+            out[i, at + k] = task_part[i, k]
+        at += task_part.shape[1]
+        for k in range(out.shape[1] - at):
+            out[i, at + k] = friction[i, k]
+        for k in range(out.shape[1]):
+            out[i, k] = min(max(out[i, k], low[k]), high[k])

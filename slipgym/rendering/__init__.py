@@ -1,0 +1,5 @@
+"""Pictures of the scene."""
+
+from slipgym.rendering.camera import picture
+
+__all__ = ["picture"]

@@ -1,0 +1,95 @@
+"""Plain-array state of an episode, common to all tasks."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+TERMS_MAX = 8
+POKES_MAX = 64
+
+EPISODE = np.dtype(
+    [
+        ("step", "i8"),  # control steps since reset
+        ("step_time", "f8"),  # length of a control step [s]
+        ("steps", "i8"),  # length of the episode in control steps
+        ("tolerance", "f8"),  # of success [m]
+        ("reach", "f8", 2),  # pad centre may lie this far from the object's centre, (x, z) [m]
+        ("object_centre", "f8", 2),  # geometric centre from the grasp point, body frame [m]
+        ("force_max", "f8"),  # upper end of the force action [N]
+        ("command", "f8"),  # grip force commanded now [N]
+        ("last_command", "f8"),  # grip force commanded before [N]
+        ("reference", "f8", 3),  # position, velocity, acceleration along the task's coordinate
+        ("terms", "f8", TERMS_MAX),  # scaled reward terms of the last step
+        ("scales", "f8", TERMS_MAX),
+        ("success", "?"),
+        ("dropped", "?"),
+        # linear slip
+        ("distance", "f8"),  # [m]
+        ("duration", "f8"),  # [s]
+        ("settle", "f8"),  # [s]
+        # hold
+        ("largest_slip", "f8"),  # since reset [m]
+        ("shake", "f8", (3, 3)),  # amplitude [m, m, rad], angular frequency [rad/s], phase [rad]
+        ("pokes", "i8"),  # how many
+        ("poke_start", "i8", POKES_MAX),  # control step
+        ("poke_steps", "i8"),  # length
+        ("poke_wrench", "f8", (POKES_MAX, 3)),  # [N, N, N m]
+    ]
+)
+"""One episode: clock, reference, reward terms, outcome and the tasks' own parameters."""
+
+
+@njit(cache=True)
+def detect_drop(episode, world, fingers):
+    """Whether the object left the pads: no contact, or the pad reaches over an edge."""
+    x = episode.object_centre[0]
+    z = episode.object_centre[1]
+    cos, sin = np.cos(world.slip[2]), np.sin(world.slip[2])
+    # geometric centre in the pad frame, then the pad centre in the body frame
+    cx = world.slip[0] + cos * x - sin * z
+    cz = world.slip[1] + sin * x + cos * z
+    bx, bz = -(cos * cx + sin * cz), -(-sin * cx + cos * cz)
+    outside = abs(bx) > episode.reach[0] or abs(bz) > episode.reach[1]
+    lost = fingers[0].contact_force <= 0.0 and fingers[1].contact_force <= 0.0
+    return outside or lost
+
+
+@njit(cache=True)
+def effort(episode, fingers):
+    """Mean actuator force of both fingers over the end of the action's range [-]."""
+    return 0.5 * (fingers[0].force + fingers[1].force) / episode.force_max
+
+
+@njit(cache=True)
+def roughness(episode):
+    """Squared change of the command over the end of the action's range [-]."""
+    change = (episode.command - episode.last_command) / episode.force_max
+    return change * change
+
+
+@njit(cache=True)
+def trapezoid(t, distance, duration):
+    """Trapezoidal reference: a fifth of the time to speed up, a fifth to slow down.
+
+    Args:
+        t: Time since the motion's start [s]; before 0 and after `duration` it rests.
+        distance: Path length [m] or angle [rad].
+        duration: Time for it [s].
+
+    Returns:
+        Position, velocity and acceleration.
+    """
+    rise = 0.2 * duration
+    cruise = distance / (duration - rise)
+    acceleration = cruise / rise
+    if t <= 0.0:
+        return 0.0, 0.0, 0.0
+    if t < rise:
+        return 0.5 * acceleration * t * t, acceleration * t, acceleration
+    if t < duration - rise:
+        return cruise * (t - 0.5 * rise), cruise, 0.0
+    if t < duration:
+        left = duration - t
+        return distance - 0.5 * acceleration * left * left, acceleration * left, -acceleration
+    return distance, 0.0, 0.0

@@ -1,0 +1,98 @@
+"""LinearSlip: the object slides a given distance along gravity in a given time, then stays."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from pydantic import Field
+
+from slipgym.config import Config
+from slipgym.config.base import NonNegative, Positive
+from slipgym.tasks.episode import detect_drop, effort, roughness, trapezoid
+from slipgym.tasks.options import EpisodeOptions
+from slipgym.tasks.task import Column, Task
+
+TERMS = ("tracking", "sideways", "effort", "smoothness", "drop")
+COLUMNS = (
+    Column("reference_position", 0.0, 1.0, "m", "distance the object should have slid"),
+    Column("reference_velocity", 0.0, 1.0, "m/s", "its rate"),
+    Column("reference_acceleration", -5.0, 5.0, "m/s^2", "its second rate"),
+    Column("distance", 0.0, 1.0, "m", "distance to slide in the episode"),
+    Column("time_left", 0.0, 1000.0, "s", "time until the episode ends"),
+)
+
+
+class Options(EpisodeOptions):
+    """What `reset(options=...)` can fix."""
+
+    distance: Positive | None = Field(default=None, le=0.2, description="Distance to slide [m]")
+    duration: Positive | None = Field(default=None, le=120.0, description="Time for the slide [s]")
+    settle: NonNegative | None = Field(default=None, le=60.0, description="Time held before the slide [s]")
+    hold: NonNegative | None = Field(default=None, le=60.0, description="Time held after the slide [s]")
+    tolerance: Positive | None = Field(default=None, description="Largest final error for success [m]")
+
+
+def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
+    """Fill one EPISODE row; nothing here is drawn at random."""
+    task = config.tasks.linear_slip
+    for field in ("distance", "duration", "settle", "tolerance"):
+        episode[field] = options.choose(field, task)
+    total = episode["settle"] + episode["duration"] + options.choose("hold", task)
+    episode["steps"] = max(1, round(total / episode["step_time"]))
+
+
+@njit(cache=True)
+def plan(episodes, worlds):
+    """Before a control step: the wrist stays where it is and nothing disturbs."""
+
+
+@njit(cache=True)
+def judge(episodes, worlds, fingers, columns):
+    """After a control step: reference, reward terms, outcome, observation.
+
+    Args:
+        episodes: EPISODE (n,).
+        worlds: WORLD (n,).
+        fingers: FINGER (n, 2).
+        columns: Output (n, 5), see `COLUMNS`.
+    """
+    for i in range(episodes.shape[0]):
+        episode, world = episodes[i], worlds[i]
+        time = episode.step * episode.step_time
+        reference = trapezoid(time - episode.settle, episode.distance, episode.duration)
+        for k in range(3):
+            episode.reference[k] = reference[k]
+        error = -world.slip[1] - reference[0]
+        sideways = abs(world.slip[0]) + 0.01 * abs(world.slip[2])
+        episode.dropped = detect_drop(episode, world, fingers[i])
+        final = -world.slip[1] - episode.distance
+        episode.success = (
+            episode.step >= episode.steps and not episode.dropped and abs(final) <= episode.tolerance
+        )
+        terms = (
+            math.exp(-((error / episode.tolerance) ** 2)),
+            -min(sideways / episode.tolerance, 10.0),
+            -effort(episode, fingers[i]),
+            -roughness(episode),
+            -1.0 if episode.dropped else 0.0,
+        )
+        for k in range(5):
+            episode.terms[k] = episode.scales[k] * terms[k]
+        for k in range(3):
+            columns[i, k] = reference[k]
+        columns[i, 3] = episode.distance
+        columns[i, 4] = (episode.steps - episode.step) * episode.step_time
+
+
+TASK = Task(
+    name="LinearSlip",
+    key="linear_slip",
+    options=Options,
+    terms=TERMS,
+    columns=COLUMNS,
+    start=start,
+    plan=plan,
+    judge=judge,
+)
