@@ -1,0 +1,11 @@
+"""Policies behind one `predict`: classic controllers, and what evaluates them.
+
+import policies
+
+policy = policies.make("linear_slip")
+action, state = policy.predict(observation, state=None)
+"""
+
+from policies.registry import Policy, load, make, names
+
+__all__ = ["Policy", "load", "make", "names"]

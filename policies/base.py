@@ -1,0 +1,190 @@
+"""What the controllers share: columns by name, memory by row, newtons to actions."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import ClassVar, TypeAlias
+
+import numpy as np
+
+from slipgym.config import Config, Overrides, load
+from slipgym.config.errors import unknown
+from slipgym.envs import observation as layout
+from slipgym.tasks import TASKS
+
+State: TypeAlias = np.ndarray | tuple[np.ndarray, ...]
+"""A policy's memory: one or several arrays, each with a leading batch axis."""
+
+
+class ObservationIndex:
+    """Where each column of an observation is.
+
+    Args:
+        task_name: One of `slipgym.tasks.TASKS`; None for the sensor part that all tasks share.
+        config: The environment's configuration.
+
+    Raises:
+        ValueError: There is no such task.
+    """
+
+    def __init__(self, task_name: str | None, config: Config) -> None:
+        if task_name is not None and task_name not in TASKS:
+            raise ValueError(unknown("task", task_name, TASKS))
+        self.task_name = task_name
+        if task_name is None:
+            columns = layout.sensor_columns(config)
+        else:
+            columns = layout.columns(config, TASKS[task_name], "true")
+        self._at = {column.name: k for k, column in enumerate(columns)}
+
+    def __getitem__(self, name: str) -> int:
+        if name not in self._at:
+            raise ValueError(unknown("observation column", name, self._at))
+        return self._at[name]
+
+    def check(self, width: int) -> None:
+        """Refuse observations of another task.
+
+        Args:
+            width: Length of one observation.
+
+        Raises:
+            ValueError: No observation of the task has this length.
+        """
+        full = len(self._at)
+        if self.task_name is None and width < full:
+            raise ValueError(f"observation has {width} columns; every task has at least {full}")
+        bare = full - len(layout.FRICTION_COLUMNS)
+        if self.task_name is not None and width not in (full, bare):
+            raise ValueError(
+                f"observation has {width} columns; {self.task_name} has {full}, or {bare} without friction"
+            )
+
+
+class Columns:
+    """A batch of observations whose columns are read by name.
+
+    Args:
+        observations: (n, m).
+        index: Where each column is.
+
+    Raises:
+        ValueError: m does not fit the index.
+    """
+
+    def __init__(self, observations: np.ndarray, index: ObservationIndex) -> None:
+        index.check(observations.shape[1])
+        self._observations, self._index = observations, index
+
+    def __len__(self) -> int:
+        return len(self._observations)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """One column, (n,) float64.
+
+        Raises:
+            ValueError: The task has no such column, or the environment leaves the friction part out.
+        """
+        at = self._index[name]
+        if at >= self._observations.shape[1]:
+            raise ValueError(
+                f"the policy needs the column {name!r}, which friction_source='none' leaves out; "
+                "choose friction_source 'estimated', 'true' or 'nominal'"
+            )
+        return self._observations[:, at].astype(np.float64)
+
+
+class ForcePolicy(ABC):
+    """A controller that computes a grip force from the present observation and its memory.
+
+    Subclasses name their task and implement `control`, and `initial_state` if they have a memory. The
+    object itself never changes: all memory travels in the state, so one policy serves many episodes.
+
+    Args:
+        config: Overrides of the environment's configuration: a mapping or the path of a YAML file.
+
+    Raises:
+        ValueError: The configuration is not valid.
+    """
+
+    task: ClassVar[str | None] = None
+    """Task whose observations it reads; None for one that runs in every task."""
+
+    def __init__(self, config: Overrides | None = None) -> None:
+        self.config = load(config)
+        self.index = ObservationIndex(self.task, self.config)
+
+    @abstractmethod
+    def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
+        """Grip force per finger for each row.
+
+        Args:
+            columns: n observations.
+            state: Memory of n rows; must not be changed in place.
+
+        Returns:
+            Force (n,) [N], clipped to the gripper's range by the caller, and the new memory.
+        """
+
+    def initial_state(self, n: int) -> State:
+        """Memory of n rows at the start of an episode; by default there is none, (n, 0)."""
+        return np.zeros((n, 0))
+
+    def predict(
+        self,
+        observation: np.ndarray,
+        state: State | None = None,
+        episode_start: np.ndarray | None = None,
+        deterministic: bool = True,
+    ) -> tuple[np.ndarray, State]:
+        """Action for an observation (m,) or for a batch of them (n, m).
+
+        Args:
+            observation: From the environment.
+            state: As returned by the last call; None before the first.
+            episode_start: Rows that begin a new episode and forget their memory, (n,) bool.
+            deterministic: Without effect: controllers do not explore.
+
+        Returns:
+            Action (1,) or (n, 1), float32 within [-1, 1], and the memory, whose arrays always have a
+            leading axis of n (of 1 for a single observation).
+
+        Raises:
+            ValueError: The observation, the memory or `episode_start` does not fit.
+        """
+        observations = np.asarray(observation)
+        if observations.ndim not in (1, 2):
+            raise ValueError(f"observation must have shape (m,) or (n, m), got {observations.shape}")
+        columns = Columns(np.atleast_2d(observations), self.index)
+        force, state = self.control(columns, self._memory(state, episode_start, len(columns)))
+        actions = self._action(force)[:, np.newaxis]
+        return (actions if observations.ndim == 2 else actions[0]), state
+
+    def _memory(self, state: State | None, episode_start: np.ndarray | None, n: int) -> State:
+        """The memory to act on: fresh where an episode begins."""
+        fresh = self.initial_state(n)
+        if state is None:
+            return fresh
+        old, new = _arrays(state), _arrays(fresh)
+        if [a.shape for a in old] != [a.shape for a in new]:
+            raise ValueError(
+                f"state has shapes {[a.shape for a in old]}, {n} observations need {[a.shape for a in new]}"
+            )
+        if episode_start is None:
+            return state
+        rows = np.atleast_1d(np.asarray(episode_start, dtype=bool))
+        if rows.shape != (n,):
+            raise ValueError(f"episode_start must have shape ({n},), got {rows.shape}")
+        merged = tuple(
+            np.where(rows.reshape(-1, *[1] * (a.ndim - 1)), b, a) for a, b in zip(old, new, strict=True)
+        )
+        return merged if isinstance(state, tuple) else merged[0]
+
+    def _action(self, force: np.ndarray) -> np.ndarray:
+        """Force [N] to action, clipped to [-1, 1]."""
+        low, high = self.config.gripper.force_min, self.config.gripper.force_max
+        return np.clip(2.0 * (force - low) / (high - low) - 1.0, -1.0, 1.0).astype(np.float32)
+
+
+def _arrays(state: State) -> tuple[np.ndarray, ...]:
+    return state if isinstance(state, tuple) else (state,)

@@ -1,0 +1,113 @@
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import policies
+import slipgym  # noqa: F401
+from policies.base import Columns, ForcePolicy, ObservationIndex
+from slipgym.config import load
+from slipgym.envs import observation
+from slipgym.tasks import TASKS
+
+CONFIG = load()
+WIDTH = len(observation.columns(CONFIG, TASKS["LinearSlip"], "true"))
+
+
+class Counter(ForcePolicy):
+    """Grips with mu_c newtons per step taken."""
+
+    task = "LinearSlip"
+
+    def initial_state(self, n):
+        return np.zeros((n, 1))
+
+    def control(self, columns, state):
+        state = state + 1.0
+        return columns["mu_c"] * state[:, 0], state
+
+
+def rows(n, mu_c=1.0):
+    out = np.zeros((n, WIDTH), dtype=np.float32)
+    out[:, ObservationIndex("LinearSlip", CONFIG)["mu_c"]] = mu_c
+    return out
+
+
+def newton(action):
+    return 0.6 + 0.5 * (action + 1.0) * (25.0 - 0.6)
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_index_matches_the_environments_columns(task):
+    index = ObservationIndex(task, CONFIG)
+    for k, column in enumerate(observation.columns(CONFIG, TASKS[task], "estimated")):
+        assert index[column.name] == k
+
+
+def test_unknown_columns_and_tasks_name_the_valid_ones():
+    with pytest.raises(ValueError, match=r"'f_n_3'.*f_n_1"):
+        ObservationIndex("LinearSlip", CONFIG)["f_n_3"]
+    with pytest.raises(ValueError, match=r"LinearSlop.*LinearSlip"):
+        ObservationIndex("LinearSlop", CONFIG)
+
+
+def test_single_and_batched_observations_agree():
+    policy = Counter()
+    single, state = policy.predict(rows(1, 3.0)[0])
+    batch, states = policy.predict(rows(4, 3.0))
+    assert single.shape == (1,)
+    assert batch.shape == (4, 1)
+    assert single.dtype == batch.dtype == np.float32
+    assert state.shape == (1, 1)
+    assert states.shape == (4, 1)
+    np.testing.assert_array_equal(batch, np.tile(single, (4, 1)))
+    np.testing.assert_allclose(newton(single), 3.0, rtol=1e-5)
+
+
+def test_memory_restarts_by_row_and_belongs_to_the_caller():
+    policy = Counter()
+    _, first = policy.predict(rows(2, 2.0))
+    kept = first.copy()
+    action, state = policy.predict(rows(2, 2.0), state=first, episode_start=np.array([False, True]))
+    np.testing.assert_allclose(newton(action[:, 0]), [4.0, 2.0], rtol=1e-5)
+    np.testing.assert_array_equal(state[:, 0], [2.0, 1.0])
+    np.testing.assert_array_equal(first, kept)
+
+
+def test_without_the_friction_part_the_error_says_so():
+    narrow = rows(1)[:, : WIDTH - len(observation.FRICTION_COLUMNS)]
+    with pytest.raises(ValueError, match="friction_source='none'"):
+        Counter().predict(narrow)
+    assert Columns(narrow, Counter().index)["f_n_1"] == 0.0
+
+
+@pytest.mark.parametrize("shape", [(), (2, 3, WIDTH), (2, WIDTH + 1)])
+def test_misshapen_observations_are_refused(shape):
+    with pytest.raises(ValueError, match="observation"):
+        Counter().predict(np.zeros(shape))
+
+
+def test_misshapen_memory_is_refused():
+    with pytest.raises(ValueError, match="state"):
+        Counter().predict(rows(2), state=np.zeros((3, 1)))
+    with pytest.raises(ValueError, match="episode_start"):
+        Counter().predict(rows(2), state=np.zeros((2, 1)), episode_start=np.array([True]))
+
+
+def test_forces_beyond_the_gripper_are_clipped():
+    action, _ = Counter().predict(rows(1, 9.0), state=np.array([[99.0]]))
+    assert action.item() == 1.0
+
+
+@pytest.mark.parametrize("task", ["LinearSlip", "Hold"])
+@pytest.mark.parametrize("friction_source", ["estimated", "none"])
+def test_constant_force_holds_the_object_in_every_task(task, friction_source):
+    env = gym.make(f"slipgym/{task}-v0", friction_source=friction_source)
+    policy = policies.make("constant_force", force=20.0)
+    obs, info = env.reset(seed=0, options={"object_mass": 0.1, "duration": 0.2})
+    state = None
+    for _ in range(20):
+        action, state = policy.predict(obs, state=state)
+        obs, _, _, _, info = env.step(action)
+    assert not info["dropped"]
+    np.testing.assert_allclose(info["grip_force"], 20.0, atol=0.1)
+    env.close()
