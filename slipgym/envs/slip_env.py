@@ -105,6 +105,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         self._wrenches, self._twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
         self._wrench_rows, self._twist_rows = self._wrenches.reshape(2, 4), self._twists.reshape(2, 3)
         self._episode = np.zeros(1, EPISODE)
+        self._terms = np.zeros(len(self.task.terms))
         self._task_part = np.zeros((1, len(self.task.columns)))
         self._friction_part = np.ones((1, len(observation.FRICTION_COLUMNS)))
         self._out = np.zeros((1, len(self.columns)), dtype=np.float32)
@@ -154,16 +155,22 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             raise RuntimeError("call reset() before step()")
         gripper = self.config.gripper
         force = gripper.force_min + share * (gripper.force_max - gripper.force_min)
-        reward = 0.0
+        self._terms[:] = 0.0
+        dropped = truncated = False
         for _ in range(self._frame_skip):
-            reward += self._sample(force)
-        episode = self._episode[0]
-        dropped = bool(episode["dropped"])
-        truncated = bool(episode["step"] >= episode["steps"]) and not dropped
+            dropped, truncated = self._sample(force)
+            if dropped or truncated:
+                break
+        reward = math.fsum(self._terms.tolist())
         return self._observation(), reward, dropped, truncated, self._info()
 
     def render(self) -> np.ndarray | None:
-        """Picture of the scene, (height, width, 3) uint8, in render mode "rgb_array"."""
+        """Picture of the scene, (height, width, 3) uint8, in render mode "rgb_array".
+
+        Raises:
+            RuntimeError: The environment is closed.
+        """
+        _ = self._world.client
         if self.render_mode is None:
             return None
         from slipgym.rendering import picture
@@ -175,8 +182,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         self._world.close()
         self._ready = False
 
-    def _sample(self, force: float) -> float:
-        """One slip-velocity sample: act, move, measure, estimate, judge. Returns the reward."""
+    def _sample(self, force: float) -> tuple[bool, bool]:
+        """One slip-velocity sample: act, move, measure, estimate, judge. Returns dropped and truncated."""
         plant, episode = self._plant, self._episode
         episode["last_command"] = episode["command"]
         episode["command"] = force
@@ -186,7 +193,9 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         time = episode["step"].item() * self._step_time
         self._estimator.update(time, self._wrench_rows, self._twist_rows)
         self.task.judge(episode, plant.world, plant.fingers, self._task_part)
-        return math.fsum(episode["terms"][0, : len(self.task.terms)].tolist())
+        self._terms += episode["terms"][0, : len(self.task.terms)]
+        dropped = episode["dropped"].item()
+        return dropped, not dropped and episode["step"].item() >= episode["steps"].item()
 
     def _advance(self, force: float) -> None:
         """One control step of the world and its sensors."""
@@ -214,6 +223,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         self._estimator.reset()
         episode["command"] = episode["last_command"] = force
         self.task.judge(episode, plant.world, plant.fingers, self._task_part)
+        self._terms[:] = 0.0
         self._ready = True
 
     def _set_friction(self) -> None:
@@ -267,7 +277,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             "slip_twist": plant.world["slip_twist"][0].copy(),
             "grip_force": plant.fingers["force"][0].copy(),
             "reference": episode["reference"].copy(),
-            "reward_terms": dict(zip(self.task.terms, episode["terms"].tolist(), strict=False)),
+            "reward_terms": dict(zip(self.task.terms, self._terms.tolist(), strict=True)),
             "time": episode["step"].item() * self._step_time,
             "is_success": bool(episode["success"]),
             "dropped": bool(episode["dropped"]),
@@ -277,7 +287,10 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
 def _make_estimator(choice: str | Mapping[str, Any]) -> estimators.BatchEstimator:
     if isinstance(choice, str):
         return estimators.make_batch(choice, 2)
+    if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
+        raise ValueError(
+            f"estimator = {choice!r} must be a name or a mapping with a name; "
+            f"valid: {', '.join(estimators.names())}"
+        )
     parameters = dict(choice)
-    if "name" not in parameters:
-        raise ValueError(f"estimator = {choice!r} must hold a name; valid: {', '.join(estimators.names())}")
     return estimators.make_batch(parameters.pop("name"), 2, **parameters)
