@@ -91,7 +91,10 @@ GROWTH = """
 """
 RESET = "env.reset(seed=k); env.step(np.zeros(1, np.float32))"
 REBUILD = 'env.reset(options={"object_size": (0.05 + 0.001 * (k % 7), 0.02, 0.1)})'
-MAKE = 'other = gym.make(env.spec.id, render_mode="rgb_array"); other.reset(seed=k); other.render(); other.close()'
+MAKE = (
+    'other = gym.make(env.spec.id, render_mode="rgb_array"); other.reset(seed=k); '
+    "other.render(); other.close()"
+)
 
 
 @pytest.mark.slow
