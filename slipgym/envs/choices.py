@@ -21,9 +21,12 @@ def check_action(action: Any) -> float:
     """Return the single component of an action, clipped to [-1, 1].
 
     Raises:
-        ValueError: The action has the wrong shape or is not finite.
+        ValueError: The action is not numeric, has the wrong shape or is not finite.
     """
-    array = np.asarray(action, dtype=np.float64)
+    try:
+        array = np.asarray(action, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"action = {action!r} must be an array of numbers, within [-1, 1]") from error
     if array.shape != (1,):
         raise ValueError(f"action must have shape (1,), got {array.shape}: {action!r}")
     value = array.item()

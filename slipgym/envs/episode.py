@@ -24,10 +24,6 @@ class Friction:
     r: float
     """Radius of the equivalent rim contact [m]."""
 
-    def as_array(self) -> np.ndarray:
-        """(mu_s, mu_c, r)."""
-        return np.array([self.mu_s, self.mu_c, self.r])
-
 
 def draw_friction(
     config: Config, options: EpisodeOptions, material: str, rng: np.random.Generator
@@ -51,7 +47,11 @@ def draw_friction(
 
 
 def make_box(config: Config, options: EpisodeOptions, task: TaskConfig, rng: np.random.Generator) -> Box:
-    """The object of the configuration, with what the task draws and the options fix."""
+    """The object of the configuration, with what the task draws and the options fix.
+
+    Raises:
+        ValueError: The pads or the centre of mass would not lie on the object.
+    """
     default = config.object
     mass = default.mass
     if isinstance(task, HoldConfig):
@@ -59,11 +59,26 @@ def make_box(config: Config, options: EpisodeOptions, task: TaskConfig, rng: np.
     if options.object_mass is not None:
         mass = options.object_mass
     size = default.size if options.object_size is None else options.object_size
+    com_offset = options.choose("com_offset", default)
+    _check_inside("com_offset", com_offset, size, margin=0.0)
+    _check_inside("grasp_offset", default.grasp_offset, size, margin=config.gripper.pad_radius)
     inertia = default.inertia or mass * (size[0] ** 2 + size[2] ** 2) / 12.0
     return Box(
         size=size,
-        com_offset=options.choose("com_offset", default),
+        com_offset=com_offset,
         grasp_offset=default.grasp_offset,
         mass=float(mass),
         inertia=float(inertia),
     )
+
+
+def _check_inside(
+    name: str, point: tuple[float, float], size: tuple[float, float, float], margin: float
+) -> None:
+    """Raise ValueError unless a point (x, z) lies on the object, `margin` away from its edges."""
+    room = size[0] / 2 - margin, size[2] / 2 - margin
+    if abs(point[0]) > room[0] or abs(point[1]) > room[1]:
+        around = f" with the pad of radius {margin:g} m around it" if margin else ""
+        raise ValueError(
+            f"{name} {tuple(point)} m{around} must lie on the object, {size[0]:g} m by {size[2]:g} m"
+        )

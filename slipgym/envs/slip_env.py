@@ -10,22 +10,11 @@ from typing import Any, ClassVar
 import gymnasium as gym
 import numpy as np
 
-import estimator as estimators
-from estimator.batch import BatchEstimator
-from slipgym.config import TaskConfig, load
+from slipgym.config import load
 from slipgym.envs import observation
 from slipgym.envs.choices import check_action, one_of
-from slipgym.envs.episode import draw_friction, make_box
-from slipgym.sensors.measure import measure
-from slipgym.sensors.slip_velocity import AXES
+from slipgym.envs.loop import SlipLoop
 from slipgym.tasks import Task
-from slipgym.tasks.episode import EPISODE
-from slipgym.tasks.options import EpisodeOptions
-from slipgym.world.bullet import BulletWorld
-from slipgym.world.plant import build
-from slipgym.world.scene import Box
-
-WARM_UP_STEPS = 6  # control steps before time 0 in which grip and sensors come to rest
 
 
 class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
@@ -82,46 +71,19 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         self.material = one_of("material", material, ("random", *self.config.materials))
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": self.config.physics.control_rate / frame_skip}
-        self._frame_skip = frame_skip
-        self._step_time = 1.0 / self.config.physics.control_rate
-        self._make_spaces()
-        self._make_buffers(estimator)
-        self._world = BulletWorld(self.config, self._plant)
-        self._ready = False
-
-    def _make_spaces(self) -> None:
         self.columns = observation.columns(self.config, self.task, self.friction_source)
         self._low = np.array([c.low for c in self.columns], dtype=np.float32)
         self._high = np.array([c.high for c in self.columns], dtype=np.float32)
         self.observation_space = gym.spaces.Box(self._low, self._high, dtype=np.float32)
         self.action_space = gym.spaces.Box(-1.0, 1.0, (1,), dtype=np.float32)
-
-    def _make_buffers(self, estimator: str | Mapping[str, Any]) -> None:
-        self._plant = build(self.config)
-        self._estimator = _make_estimator(estimator)
-        samples = -(-self.config.sensors.force_torque.rate // self.config.physics.control_rate) + 1
-        self._noise = np.zeros(2 * (samples * 12 + AXES))
-        self._force_noise = self._noise[: 2 * samples * 12].reshape(1, 2, samples, 12)
-        self._slip_noise = self._noise[2 * samples * 12 :].reshape(1, 2, AXES)
-        self._wrenches, self._twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
-        self._wrench_rows, self._twist_rows = self._wrenches.reshape(2, 4), self._twists.reshape(2, 3)
-        self._episode = np.zeros(1, EPISODE)
-        self._task_part = np.zeros((1, len(self.task.columns)))
         self._out = np.zeros((1, len(self.columns)), dtype=np.float32)
-        self._true, self._per_finger = np.zeros(3), np.zeros((1, 2, 3))
-        self._merged = np.zeros((1, len(observation.FRICTION_COLUMNS)))
-        # the friction part of the observation: the merged estimates, or values that stand for the episode
-        self._friction_part = self._merged if self.friction_source == "estimated" else np.ones((1, 6))
-        self._terms = self._episode["terms"][0, : len(self.task.terms)]
-        self._views = {
-            "true": self._true,
-            "estimated": self._merged[0, :3],
-            "estimated_per_finger": self._per_finger[0],
-            "slip": self._plant.world["slip"][0],
-            "slip_twist": self._plant.world["slip_twist"][0],
-            "grip_force": self._plant.fingers["force"][0],
-            "reference": self._episode["reference"][0],
-        }
+        self._terms = np.zeros(len(self.task.terms))
+        self._frame_skip = frame_skip
+        self._loop = SlipLoop(self.config, self.task, estimator)
+        # the friction part: the merged estimates, or values that stand for the episode
+        self._friction = self._loop.estimated if friction_source == "estimated" else np.ones((1, 6))
+        self._views = self._info_views()
+        self._ready = False
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -137,19 +99,15 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             RuntimeError: The environment is closed.
         """
         super().reset(seed=seed)
-        chosen = self.task.options.parse(options)
-        _ = self._world.client
-        self._friction = draw_friction(self.config, chosen, self.material, self.np_random)
-        task_config = getattr(self.config.tasks, self.task.key)
-        box = make_box(self.config, chosen, task_config, self.np_random)
-        force = chosen.choose("initial_force", task_config)
-        self._start_episode(box, chosen, task_config)
-        self._world.reset(box, force)
-        self._set_friction()
-        self._draw_sensor_offsets()
-        for _ in range(WARM_UP_STEPS):
-            self._advance(force)
-        self._start_clock(force)
+        self._ready = False
+        self._loop.reset(self.task.options.parse(options), self.material, self.np_random)
+        nominal = self.config.nominal
+        if self.friction_source == "true":
+            self._friction[0, :3] = self._loop.true_friction
+        elif self.friction_source == "nominal":
+            self._friction[0, :3] = nominal.mu_s, nominal.mu_c, nominal.r
+        self._terms[:] = 0.0
+        self._ready = True
         return self._observation(), self._info()
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
@@ -164,125 +122,74 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         """
         share = 0.5 * (1.0 + check_action(action))
         if not self._ready:
-            _ = self._world.client
+            _ = self._loop.world.client
             raise RuntimeError("call reset() before step()")
         gripper = self.config.gripper
         force = gripper.force_min + share * (gripper.force_max - gripper.force_min)
-        reward = 0.0
+        loop, episode, rng = self._loop, self._loop.episode, self.np_random
+        self._terms[:] = 0.0
+        dropped = finished = False
         for _ in range(self._frame_skip):
-            reward += self._sample(force)
-        episode = self._episode[0]
-        dropped = bool(episode["dropped"])
-        truncated = bool(episode["step"] >= episode["steps"]) and not dropped
-        return self._observation(), reward, dropped, truncated, self._info()
+            loop.sample(force, rng)
+            self._terms += episode["terms"][0, : len(self._terms)]
+            dropped = episode["dropped"].item()
+            finished = episode["step"].item() >= episode["steps"].item()
+            if dropped or finished:
+                break
+        reward = math.fsum(self._terms.tolist())
+        return self._observation(), reward, dropped, finished and not dropped, self._info()
 
     def render(self) -> np.ndarray | None:
-        """Picture of the scene, (height, width, 3) uint8, in render mode "rgb_array"."""
+        """Picture of the scene, (height, width, 3) uint8, in render mode "rgb_array".
+
+        Raises:
+            RuntimeError: The environment is closed.
+        """
+        _ = self._loop.world.client
         if self.render_mode is None:
             return None
         from slipgym.rendering import picture
 
-        return picture(self._world)
+        return picture(self._loop.world)
 
     def close(self) -> None:
         """Release the physics client; closing twice is harmless."""
-        self._world.close()
+        self._loop.world.close()
         self._ready = False
 
-    def _sample(self, force: float) -> float:
-        """One slip-velocity sample: act, move, measure, estimate, judge. Returns the reward."""
-        plant, episode = self._plant, self._episode
-        episode["last_command"] = episode["command"]
-        episode["command"] = force
-        self.task.plan(episode, plant.world)
-        self._advance(force)
-        episode["step"] += 1
-        time = episode["step"].item() * self._step_time
-        self._estimator.update(time, self._wrench_rows, self._twist_rows)
-        observation.combine(self._estimator.estimates, self._per_finger, self._merged)
-        self.task.judge(episode, plant.world, plant.fingers, self._task_part)
-        return math.fsum(self._terms.tolist())
-
-    def _advance(self, force: float) -> None:
-        """One control step of the world and its sensors."""
-        plant = self._plant
-        self.np_random.standard_normal(out=self._noise)
-        self._world.command(force)
-        self._world.step(self._force_noise)
-        measure(plant.world, plant.force_torque, plant.chips, self._slip_noise, self._wrenches, self._twists)
-
-    def _start_episode(self, box: Box, options: EpisodeOptions, task_config: TaskConfig) -> None:
-        episode = self._episode
-        episode[:] = 0
-        episode["step_time"] = self._step_time
-        episode["force_max"] = self.config.gripper.force_max
-        pad = self.config.gripper.pad_radius
-        episode["reach"] = box.size[0] / 2 - pad, box.size[2] / 2 - pad
-        episode["object_centre"] = -box.grasp_offset[0], -box.grasp_offset[1]
-        scales = [getattr(task_config.reward, term) for term in self.task.terms]
-        episode["scales"][0, : len(scales)] = scales
-        self.task.start(self.config, options, self.np_random, episode[0])
-
-    def _start_clock(self, force: float) -> None:
-        plant, episode = self._plant, self._episode
-        plant.chips["travel"] = 0.0
-        self._estimator.reset()
-        observation.combine(self._estimator.estimates, self._per_finger, self._merged)
-        episode["command"] = episode["last_command"] = force
-        self.task.judge(episode, plant.world, plant.fingers, self._task_part)
-        self._ready = True
-
-    def _set_friction(self) -> None:
-        friction, nominal = self._friction, self.config.nominal
-        for field in ("mu_s", "mu_c", "r"):
-            self._plant.pads[field] = getattr(friction, field)
-        self._true[:] = friction.as_array()
-        if self.friction_source == "true":
-            self._friction_part[0, :3] = self._true
-        elif self.friction_source == "nominal":
-            self._friction_part[0, :3] = nominal.mu_s, nominal.mu_c, nominal.r
-
-    def _draw_sensor_offsets(self) -> None:
-        """Start the sensors afresh, with this episode's bias and sub-count phases."""
-        rng, ft, chips = self.np_random, self._plant.force_torque, self._plant.chips
-        sensor = self.config.sensors.force_torque
-        tangential, normal, torque = sensor.bias_tangential, sensor.bias_normal, sensor.bias_torque
-        spread = np.array([tangential, tangential, normal, torque, torque, torque])
-        ft["bias"] = spread * rng.standard_normal((1, 2, 6))
-        ft["history"] = chips["counted"] = 0.0
-        for field in ("taken", "drawn"):
-            ft[field] = 0
-        chips["taken"] = 0
-        chips["carry"] = rng.uniform(-1.0, 1.0, (1, 2, AXES)) * chips["count"][..., None]
-
     def _observation(self) -> np.ndarray:
+        loop = self._loop
         observation.observe(
-            self._wrenches,
-            self._twists,
-            self._plant.chips,
-            self._episode,
-            self._task_part,
-            self._friction_part,
+            loop.wrenches,
+            loop.twists,
+            loop.plant.chips,
+            loop.episode,
+            loop.task_part,
+            self._friction,
             self._low,
             self._high,
             self._out,
         )
         return self._out[0].copy()
 
+    def _info_views(self) -> dict[str, np.ndarray]:
+        """Arrays that every info carries a copy of."""
+        loop = self._loop
+        return {
+            "true": loop.true_friction,
+            "estimated": loop.estimated[0, :3],
+            "estimated_per_finger": loop.per_finger[0],
+            "slip": loop.plant.world["slip"][0],
+            "slip_twist": loop.plant.world["slip_twist"][0],
+            "grip_force": loop.plant.fingers["force"][0],
+            "reference": loop.episode["reference"][0],
+        }
+
     def _info(self) -> dict[str, Any]:
-        views, episode = self._views, self._episode
-        info: dict[str, Any] = {name: view.copy() for name, view in views.items()}
+        episode = self._loop.episode
+        info: dict[str, Any] = {name: view.copy() for name, view in self._views.items()}
         info["reward_terms"] = dict(zip(self.task.terms, self._terms.tolist(), strict=True))
-        info["time"] = episode["step"].item() * self._step_time
+        info["time"] = self._loop.time
         info["is_success"] = episode["success"].item()
         info["dropped"] = episode["dropped"].item()
         return info
-
-
-def _make_estimator(choice: str | Mapping[str, Any]) -> BatchEstimator:
-    if isinstance(choice, str):
-        return estimators.make_batch(choice, 2)
-    parameters = dict(choice)
-    if "name" not in parameters:
-        raise ValueError(f"estimator = {choice!r} must hold a name; valid: {', '.join(estimators.names())}")
-    return estimators.make_batch(parameters.pop("name"), 2, **parameters)

@@ -33,6 +33,8 @@ class EpisodeOptions(Frozen):
             ValueError: An option is unknown or its value not allowed; the message names it,
                 its value and what is valid.
         """
+        if options is not None and not isinstance(options, Mapping):
+            raise ValueError(f"options = {options!r} must be a mapping; valid: {', '.join(cls.model_fields)}")
         try:
             return cls.model_validate(dict(options or {}))
         except ValidationError as error:
@@ -41,7 +43,7 @@ class EpisodeOptions(Frozen):
     @classmethod
     def _explain(cls, fault: Any) -> str:
         name = str(fault["loc"][0]) if fault["loc"] else "options"
-        if fault["type"] == "extra_forbidden":
+        if fault["type"] in ("extra_forbidden", "invalid_key"):
             return unknown("option", name, cls.model_fields)
         meaning = cls.model_fields[name].description if name in cls.model_fields else ""
         return f"option {name} = {fault['input']!r}: {fault['msg']} ({meaning})"

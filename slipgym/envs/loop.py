@@ -1,0 +1,164 @@
+"""Box, gripper, sensors and estimator of one environment, closed by a grip force."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+import estimator as estimators
+from estimator.batch import BatchEstimator
+from slipgym.config import Config, TaskConfig
+from slipgym.envs.episode import draw_friction, make_box
+from slipgym.envs.observation import FRICTION_COLUMNS, combine
+from slipgym.sensors.measure import measure
+from slipgym.sensors.slip_velocity import AXES
+from slipgym.tasks import Task
+from slipgym.tasks.episode import EPISODE
+from slipgym.tasks.options import EpisodeOptions
+from slipgym.world.bullet import BulletWorld
+from slipgym.world.plant import build
+from slipgym.world.scene import Box
+
+WARM_UP_STEPS = 6  # control steps before time 0 in which grip and sensors come to rest
+
+
+class SlipLoop:
+    """Advances by one slip-velocity sample at a time; knows nothing of Gymnasium.
+
+    Arrays have a leading batch axis of one, for the compiled functions that serve many worlds.
+
+    Args:
+        config: Configuration.
+        task: The task.
+        estimator: Name of an estimator, or a mapping with its `name` and parameters.
+
+    Attributes:
+        plant: State of world, pads, fingers and sensors.
+        world: PyBullet around it.
+        episode: EPISODE (1,).
+        wrenches: Measured wrench per finger at the centre of pressure, (1, 2, 4) [N, N, N, N m].
+        twists: Measured slip twist per finger there, (1, 2, 3) [m/s, m/s, rad/s].
+        task_part: The task's part of the observation, (1, k).
+        true_friction: (mu_s, mu_c, r) of the episode, (3,).
+        per_finger: Estimates (mu_s, mu_c, r) per finger, (1, 2, 3).
+        estimated: Estimates of both fingers merged, with their support, (1, 6).
+    """
+
+    def __init__(self, config: Config, task: Task, estimator: str | Mapping[str, Any]) -> None:
+        self.config, self.task = config, task
+        self.plant = build(config)
+        self.estimator = _make_estimator(estimator)
+        self.episode = np.zeros(1, EPISODE)
+        self.wrenches, self.twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
+        self.task_part = np.zeros((1, len(task.columns)))
+        self.true_friction, self.per_finger = np.zeros(3), np.zeros((1, 2, 3))
+        self.estimated = np.zeros((1, len(FRICTION_COLUMNS)))
+        self._step_time = 1.0 / config.physics.control_rate
+        self._wrench_rows, self._twist_rows = self.wrenches.reshape(2, 4), self.twists.reshape(2, 3)
+        samples = -(-config.sensors.force_torque.rate // config.physics.control_rate) + 1
+        self._noise = np.zeros(2 * (samples * 12 + AXES))
+        self._force_noise = self._noise[: 2 * samples * 12].reshape(1, 2, samples, 12)
+        self._slip_noise = self._noise[2 * samples * 12 :].reshape(1, 2, AXES)
+        self.world = BulletWorld(config, self.plant)
+
+    @property
+    def time(self) -> float:
+        """Time since the episode's start [s]."""
+        return self.episode["step"].item() * self._step_time
+
+    def reset(self, options: EpisodeOptions, material: str, rng: np.random.Generator) -> None:
+        """Start an episode: draw it, grip, and let grip and sensors come to rest.
+
+        Args:
+            options: What is fixed.
+            material: Name of a material, or "random".
+            rng: Source of every draw.
+
+        Raises:
+            ValueError: The options contradict each other or the configuration.
+            RuntimeError: The world is closed.
+        """
+        _ = self.world.client
+        task_config: TaskConfig = getattr(self.config.tasks, self.task.key)
+        friction = draw_friction(self.config, options, material, rng)
+        box = make_box(self.config, options, task_config, rng)
+        force = options.choose("initial_force", task_config)
+        self._start_episode(box, options, task_config, rng)
+        self.world.reset(box, force)
+        self.true_friction[:] = friction.mu_s, friction.mu_c, friction.r
+        for field, value in zip(("mu_s", "mu_c", "r"), self.true_friction, strict=True):
+            self.plant.pads[field] = value
+        self._start_sensors(rng)
+        for _ in range(WARM_UP_STEPS):
+            self._advance(force, rng)
+        self.plant.chips["travel"] = 0.0
+        self.estimator.reset()
+        combine(self.estimator.estimates, self.per_finger, self.estimated)
+        self.episode["command"] = self.episode["last_command"] = force
+        self.task.judge(self.episode, self.plant.world, self.plant.fingers, self.task_part)
+
+    def sample(self, force: float, rng: np.random.Generator) -> None:
+        """One slip-velocity sample: act, move, measure, estimate, judge.
+
+        Args:
+            force: Grip force per finger [N].
+            rng: Source of the sensors' noise.
+        """
+        plant, episode = self.plant, self.episode
+        episode["last_command"] = episode["command"]
+        episode["command"] = force
+        self.task.plan(episode, plant.world)
+        self._advance(force, rng)
+        episode["step"] += 1
+        self.estimator.update(self.time, self._wrench_rows, self._twist_rows)
+        combine(self.estimator.estimates, self.per_finger, self.estimated)
+        self.task.judge(episode, plant.world, plant.fingers, self.task_part)
+
+    def _advance(self, force: float, rng: np.random.Generator) -> None:
+        """One control step of the world and its sensors."""
+        plant = self.plant
+        rng.standard_normal(out=self._noise)
+        self.world.command(force)
+        self.world.step(self._force_noise)
+        measure(plant.world, plant.force_torque, plant.chips, self._slip_noise, self.wrenches, self.twists)
+
+    def _start_episode(
+        self, box: Box, options: EpisodeOptions, task_config: TaskConfig, rng: np.random.Generator
+    ) -> None:
+        episode = self.episode
+        episode[:] = 0
+        episode["step_time"] = self._step_time
+        episode["force_max"] = self.config.gripper.force_max
+        pad = self.config.gripper.pad_radius
+        episode["reach"] = box.size[0] / 2 - pad, box.size[2] / 2 - pad
+        episode["object_centre"] = -box.grasp_offset[0], -box.grasp_offset[1]
+        scales = [getattr(task_config.reward, term) for term in self.task.terms]
+        episode["scales"][0, : len(scales)] = scales
+        self.task.start(self.config, options, rng, episode[0])
+
+    def _start_sensors(self, rng: np.random.Generator) -> None:
+        """Start the sensors afresh, with this episode's bias and sub-count phases."""
+        ft, chips = self.plant.force_torque, self.plant.chips
+        sensor = self.config.sensors.force_torque
+        tangential, normal, torque = sensor.bias_tangential, sensor.bias_normal, sensor.bias_torque
+        spread = np.array([tangential, tangential, normal, torque, torque, torque])
+        ft["bias"] = spread * rng.standard_normal((1, 2, 6))
+        ft["history"] = chips["counted"] = 0.0
+        for field in ("taken", "drawn"):
+            ft[field] = 0
+        chips["taken"] = 0
+        chips["carry"] = rng.uniform(-1.0, 1.0, (1, 2, AXES)) * chips["count"][..., None]
+
+
+def _make_estimator(choice: str | Mapping[str, Any]) -> BatchEstimator:
+    if isinstance(choice, str):
+        return estimators.make_batch(choice, 2)
+    if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
+        raise ValueError(
+            f"estimator = {choice!r} must be a name or a mapping with a name; "
+            f"valid: {', '.join(estimators.names())}"
+        )
+    parameters = dict(choice)
+    return estimators.make_batch(parameters.pop("name"), 2, **parameters)

@@ -1,0 +1,75 @@
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import slipgym  # noqa: F401
+
+IDS = ("slipgym/LinearSlip-v0", "slipgym/Hold-v0")
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(params=IDS)
+def env_id(request) -> str:
+    return request.param
+
+
+@pytest.fixture
+def make() -> Iterator[Callable[..., gym.Env]]:
+    """Makes bare environments and closes them after the test."""
+    made = []
+
+    def factory(env_id: str = IDS[0], **arguments: Any) -> gym.Env:
+        env = gym.make(env_id, **arguments).unwrapped
+        made.append(env)
+        return env
+
+    yield factory
+    for env in made:
+        env.close()
+
+
+@pytest.fixture
+def python() -> Callable[..., str]:
+    """Runs a fresh interpreter in the repository, warnings as errors, and returns what it printed."""
+
+    def run(*arguments: str) -> str:
+        command = [sys.executable, "-W", "error", *arguments]
+        done = subprocess.run(
+            command,
+            cwd=ROOT,
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    return run
+
+
+@pytest.fixture(autouse=True)
+def exact_printing() -> Iterator[None]:
+    with np.printoptions(precision=17, floatmode="unique", threshold=10_000):
+        yield
+
+
+@pytest.fixture
+def play() -> Callable[..., list[str]]:
+    """Plays random actions; one line per step that spells every bit of what the environment said."""
+
+    def trace(env: gym.Env, seed: int = 0, steps: int = 60, options: dict | None = None) -> list[str]:
+        said = [repr(env.reset(seed=seed, options=options))]
+        actions = np.random.default_rng(seed).uniform(-1.0, 1.0, (steps, 1)).astype(np.float32)
+        for action in actions:
+            said.append(repr(env.step(action)))
+        return said
+
+    return trace

@@ -1,0 +1,43 @@
+"""Plays one episode and prints a digest of every bit that the environment said. Run as a script."""
+
+import argparse
+import hashlib
+
+import gymnasium as gym
+import numpy as np
+
+import slipgym  # noqa: F401
+
+np.set_printoptions(precision=17, floatmode="unique", threshold=10_000)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("env_id")
+    parser.add_argument("--disturbed", action="store_true", help="earlier episodes and other environments")
+    arguments = parser.parse_args()
+    if arguments.disturbed:
+        others = [gym.make(arguments.env_id) for _ in range(3)]
+        others[0].close()
+        episode(others[1], 7, steps=50)
+    env = gym.make(arguments.env_id)
+    if arguments.disturbed:
+        episode(env, 5, options={"object_mass": 0.37, "mu_c": 0.2, "mu_s": 0.3}, scale=-1.0)
+        episode(env, 6, options={"com_offset": (0.0, 0.01), "object_size": (0.06, 0.02, 0.1)}, steps=100)
+        env.reset()
+    print(hashlib.sha256("".join(episode(env, 42)).encode()).hexdigest())
+
+
+def episode(env, seed, options=None, steps=10_000, scale=1.0) -> list[str]:
+    rng = np.random.default_rng(seed)
+    said = [repr(env.reset(seed=seed, options=options))]
+    for _ in range(steps):
+        result = env.step(np.float32([scale * rng.uniform(-0.9, 1.0)]))
+        said.append(repr(result))
+        if result[2] or result[3]:
+            break
+    return said
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,49 @@
+"""Gymnasium's and Stable-Baselines3's checkers find nothing; warnings are errors here."""
+
+import json
+
+import gymnasium as gym
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+SOURCES = ("estimated", "true", "nominal", "none")
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_gymnasium_checker(env_id, source):
+    env = gym.make(env_id, friction_source=source, render_mode="rgb_array")
+    check_env(env.unwrapped)
+    env.close()
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_stable_baselines_checker(make, env_id, source):
+    checker = pytest.importorskip("stable_baselines3.common.env_checker")
+    checker.check_env(make(env_id, friction_source=source, render_mode="rgb_array"), warn=True)
+
+
+def test_spec_survives_json(env_id):
+    arguments = {
+        "friction_source": "true",
+        "estimator": {"name": "rls", "heuristic": False},
+        "sensors": "ideal",
+        "frame_skip": 2,
+        "config": {"object": {"mass": 0.3, "size": [0.06, 0.02, 0.1]}},
+    }
+    env = gym.make(env_id, **arguments)
+    text = env.spec.to_json()
+    again = gym.make(gym.envs.registration.EnvSpec.from_json(text))
+    assert again.spec.kwargs == arguments
+    assert json.loads(again.spec.to_json()) == json.loads(text)
+    assert again.unwrapped.config.object.mass == 0.3
+    env.close()
+    again.close()
+
+
+def test_make_needs_no_import(python, env_id):
+    printed = python(
+        "-c",
+        f"import gymnasium as gym\nenv = gym.make('slipgym:{env_id}')\nenv.reset(seed=0)\n"
+        "print(env.step(env.action_space.sample())[1])\nenv.close()",
+    )
+    assert float(printed) > 0.0

@@ -1,0 +1,108 @@
+"""Physics clients and memory are given back; a closed environment says that it is closed."""
+
+import gc
+import textwrap
+
+import numpy as np
+import pybullet
+import pytest
+
+CLIENTS = range(200)
+
+
+def open_clients() -> int:
+    return sum(pybullet.getConnectionInfo(client)["isConnected"] for client in CLIENTS)
+
+
+def test_an_environment_holds_one_client_until_closed(make, env_id):
+    before = open_clients()
+    env = make(env_id)
+    assert open_clients() == before + 1
+    env.reset(seed=0)
+    env.reset(options={"object_size": (0.05, 0.02, 0.1)})
+    assert open_clients() == before + 1
+    env.close()
+    env.close()
+    assert open_clients() == before
+
+
+def test_a_forgotten_environment_gives_its_client_back(make, env_id):
+    before = open_clients()
+    env = type(make(env_id))()
+    env.reset(seed=0)
+    assert open_clients() == before + 2
+    del env
+    gc.collect()
+    assert open_clients() == before + 1
+
+
+def test_a_refused_environment_leaves_no_client(make, env_id):
+    before = open_clients()
+    with pytest.raises(ValueError, match="estimator"):
+        make(env_id, estimator="unknown")
+    gc.collect()
+    assert open_clients() == before
+
+
+@pytest.mark.parametrize("render_mode", [None, "rgb_array"])
+@pytest.mark.parametrize("call", ["step", "reset", "render"])
+def test_a_closed_environment_says_so(make, env_id, call, render_mode):
+    env = make(env_id, render_mode=render_mode)
+    env.reset(seed=0)
+    env.close()
+    arguments = (np.zeros(1, np.float32),) if call == "step" else ()
+    with pytest.raises(RuntimeError, match="closed; make a new one"):
+        getattr(env, call)(*arguments)
+
+
+def test_a_closed_environment_does_not_drive_the_next_one(make, env_id, play):
+    expected = play(make(env_id))
+    stale = make(env_id)
+    stale.reset(seed=0)
+    stale.close()
+    fresh = make(env_id)
+    fresh.reset(seed=0)
+    with pytest.raises(RuntimeError, match="closed"):
+        stale.step(np.zeros(1, np.float32))
+    stale.close()
+    del stale
+    gc.collect()
+    assert play(fresh) == expected
+
+
+def test_step_before_reset_says_so(make, env_id):
+    with pytest.raises(RuntimeError, match=r"call reset\(\) before step\(\)"):
+        make(env_id).step(np.zeros(1, np.float32))
+
+
+GROWTH = """
+    import gc, psutil, gymnasium as gym, numpy as np, slipgym
+    def resident():
+        gc.collect()
+        return psutil.Process().memory_info().rss / 2**20
+    env = gym.make("{env_id}").unwrapped
+    def use(times):
+        for k in range(times):
+            {body}
+    use({warm_up})
+    before = resident()
+    use({times})
+    print(resident() - before)
+"""
+RESET = "env.reset(seed=k); env.step(np.zeros(1, np.float32))"
+REBUILD = 'env.reset(options={"object_size": (0.05 + 0.001 * (k % 7), 0.02, 0.1)})'
+MAKE = (
+    'other = gym.make(env.spec.id, render_mode="rgb_array"); other.reset(seed=k); '
+    "other.render(); other.close()"
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("body", "warm_up", "times"),
+    [(RESET, 200, 2000), (REBUILD, 100, 500), (MAKE, 20, 200)],
+    ids=["reset", "rebuild", "make"],
+)
+def test_memory_does_not_grow(python, env_id, body, warm_up, times):
+    code = textwrap.dedent(GROWTH).format(env_id=env_id, body=body, warm_up=warm_up, times=times)
+    assert float(python("-c", code)) < 5.0  # MiB

@@ -1,0 +1,124 @@
+"""Every reset option takes effect, and only for its episode."""
+
+import numpy as np
+import pytest
+
+HOLD, LINEAR = "slipgym/Hold-v0", "slipgym/LinearSlip-v0"
+FIRM = np.float32([0.2])
+CHANGES = {
+    "material": "plastic",
+    "mu_s": 0.9,
+    "mu_c": 0.3,
+    "r": 0.005,
+    "object_mass": 0.33,
+    "object_size": (0.05, 0.02, 0.1),
+    "com_offset": (0.01, 0.02),
+    "initial_force": 10.0,
+    "distance": 0.02,
+    "duration": 0.25,
+    "settle": 0.1,
+    "hold": 0.1,
+    "tolerance": 0.01,
+    "shake_amplitude": 0.001,
+    "shake_pitch": 0.0,
+    "shake_frequency": (0.5, 0.6),
+    "poke_impulse": (0.2, 0.3),
+    "poke_interval": (0.01, 0.02),
+}
+
+
+def test_every_option_is_tried_and_explained(make, env_id):
+    fields = make(env_id).task.options.model_fields
+    assert set(fields) <= set(CHANGES)
+    assert all(field.description for field in fields.values())
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_an_option_changes_its_episode_and_no_other(make, env_id, play, name):
+    env = make(env_id)
+    if name not in env.task.options.model_fields:
+        pytest.skip("not an option of this task")
+    steps = 200 if name.startswith("poke") else 20
+    plain = play(env, steps=steps)
+    assert play(env, steps=steps, options={name: CHANGES[name]}) != plain
+    assert play(env, steps=steps) == plain
+
+
+@pytest.mark.parametrize(("name", "column"), [("mu_s", 0), ("mu_c", 1), ("r", 2)])
+def test_friction_options_are_the_truth(make, env_id, name, column):
+    _, info = make(env_id).reset(seed=0, options={name: CHANGES[name]})
+    assert info["true"][column] == CHANGES[name]
+
+
+def test_the_mass_is_what_the_fingers_carry(make, env_id):
+    env = make(env_id, sensors="ideal")
+    observation, _ = env.reset(seed=0, options={"object_mass": 0.33})
+    f_y = observation[[1, 8]]
+    assert abs(f_y.sum()) == pytest.approx(0.33 * 9.81, rel=1e-3)
+
+
+def test_a_shifted_centre_of_mass_is_a_torque(make):
+    env = make(LINEAR, sensors="ideal")
+    observation, _ = env.reset(seed=0, options={"com_offset": (0.01, 0.0), "object_mass": 0.2})
+    assert abs(observation[3]) + abs(observation[10]) == pytest.approx(0.2 * 9.81 * 0.01, rel=1e-2)
+
+
+def test_the_initial_force_is_on(make, env_id):
+    _, info = make(env_id).reset(seed=0, options={"initial_force": 10.0})
+    np.testing.assert_allclose(info["grip_force"], 10.0)
+
+
+def length(env, options) -> int:
+    env.reset(seed=0, options=options)
+    steps, over = 0, False
+    while not over:
+        _, _, terminated, truncated, _ = env.step(FIRM)
+        steps, over = steps + 1, terminated or truncated
+    assert truncated
+    return steps
+
+
+def test_times_set_the_length(make):
+    assert length(make(LINEAR), {"settle": 0.5, "duration": 1.0, "hold": 0.25}) == 210
+    assert length(make(HOLD), {"duration": 1.5}) == 180
+
+
+def test_the_distance_is_where_the_reference_ends(make):
+    env = make(LINEAR)
+    env.reset(seed=0, options={"distance": 0.013, "duration": 0.5, "settle": 0.0})
+    for _ in range(61):
+        info = env.step(FIRM)[4]
+    np.testing.assert_allclose(info["reference"], [0.013, 0.0, 0.0], atol=1e-12)
+
+
+@pytest.mark.parametrize(("tolerance", "success"), [(0.005, False), (0.011, True)])
+def test_the_tolerance_decides_about_success(make, tolerance, success):
+    env = make(LINEAR)
+    env.reset(
+        seed=0,
+        options={"distance": 0.01, "duration": 0.2, "settle": 0.0, "hold": 0.0, "tolerance": tolerance},
+    )
+    for _ in range(24):
+        _, _, _, truncated, info = env.step(FIRM)
+    assert truncated
+    assert info["is_success"] is success
+
+
+def test_without_shaking_the_wrist_rests(make):
+    env = make(HOLD)
+    speed = [column.name for column in env.columns].index("wrist_velocity_x")
+    quiet = {"shake_amplitude": 0.0, "shake_pitch": 0.0}
+    for options, moves in ((quiet, False), ({}, True)):
+        env.reset(seed=0, options=options)
+        seen = np.array([env.step(FIRM)[0][speed : speed + 3] for _ in range(30)])
+        assert seen.any() == moves
+
+
+def test_a_poke_carries_its_impulse(make):
+    env = make(HOLD)
+    env.reset(seed=0, options={"poke_interval": (0.3, 0.3), "poke_impulse": (0.2, 0.2)})
+    impulse = np.zeros(2)
+    for _ in range(60):
+        env.step(FIRM)
+        impulse += env._loop.plant.world["external"][0, :2] / 120
+    assert np.linalg.norm(impulse) == pytest.approx(0.2)
