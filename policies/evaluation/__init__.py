@@ -1,0 +1,7 @@
+"""Experiments: policies × what they know about friction × materials, with figures and confidence intervals."""
+
+from policies.evaluation.evaluate import evaluate
+from policies.evaluation.experiment import Experiment
+from policies.evaluation.files import experiment_names, load_experiment, narrowed
+
+__all__ = ["Experiment", "evaluate", "experiment_names", "load_experiment", "narrowed"]
