@@ -6,6 +6,13 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+_KINDS = {
+    bool: ((bool, np.bool_), "True or False"),
+    int: ((int, np.integer), "an integer in"),
+    float: ((float, int, np.floating, np.integer), "a number in"),
+}
+"""Field type -> value types it takes, and how to ask for one. A bool is an int to Python, but not here."""
+
 
 def parameter(default: float | int | bool, doc: str, within: str = "", unit: str = "") -> Any:
     """Declares a parameter field.
@@ -19,7 +26,7 @@ def parameter(default: float | int | bool, doc: str, within: str = "", unit: str
     return dataclasses.field(default=default, metadata={"doc": doc, "within": within, "unit": unit})
 
 
-def _inside(value: Any, interval: str) -> bool:
+def _inside(value: float, interval: str) -> bool:
     low, high = (float(end) for end in interval[1:-1].split(","))
     above = low < value if interval[0] == "(" else low <= value
     below = value < high if interval[-1] == ")" else value <= high
@@ -27,21 +34,17 @@ def _inside(value: Any, interval: str) -> bool:
 
 
 def _checked(field: "dataclasses.Field[Any]", value: Any) -> float | int | bool:
+    kind: Any = field.type
     within, unit = field.metadata["within"], field.metadata["unit"]
-    truth = isinstance(value, bool | np.bool_)
-    if field.type is bool and truth:
-        return bool(value)
-    if field.type is int and not truth and isinstance(value, int | np.integer) and _inside(value, within):
-        return int(value)
+    accepted, expected = _KINDS[kind]
+    is_truth_value = isinstance(value, _KINDS[bool][0])
     if (
-        field.type is float
-        and not truth
-        and isinstance(value, float | int | np.floating | np.integer)
-        and _inside(value, within)
+        isinstance(value, accepted)
+        and is_truth_value == (kind is bool)
+        and (not within or _inside(value, within))
     ):
-        return float(value)
-    expected = {bool: "True or False", int: "an integer in ", float: "a number in "}[field.type]
-    raise ValueError(f"{field.name} = {value!r}: expected {expected}{within} {unit}".rstrip())
+        return kind(value)
+    raise ValueError(f"{field.name} = {value!r}: expected {expected} {within} {unit}".rstrip())
 
 
 @dataclasses.dataclass(frozen=True)

@@ -104,8 +104,8 @@ def test_a_row_that_is_not_finite_is_skipped(bad, column):
     assert batch.states["samples"].tolist() == [50, 51]
 
 
-@pytest.mark.parametrize("t", [49 / RATE, 0.0, np.nan])
-def test_a_row_whose_time_does_not_advance_is_skipped(t):
+@pytest.mark.parametrize("t", [49 / RATE, 0.0, np.nan, np.inf])
+def test_a_sample_whose_time_does_not_advance_or_is_not_finite_is_skipped(t):
     wrenches, twists = random_signals(2, 51, seed=5)
     batch = estimator.make_batch("rls", 2)
     feed(batch, wrenches[:50], twists[:50])

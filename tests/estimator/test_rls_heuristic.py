@@ -71,8 +71,19 @@ def test_the_machine_runs_while_halted_but_nothing_is_learnt():
     assert est.batch.states["buffer_size"][0] == 0  # the stick before the slip is not kept for the next event
 
 
+def test_halted_samples_stay_out_of_the_buffer():
+    """Ratios 0.2 in stick, 0.6 while halted, 0.4 in the first slip sample: mu_s is 0.4 and 0.2 averaged."""
+    est = estimator.make("rls")
+    stick = [(0.2 * 5.0, 5.0, 0.0)] * 10
+    halt = [(0.6 * 8.0, 8.0, 0.0)] * 6
+    for k, (f_t, f_n, v_x) in enumerate([*stick, *halt, (0.4 * 8.0, 8.0, 0.02)]):
+        est.update(k / RATE, (f_t, 0.0, f_n, 0.0), (v_x, 0.0, 0.0))
+    assert est.estimate.slipping and not est.estimate.halted
+    assert est.estimate.mu_s == pytest.approx(0.3)
+
+
 def test_the_heuristic_keeps_stuck_samples_out():
-    """The grip closes on a slip; the late velocity still reads motion for four samples that are stuck.
+    """The grip closes on a slip; the late velocity still reads motion for four stuck samples.
 
     Those carry the slip's force, 2 N, at 15 N: in the plain estimator they pull mu_c towards 0.13.
     """

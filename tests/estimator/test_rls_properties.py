@@ -3,26 +3,28 @@
 import numpy as np
 import pytest
 from friction_oracle import RATE
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import estimator
 
-ordinary = st.floats(-20.0, 20.0)
+
+def steps(low, high, per_unit):
+    """Multiples of 1 / per_unit in [low, high]: far from subnormal numbers, which do not scale exactly."""
+    return st.integers(low * per_unit, high * per_unit).map(lambda k: k / per_unit)
+
+
+unhurried = settings(deadline=None)
+"""The first example may compile the kernel."""
 anything = st.floats(allow_nan=False, allow_infinity=False)
-speeds = st.one_of(st.just(0.0), st.floats(-0.05, 0.05))
-
-
-def samples(force, speed, min_size=1):
-    return st.lists(st.tuples(*[force] * 4, *[speed] * 3), min_size=min_size, max_size=40)
-
-
+force, torque, speed, spin = steps(-20, 20, 256), steps(-1, 1, 4096), steps(-1, 1, 16384), steps(-3, 3, 512)
 gripping = st.lists(
-    st.tuples(
-        ordinary, ordinary, st.floats(0.0, 20.0), st.floats(-0.2, 0.2), speeds, speeds, st.floats(-3.0, 3.0)
-    ),
+    st.tuples(force, force, steps(0, 20, 256), torque, *[st.one_of(st.just(0.0), speed)] * 2, spin),
     min_size=1,
     max_size=40,
+)
+extreme = st.lists(
+    st.tuples(*[st.one_of(anything, force)] * 4, *[st.one_of(anything, speed)] * 3), min_size=1, max_size=40
 )
 
 
@@ -31,7 +33,8 @@ def feed(rows, dt=1 / RATE, **parameters):
     return [est.update((k + 1) * dt, row[:4], row[4:]) for k, row in enumerate(rows)]
 
 
-@given(st.one_of(samples(st.one_of(anything, ordinary), st.one_of(anything, speeds)), gripping))
+@unhurried
+@given(st.one_of(extreme, gripping))
 def test_estimates_stay_finite_positive_and_in_bounds(rows):
     limits = estimator.RlsParameters()
     for e in feed(rows):
@@ -43,6 +46,17 @@ def test_estimates_stay_finite_positive_and_in_bounds(rows):
             assert 0.0 <= support <= 1.0
 
 
+def test_a_sample_whose_squares_overflow_teaches_nothing():
+    est = estimator.make("rls")
+    before = est.estimate
+    est.update(0.0, (1.0, 0.0, 1e200, 1.0), (0.01, 0.0, 1.0))
+    assert est.estimate[:3] == before[:3]
+    assert (est.batch.states["covariance_mu_c"][0], est.batch.states["covariance_r"][0]) == (1.0, 1.0)
+    stuck = est.update(1.0, (1.0, 0.0, 1.0, 1e308), (0.0, 0.0, 0.0))
+    assert (stuck.gamma_t, stuck.gamma_tau) == (0.0, 0.0)
+
+
+@unhurried
 @given(st.lists(st.tuples(*[st.floats()] * 7), min_size=1, max_size=40))
 def test_nan_never_travels_into_the_state(rows):
     batch = estimator.make_batch("rls", 1)
@@ -54,6 +68,7 @@ def test_nan_never_travels_into_the_state(rows):
     assert not np.isnan(batch.states["buffer"]).any()
 
 
+@unhurried
 @given(gripping, st.integers(-6, 6))
 def test_the_unit_of_force_does_not_matter(rows, exponent):
     """Friction and radius are ratios. The gain weighs phi^2 with P0, so P0 scales. Powers of 2: exact."""
@@ -68,18 +83,21 @@ def test_the_unit_of_force_does_not_matter(rows, exponent):
     assert feed(scaled, **parameters) == feed(rows)
 
 
+@unhurried
 @given(gripping)
 def test_mirroring_the_finger_does_not_matter(rows):
     mirrored = [(f_x, f_y, f_n, -tau, v_x, v_y, -omega) for f_x, f_y, f_n, tau, v_x, v_y, omega in rows]
     assert feed(mirrored) == feed(rows)
 
 
+@unhurried
 @given(gripping)
 def test_a_quarter_turn_of_the_plane_does_not_matter(rows):
     turned = [(-f_y, f_x, f_n, tau, -v_y, v_x, omega) for f_x, f_y, f_n, tau, v_x, v_y, omega in rows]
     assert feed(turned) == feed(rows)
 
 
+@unhurried
 @given(gripping)
 def test_counts_only_grow_by_one(rows):
     previous = (0, 0, 0)
@@ -91,6 +109,7 @@ def test_counts_only_grow_by_one(rows):
         previous = counts
 
 
+@unhurried
 @given(st.floats(0.05, 2.0), st.floats(0.004, 0.02), st.floats(3.0, 9.0))
 def test_translation_then_spin_finds_any_truth(mu_c, r, f_n):
     """Closed form: n steps of constant phi leave 1 / (1 + phi^2 P0 sum lambda^-i) of the start error."""

@@ -113,6 +113,14 @@ def test_the_gated_machine_sleeps_through_spin():
     assert starts == []
 
 
+def test_a_stop_under_torque_alone():
+    """At rest under a torque gamma_t is 0: the machine sees the stop, the gated one does not."""
+    slide = ellipsoid(30, 0.02, 0.0, MU_C, 0.01)
+    rest = [((31 + k) / RATE, (0.0, 0.0, F_N, 0.01), (0.0, 0.0, 0.0)) for k in range(10)]
+    assert not run(estimator.make("rls"), slide + rest)[-1].slipping
+    assert run(estimator.make("rls", machine_gated=True), slide + rest)[-1].slipping
+
+
 def test_below_eps_v_gamma_comes_from_the_force():
     """A stray count of 1 mm/s in rotation says nothing about a contact that carries force only."""
     sample = (1 / RATE, (1.0, 0.0, F_N, 0.0), (0.0, 0.0, 1e-3 / 0.02))
