@@ -3,5 +3,6 @@
 from policies.evaluation.evaluate import evaluate
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.files import experiment_names, load_experiment, narrowed
+from policies.evaluation.report import report
 
-__all__ = ["Experiment", "evaluate", "experiment_names", "load_experiment", "narrowed"]
+__all__ = ["Experiment", "evaluate", "experiment_names", "load_experiment", "narrowed", "report"]

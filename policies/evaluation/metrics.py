@@ -22,6 +22,8 @@ class Metric:
     """Its heading in the summary, with the unit."""
     share: bool = False
     """Whether it is yes or no; else a quantity with a mean."""
+    brief: bool = False
+    """Whether the compact table on the terminal has it."""
 
 
 @dataclass(frozen=True)
@@ -89,11 +91,11 @@ def measure_hold(recording: Recording) -> dict[str, Any]:
     }
 
 
-_SUCCESS = Metric("success", "success [%]", share=True)
+_SUCCESS = Metric("success", "success [%]", share=True, brief=True)
 _DROPPED = Metric("dropped", "dropped [%]", share=True)
-_FORCE = Metric("mean_force_N", "grip force [N]")
+_FORCE = Metric("mean_force_N", "grip force [N]", brief=True)
 _ROTATION = Metric("max_rotation_deg", "largest rotation [°]")
-_FINAL = Metric("final_error_abs_mm", "final error [mm]")
+_FINAL = Metric("final_error_abs_mm", "final error [mm]", brief=True)
 
 MEASURES: dict[str, Measures] = {
     "LinearSlip": Measures(
@@ -102,7 +104,7 @@ MEASURES: dict[str, Measures] = {
             _SUCCESS,
             _DROPPED,
             _FINAL,
-            Metric("rms_error_mm", "rms tracking error [mm]"),
+            Metric("rms_error_mm", "rms tracking error [mm]", brief=True),
             Metric("max_sideways_mm", "largest sideways slip [mm]"),
             _ROTATION,
             _FORCE,
@@ -114,10 +116,10 @@ MEASURES: dict[str, Measures] = {
         (
             _SUCCESS,
             _DROPPED,
-            Metric("largest_slip_mm", "largest slip [mm]"),
+            Metric("largest_slip_mm", "largest slip [mm]", brief=True),
             _ROTATION,
             _FORCE,
-            Metric("needed_force_mean_N", "least needed, mean [N]"),
+            Metric("needed_force_mean_N", "least needed, mean [N]", brief=True),
             Metric("needed_force_peak_N", "least needed, peak [N]"),
             Metric("force_ratio", "grip / least needed"),
         ),
