@@ -42,8 +42,9 @@ class ObservationIndex:
             raise ValueError(unknown("observation column", name, self._at))
         return self._at[name]
 
-    def __contains__(self, name: str) -> bool:
-        return name in self._at
+    def get(self, name: str) -> int | None:
+        """Where a column is; None if there is none."""
+        return self._at.get(name)
 
     def check(self, width: int) -> None:
         """Refuse observations of another task.

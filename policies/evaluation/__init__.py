@@ -1,4 +1,4 @@
-"""Experiments: policies × what they know about friction × materials, with figures and confidence intervals."""
+"""Experiments: policies × friction knowledge × materials, with figures and confidence intervals."""
 
 from policies.evaluation.evaluate import evaluate
 from policies.evaluation.experiment import Experiment

@@ -61,7 +61,7 @@ class Recorder:
 
     def __init__(self, index: ObservationIndex) -> None:
         self._wrench = [index[name] for name in _WRENCH]
-        self._goal = index["distance"] if "distance" in index else None
+        self._goal = index.get("distance")
         self._steps: list[tuple[np.ndarray, float, Mapping[str, Any]]] = []
 
     def add(self, observation: np.ndarray, reward: float, info: Mapping[str, Any]) -> None:

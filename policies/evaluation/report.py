@@ -7,6 +7,7 @@ from pathlib import Path
 import pandas as pd
 import yaml
 
+from policies.evaluation.frames import by_metric, groups, where
 from policies.evaluation.metrics import MEASURES
 from policies.evaluation.tables import KEYS, text
 
@@ -19,13 +20,11 @@ def report(folder: Path) -> str:
     """
     task = yaml.safe_load((folder / "experiment.yaml").read_text(encoding="utf-8"))["task"]
     summary = pd.read_csv(folder / "summary.csv", keep_default_na=False, na_values=[""])
-    overall = summary[summary["material"] == "all"]
     metrics = [m for m in MEASURES[task].summary if m.brief]
     rows = []
-    for keys, group in overall.groupby(KEYS, sort=False):
-        found = group.set_index("metric")
-        cells = [text(found.loc[m.column], m.heading) for m in metrics]
-        rows.append([*map(str, keys), *cells])
+    for keys, group in groups(where(summary, material="all"), KEYS):
+        found = by_metric(group)
+        rows.append([*keys, *(text(found[m.column], m.heading) for m in metrics)])
     table = aligned([[*KEYS, *(m.heading for m in metrics)], *rows])
     pictures = sorted(folder.glob("*.png"))
     paths = [f"  {path}" for path in [*pictures, folder / "summary.md", folder / "trials.csv"]]

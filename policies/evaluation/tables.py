@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from policies.evaluation.frames import by_metric, distinct, groups, values, where
 from policies.evaluation.metrics import MEASURES, Metric
 from policies.evaluation.statistics import Interval, mean_interval, share_interval
 
@@ -29,7 +30,7 @@ def summarise(trials: pd.DataFrame, task: str) -> pd.DataFrame:
     rows = []
     for whole in (True, False):
         grouped = trials.assign(material="all") if whole else trials
-        for keys, group in grouped.groupby([*KEYS, "material"], sort=False):
+        for keys, group in groups(grouped, [*KEYS, "material"]):
             rows += [(*keys, m.column, len(group), *interval(group, m)) for m in metrics]
     rows += differences(trials, MEASURES[task].compared)
     return pd.DataFrame(rows, columns=COLUMNS)
@@ -37,10 +38,8 @@ def summarise(trials: pd.DataFrame, task: str) -> pd.DataFrame:
 
 def interval(trials: pd.DataFrame, metric: Metric) -> Interval:
     """A measure over some trials."""
-    values = trials[metric.column]
-    if metric.share:
-        return share_interval(int(values.sum()), len(values))
-    return mean_interval(values.to_numpy())
+    found = values(trials, metric.column)
+    return share_interval(int(found.sum()), len(found)) if metric.share else mean_interval(found)
 
 
 def differences(trials: pd.DataFrame, metric: Metric) -> list[tuple]:
@@ -51,11 +50,11 @@ def differences(trials: pd.DataFrame, metric: Metric) -> list[tuple]:
         metric: The measure to compare by.
     """
     rows = []
-    for policy, group in trials.groupby("policy", sort=False):
-        first, *others = group["friction"].unique()
+    for (policy,), group in groups(trials, ["policy"]):
+        first, *others = distinct(group, "friction")
         paired = group.pivot(index=PAIR, columns="friction", values=metric.column)
         for other in others:
-            difference = (paired[other] - paired[first]).to_numpy()
+            difference = values(paired, other) - values(paired, first)
             name = f"difference of {metric.column}"
             rows.append((policy, other, "all", name, len(difference), *mean_interval(difference)))
     return rows
@@ -69,7 +68,7 @@ def markdown(summary: pd.DataFrame, task: str, n_trials: int) -> str:
         task: The task.
         n_trials: How many trials stand behind it.
     """
-    overall = summary[summary["material"] == "all"]
+    overall = where(summary, material="all")
     headings = {m.column: m.heading for m in MEASURES[task].summary}
     estimated = [column for column in FRICTION if column in set(summary["metric"])]
     parts = [
@@ -78,9 +77,9 @@ def markdown(summary: pd.DataFrame, task: str, n_trials: int) -> str:
         grid(overall, headings),
     ]
     compared = MEASURES[task].compared
-    paired = overall[overall["metric"] == f"difference of {compared.column}"]
+    paired = where(overall, metric=f"difference of {compared.column}")
     if len(paired):
-        first = overall["friction"].iloc[0]
+        first = distinct(overall, "friction")[0]
         parts += [
             f"## Against {first!r}, trial by trial",
             grid(paired, {f"difference of {compared.column}": f"difference of {compared.heading}"}),
@@ -88,7 +87,11 @@ def markdown(summary: pd.DataFrame, task: str, n_trials: int) -> str:
     parts += [
         "## Estimated friction by material",
         "Mean of both fingers: over the cruise of the reference, and at the end.",
-        grid(summary[summary["material"] != "all"], {c: _words(c) for c in estimated}, by_material=True),
+        grid(
+            summary.loc[values(summary, "material") != "all"],
+            {c: _words(c) for c in estimated},
+            by_material=True,
+        ),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -106,17 +109,19 @@ def grid(rows: pd.DataFrame, headings: dict[str, str], by_material: bool = False
         "| " + " | ".join([*keys, *headings.values()]) + " |",
         "|" + " --- |" * len(keys) + " ---: |" * len(headings),
     ]
-    for key, group in rows.groupby(keys, sort=False):
-        found = group.set_index("metric")
-        cells = [text(found.loc[metric], headings[metric]) for metric in headings]
-        lines.append("| " + " | ".join([*map(str, key), *cells]) + " |")
+    for key, group in groups(rows, keys):
+        found = by_metric(group)
+        cells = [
+            text(found[metric], heading) if metric in found else "" for metric, heading in headings.items()
+        ]
+        lines.append("| " + " | ".join([*key, *cells]) + " |")
     return "\n".join(lines)
 
 
-def text(row: pd.Series, heading: str) -> str:
-    """Value and interval of a row, such as "0.42 (0.40 to 0.44)"."""
+def text(interval: tuple[float, float, float], heading: str) -> str:
+    """Value, low and high as words, such as "0.42 (0.40 to 0.44)"; in % where the heading says so."""
     scale = 100.0 if heading.endswith("[%]") else 1.0
-    value, low, high = (scale * float(row[name]) for name in ("value", "low", "high"))
+    value, low, high = (scale * number for number in interval)
     digits = 0 if scale > 1.0 else 2 if abs(value) < 10.0 else 1
     if np.isnan(low) or low == high:
         return f"{value:.{digits}f}"

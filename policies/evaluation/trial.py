@@ -45,9 +45,8 @@ def run_trials(
         ValueError: A policy refuses its parameters or the observations.
     """
     parallel = joblib.Parallel(n_jobs=jobs, return_as="generator")
-    results = parallel(joblib.delayed(run_trial)(experiment, trial) for trial in trials)
-    bar = tqdm(results, total=len(trials), desc=experiment.name, unit="trial", disable=not progress)
-    return list(bar)
+    results: Any = parallel(joblib.delayed(run_trial)(experiment, trial) for trial in trials)
+    return list(tqdm(results, total=len(trials), desc=experiment.name, unit="trial", disable=not progress))
 
 
 def run_trial(experiment: Experiment, trial: Trial) -> Result:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pandas as pd
 from matplotlib.figure import Figure
 
+from policies.evaluation.frames import groups
 from policies.evaluation.plots.errors import plot_errors
 from policies.evaluation.plots.grip import plot_grip
 from policies.evaluation.plots.style import STYLE, styled
@@ -26,8 +27,8 @@ def draw(task: str, trials: pd.DataFrame, series: pd.DataFrame, folder: Path) ->
         The pictures.
     """
     written = []
-    for policy, group in trials.groupby("policy", sort=False):
-        slug = "".join(c if c.isalnum() else "_" for c in str(policy))
+    for (policy,), group in groups(trials, ["policy"]):
+        slug = "".join(c if c.isalnum() else "_" for c in policy)
         with styled():
             figures = {f"tracking_{slug}": plot_tracking(task, group, series)}
             if task == "LinearSlip":

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from policies.evaluation.frames import distinct, values, where
 from policies.evaluation.plots.style import STYLE, colours, note
 
 _SPREAD = 0.30  # half the height that a friction choice's points take
@@ -17,20 +18,20 @@ def plot_errors(trials: pd.DataFrame) -> Figure:
     Args:
         trials: The table of trials of one policy.
     """
-    choices = list(trials["friction"].unique())
-    materials = colours(list(trials["material"].unique()))
+    choices = distinct(trials, "friction")
+    materials = colours(distinct(trials, "material"))
     figure = Figure(figsize=(7.5, 1.2 + 0.75 * len(choices)))
     axes = figure.subplots()
-    tolerance = trials["tolerance_mm"].max()
+    tolerance = values(trials, "tolerance_mm").max()
     axes.axvspan(-tolerance, tolerance, color=STYLE.band, linewidth=0, zorder=0)
     axes.axvline(0.0, color=STYLE.muted, linewidth=0.8, zorder=1)
     for at, choice in enumerate(choices):
-        group = trials[trials["friction"] == choice]
+        group = where(trials, friction=choice)
         for k, (material, colour) in enumerate(materials.items()):
-            errors = group.loc[group["material"] == material, "final_error_mm"].to_numpy()
+            errors = values(where(group, material=material), "final_error_mm")
             lane = at + _SPREAD * ((k + 0.5) / len(materials) * 2.0 - 1.0)
             axes.scatter(errors, np.full(len(errors), lane), s=14, color=colour, alpha=0.6, linewidths=0)
-        median = group["final_error_mm"].median()
+        median = np.median(values(group, "final_error_mm"))
         axes.plot([median, median], [at - _SPREAD, at + _SPREAD], color=STYLE.ink, linewidth=2.0)
     for material, colour in materials.items():
         axes.scatter([], [], s=24, color=colour, label=material)

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from policies.evaluation.frames import distinct, values, where
 from policies.evaluation.plots.style import STYLE, note
+
+_HELD, _SLIPPED = STYLE.palette[0], STYLE.palette[1]
 
 
 def plot_grip(trials: pd.DataFrame) -> Figure:
@@ -14,27 +18,31 @@ def plot_grip(trials: pd.DataFrame) -> Figure:
     Args:
         trials: The table of trials of one policy.
     """
-    choices = list(trials["friction"].unique())
+    choices = distinct(trials, "friction")
     figure = Figure(figsize=(max(4.0, 2.7 * len(choices)), 3.4))
     panels = figure.subplots(1, len(choices), sharex=True, sharey=True, squeeze=False)[0]
-    right = 1.05 * trials["needed_force_peak_N"].max()
-    top = 1.05 * max(right, trials["mean_force_N"].max())
+    right = 1.05 * values(trials, "needed_force_peak_N").max()
     for axes, choice in zip(panels, choices, strict=True):
-        group = trials[trials["friction"] == choice]
         axes.plot([0.0, right], [0.0, right], color=STYLE.muted, linewidth=0.8)
-        for success, colour, marker in ((True, STYLE.palette[0], "o"), (False, STYLE.palette[1], "X")):
-            some = group[group["success"] == success]
-            axes.scatter(some["needed_force_peak_N"], some["mean_force_N"], s=18, c=colour, marker=marker,
-                         alpha=0.65, linewidths=0)  # fmt: skip
-        share = 100.0 * group["success"].mean()
+        _points(axes, where(trials, friction=choice))
         axes.set_title(choice)
-        note(axes, 0.03, 0.97, f"held {share:.0f} %", STYLE.palette[0], xycoords="axes fraction", va="top")
-        if share < 100.0:
-            note(axes, 0.03, 0.90, f"slipped {100.0 - share:.0f} %", STYLE.palette[1],
-                 xycoords="axes fraction", va="top")  # fmt: skip
         axes.set_xlim(0.0, right)
-        axes.set_ylim(0.0, top)
+        axes.set_ylim(0.0, 1.12 * max(right, values(trials, "mean_force_N").max()))
     panels[0].set_ylabel("grip force, mean [N]")
-    note(panels[0], right, right, "just enough ", STYLE.muted, ha="right", va="bottom")
+    note(panels[0], right, 0.05 * right, "below the line:\nless than the peak needs", STYLE.muted, ha="right")
     figure.supxlabel("least force that holds the peak load [N]", fontsize=9.0)
     return figure
+
+
+def _points(axes: Axes, trials: pd.DataFrame) -> None:
+    """A point for each trial, and how many held."""
+    shares = {}
+    for success, colour, marker in ((True, _HELD, "o"), (False, _SLIPPED, "X")):
+        some = where(trials, success=success)
+        needed, force = values(some, "needed_force_peak_N"), values(some, "mean_force_N")
+        axes.scatter(needed, force, s=18, color=colour, marker=marker, alpha=0.65, linewidths=0)
+        shares[success] = 100.0 * len(some) / len(trials)
+    at = {"xycoords": "axes fraction", "va": "top"}
+    note(axes, 0.03, 0.98, f"held {shares[True]:.0f} %", _HELD, **at)
+    if shares[False]:
+        note(axes, 0.03, 0.91, f"slipped {shares[False]:.0f} %", _SLIPPED, **at)

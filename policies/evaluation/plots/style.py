@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -22,7 +23,7 @@ class Style:
 
 
 STYLE = Style()
-_RC = {
+_RC: Any = {
     "figure.constrained_layout.use": True,
     "figure.facecolor": "white",
     "font.size": 9.0,
@@ -54,6 +55,6 @@ def colours(names: Sequence[str]) -> dict[str, str]:
     return {name: STYLE.palette[k % len(STYLE.palette)] for k, name in enumerate(names)}
 
 
-def note(axes: Axes, x: float, y: float, words: str, colour: str, **options: object) -> None:
+def note(axes: Axes, x: float, y: float, words: str, colour: str, **options: Any) -> None:
     """A label at a point of the data, beside what it names."""
-    axes.annotate(words, (x, y), color=colour, **{"fontsize": 8.0, **options})  # pyright: ignore[reportArgumentType]
+    axes.annotate(words, (x, y), color=colour, **{"fontsize": 8.0, **options})
