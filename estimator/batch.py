@@ -47,7 +47,8 @@ class BatchEstimator:
             twists: (n, 3) float64, C-contiguous: v_x, v_y, omega [m/s, m/s, rad/s] at the CoP.
         """
         n = len(self.states)
-        assert wrenches.shape == (n, 4) and twists.shape == (n, 3)
+        assert wrenches.shape == (n, 4)
+        assert twists.shape == (n, 3)
         self._update(self.states, self.parameters_array, t, wrenches, twists, self.estimates)
 
     def reset(self, indices: Any = None) -> None:

@@ -204,7 +204,9 @@ _SIGNATURE = types.void(
 
 @njit(_SIGNATURE, cache=True)
 def update_batch(states, parameters, t, wrenches, twists, estimates):
-    """n fingers, one sample each. Compiled at import, or read from numba's cache: no first call is slow.
+    """Update n fingers by one sample each.
+
+    Compiled at import, or read from the cache: no first call is slow.
 
     A row with a value that is not finite, or with a t not later than the row's last, is left as it is.
 

@@ -49,15 +49,19 @@ def columns(config: Config, task: Task, friction_source: str) -> tuple[Column, .
 
 
 @njit(cache=True)
-def combine(estimates, friction):
+def combine(estimates, per_finger, friction):
     """Merge both fingers' estimates, each weighted by its support.
 
     Args:
         estimates: ESTIMATE (2 n,), finger by finger.
+        per_finger: Output (n, 2, 3): mu_s, mu_c, r of either finger.
         friction: Output (n, 6): mu_s, mu_c, r and their supports (the better finger's).
     """
     for i in range(friction.shape[0]):
         a, b = estimates[2 * i], estimates[2 * i + 1]
+        for f in range(2):
+            finger = estimates[2 * i + f]
+            per_finger[i, f, 0], per_finger[i, f, 1], per_finger[i, f, 2] = finger.mu_s, finger.mu_c, finger.r
         friction[i, 0] = weigh(a.mu_s, b.mu_s, a.support_mu_s, b.support_mu_s)
         friction[i, 1] = weigh(a.mu_c, b.mu_c, a.support_mu_c, b.support_mu_c)
         friction[i, 2] = weigh(a.r, b.r, a.support_r, b.support_r)

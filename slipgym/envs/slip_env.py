@@ -106,8 +106,21 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         self._wrench_rows, self._twist_rows = self._wrenches.reshape(2, 4), self._twists.reshape(2, 3)
         self._episode = np.zeros(1, EPISODE)
         self._task_part = np.zeros((1, len(self.task.columns)))
-        self._friction_part = np.ones((1, len(observation.FRICTION_COLUMNS)))
         self._out = np.zeros((1, len(self.columns)), dtype=np.float32)
+        self._true, self._per_finger = np.zeros(3), np.zeros((1, 2, 3))
+        self._merged = np.zeros((1, len(observation.FRICTION_COLUMNS)))
+        # the friction part of the observation: the merged estimates, or values that stand for the episode
+        self._friction_part = self._merged if self.friction_source == "estimated" else np.ones((1, 6))
+        self._terms = self._episode["terms"][0, : len(self.task.terms)]
+        self._views = {
+            "true": self._true,
+            "estimated": self._merged[0, :3],
+            "estimated_per_finger": self._per_finger[0],
+            "slip": self._plant.world["slip"][0],
+            "slip_twist": self._plant.world["slip_twist"][0],
+            "grip_force": self._plant.fingers["force"][0],
+            "reference": self._episode["reference"][0],
+        }
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -185,8 +198,9 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         episode["step"] += 1
         time = episode["step"].item() * self._step_time
         self._estimator.update(time, self._wrench_rows, self._twist_rows)
+        observation.combine(self._estimator.estimates, self._per_finger, self._merged)
         self.task.judge(episode, plant.world, plant.fingers, self._task_part)
-        return math.fsum(episode["terms"][0, : len(self.task.terms)].tolist())
+        return math.fsum(self._terms.tolist())
 
     def _advance(self, force: float) -> None:
         """One control step of the world and its sensors."""
@@ -212,6 +226,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         plant, episode = self._plant, self._episode
         plant.chips["travel"] = 0.0
         self._estimator.reset()
+        observation.combine(self._estimator.estimates, self._per_finger, self._merged)
         episode["command"] = episode["last_command"] = force
         self.task.judge(episode, plant.world, plant.fingers, self._task_part)
         self._ready = True
@@ -220,9 +235,9 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         friction, nominal = self._friction, self.config.nominal
         for field in ("mu_s", "mu_c", "r"):
             self._plant.pads[field] = getattr(friction, field)
-        self._friction_part[:] = 1.0
+        self._true[:] = friction.as_array()
         if self.friction_source == "true":
-            self._friction_part[0, :3] = friction.as_array()
+            self._friction_part[0, :3] = self._true
         elif self.friction_source == "nominal":
             self._friction_part[0, :3] = nominal.mu_s, nominal.mu_c, nominal.r
 
@@ -240,8 +255,6 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         chips["carry"] = rng.uniform(-1.0, 1.0, (1, 2, AXES)) * chips["count"][..., None]
 
     def _observation(self) -> np.ndarray:
-        if self.friction_source == "estimated":
-            observation.combine(self._estimator.estimates, self._friction_part)
         observation.observe(
             self._wrenches,
             self._twists,
@@ -256,22 +269,13 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         return self._out[0].copy()
 
     def _info(self) -> dict[str, Any]:
-        plant, episode = self._plant, self._episode[0]
-        estimates = self._estimator.estimates
-        per_finger = np.column_stack([estimates[field] for field in ("mu_s", "mu_c", "r")])
-        return {
-            "true": self._friction.as_array(),
-            "estimated": per_finger.mean(axis=0),
-            "estimated_per_finger": per_finger,
-            "slip": plant.world["slip"][0].copy(),
-            "slip_twist": plant.world["slip_twist"][0].copy(),
-            "grip_force": plant.fingers["force"][0].copy(),
-            "reference": episode["reference"].copy(),
-            "reward_terms": dict(zip(self.task.terms, episode["terms"].tolist(), strict=False)),
-            "time": episode["step"].item() * self._step_time,
-            "is_success": bool(episode["success"]),
-            "dropped": bool(episode["dropped"]),
-        }
+        views, episode = self._views, self._episode
+        info: dict[str, Any] = {name: view.copy() for name, view in views.items()}
+        info["reward_terms"] = dict(zip(self.task.terms, self._terms.tolist(), strict=True))
+        info["time"] = episode["step"].item() * self._step_time
+        info["is_success"] = episode["success"].item()
+        info["dropped"] = episode["dropped"].item()
+        return info
 
 
 def _make_estimator(choice: str | Mapping[str, Any]) -> estimators.BatchEstimator:

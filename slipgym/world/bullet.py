@@ -16,6 +16,8 @@ from slipgym.world.planar import locate
 from slipgym.world.plant import Plant
 from slipgym.world.scene import FINGER_LINKS, WRIST_FORCE, WRIST_JOINTS, Box
 
+_LINK_B, _NORMAL_FORCE = 4, 9  # fields of PyBullet's contact points
+
 
 @njit(cache=True)
 def _loads(worlds, pads, fingers, force_torque, noise, chips, pose, velocity, wrist, normals):
@@ -205,9 +207,11 @@ class BulletWorld:
         pose = p.getBasePositionAndOrientation(self._body, physicsClientId=client)
         velocity = p.getBaseVelocity(self._body, physicsClientId=client)
         joints = p.getJointStates(gripper, WRIST_JOINTS, physicsClientId=client)
-        contacts = p.getContactPoints(self._body, gripper, physicsClientId=client)
+        first, second = [], []
+        for contact in p.getContactPoints(self._body, gripper, physicsClientId=client):
+            (first if contact[_LINK_B] == FINGER_LINKS[0] else second).append(contact[_NORMAL_FORCE])
         # fsum: the engine may list the points in another order after a restore
-        normals = tuple(math.fsum(c[9] for c in contacts if c[4] == link) for link in FINGER_LINKS)
+        normals = math.fsum(first), math.fsum(second)
         return pose, velocity, (joints[0][0], joints[1][0], joints[2][0]), normals
 
     def _build(self, box: Box) -> None:

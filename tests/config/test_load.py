@@ -108,7 +108,6 @@ WRONG = [
     ({"sensors": "ideal"}, ["sensors = 'ideal'", "a mapping"]),
     ({"sensors": {"slip": {"counts": 1}}}, ["sensors.slip.counts = 1", "true or false"]),
     ({"sensors": {"slip": {"rate": 60}}}, ["sensors.slip.rate", "60", "120"]),
-    ({"sensors": {"force_torque": {"rate": 700}}}, ["multiple", "3000", "700"]),
     ({"physics": {"engine_steps": 2.5}}, ["physics.engine_steps = 2.5", "a whole number >= 1"]),
     ({"contact": {"model": "point"}}, ["contact.model = 'point'", "'ellipsoid', 'distributed'"]),
     ({"contact": {"sigma_0": 10.0}}, ["contact.sigma_0 = 10.0", ">= 100000"]),

@@ -41,7 +41,7 @@ def test_an_unknown_name_lists_the_valid_ones(name):
 
 
 def test_an_unknown_parameter_lists_the_valid_ones():
-    with pytest.raises(ValueError, match="unknown parameter lambda_.*forgetting"):
+    with pytest.raises(ValueError, match=r"unknown parameter lambda_.*forgetting"):
         estimator.make("rls", lambda_=0.98)
 
 
@@ -99,10 +99,22 @@ def test_a_bad_batch_size(n):
 
 
 def test_defaults_are_table_1():
-    table = dict(
-        mu_c0=1.3, mu_s0=1.5, r0=0.02, eps_tau=0.3, eps_t=0.3, eps_v=1.5e-3, eps_fn=0.2, p0=1.0,
-        forgetting=0.98, n_a=2, n_b=16, eps_delta=150.0, halt_duration=0.05, sample_time=1 / 120,
-    )  # fmt: skip
+    table = {
+        "mu_c0": 1.3,
+        "mu_s0": 1.5,
+        "r0": 0.02,
+        "eps_tau": 0.3,
+        "eps_t": 0.3,
+        "eps_v": 1.5e-3,
+        "eps_fn": 0.2,
+        "p0": 1.0,
+        "forgetting": 0.98,
+        "n_a": 2,
+        "n_b": 16,
+        "eps_delta": 150.0,
+        "halt_duration": 0.05,
+        "sample_time": 1 / 120,
+    }
     defaults = dataclasses.asdict(estimator.make("rls").parameters)
     assert {name: defaults[name] for name in table} == table
     assert defaults["heuristic"] is True

@@ -65,7 +65,8 @@ def test_the_machine_runs_while_halted_but_nothing_is_learnt():
         est.update(k / RATE, (1.0, 0.0, 5.0, 0.0), (0.0, 0.0, 0.0))
     before = est.estimate
     e = est.update(10 / RATE, (3.0, 0.0, 7.0, 0.0), (0.02, 0.0, 0.0))
-    assert e.halted and e.slipping
+    assert e.halted
+    assert e.slipping
     assert e[:3] == before[:3]
     assert e.events_mu_s == 0
     assert est.batch.states["buffer_size"][0] == 0  # the stick before the slip is not kept for the next event
@@ -78,7 +79,8 @@ def test_halted_samples_stay_out_of_the_buffer():
     halt = [(0.6 * 8.0, 8.0, 0.0)] * 6
     for k, (f_t, f_n, v_x) in enumerate([*stick, *halt, (0.4 * 8.0, 8.0, 0.02)]):
         est.update(k / RATE, (f_t, 0.0, f_n, 0.0), (v_x, 0.0, 0.0))
-    assert est.estimate.slipping and not est.estimate.halted
+    assert est.estimate.slipping
+    assert not est.estimate.halted
     assert est.estimate.mu_s == pytest.approx(0.3)
 
 

@@ -41,7 +41,8 @@ def test_estimates_stay_finite_positive_and_in_bounds(rows):
         assert limits.mu_min <= e.mu_s <= limits.mu_max
         assert limits.mu_min <= e.mu_c <= limits.mu_max
         assert limits.r_min <= e.r <= limits.r_max
-        assert 0.0 <= e.gamma_t <= 1.0 and 0.0 <= e.gamma_tau <= 1.0
+        assert 0.0 <= e.gamma_t <= 1.0
+        assert 0.0 <= e.gamma_tau <= 1.0
         for support in (e.support_mu_s, e.support_mu_c, e.support_r):
             assert 0.0 <= support <= 1.0
 
