@@ -1,6 +1,6 @@
 """Experiments: policies × friction knowledge × materials, with figures and confidence intervals."""
 
-from policies.evaluation.evaluate import evaluate
+from policies.evaluation.run import evaluate
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.files import experiment_names, load_experiment, narrowed
 from policies.evaluation.report import report

@@ -25,7 +25,7 @@ def plot_grip(trials: pd.DataFrame) -> Figure:
     for axes, choice in zip(panels, choices, strict=True):
         axes.plot([0.0, right], [0.0, right], color=STYLE.muted, linewidth=0.8)
         _points(axes, where(trials, friction=choice))
-        axes.set_title(choice)
+        axes.set_title(f"friction: {choice}")
         axes.set_xlim(0.0, right)
         axes.set_ylim(0.0, 1.12 * max(right, values(trials, "mean_force_N").max()))
     panels[0].set_ylabel("grip force, mean [N]")

@@ -39,7 +39,7 @@ def plot_tracking(task: str, trials: pd.DataFrame, series: pd.DataFrame) -> Figu
     for column, choice in enumerate(choices):
         trial = where(trials, friction=choice, trial=0).iloc[0]
         steps = where(series, row=trial.name)
-        grid[0, column].set_title(f"told: {choice}")
+        grid[0, column].set_title(f"friction: {choice}")
         for axes, panel in zip(grid[:, column], panels, strict=True):
             panel(axes, steps, trial, column == 0)
         grid[-1, column].set_xlabel("time [s]")
@@ -96,7 +96,7 @@ def _friction(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
     axes.set_ylim(0.0, 1.6)
     if first:
         axes.set_ylabel("friction [–]")
-        note(axes, 0.98, 0.93, "estimates of both fingers; dashed: true", STYLE.muted, va="top", **_CORNER)
+        note(axes, 0.98, 0.05, "estimates of both fingers; dashed: true", STYLE.muted, **_CORNER)
 
 
 def _scenario(task: str, trial: Any) -> str:
@@ -105,5 +105,6 @@ def _scenario(task: str, trial: Any) -> str:
     words = []
     for name, value in json.loads(trial["options"]).items():
         unit = re.search(r"\[(?!-\])(.+)\]$", fields[name].description or "")
-        words.append(f"{name} {value}" + (f" {unit[1]}" if unit else ""))
+        number = f"{value:g}" if isinstance(value, float) else value
+        words.append(f"{name} {number}" + (f" {unit[1]}" if unit else ""))
     return "   ·   ".join([task, str(trial["policy"]), str(trial["material"]), *words])
