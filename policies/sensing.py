@@ -16,7 +16,8 @@ def both(columns: Columns, name: str) -> np.ndarray:
 
 def tangential(columns: Columns) -> np.ndarray:
     """Tangential force per finger, mean over both, (n,) [N]."""
-    return 0.5 * sum(np.hypot(columns[f"f_x_{f}"], columns[f"f_y_{f}"]) for f in (1, 2))
+    first, second = (np.hypot(columns[f"f_x_{f}"], columns[f"f_y_{f}"]) for f in (1, 2))
+    return 0.5 * (first + second)
 
 
 def scaled_load(columns: Columns, r: np.ndarray) -> np.ndarray:

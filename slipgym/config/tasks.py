@@ -9,6 +9,7 @@ class TaskConfig(Frozen):
     """What every task has."""
 
     initial_force: Positive = Field(description="Force per finger at reset [N]")
+    reward: Frozen = Field(description="Scales of the reward terms [-]")
 
 
 class LinearSlipReward(Frozen):

@@ -15,8 +15,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from slipgym.compiled import compiled
 from slipgym.contact.kernel import commit, release, respond, stribeck
 
 MAX_NEWTON = 30
@@ -24,26 +24,26 @@ MAX_HALVINGS = 8
 FORCE_TOLERANCE = 1e-10  # of the friction limit; rounding reaches about 1e-13
 
 
-@njit(cache=True)
+@compiled
 def lever(pad, centre):
     """Vector from the centre of mass to the pad's centre of pressure [m]."""
     return pad.cop[0] - centre[0], pad.cop[1] - centre[1]
 
 
-@njit(cache=True)
+@compiled
 def scaled(pad, arm, motion):
     """Scaled slip displacement S q at the centre of pressure."""
     return (motion[0] - motion[2] * arm[1], motion[1] + motion[2] * arm[0], pad.r * motion[2])
 
 
-@njit(cache=True)
+@compiled
 def transposed(pad, arm, vector):
     """Generalised force S^T f of a scaled friction vector f about the centre of mass."""
     moment = arm[0] * vector[1] - arm[1] * vector[0] + pad.r * vector[2]
     return vector[0], vector[1], moment
 
 
-@njit(cache=True)
+@compiled
 def assemble(pads, limits, inertia, centre, free, motion, h):
     """Residual of the momentum balance and its symmetric derivative.
 
@@ -71,7 +71,7 @@ def assemble(pads, limits, inertia, centre, free, motion, h):
     return (rx, ry, rt), (jx, jy, jt, jxy, jxt, jyt)
 
 
-@njit(cache=True)
+@compiled
 def solve_symmetric(a, b):
     """Solve the symmetric positive definite system a x = b, a = (xx, yy, tt, xy, xt, yt)."""
     l10, l20 = a[3] / a[0], a[4] / a[0]
@@ -84,13 +84,13 @@ def solve_symmetric(a, b):
     return b[0] / a[0] - l10 * x1 - l20 * x2, x1, x2
 
 
-@njit(cache=True)
+@compiled
 def norm(residual, radius):
     """Length of a residual, its torque divided by a radius [N]."""
     return math.sqrt(residual[0] ** 2 + residual[1] ** 2 + (residual[2] / radius) ** 2)
 
 
-@njit(cache=True)
+@compiled
 def solve_motion(pads, limits, inertia, centre, free, motion, h):
     """Damped semi-smooth Newton iteration for the motion that balances momentum and friction."""
     tolerance = 0.0
@@ -114,7 +114,7 @@ def solve_motion(pads, limits, inertia, centre, free, motion, h):
     return motion
 
 
-@njit(cache=True)
+@compiled
 def step_pads(pads, inertia, centre, free, guess, h):
     """Advance all pads and the object's motion relative to them by one sub-step.
 

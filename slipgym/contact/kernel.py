@@ -23,17 +23,17 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from slipgym.compiled import compiled
 
 
-@njit(cache=True)
+@compiled
 def stribeck(pad, slip_speed):
     """Friction level g(v) = mu_c + (mu_s - mu_c) exp(-(v / v_s)^2) [-]."""
     ratio = slip_speed / pad.stribeck_velocity
     return pad.mu_c + (pad.mu_s - pad.mu_c) * math.exp(-ratio * ratio)
 
 
-@njit(cache=True)
+@compiled
 def respond(pad, delta, h, limit):
     """Friction of one pad after a scaled slip displacement over time h.
 
@@ -68,7 +68,7 @@ def respond(pad, delta, h, limit):
     return force, spring + viscous, radial, y, shortening
 
 
-@njit(cache=True)
+@compiled
 def commit(pad, delta, h, force, shortening):
     """Store bristle state, plastic slip speed and wrench that `respond` found."""
     lost = 0.0
@@ -80,7 +80,7 @@ def commit(pad, delta, h, force, shortening):
     pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
 
 
-@njit(cache=True)
+@compiled
 def release(pad, slip_speed):
     """Forget the bristle state of a pad without normal force."""
     pad.z[:] = 0.0
@@ -88,7 +88,7 @@ def release(pad, slip_speed):
     pad.slip_speed = slip_speed
 
 
-@njit(cache=True)
+@compiled
 def prescribed_step(pad, twist, h):
     """Advance one pad by a prescribed slip twist (v_x, v_y, omega) at its centre of pressure."""
     delta = (h * twist[0], h * twist[1], h * pad.r * twist[2])

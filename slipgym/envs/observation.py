@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from numba import njit
-
+from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.tasks.task import Column, Task
 
@@ -48,7 +47,7 @@ def columns(config: Config, task: Task, friction_source: str) -> tuple[Column, .
     return (*sensor_columns(config), *task.columns, *friction)
 
 
-@njit(cache=True)
+@compiled
 def combine(estimates, per_finger, friction):
     """Merge both fingers' estimates, each weighted by its support.
 
@@ -70,14 +69,14 @@ def combine(estimates, per_finger, friction):
         friction[i, 5] = max(a.support_r, b.support_r)
 
 
-@njit(cache=True)
+@compiled
 def weigh(a, b, support_a, support_b):
     """Mean of two values weighted by their support; plain if neither has any."""
     total = support_a + support_b
     return (a * support_a + b * support_b) / total if total > 0.0 else 0.5 * (a + b)
 
 
-@njit(cache=True)
+@compiled
 def observe(wrenches, twists, chips, episodes, task_part, friction, low, high, out):
     """Write the observation, clipped to its bounds.
 

@@ -11,6 +11,7 @@ import gymnasium as gym
 import numpy as np
 
 import estimator as estimators
+from estimator.batch import BatchEstimator
 from slipgym.config import TaskConfig, load
 from slipgym.envs import observation
 from slipgym.envs.choices import check_action, one_of
@@ -278,7 +279,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         return info
 
 
-def _make_estimator(choice: str | Mapping[str, Any]) -> estimators.BatchEstimator:
+def _make_estimator(choice: str | Mapping[str, Any]) -> BatchEstimator:
     if isinstance(choice, str):
         return estimators.make_batch(choice, 2)
     parameters = dict(choice)

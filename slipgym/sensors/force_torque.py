@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from slipgym.compiled import compiled
 
 HISTORY = 128
 
@@ -31,7 +32,7 @@ FORCE_TORQUE = np.dtype(
 )
 
 
-@njit(cache=True)
+@compiled
 def sample_force_torque(sensor, pad, noise):
     """Take one sample of the load on a finger.
 
@@ -56,7 +57,7 @@ def sample_force_torque(sensor, pad, noise):
     sensor.drawn += 1
 
 
-@njit(cache=True)
+@compiled
 def read_force_torque(sensor, tick, reading):
     """Copy the newest sample that has arrived by `tick` into `reading` (6,)."""
     number = (tick - sensor.delay) // sensor.period
@@ -66,7 +67,7 @@ def read_force_torque(sensor, tick, reading):
         reading[:] = sensor.history[(number - 1) % HISTORY]
 
 
-@njit(cache=True)
+@compiled
 def resolve_at_cop(sensor, reading, contact_threshold, wrench, cop):
     """Wrench (f_x, f_y, f_n, tau) at the measured centre of pressure, in the pad frame.
 

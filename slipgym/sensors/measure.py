@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from slipgym.compiled import compiled
 from slipgym.sensors.force_torque import read_force_torque, resolve_at_cop
 from slipgym.sensors.slip_velocity import read_slip, sample_slip
 
 CONTACT_THRESHOLD = 0.2  # [N]; below it the centre of pressure is not defined
 
 
-@njit(cache=True)
+@compiled
 def measure(worlds, force_torque, chips, noise, wrenches, twists):
     """Sample the slip sensors and read all sensors.
 

@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from slipgym.compiled import compiled
 
 HISTORY = 32
 CHIPS_MAX = 4
@@ -54,7 +55,7 @@ def chip_levers(radius: float, chips: int) -> np.ndarray:
     return levers
 
 
-@njit(cache=True)
+@compiled
 def accumulate_slip(sensor, motion):
     """Add a slip displacement (x, y, theta) at the pad centre to what the chips have seen."""
     for a in range(AXES):
@@ -62,7 +63,7 @@ def accumulate_slip(sensor, motion):
         sensor.carry[a] += lever[0] * motion[0] + lever[1] * motion[1] + sensor.mirror * lever[2] * motion[2]
 
 
-@njit(cache=True)
+@compiled
 def sample_slip(sensor, noise):
     """Close one sample: count what has been seen since the last.
 
@@ -79,7 +80,7 @@ def sample_slip(sensor, noise):
     sensor.taken += 1
 
 
-@njit(cache=True)
+@compiled
 def read_slip(sensor, twist):
     """Slip twist (v_x, v_y, omega) at the pad centre, in the pad frame, as delivered now.
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from slipgym.compiled import compiled
 
 TERMS_MAX = 8
 POKES_MAX = 64
@@ -40,7 +41,7 @@ EPISODE = np.dtype(
 """One episode: clock, reference, reward terms, outcome and the tasks' own parameters."""
 
 
-@njit(cache=True)
+@compiled
 def detect_drop(episode, world, fingers):
     """Whether the object left the pads: no contact, or the pad reaches over an edge."""
     x = episode.object_centre[0]
@@ -55,20 +56,20 @@ def detect_drop(episode, world, fingers):
     return outside or lost
 
 
-@njit(cache=True)
+@compiled
 def effort(episode, fingers):
     """Mean actuator force of both fingers over the end of the action's range [-]."""
     return 0.5 * (fingers[0].force + fingers[1].force) / episode.force_max
 
 
-@njit(cache=True)
+@compiled
 def roughness(episode):
     """Squared change of the command over the end of the action's range [-]."""
     change = (episode.command - episode.last_command) / episode.force_max
     return change * change
 
 
-@njit(cache=True)
+@compiled
 def trapezoid(t, distance, duration):
     """Trapezoidal reference: a fifth of the time to speed up, a fifth to slow down.
 

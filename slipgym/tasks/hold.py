@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from pydantic import Field
 
+from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval
 from slipgym.tasks.episode import POKES_MAX, detect_drop, effort, roughness
@@ -71,7 +71,7 @@ def _draw_pokes(config: Config, options: EpisodeOptions, rng: np.random.Generato
     episode["poke_wrench"] = np.column_stack((size * np.cos(heading), size * np.sin(heading), size * lever))
 
 
-@njit(cache=True)
+@compiled
 def shake_velocity(episode, axis, time):
     """Wrist velocity along one axis at a time; the shaking rises smoothly from rest."""
     amplitude, omega, phase = episode.shake[axis]
@@ -81,7 +81,7 @@ def shake_velocity(episode, axis, time):
     return speed
 
 
-@njit(cache=True)
+@compiled
 def plan(episodes, worlds):
     """Before a control step: wrist acceleration and poke of the coming step."""
     for i in range(episodes.shape[0]):
@@ -96,7 +96,7 @@ def plan(episodes, worlds):
                 world.external[:] = episode.poke_wrench[k]
 
 
-@njit(cache=True)
+@compiled
 def judge(episodes, worlds, fingers, columns):
     """After a control step: reward terms, outcome, observation.
 

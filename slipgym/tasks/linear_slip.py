@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from pydantic import Field
 
+from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.episode import detect_drop, effort, roughness, trapezoid
@@ -43,12 +43,12 @@ def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, epi
     episode["steps"] = max(1, round(total / episode["step_time"]))
 
 
-@njit(cache=True)
+@compiled
 def plan(episodes, worlds):
     """Before a control step: the wrist stays where it is and nothing disturbs."""
 
 
-@njit(cache=True)
+@compiled
 def judge(episodes, worlds, fingers, columns):
     """After a control step: reference, reward terms, outcome, observation.
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from slipgym.compiled import compiled
 from slipgym.world.records import QUEUE
 
 
-@njit(cache=True)
+@compiled
 def command(finger, tick, force):
     """Queue a force command [N]; it takes effect one dead time after `tick`."""
     if force < finger.open_below:
@@ -20,7 +19,7 @@ def command(finger, tick, force):
     finger.queued += 1
 
 
-@njit(cache=True)
+@compiled
 def take_up(finger, tick):
     """Put the commands that are due into effect."""
     while finger.served < finger.queued and finger.queue_tick[finger.served % QUEUE] <= tick:
@@ -28,7 +27,7 @@ def take_up(finger, tick):
         finger.served += 1
 
 
-@njit(cache=True)
+@compiled
 def ticks_to_next(finger, tick, horizon):
     """Ticks until the next queued command is due, at most `horizon`."""
     if finger.served < finger.queued:
@@ -36,7 +35,7 @@ def ticks_to_next(finger, tick, horizon):
     return horizon
 
 
-@njit(cache=True)
+@compiled
 def relax(finger, h):
     """Advance the first-order lag by h; returns the mean force over h [N]."""
     gap = finger.force - finger.command

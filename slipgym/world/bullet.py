@@ -7,8 +7,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 import pybullet as p
-from numba import njit
 
+from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.world import coupling, scene
 from slipgym.world.actuator import command
@@ -19,7 +19,7 @@ from slipgym.world.scene import FINGER_LINKS, WRIST_FORCE, WRIST_JOINTS, Box
 _LINK_B, _NORMAL_FORCE = 4, 9  # fields of PyBullet's contact points
 
 
-@njit(cache=True)
+@compiled
 def _loads(worlds, pads, fingers, force_torque, noise, chips, pose, velocity, wrist, normals):
     return coupling.step_loads(
         worlds[0],
@@ -37,13 +37,13 @@ def _loads(worlds, pads, fingers, force_torque, noise, chips, pose, velocity, wr
     )
 
 
-@njit(cache=True)
+@compiled
 def _observe(worlds, fingers, pose, wrist, normals):
     coupling.observe(worlds[0], fingers[0], pose[0], pose[1], wrist, normals)
     locate(worlds[0])
 
 
-@njit(cache=True)
+@compiled
 def _command(worlds, fingers, force):
     for f in range(2):
         command(fingers[0, f], worlds[0].tick, force)

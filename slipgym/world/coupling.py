@@ -12,12 +12,11 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from slipgym.compiled import compiled
 from slipgym.world.planar import advance
 
 
-@njit(cache=True)
+@compiled
 def observe(world, fingers, position, orientation, wrist, normals):
     """Take over the engine's poses and normal forces. Calling it twice changes nothing.
 
@@ -45,7 +44,7 @@ def observe(world, fingers, position, orientation, wrist, normals):
         fingers[f].contact_mean_force = fingers[f].mean_force
 
 
-@njit(cache=True)
+@compiled
 def step_loads(
     world, pads, fingers, force_torque, noise, chips, position, orientation, linear, angular, wrist, normals
 ):
@@ -110,7 +109,7 @@ def step_loads(
     )
 
 
-@njit(cache=True)
+@compiled
 def reaction(world, pad, finger, depth):
     """Point, force and torque of friction on a finger, world coordinates."""
     cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])

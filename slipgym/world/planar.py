@@ -13,15 +13,14 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
-
+from slipgym.compiled import compiled
 from slipgym.contact.coupled import step_pads
 from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.slip_velocity import accumulate_slip
 from slipgym.world.actuator import relax, take_up, ticks_to_next
 
 
-@njit(cache=True)
+@compiled
 def advance(world, pads, fingers, force_torque, noise, chips):
     """Advance one world by one engine step.
 
@@ -53,7 +52,7 @@ def advance(world, pads, fingers, force_torque, noise, chips):
                 sample_force_torque(force_torque[f], pads[f], noise[f])
 
 
-@njit(cache=True)
+@compiled
 def substep(world, pads, fingers, chips, h, share):
     """Advance wrist, fingers, friction and object by h, a `share` of the engine step."""
     for f in range(2):
@@ -89,7 +88,7 @@ def substep(world, pads, fingers, chips, h, share):
         fingers[f].reaction[2] += share * tau
 
 
-@njit(cache=True)
+@compiled
 def normal_force(finger):
     """Normal force now [N]: the engine's last mean, moved on by the actuator's change since."""
     if finger.contact_force <= 0.0:
@@ -97,7 +96,7 @@ def normal_force(finger):
     return max(0.0, finger.contact_force + finger.force - finger.contact_mean_force)
 
 
-@njit(cache=True)
+@compiled
 def move_wrist(world, h):
     """Advance the commanded wrist motion by h (constant acceleration)."""
     for a in range(3):
@@ -107,7 +106,7 @@ def move_wrist(world, h):
         world.wrist_velocity[a] += h * world.wrist_acceleration[a]
 
 
-@njit(cache=True)
+@compiled
 def relative_motion(world, cos, sin, ax, az, at, h):
     """Motion of the centre of mass in the pad frame over h under a given acceleration.
 
@@ -123,7 +122,7 @@ def relative_motion(world, cos, sin, ax, az, at, h):
     )
 
 
-@njit(cache=True)
+@compiled
 def locate(world):
     """Update slip displacement and slip twist at the pad centre from the relative pose.
 

@@ -19,6 +19,7 @@ WRIST_FORCE = (1e4, 1e4, 1e3)
 PAD_THICKNESS = 0.01
 _NO_ROTATION = (0.0, 0.0, 0.0, 1.0)
 _WRIST_MASS = 1.0
+_FINGER_DAMPING = 10.0  # [N s/m]; equal forces leave fingers and box free to drift along the grip axis
 _SETTLE_STEPS = 60
 _SETTLE_FORCES = (5.0, 5.0)
 
@@ -104,6 +105,8 @@ def add_gripper(client: int, config: Config, thickness: float) -> int:
     )
     for link in range(-1, 5):
         _frictionless(client, gripper, link)
+    for link in FINGER_LINKS:
+        p.changeDynamics(gripper, link, jointDamping=_FINGER_DAMPING, physicsClientId=client)
     # Bullet starts every joint with a velocity motor; the fingers' must not resist
     p.setJointMotorControlArray(
         gripper, FINGER_LINKS, p.VELOCITY_CONTROL, forces=[0.0, 0.0], physicsClientId=client
