@@ -43,6 +43,7 @@ def plot_tracking(task: str, trials: pd.DataFrame, series: pd.DataFrame) -> Figu
         for axes, panel in zip(grid[:, column], panels, strict=True):
             panel(axes, steps, trial, column == 0)
         grid[-1, column].set_xlabel("time [s]")
+    grid[1, 0].set_ylim(bottom=0.0)  # last, so that all panels have had their say in the shared scale
     figure.suptitle(_scenario(task, trials.iloc[0]), x=0.01, ha="left", color=STYLE.muted, fontsize=9.0)
     figure.align_ylabels()
     return figure
@@ -78,7 +79,6 @@ def _force(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
     axes.fill_between(time, needed, color=STYLE.band, linewidth=0)
     axes.plot(time, needed, color=STYLE.muted, linewidth=0.6)
     axes.plot(time, 0.5 * (values(steps, "force_1") + values(steps, "force_2")), color=STYLE.ink)
-    axes.set_ylim(bottom=0.0)
     if first:
         axes.set_ylabel("grip force [N]")
         note(axes, time[-1], 0.0, "least that holds the load", STYLE.muted, ha="right", va="bottom")
