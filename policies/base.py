@@ -42,6 +42,10 @@ class ObservationIndex:
             raise ValueError(unknown("observation column", name, self._at))
         return self._at[name]
 
+    def get(self, name: str) -> int | None:
+        """Where a column is; None if there is none."""
+        return self._at.get(name)
+
     def check(self, width: int) -> None:
         """Refuse observations of another task.
 

@@ -1,0 +1,8 @@
+"""Experiments: policies × friction knowledge × materials, with figures and confidence intervals."""
+
+from policies.evaluation.experiment import Experiment
+from policies.evaluation.files import experiment_names, load_experiment, narrowed
+from policies.evaluation.report import report
+from policies.evaluation.run import evaluate
+
+__all__ = ["Experiment", "evaluate", "experiment_names", "load_experiment", "narrowed", "report"]

@@ -1,0 +1,133 @@
+"""What an experiment asks for."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from typing import Annotated, Any, Self
+
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+
+import estimator as estimators
+import policies
+from slipgym import config as configuration
+from slipgym.config.base import Count, Frozen
+from slipgym.config.errors import unknown
+from slipgym.envs.observation import FRICTION_SOURCES
+from slipgym.tasks import TASKS
+
+
+def _as_tuple(value: object) -> object:
+    return tuple(value) if isinstance(value, list) else value
+
+
+class _Spelled(Frozen):
+    """A model that names its valid keys when it meets an unknown one."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, values: Any) -> Any:
+        for key in values if isinstance(values, Mapping) else ():
+            if key not in cls.model_fields:
+                raise ValueError(unknown("key", key, cls.model_fields))
+        return values
+
+
+class PolicyChoice(_Spelled):
+    """A policy of `policies.make`."""
+
+    name: str = Field(description="Its name [-]")
+    parameters: Mapping[str, Any] = Field(default={}, description="Its parameters [-]")
+    label: str = Field(default="", description="How tables and figures call it; empty: by its name [-]")
+
+    @model_validator(mode="after")
+    def _exists(self) -> Self:
+        if self.name not in policies.names():
+            raise ValueError(unknown("policy", self.name, policies.names()))
+        return self
+
+    @property
+    def title(self) -> str:
+        """How tables and figures call it."""
+        return self.label or self.name
+
+
+class FrictionChoice(_Spelled):
+    """What a policy is told about friction."""
+
+    source: str = Field(description="friction_source of the environment [-]")
+    estimator: Mapping[str, Any] = Field(
+        default={"name": "rls"}, description="Name and parameters of the estimator [-]"
+    )
+    label: str = Field(default="", description="How tables and figures call it; empty: by its source [-]")
+
+    @model_validator(mode="after")
+    def _exists(self) -> Self:
+        if self.source not in FRICTION_SOURCES:
+            raise ValueError(unknown("friction source", self.source, FRICTION_SOURCES))
+        parameters = dict(self.estimator)
+        estimators.make(parameters.pop("name", ""), **parameters)
+        return self
+
+    @property
+    def title(self) -> str:
+        """How tables and figures call it."""
+        return self.label or self.source
+
+
+class Experiment(_Spelled):
+    """Policies × friction × materials × options, each cell with a number of trials."""
+
+    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", description="Names the run folder [-]")
+    task: str = Field(description="Task of the environment [-]")
+    seed: int = Field(default=0, ge=0, description="All randomness follows from it [-]")
+    trials: Count = Field(description="Trials in each cell [-]")
+    policies: Annotated[tuple[PolicyChoice, ...], BeforeValidator(_as_tuple), Field(min_length=1)] = Field(
+        description="The policies to compare [-]"
+    )
+    friction: Annotated[tuple[FrictionChoice, ...], BeforeValidator(_as_tuple), Field(min_length=1)] = Field(
+        description="What they are told about friction; the first is the one compared with [-]"
+    )
+    materials: Annotated[tuple[str, ...], BeforeValidator(_as_tuple), Field(min_length=1)] = Field(
+        default=("random",), description='Materials, or "random" [-]'
+    )
+    options: Mapping[str, Any] = Field(default={}, description="Options of reset, for all trials [-]")
+    vary: Mapping[str, list[Any]] = Field(
+        default={}, description="Options of reset to try: every combination is a cell [-]"
+    )
+    sensors: str = Field(default="realistic", description="Sensor preset [-]")
+    config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
+
+    @field_validator("task")
+    @classmethod
+    def _task_exists(cls, name: str) -> str:
+        if name not in TASKS:
+            raise ValueError(unknown("task", name, TASKS))
+        return name
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        for kind in ("policies", "friction"):
+            titles = [choice.title for choice in getattr(self, kind)]
+            if len(set(titles)) < len(titles):
+                raise ValueError(f"{kind} needs distinct labels, got {', '.join(titles)}")
+        known = self.environment_config().materials
+        for material in self.materials:
+            if material not in ("random", *known):
+                raise ValueError(unknown("material", material, ["random", *known]))
+        if "material" in {**self.options, **self.vary}:
+            raise ValueError("materials are listed under materials, not among the options")
+        for options in self.combinations():
+            TASKS[self.task].options.parse(options)
+        return self
+
+    def environment_config(self) -> configuration.Config:
+        """The environment's configuration with this experiment's overrides."""
+        return configuration.load(self.config, self.sensors)
+
+    def combinations(self) -> list[dict[str, Any]]:
+        """Options of reset of each cell."""
+        return [
+            {**self.options, **dict(zip(self.vary, values, strict=True))}
+            for values in itertools.product(*self.vary.values())
+        ]

@@ -1,0 +1,87 @@
+"""The folder of a run: it appears when it is complete, or not at all."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import os
+import platform
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import datetime
+from pathlib import Path
+
+import yaml
+
+from policies.evaluation.experiment import Experiment
+
+_PACKAGES = (
+    "slipgym",
+    "gymnasium",
+    "joblib",
+    "matplotlib",
+    "numba",
+    "numpy",
+    "pandas",
+    "pyarrow",
+    "pybullet",
+    "pydantic",
+    "scipy",
+)
+
+
+def run_path(experiment: Experiment, output: str | os.PathLike[str]) -> Path:
+    """Where a run that starts now goes: <output>/<experiment>__<seed>__<timestamp>."""
+    stamp = datetime.now().strftime("%Y%m%d-%H%M%S-%f")[:-3]
+    return Path(output).expanduser().resolve() / f"{experiment.name}__{experiment.seed}__{stamp}"
+
+
+@contextmanager
+def filled_in_place(path: Path) -> Iterator[Path]:
+    """Gives a temporary folder to fill that takes its place in the end; an error leaves nothing behind.
+
+    Args:
+        path: Where the folder shall appear.
+
+    Raises:
+        FileExistsError: Something is there already.
+    """
+    if path.exists():
+        raise FileExistsError(f"{path} exists already")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = Path(tempfile.mkdtemp(prefix=".partial-", dir=path.parent))
+    try:
+        yield partial
+        partial.chmod(0o777 & ~_umask())
+        partial.rename(path)
+    except BaseException:
+        shutil.rmtree(partial, ignore_errors=True)
+        raise
+
+
+def write_origin(experiment: Experiment, folder: Path) -> None:
+    """Writes where results come from: the experiment, the environment's configuration, the versions."""
+    documents = {"experiment": experiment, "environment": experiment.environment_config()}
+    for name, model in documents.items():
+        text = yaml.safe_dump(model.model_dump(mode="json"), sort_keys=False, allow_unicode=True)
+        (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
+    (folder / "versions.json").write_text(json.dumps(versions(), indent=2) + "\n", encoding="utf-8")
+
+
+def versions() -> dict[str, str | None]:
+    """Versions of Python, the platform and the packages; None for one that is not installed."""
+    found: dict[str, str | None] = {"python": platform.python_version(), "platform": platform.platform()}
+    for package in _PACKAGES:
+        try:
+            found[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            found[package] = None
+    return found
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,129 @@
+"""What a recording is reduced to: one row of the table of trials."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from policies.evaluation.recording import Recording
+
+
+@dataclass(frozen=True)
+class Metric:
+    """A column of the table of trials that the summary reports."""
+
+    column: str
+    """Its name in the table."""
+    heading: str
+    """Its heading in the summary, with the unit."""
+    share: bool = False
+    """Whether it is yes or no; else a quantity with a mean."""
+    brief: bool = False
+    """Whether the compact table on the terminal has it."""
+
+
+@dataclass(frozen=True)
+class Measures:
+    """What is measured in the trials of a task."""
+
+    measure: Callable[[Recording], dict[str, Any]]
+    """The task's own columns."""
+    summary: tuple[Metric, ...]
+    """What the summary reports."""
+    compared: Metric
+    """What paired trials are compared by."""
+
+
+def measure(recording: Recording, task: str) -> dict[str, Any]:
+    """Outcome of a trial: the columns common to all tasks, then the task's own.
+
+    Args:
+        recording: The episode.
+        task: One of `MEASURES`.
+    """
+    true, final = recording.true, recording.estimated[-1].mean(axis=0)
+    common = {
+        "success": bool(recording.success),
+        "dropped": bool(recording.dropped),
+        "steps": len(recording.time),
+        "return": math.fsum(recording.reward.tolist()),
+        "mean_force_N": recording.grip_force.mean().item(),
+        "max_rotation_deg": math.degrees(np.abs(recording.slip[:, 2]).max()),
+        "true_mu_s": true[0].item(),
+        "true_mu_c": true[1].item(),
+        "true_r_mm": 1e3 * true[2].item(),
+        "final_mu_s": final[0].item(),
+        "final_mu_c": final[1].item(),
+        "final_r_mm": 1e3 * final[2].item(),
+    }
+    return {**common, **MEASURES[task].measure(recording)}
+
+
+def measure_linear_slip(recording: Recording) -> dict[str, Any]:
+    """How well the slip along gravity followed its reference, and mu_c over the cruise."""
+    slid = -recording.slip[:, 1]
+    error = slid - recording.reference[:, 0]
+    final = 1e3 * (slid[-1] - recording.goal).item()
+    cruise = (recording.reference[:, 1] > 0.0) & (recording.reference[:, 2] == 0.0)
+    mu_c = recording.estimated[cruise, :, 1]
+    return {
+        "final_error_mm": final,
+        "final_error_abs_mm": abs(final),
+        "rms_error_mm": 1e3 * math.sqrt(np.mean(error**2)),
+        "max_sideways_mm": 1e3 * np.abs(recording.slip[:, 0]).max().item(),
+        "cruise_mu_c": mu_c.mean().item() if mu_c.size else math.nan,
+    }
+
+
+def measure_hold(recording: Recording) -> dict[str, Any]:
+    """How far the object slipped, and how the grip force compares with the least that could do."""
+    needed = recording.needed_force
+    force = recording.grip_force.mean(axis=1)
+    return {
+        "largest_slip_mm": 1e3 * np.hypot(recording.slip[:, 0], recording.slip[:, 1]).max().item(),
+        "needed_force_mean_N": needed.mean().item(),
+        "needed_force_peak_N": needed.max().item(),
+        "force_ratio": (force.mean() / needed.mean()).item(),
+    }
+
+
+_SUCCESS = Metric("success", "success [%]", share=True, brief=True)
+_DROPPED = Metric("dropped", "dropped [%]", share=True)
+_FORCE = Metric("mean_force_N", "grip force [N]", brief=True)
+_ROTATION = Metric("max_rotation_deg", "largest rotation [°]")
+_FINAL = Metric("final_error_abs_mm", "final error [mm]", brief=True)
+
+MEASURES: dict[str, Measures] = {
+    "LinearSlip": Measures(
+        measure_linear_slip,
+        (
+            _SUCCESS,
+            _DROPPED,
+            _FINAL,
+            Metric("rms_error_mm", "rms tracking error [mm]", brief=True),
+            Metric("max_sideways_mm", "largest sideways slip [mm]"),
+            _ROTATION,
+            _FORCE,
+        ),
+        _FINAL,
+    ),
+    "Hold": Measures(
+        measure_hold,
+        (
+            _SUCCESS,
+            _DROPPED,
+            Metric("largest_slip_mm", "largest slip [mm]", brief=True),
+            _ROTATION,
+            _FORCE,
+            Metric("needed_force_mean_N", "least needed, mean [N]", brief=True),
+            Metric("needed_force_peak_N", "least needed, peak [N]"),
+            Metric("force_ratio", "grip / least needed"),
+        ),
+        _FORCE,
+    ),
+}
+"""Task -> its measures."""

@@ -1,0 +1,44 @@
+"""Figures of an experiment."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from policies.evaluation.frames import groups
+from policies.evaluation.plots.errors import plot_errors
+from policies.evaluation.plots.grip import plot_grip
+from policies.evaluation.plots.style import STYLE, styled
+from policies.evaluation.plots.tracking import plot_tracking
+
+
+def draw(task: str, trials: pd.DataFrame, series: pd.DataFrame, folder: Path) -> list[Path]:
+    """Draws the figures of a task, each policy on its own.
+
+    Args:
+        task: The task.
+        trials: The table of trials.
+        series: Steps of the first trials; its column "row" is the row in the table of trials.
+        folder: Where the pictures go.
+
+    Returns:
+        The pictures.
+    """
+    written = []
+    for (policy,), group in groups(trials, ["policy"]):
+        slug = "".join(c if c.isalnum() else "_" for c in policy)
+        with styled():
+            figures = {f"tracking_{slug}": plot_tracking(task, group, series)}
+            if task == "LinearSlip":
+                figures[f"errors_{slug}"] = plot_errors(group)
+            else:
+                figures[f"grip_{slug}"] = plot_grip(group)
+            written += [_save(figure, folder / f"{name}.png") for name, figure in figures.items()]
+    return written
+
+
+def _save(figure: Figure, path: Path) -> Path:
+    figure.savefig(path, dpi=STYLE.dpi)
+    return path

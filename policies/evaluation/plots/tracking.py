@@ -1,0 +1,110 @@
+"""One trial of each friction choice over time: slip, grip force, estimated friction."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from policies.evaluation.frames import distinct, values, where
+from policies.evaluation.plots.style import STYLE, note
+from slipgym.tasks import TASKS
+
+_SLIP, _MU_C, _MU_S = STYLE.palette[:3]
+_CORNER: dict[str, Any] = {"xycoords": "axes fraction", "ha": "right"}
+
+
+def plot_tracking(task: str, trials: pd.DataFrame, series: pd.DataFrame) -> Figure:
+    """The first trial of the first scenario, a column for each friction choice.
+
+    Args:
+        task: The task.
+        trials: The table of trials of one policy.
+        series: Steps of the first trials, by row of that table.
+    """
+    choices = distinct(trials, "friction")
+    figure = Figure(figsize=(max(7.0, 3.0 * len(choices)), 6.2))
+    grid = figure.subplots(3, len(choices), sharex=True, sharey="row", squeeze=False)
+    panels: list[Callable[..., None]] = [
+        _linear_slip if task == "LinearSlip" else _largest_slip,
+        _force,
+        _friction,
+    ]
+    for column, choice in enumerate(choices):
+        trial = where(trials, friction=choice, trial=0).iloc[0]
+        steps = where(series, row=trial.name)
+        grid[0, column].set_title(f"friction: {choice}")
+        for axes, panel in zip(grid[:, column], panels, strict=True):
+            panel(axes, steps, trial, column == 0)
+        grid[-1, column].set_xlabel("time [s]")
+    grid[1, 0].set_ylim(bottom=0.0)  # last, so that all panels have had their say in the shared scale
+    figure.suptitle(_scenario(task, trials.iloc[0]), x=0.01, ha="left", color=STYLE.muted, fontsize=9.0)
+    figure.align_ylabels()
+    return figure
+
+
+def _linear_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
+    time, reference = values(steps, "time"), 1e3 * values(steps, "reference")
+    axes.plot(time, -1e3 * values(steps, "slip_y"), color=_SLIP)
+    axes.plot(time, reference, "--", color=STYLE.ink, linewidth=1.0)
+    error = f"final error {trial['final_error_mm']:+.2f} mm".replace("-", "−")
+    note(axes, 0.98, 0.05, "dropped" if trial["dropped"] else error, _SLIP, **_CORNER)
+    if first:
+        axes.set_ylabel("slip along gravity [mm]")
+        middle = len(time) // 2
+        note(axes, time[middle], reference[middle], "reference  ", STYLE.ink, ha="right", va="bottom")
+
+
+def _largest_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
+    slip = 1e3 * np.hypot(values(steps, "slip_x"), values(steps, "slip_y"))
+    tolerance = trial["tolerance_mm"]
+    axes.axhspan(0.0, tolerance, color=STYLE.band, linewidth=0)
+    axes.plot(values(steps, "time"), slip, color=_SLIP)
+    axes.margins(y=0.1)
+    largest = f"largest slip {trial['largest_slip_mm']:.2f} mm"
+    note(axes, 0.98, 0.45, "dropped" if trial["dropped"] else largest, _SLIP, **_CORNER)
+    if first:
+        axes.set_ylabel("slip [mm]")
+        note(axes, 0.0, tolerance, "tolerance", STYLE.muted, va="bottom")
+
+
+def _force(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
+    time, needed = values(steps, "time"), values(steps, "needed_force")
+    axes.fill_between(time, needed, color=STYLE.band, linewidth=0)
+    axes.plot(time, needed, color=STYLE.muted, linewidth=0.6)
+    axes.plot(time, 0.5 * (values(steps, "force_1") + values(steps, "force_2")), color=STYLE.ink)
+    if first:
+        axes.set_ylabel("grip force [N]")
+        note(axes, time[-1], 0.0, "least that holds the load", STYLE.muted, ha="right", va="bottom")
+
+
+def _friction(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
+    time = values(steps, "time")
+    for name, symbol, colour in (("mu_c", "μ$_c$", _MU_C), ("mu_s", "μ$_s$", _MU_S)):
+        for finger, width in ((1, 1.4), (2, 0.8)):
+            axes.plot(time, values(steps, f"{name}_{finger}"), color=colour, linewidth=width)
+        true = trial[f"true_{name}"]
+        axes.axhline(true, color=colour, linestyle="--", linewidth=1.0)
+        beside: dict[str, Any] = {"xycoords": axes.get_yaxis_transform(), "annotation_clip": False}
+        note(axes, 1.01, true, symbol, colour, va="center", **beside)
+    axes.set_ylim(0.0, 1.6)
+    if first:
+        axes.set_ylabel("friction [–]")
+        note(axes, 0.98, 0.05, "estimates of both fingers; dashed: true", STYLE.muted, **_CORNER)
+
+
+def _scenario(task: str, trial: Any) -> str:
+    """What was run, in words with units."""
+    fields = TASKS[task].options.model_fields
+    words = []
+    for name, value in json.loads(trial["options"]).items():
+        unit = re.search(r"\[(?!-\])(.+)\]$", fields[name].description or "")
+        number = f"{value:g}" if isinstance(value, float) else value
+        words.append(f"{name} {number}" + (f" {unit[1]}" if unit else ""))
+    return "   ·   ".join([task, str(trial["policy"]), str(trial["material"]), *words])

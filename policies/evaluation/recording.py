@@ -1,0 +1,106 @@
+"""What is kept of an episode, step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from policies.base import ObservationIndex
+
+_WRENCH = [f"{axis}_{finger}" for finger in (1, 2) for axis in ("f_x", "f_y", "tau")]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """T steps of an episode; every row is the state after a step."""
+
+    time: np.ndarray
+    """Since reset, (T,) [s]."""
+    slip: np.ndarray
+    """True slip (x, y, theta), (T, 3) [m, m, rad]; gravity pulls along -y."""
+    reference: np.ndarray
+    """Position, velocity, acceleration the task asks for, (T, 3) [m, m/s, m/s^2]."""
+    grip_force: np.ndarray
+    """Of each finger, (T, 2) [N]."""
+    needed_force: np.ndarray
+    """Least grip force per finger that can carry the measured load, (T,) [N]."""
+    estimated: np.ndarray
+    """Estimated mu_s, mu_c, r of each finger, (T, 2, 3) [-, -, m]."""
+    true: np.ndarray
+    """True mu_s, mu_c, r, (3,) [-, -, m]."""
+    reward: np.ndarray
+    """Reward of each step, (T,)."""
+    goal: float
+    """Distance to slide [m]; 0 where the task has none."""
+    success: bool
+    """Whether the task succeeded."""
+    dropped: bool
+    """Whether the object was lost."""
+
+    def series(self) -> dict[str, np.ndarray]:
+        """The steps as columns, float32: a table with a row per step."""
+        columns = {"time": self.time, "reference": self.reference[:, 0], "needed_force": self.needed_force}
+        for k, axis in enumerate(("x", "y", "theta")):
+            columns[f"slip_{axis}"] = self.slip[:, k]
+        for finger in range(2):
+            columns[f"force_{finger + 1}"] = self.grip_force[:, finger]
+            for k, name in enumerate(("mu_s", "mu_c", "r")):
+                columns[f"{name}_{finger + 1}"] = self.estimated[:, finger, k]
+        return {name: values.astype(np.float32) for name, values in columns.items()}
+
+
+class Recorder:
+    """Collects an episode.
+
+    Args:
+        index: Where the columns of the observation are.
+    """
+
+    def __init__(self, index: ObservationIndex) -> None:
+        self._wrench = [index[name] for name in _WRENCH]
+        self._goal = index.get("distance")
+        self._steps: list[tuple[np.ndarray, float, Mapping[str, Any]]] = []
+
+    def add(self, observation: np.ndarray, reward: float, info: Mapping[str, Any]) -> None:
+        """Keeps what `step` returned."""
+        self._steps.append((observation, reward, info))
+
+    def finish(self) -> Recording:
+        """The whole episode, once it is over."""
+        observations, rewards, infos = zip(*self._steps, strict=True)
+        last = infos[-1]
+        wrenches = np.array(observations, dtype=np.float64)[:, self._wrench].reshape(-1, 2, 3)
+        return Recording(
+            time=np.array([info["time"] for info in infos]),
+            slip=np.array([info["slip"] for info in infos]),
+            reference=np.array([info["reference"] for info in infos]),
+            grip_force=np.array([info["grip_force"] for info in infos]),
+            needed_force=needed_force(wrenches, last["true"][0], last["true"][2]),
+            estimated=np.array([info["estimated_per_finger"] for info in infos]),
+            true=last["true"],
+            reward=np.array(rewards),
+            goal=0.0 if self._goal is None else float(observations[-1][self._goal]),
+            success=last["is_success"],
+            dropped=last["dropped"],
+        )
+
+
+def needed_force(wrenches: np.ndarray, mu_s: float, r: float) -> np.ndarray:
+    """Least normal force per finger that keeps both pads stuck under a load (ellipsoid limit surface).
+
+    While the pads slip, friction carries no more than mu_c f_n: then this is below the force that
+    would stop the slip.
+
+    Args:
+        wrenches: Measured (f_x, f_y, tau) of both fingers, (T, 2, 3) [N, N, N m].
+        mu_s: True static friction [-].
+        r: True radius of the equivalent rim contact [m].
+
+    Returns:
+        sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s of the fingers' mean load, (T,) [N].
+    """
+    load = wrenches.mean(axis=1) / np.array([1.0, 1.0, r])
+    return np.linalg.norm(load, axis=1) / mu_s

@@ -1,0 +1,40 @@
+"""What a finished run says on a terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+import yaml
+
+from policies.evaluation.frames import by_metric, groups, where
+from policies.evaluation.metrics import MEASURES
+from policies.evaluation.tables import KEYS, text
+
+
+def report(folder: Path) -> str:
+    """A compact table of a run, and where to look next.
+
+    Args:
+        folder: The run's folder.
+    """
+    task = yaml.safe_load((folder / "experiment.yaml").read_text(encoding="utf-8"))["task"]
+    summary = pd.read_csv(folder / "summary.csv", keep_default_na=False, na_values=[""])
+    metrics = [m for m in MEASURES[task].summary if m.brief]
+    rows = []
+    for keys, group in groups(where(summary, material="all"), KEYS):
+        found = by_metric(group)
+        rows.append([*keys, *(text(found[m.column], m.heading) for m in metrics)])
+    table = aligned([[*KEYS, *(m.heading for m in metrics)], *rows])
+    pictures = sorted(folder.glob("*.png"))
+    paths = [f"  {path}" for path in [*pictures, folder / "summary.md", folder / "trials.csv"]]
+    return "\n".join([table, "(95 % confidence intervals in brackets)", "", "Look at:", *paths])
+
+
+def aligned(rows: list[list[str]]) -> str:
+    """Rows of cells in columns of even width, with a line below the first."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
+    ]
+    return "\n".join([lines[0], "-" * max(map(len, lines)), *lines[1:]])

@@ -1,0 +1,87 @@
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from policies.evaluation.metrics import MEASURES, measure
+from policies.evaluation.recording import Recording, needed_force
+from slipgym.tasks import TASKS
+
+
+def recording(**changes):
+    """Ten steps that slide 1 mm ahead of a reference going from 1 to 10 mm; cruise in the steps 2 to 7."""
+    position = np.linspace(0.001, 0.010, 10)
+    slip = np.zeros((10, 3))
+    slip[:, 1] = -(position + 0.001)
+    slip[4] += 0.0003, 0.0, 0.1
+    acceleration = np.array([1, 1, 0, 0, 0, 0, 0, 0, -1, -1], dtype=float)
+    estimated = np.zeros((10, 2, 3))
+    estimated[:] = 1.3
+    estimated[2:8, 0], estimated[2:8, 1] = 0.3, 0.5
+    estimated[9] = (0.6, 0.4, 0.012), (0.4, 0.2, 0.008)
+    values = {
+        "time": np.arange(1, 11) / 120,
+        "slip": slip,
+        "reference": np.column_stack((position, np.ones(10), acceleration)),
+        "grip_force": np.tile([4.0, 6.0], (10, 1)),
+        "needed_force": np.array([2.0] * 9 + [4.0]),
+        "estimated": estimated,
+        "true": np.array([0.55, 0.35, 0.010]),
+        "reward": np.full(10, 0.1),
+        "goal": 0.012,
+        "success": True,
+        "dropped": False,
+    }
+    return Recording(**{**values, **changes})
+
+
+def test_every_task_has_measures():
+    assert set(MEASURES) == set(TASKS)
+
+
+def test_linear_slip_measures():
+    row = measure(recording(), "LinearSlip")
+    assert row["final_error_mm"] == pytest.approx(-1.0)
+    assert row["final_error_abs_mm"] == pytest.approx(1.0)
+    assert row["rms_error_mm"] == pytest.approx(1.0)
+    assert row["max_sideways_mm"] == pytest.approx(0.3)
+    assert row["max_rotation_deg"] == pytest.approx(math.degrees(0.1))
+    assert row["mean_force_N"] == pytest.approx(5.0)
+    assert row["return"] == pytest.approx(1.0)
+    assert row["cruise_mu_c"] == pytest.approx(0.4)
+    assert (row["final_mu_s"], row["final_mu_c"], row["final_r_mm"]) == pytest.approx((0.5, 0.3, 10.0))
+    assert (row["true_mu_s"], row["true_mu_c"], row["true_r_mm"]) == pytest.approx((0.55, 0.35, 10.0))
+    assert row["success"] is True
+    assert row["dropped"] is False
+
+
+def test_a_drop_before_the_cruise_has_no_cruise_estimate():
+    still = dataclasses.replace(recording(), reference=np.zeros((10, 3)))
+    assert math.isnan(measure(still, "LinearSlip")["cruise_mu_c"])
+
+
+def test_hold_measures():
+    slip = np.zeros((10, 3))
+    slip[3, :2] = 0.0003, -0.0004
+    row = measure(recording(slip=slip), "Hold")
+    assert row["largest_slip_mm"] == pytest.approx(0.5)
+    assert row["needed_force_mean_N"] == pytest.approx(2.2)
+    assert row["needed_force_peak_N"] == pytest.approx(4.0)
+    assert row["force_ratio"] == pytest.approx(5.0 / 2.2)
+
+
+def test_needed_force_lies_on_the_ellipsoid():
+    mu_s, r = 0.6, 0.010
+    wrench = np.array([[[1.0, -2.0, 0.012], [3.0, -4.0, 0.004]]])
+    (force,) = needed_force(wrench, mu_s, r)
+    f_x, f_y, tau = 2.0, -3.0, 0.008
+    limit = mu_s * force
+    assert (f_x / limit) ** 2 + (f_y / limit) ** 2 + (tau / (limit * r)) ** 2 == pytest.approx(1.0)
+
+
+def test_series_has_a_row_per_step():
+    series = recording().series()
+    assert {len(column) for column in series.values()} == {10}
+    np.testing.assert_allclose(series["mu_c_2"][2:8], 0.5)
+    np.testing.assert_allclose(series["force_2"], 6.0)

@@ -1,0 +1,139 @@
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+import yaml
+
+from policies.evaluation import evaluate, load_experiment, report
+from policies.evaluation.plan import plan
+from policies.evaluation.trial import record, run_trials
+
+FILES = {
+    "environment.yaml",
+    "errors_constant_force.png",
+    "experiment.yaml",
+    "series.parquet",
+    "summary.csv",
+    "summary.md",
+    "tracking_constant_force.png",
+    "trials.csv",
+    "trials.parquet",
+    "versions.json",
+}
+
+
+@pytest.fixture
+def run(small, tmp_path):
+    return evaluate(small(), tmp_path / "runs", jobs=1, progress=False)
+
+
+def test_a_run_folder_holds_everything_and_nothing_else_is_left(run, small, tmp_path):
+    assert {path.name for path in run.iterdir()} == FILES
+    assert list((tmp_path / "runs").iterdir()) == [run]
+    assert run.name.startswith("small__0__")
+    assert load_experiment(run / "experiment.yaml") == small()
+    assert yaml.safe_load((run / "environment.yaml").read_text())["object"]["mass"] == 0.2
+    assert {"python", "numpy", "gymnasium", "slipgym"} <= set(json.loads((run / "versions.json").read_text()))
+
+
+def test_the_table_of_trials(run, small):
+    trials = pd.read_parquet(run / "trials.parquet")
+    assert len(trials) == len(plan(small())) == 16
+    assert not trials.isna().any(axis=None)
+    assert set(trials["friction"]) == {"estimated", "true"}
+    assert trials["success"].dtype == trials["dropped"].dtype == bool
+    assert set(trials["tolerance_mm"]) == {2.0}
+    assert set(trials["steps"]) == {36}
+    pd.testing.assert_frame_equal(
+        trials, pd.read_csv(run / "trials.csv"), check_dtype=False, check_exact=False
+    )
+    series = pd.read_parquet(run / "series.parquet")
+    firsts = trials.index[trials["trial"] == 0]
+    assert list(series["row"].unique()) == list(firsts)
+    assert len(series) == trials.loc[firsts, "steps"].sum()
+
+
+def test_a_policy_that_ignores_friction_does_the_same_in_paired_trials(run):
+    trials = pd.read_parquet(run / "trials.parquet")
+    told, true = (trials[trials["friction"] == name].reset_index() for name in ("estimated", "true"))
+    for column in ("seed", "final_error_mm", "mean_force_N", "final_mu_c"):
+        pd.testing.assert_series_equal(told[column], true[column])
+    summary = pd.read_csv(run / "summary.csv")
+    difference = summary[summary["metric"] == "difference of final_error_abs_mm"]
+    assert difference[["value", "low", "high"]].to_numpy().tolist() == [[0.0, 0.0, 0.0]]
+
+
+def test_the_summary_agrees_with_the_table(run):
+    trials, summary = pd.read_parquet(run / "trials.parquet"), pd.read_csv(run / "summary.csv")
+    row = summary.query("friction == 'true' and material == 'case' and metric == 'rms_error_mm'")
+    group = trials.query("friction == 'true' and material == 'case'")
+    assert row["n"].item() == len(group) == 4
+    assert row["value"].item() == pytest.approx(group["rms_error_mm"].mean())
+    assert row["low"].item() <= row["value"].item() <= row["high"].item()
+    assert "| constant_force | true |" in (run / "summary.md").read_text()
+    words = report(run)
+    assert "final error [mm]" in words
+    assert str(run / "tracking_constant_force.png") in words
+
+
+def test_results_do_not_depend_on_the_number_of_processes(small):
+    experiment = small()
+    one, two = (run_trials(experiment, plan(experiment), jobs, progress=False) for jobs in (1, 2))
+    assert [result.row for result in one] == [result.row for result in two]
+    for a, b in zip(one, two, strict=True):
+        assert (a.series is None) == (b.series is None)
+        for name in a.series or ():
+            np.testing.assert_array_equal(a.series[name], b.series[name])
+
+
+def test_hold_needs_the_force_of_statics(small):
+    experiment = small(
+        task="Hold",
+        materials=["wood"],
+        sensors="ideal",
+        vary={},
+        policies=[{"name": "constant_force", "parameters": {"force": 20.0}}],
+        options={
+            "duration": 0.3,
+            "shake_amplitude": 0.0,
+            "shake_pitch": 0.0,
+            "poke_impulse": [0.0, 0.0],
+            "object_mass": 0.3,
+        },
+    )
+    recording = record(experiment, plan(experiment)[0])
+    assert recording.success
+    needed = 0.3 * 9.81 / (2.0 * 0.5155)  # half the weight per finger, over mu_s of wood
+    np.testing.assert_allclose(recording.needed_force, needed, rtol=1e-3)
+
+
+def test_hold_is_drawn_too(small, tmp_path):
+    experiment = small(task="Hold", vary={}, options={"duration": 0.3}, materials=["random"])
+    run = evaluate(experiment, tmp_path, progress=False)
+    assert (run / "grip_constant_force.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("stage", ["run_trials", "draw"])
+@pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
+def test_a_crash_leaves_no_folder(small, tmp_path, monkeypatch, stage, error):
+    def fail(*_):
+        raise error("planted")
+
+    monkeypatch.setattr(f"policies.evaluation.run.{stage}", fail)
+    with pytest.raises(error, match="planted"):
+        evaluate(small(trials=1), tmp_path, progress=False)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_error_says_which_trial(small):
+    experiment = small(policies=[{"name": "constant_force", "parameters": {"force": 99.0}}])
+    with pytest.raises(ValueError, match="force = 99") as caught:
+        run_trials(experiment, plan(experiment), 1, progress=False)
+    assert "'material': 'wood'" in caught.value.__notes__[0]
+
+
+def test_a_policy_in_need_of_friction_says_so(small):
+    experiment = small(policies=[{"name": "linear_slip"}], friction=[{"source": "none"}])
+    with pytest.raises(ValueError, match="friction_source='none'"):
+        run_trials(experiment, plan(experiment)[:1], 1, progress=False)
