@@ -10,8 +10,6 @@ import numpy as np
 
 from policies.base import ObservationIndex
 
-_WRENCH = [f"{axis}_{finger}" for finger in (1, 2) for axis in ("f_x", "f_y", "tau")]
-
 
 @dataclass(frozen=True)
 class Recording:
@@ -26,7 +24,7 @@ class Recording:
     grip_force: np.ndarray
     """Of each finger, (T, 2) [N]."""
     needed_force: np.ndarray
-    """Least grip force per finger that can carry the measured load, (T,) [N]."""
+    """Least grip force per finger that can carry the load, (T,) [N]."""
     estimated: np.ndarray
     """Estimated mu_s, mu_c, r of each finger, (T, 2, 3) [-, -, m]."""
     true: np.ndarray
@@ -60,7 +58,6 @@ class Recorder:
     """
 
     def __init__(self, index: ObservationIndex) -> None:
-        self._wrench = [index[name] for name in _WRENCH]
         self._goal = index.get("distance")
         self._steps: list[tuple[np.ndarray, float, Mapping[str, Any]]] = []
 
@@ -72,7 +69,7 @@ class Recorder:
         """The whole episode, once it is over."""
         observations, rewards, infos = zip(*self._steps, strict=True)
         last = infos[-1]
-        wrenches = np.array(observations, dtype=np.float64)[:, self._wrench].reshape(-1, 2, 3)
+        wrenches = np.array([info["contact_wrench"] for info in infos])
         return Recording(
             time=np.array([info["time"] for info in infos]),
             slip=np.array([info["slip"] for info in infos]),
@@ -95,7 +92,7 @@ def needed_force(wrenches: np.ndarray, mu_s: float, r: float) -> np.ndarray:
     would stop the slip.
 
     Args:
-        wrenches: Measured (f_x, f_y, tau) of both fingers, (T, 2, 3) [N, N, N m].
+        wrenches: True friction (f_x, f_y, tau) of both fingers, (T, 2, 3) [N, N, N m].
         mu_s: True static friction [-].
         r: True radius of the equivalent rim contact [m].
 

@@ -181,6 +181,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             "estimated_per_finger": loop.per_finger[0],
             "slip": loop.plant.world["slip"][0],
             "slip_twist": loop.plant.world["slip_twist"][0],
+            "contact_wrench": loop.plant.pads["wrench"][0],
             "grip_force": loop.plant.fingers["force"][0],
             "reference": loop.episode["reference"][0],
         }
