@@ -95,7 +95,7 @@ _SUCCESS = Metric("success", "success [%]", share=True, brief=True)
 _DROPPED = Metric("dropped", "dropped [%]", share=True)
 _FORCE = Metric("mean_force_N", "grip force [N]", brief=True)
 _ROTATION = Metric("max_rotation_deg", "largest rotation [°]")
-_FINAL = Metric("final_error_abs_mm", "final error [mm]", brief=True)
+_FINAL = Metric("final_error_abs_mm", "final error, size [mm]", brief=True)
 
 MEASURES: dict[str, Measures] = {
     "LinearSlip": Measures(
@@ -103,6 +103,7 @@ MEASURES: dict[str, Measures] = {
         (
             _SUCCESS,
             _DROPPED,
+            Metric("final_error_mm", "final error, signed [mm]", brief=True),
             _FINAL,
             Metric("rms_error_mm", "rms tracking error [mm]", brief=True),
             Metric("max_sideways_mm", "largest sideways slip [mm]"),
