@@ -168,14 +168,15 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         """Picture of the scene, (height, width, 3) uint8, in render mode "rgb_array".
 
         Raises:
-            RuntimeError: The environment is closed.
+            RuntimeError: The environment is closed or was never reset.
         """
         _ = self._world.client
         if self.render_mode is None:
             return None
-        from slipgym.rendering import picture
+        from slipgym.rendering import look, picture
 
-        return picture(self._world)
+        _ = self._world.box
+        return picture(look(self._world, self._friction.material, self.config.gripper.pad_radius))
 
     def close(self) -> None:
         """Release the physics client; closing twice is harmless."""
