@@ -23,6 +23,8 @@ class Friction:
     """Coulomb friction [-]."""
     r: float
     """Radius of the equivalent rim contact [m]."""
+    material: str
+    """Name of the material it came from."""
 
 
 def draw_friction(
@@ -43,7 +45,8 @@ def draw_friction(
     mu_s, mu_c = (options.choose(field, config.materials[name]) for field in ("mu_s", "mu_c"))
     if mu_s < mu_c:
         raise ValueError(f"mu_s = {mu_s:g} must be at least mu_c = {mu_c:g} (material {name!r})")
-    return Friction(mu_s, mu_c, config.contact.radius if options.r is None else options.r)
+    r = config.contact.radius if options.r is None else options.r
+    return Friction(mu_s, mu_c, r, name)
 
 
 def make_box(config: Config, options: EpisodeOptions, task: TaskConfig, rng: np.random.Generator) -> Box:

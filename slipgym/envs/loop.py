@@ -41,6 +41,7 @@ class SlipLoop:
         wrenches: Measured wrench per finger at the centre of pressure, (1, 2, 4) [N, N, N, N m].
         twists: Measured slip twist per finger there, (1, 2, 3) [m/s, m/s, rad/s].
         task_part: The task's part of the observation, (1, k).
+        material: Name of the episode's material.
         true_friction: (mu_s, mu_c, r) of the episode, (3,).
         per_finger: Estimates (mu_s, mu_c, r) per finger, (1, 2, 3).
         estimated: Estimates of both fingers merged, with their support, (1, 6).
@@ -55,6 +56,7 @@ class SlipLoop:
         self.task_part = np.zeros((1, len(task.columns)))
         self.true_friction, self.per_finger = np.zeros(3), np.zeros((1, 2, 3))
         self.estimated = np.zeros((1, len(FRICTION_COLUMNS)))
+        self.material = ""
         self._step_time = 1.0 / config.physics.control_rate
         self._wrench_rows, self._twist_rows = self.wrenches.reshape(2, 4), self.twists.reshape(2, 3)
         samples = -(-config.sensors.force_torque.rate // config.physics.control_rate) + 1
@@ -87,6 +89,7 @@ class SlipLoop:
         force = options.choose("initial_force", task_config)
         self._start_episode(box, options, task_config, rng)
         self.world.reset(box, force)
+        self.material = friction.material
         self.true_friction[:] = friction.mu_s, friction.mu_c, friction.r
         for field, value in zip(("mu_s", "mu_c", "r"), self.true_friction, strict=True):
             self.plant.pads[field] = value

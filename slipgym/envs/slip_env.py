@@ -143,14 +143,16 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         """Picture of the scene, (height, width, 3) uint8, in render mode "rgb_array".
 
         Raises:
-            RuntimeError: The environment is closed.
+            RuntimeError: The environment is closed or was never reset.
         """
-        _ = self._loop.world.client
+        world = self._loop.world
+        _ = world.client
         if self.render_mode is None:
             return None
-        from slipgym.rendering import picture
+        _ = world.box
+        from slipgym.rendering import look, picture
 
-        return picture(self._loop.world)
+        return picture(look(world, self._loop.material, self.config.gripper.pad_radius))
 
     def close(self) -> None:
         """Release the physics client; closing twice is harmless."""

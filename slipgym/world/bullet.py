@@ -80,6 +80,17 @@ class BulletWorld:
         return self._client
 
     @property
+    def box(self) -> Box:
+        """The box of this episode.
+
+        Raises:
+            RuntimeError: There was no reset yet.
+        """
+        if self._box is None:
+            raise RuntimeError("call reset() first: there is no object yet")
+        return self._box
+
+    @property
     def body(self) -> int:
         """PyBullet's id of the box."""
         return self._body

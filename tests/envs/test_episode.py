@@ -13,6 +13,7 @@ SHAPES = {
     "estimated_per_finger": (2, 3),
     "slip": (3,),
     "slip_twist": (3,),
+    "contact_wrench": (2, 3),
     "grip_force": (2,),
     "reference": (3,),
 }

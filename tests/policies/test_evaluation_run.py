@@ -73,7 +73,7 @@ def test_the_summary_agrees_with_the_table(run):
     assert row["low"].item() <= row["value"].item() <= row["high"].item()
     assert "| constant_force | true |" in (run / "summary.md").read_text()
     words = report(run)
-    assert "final error [mm]" in words
+    assert "final error, signed [mm]" in words
     assert str(run / "tracking_constant_force.png") in words
 
 

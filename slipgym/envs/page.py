@@ -1,0 +1,32 @@
+"""The documentation page of an environment, made from its docstring."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+
+from slipgym.envs.slip_env import SlipEnv
+from slipgym.registration import ENVIRONMENTS
+
+_NOTE = "<!-- Made from the docstring by scripts/make_docs.py; edit it there. -->"
+
+
+def page(name: str, environment: type[SlipEnv]) -> str:
+    """Markdown page of an environment.
+
+    Args:
+        name: Its id.
+        environment: Its class.
+    """
+    use = f'```python\nimport gymnasium as gym\n\nenv = gym.make("slipgym:{name}")\n```'
+    return f"# {name}\n\n{_NOTE}\n\n{use}\n\n{inspect.getdoc(environment)}\n"
+
+
+def pages() -> dict[str, str]:
+    """File name -> page, of every registered environment."""
+    written = {}
+    for name, entry_point in ENVIRONMENTS.items():
+        module, _, cls = entry_point.partition(":")
+        environment = getattr(importlib.import_module(module), cls)
+        written[f"{environment.task.key}.md"] = page(name, environment)
+    return written

@@ -1,0 +1,111 @@
+"""The docstrings say what the code says, and the pages say what the docstrings say."""
+
+import importlib
+import inspect
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from slipgym.envs.page import pages
+from slipgym.registration import ENVIRONMENTS
+
+FOLDER = Path(__file__).resolve().parents[2] / "docs" / "environments"
+SECTIONS = [
+    "Description",
+    "Action Space",
+    "Observation Space",
+    "Rewards",
+    "Starting State",
+    "Episode End",
+    "Arguments",
+    "Reset Options",
+    "Info",
+    "Version History",
+]
+
+
+@pytest.fixture(params=ENVIRONMENTS)
+def env(request, make):
+    return make(request.param)
+
+
+def section(env, title: str) -> str:
+    text = inspect.getdoc(type(env))
+    assert text is not None
+    return text.partition(f"\n## {title}\n")[2].partition("\n## ")[0]
+
+
+def rows(text: str) -> list[list[str]]:
+    """Cells of the table in a section, without its head."""
+    lines = [line for line in text.splitlines() if line.startswith("|")]
+    return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines[2:]]
+
+
+def first_names(text: str) -> list[str]:
+    return [row[0].strip("`") for row in rows(text)]
+
+
+def test_the_sections_are_gymnasiums(env):
+    assert re.findall(r"^## (.+)$", inspect.getdoc(type(env)) or "", re.MULTILINE) == SECTIONS
+
+
+def test_the_observation_table_is_the_observation_space(env):
+    expected = [
+        [str(i), f"`{c.name}`: {c.meaning}", f"{c.low:.4g}", f"{c.high:.4g}", c.unit]
+        for i, c in enumerate(env.columns)
+    ]
+    assert rows(section(env, "Observation Space")) == expected
+    assert f"({len(expected)},), float32" in section(env, "Observation Space")
+    np.testing.assert_array_equal(env.observation_space.low, np.float32([c.low for c in env.columns]))
+    np.testing.assert_array_equal(env.observation_space.high, np.float32([c.high for c in env.columns]))
+
+
+def test_the_reward_table_is_the_configuration(env):
+    scales = getattr(env.config.tasks, env.task.key).reward
+    expected = [[f"`{term}`", f"{getattr(scales, term):g}"] for term in env.task.terms]
+    assert [row[:2] for row in rows(section(env, "Rewards"))] == expected
+
+
+def test_every_argument_is_listed_with_its_default(env):
+    listed = {
+        row[0].strip("`"): row[1].strip("`").replace('"', "'") for row in rows(section(env, "Arguments"))
+    }
+    parameters = list(inspect.signature(type(env)).parameters.values())
+    assert listed == {parameter.name: repr(parameter.default) for parameter in parameters}
+
+
+def test_every_reset_option_is_listed_as_it_describes_itself(env):
+    fields = env.task.options.model_fields
+    listed = {row[0].strip("`"): row[1] for row in rows(section(env, "Reset Options"))}
+    assert listed == {name: field.description for name, field in fields.items()}
+
+
+def test_every_key_of_info_is_listed(env):
+    _, info = env.reset(seed=0)
+    assert set(first_names(section(env, "Info"))) == set(info)
+
+
+def test_the_numbers_in_the_text_are_the_defaults(env):
+    gripper, task = env.config.gripper, getattr(env.config.tasks, env.task.key)
+    action, end = (" ".join(section(env, title).split()) for title in ("Action Space", "Episode End"))
+    assert f"-1 is `gripper.force_min` ({gripper.force_min:g} N)" in action
+    assert f"+1 is `gripper.force_max` ({gripper.force_max:g} N)" in action
+    assert f"({1e3 * gripper.dead_time:g} ms)" in action
+    assert f"({1e3 * gripper.lag:g} ms)" in action
+    assert f"({task.initial_force:g} N)" in section(env, "Starting State")
+    assert f"({1e3 * task.tolerance:g} mm)" in end
+    env.reset(seed=0)
+    assert f"{env._loop.episode['steps'][0]} samples)" in end
+
+
+def test_the_pages_are_up_to_date():
+    written = {path.name: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.md")}
+    assert written == pages(), "run scripts/make_docs.py"
+
+
+@pytest.mark.parametrize("entry_point", ENVIRONMENTS.values())
+def test_every_environment_has_its_own_docstring(entry_point):
+    module, _, cls = entry_point.partition(":")
+    assert "__doc__" in vars(getattr(importlib.import_module(module), cls))
