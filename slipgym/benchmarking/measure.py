@@ -39,12 +39,17 @@ class Player:
         self._rng = np.random.default_rng(0)
         self._over = True
 
-    def block(self) -> tuple[float, int]:
-        """Time of some control steps [s] and the engine steps in them; resets are not timed."""
+    def begin(self) -> None:
+        """Start an episode if the last one is over."""
         if self._over:
             self.env.reset(seed=int(self._rng.integers(2**31)))
+            self._over = False
+
+    def block(self) -> tuple[float, int]:
+        """Time of some control steps [s] and the engine steps in them; resets are not timed."""
+        self.begin()
         actions = self._rng.uniform(*ACTIONS, (BLOCK, 1)).astype(np.float32)
-        step, self._over, steps = self.env.step, False, 0
+        step, steps = self.env.step, 0
         start = perf_counter()
         for action in actions:
             _, _, terminated, truncated, _ = step(action)
@@ -95,9 +100,10 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
         task = loop.task
         timed = {name: watches.timed("task", getattr(task, name)) for name in ("plan", "judge")}
         loop.task = dataclasses.replace(task, **timed)
-        for label in watches.spent:
-            watches.spent[label] = 0.0
         for _ in range(blocks):
+            watches.running = False
+            player.begin()
+            watches.running = True
             seconds, steps = player.block()
             total += seconds
             samples += steps // env.config.physics.engine_steps
