@@ -74,11 +74,14 @@ def against_bare(player: Player, pairs: int) -> list[Figure]:
     compare(block, player.block, 10)  # warm up
     result = compare(block, player.block, pairs)
     bare.close()
+    lower, middle, upper = result.quartiles
     real_time = 1.0 / (config.physics.engine_rate * result.second)
     return [
         Figure("bare Bullet loop, per engine step", 1e6 * result.first, "us"),
         Figure("environment, per engine step", 1e6 * result.second, "us"),
-        Figure("environment / bare loop", result.ratio, "-", "<= 1.4"),
+        Figure("environment / bare loop", middle, "-", "<= 1.4"),
+        Figure("environment / bare loop, lower quartile", lower, "-"),
+        Figure("environment / bare loop, upper quartile", upper, "-"),
         Figure("real-time factor of env.step", real_time, "-", ">= 40"),
     ]
 
@@ -87,7 +90,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
     """Shares of one env.step, with stopwatches around its parts."""
     env = player.env
     loop = env._loop
-    samples, total = 0, 0.0
+    rows: list[list[float]] = []
     with Stopwatches() as watches:
         for name in ("_loads", "_observe", "_command"):
             watches.watch("kernel", bullet, name)
@@ -103,14 +106,18 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
         for _ in range(blocks):
             watches.running = False
             player.begin()
+            watches.spent.update(dict.fromkeys(PARTS, 0.0))
             watches.running = True
             seconds, steps = player.block()
-            total += seconds
-            samples += steps // env.config.physics.engine_steps
+            parts = [watches.spent[label] for label in PARTS]
+            samples = steps / env.config.physics.engine_steps
+            rows.append([part / samples for part in (*parts, seconds - sum(parts))])
         loop.task = task
-    parts = {label: watches.spent[label] / samples for label in PARTS}
-    parts["noise draws, checks, watches"] = total / samples - sum(parts.values())
-    return [Figure(f"env.step: {label}", 1e6 * seconds, "us") for label, seconds in parts.items()]
+    shares = (median(column) for column in zip(*rows, strict=True))
+    return [
+        Figure(f"env.step: {label}", 1e6 * share, "us")
+        for label, share in zip((*PARTS, "noise draws, checks, watches"), shares, strict=True)
+    ]
 
 
 def life(env_id: str, repeats: int) -> list[Figure]:

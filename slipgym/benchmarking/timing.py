@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from statistics import median
+from statistics import median, quantiles
 from time import perf_counter
 from typing import Any, NamedTuple
 
@@ -15,8 +15,9 @@ class Comparison(NamedTuple):
     """Median time per step of the first [s]."""
     second: float
     """Median time per step of the second [s]."""
-    ratio: float
-    """Median over the pairs of neighbouring blocks of the second's time over the first's."""
+    quartiles: tuple[float, float, float]
+    """Over the pairs of neighbouring blocks, of the second's time over the first's; the middle one is the
+    ratio, the distance of the others says how disturbed the run was."""
 
 
 Block = Callable[[], tuple[float, int]]
@@ -32,10 +33,9 @@ def compare(first: Block, second: Block, pairs: int) -> Comparison:
             seconds, steps = block()
             pair.append(seconds / steps)
         times.append(pair)
+    lower, middle, upper = quantiles((pair[1] / pair[0] for pair in times), method="inclusive")
     return Comparison(
-        median(pair[0] for pair in times),
-        median(pair[1] for pair in times),
-        median(pair[1] / pair[0] for pair in times),
+        median(pair[0] for pair in times), median(pair[1] for pair in times), (lower, middle, upper)
     )
 
 
