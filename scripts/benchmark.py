@@ -1,0 +1,22 @@
+"""Measures what the environments cost, each figure beside its reference of the same run."""
+
+import argparse
+from pathlib import Path
+
+from slipgym.benchmarking.run import benchmark
+
+
+def main() -> None:
+    """Prints the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument(
+        "--env", default="slipgym/LinearSlip-v0", help="environment id (default: %(default)s)"
+    )
+    parser.add_argument("--pairs", type=int, default=300, help="pairs of timed blocks (default: %(default)s)")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there, too")
+    arguments = parser.parse_args()
+    benchmark(arguments.env, arguments.pairs, arguments.json)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""What the environments cost: measurements for scripts/benchmark.py; nothing else imports this."""

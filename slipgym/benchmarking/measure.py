@@ -1,0 +1,147 @@
+"""The measurements, one function each."""
+
+from __future__ import annotations
+
+import dataclasses
+import subprocess
+import sys
+from statistics import median
+from time import perf_counter
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from slipgym.benchmarking.bare import BareLoop
+from slipgym.benchmarking.report import Figure
+from slipgym.benchmarking.timing import Stopwatches, compare, per_call
+from slipgym.contact import EllipsoidContact
+from slipgym.envs import loop as loops
+from slipgym.envs.slip_env import SlipEnv
+from slipgym.world import bullet
+
+BLOCK = 50  # control steps
+ACTIONS = -0.97, -0.7  # 1 to 4.3 N; the default box needs 2 to 3 N, so that a fifth of the time it slips
+_FIRST_STEP = (
+    "import gymnasium as gym; env = gym.make('slipgym:{env_id}'); env.reset(seed=0); "
+    "env.step(env.action_space.sample())"
+)
+PARTS = ("Bullet and its calls", "kernel", "sensors", "estimator", "task", "observation", "info")
+
+
+class Player:
+    """Plays one environment with random grip forces about the slip limit: the box sticks and slips."""
+
+    def __init__(self, env_id: str, **arguments: Any) -> None:
+        env = gym.make(env_id, **arguments).unwrapped
+        assert isinstance(env, SlipEnv)
+        self.env = env
+        self._rng = np.random.default_rng(0)
+        self._over = True
+
+    def block(self) -> tuple[float, int]:
+        """Time of some control steps [s] and the engine steps in them; resets are not timed."""
+        if self._over:
+            self.env.reset(seed=int(self._rng.integers(2**31)))
+        actions = self._rng.uniform(*ACTIONS, (BLOCK, 1)).astype(np.float32)
+        step, self._over, steps = self.env.step, False, 0
+        start = perf_counter()
+        for action in actions:
+            _, _, terminated, truncated, _ = step(action)
+            steps += 1
+            if terminated or truncated:
+                self._over = True
+                break
+        return perf_counter() - start, steps * self.env.config.physics.engine_steps
+
+
+def against_bare(player: Player, pairs: int) -> list[Figure]:
+    """The whole environment against the bare loop of the same scene, in the same run."""
+    config = player.env.config
+    bare = BareLoop(config)
+    steps = BLOCK * config.physics.engine_steps
+
+    def block() -> tuple[float, int]:
+        start = perf_counter()
+        bare.run(steps)
+        return perf_counter() - start, steps
+
+    compare(block, player.block, 10)  # warm up
+    result = compare(block, player.block, pairs)
+    bare.close()
+    real_time = 1.0 / (config.physics.engine_rate * result.second)
+    return [
+        Figure("bare Bullet loop, per engine step", 1e6 * result.first, "us"),
+        Figure("environment, per engine step", 1e6 * result.second, "us"),
+        Figure("environment / bare loop", result.ratio, "-", "<= 1.4"),
+        Figure("real-time factor of env.step", real_time, "-", ">= 40"),
+    ]
+
+
+def breakdown(player: Player, blocks: int) -> list[Figure]:
+    """Shares of one env.step, with stopwatches around its parts."""
+    env = player.env
+    loop = env._loop
+    samples, total = 0, 0.0
+    with Stopwatches() as watches:
+        for name in ("_loads", "_observe", "_command"):
+            watches.watch("kernel", bullet, name)
+        watches.watch("Bullet and its calls", loop.world, "step")
+        watches.watch("sensors", loops, "measure")
+        watches.watch("estimator", loop.estimator, "update")
+        watches.watch("estimator", loops, "combine")
+        watches.watch("observation", env, "_observation")
+        watches.watch("info", env, "_info")
+        task = loop.task
+        timed = {name: watches.timed("task", getattr(task, name)) for name in ("plan", "judge")}
+        loop.task = dataclasses.replace(task, **timed)
+        for label in watches.spent:
+            watches.spent[label] = 0.0
+        for _ in range(blocks):
+            seconds, steps = player.block()
+            total += seconds
+            samples += steps // env.config.physics.engine_steps
+        loop.task = task
+    parts = {label: watches.spent[label] / samples for label in PARTS}
+    parts["noise draws, checks, watches"] = total / samples - sum(parts.values())
+    return [Figure(f"env.step: {label}", 1e6 * seconds, "us") for label, seconds in parts.items()]
+
+
+def life(env_id: str, repeats: int) -> list[Figure]:
+    """Import, make, reset, picture."""
+    fresh = max(3, repeats // 5)
+    imports = [_in_new_process("import slipgym") for _ in range(fresh)]
+    starts = [_in_new_process(_FIRST_STEP.format(env_id=env_id)) for _ in range(fresh)]
+    env = gym.make(env_id, render_mode="rgb_array").unwrapped
+    env.reset(seed=0)
+    env.render()
+    makes = []
+    for _ in range(repeats):
+        start = perf_counter()
+        other = gym.make(env_id)
+        makes.append(perf_counter() - start)
+        other.close()
+    figures = [
+        Figure("import slipgym", median(imports), "s", "<= 1"),
+        Figure("new process to the end of the first step", median(starts), "s"),
+        Figure("gym.make", 1e3 * median(makes), "ms"),
+        Figure("env.reset", 1e3 * per_call(env.reset, 3, repeats), "ms"),
+        Figure("env.render", 1e3 * per_call(env.render, 3, repeats), "ms"),
+    ]
+    env.close()
+    return figures
+
+
+def contact(calls: int = 2000) -> list[Figure]:
+    """One step of the contact object, called from Python."""
+    pad = EllipsoidContact()
+    twist = (0.003, -0.02, 0.5)
+    pad.step(twist, 10.0, 1e-3)
+    return [Figure("EllipsoidContact.step", 1e6 * per_call(lambda: pad.step(twist, 10.0, 1e-3), calls), "us")]
+
+
+def _in_new_process(statement: str) -> float:
+    """Time of a statement in an interpreter of its own [s]."""
+    code = f"from time import perf_counter as now; start = now(); {statement}; print(now() - start)"
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    return float(done.stdout)

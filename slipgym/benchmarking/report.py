@@ -1,0 +1,68 @@
+"""Figures as a table and as JSON."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+LIBRARIES = ("gymnasium", "numba", "numpy", "pybullet")
+
+
+class Figure(NamedTuple):
+    """One measured figure."""
+
+    name: str
+    """What was measured."""
+    value: float
+    """The result."""
+    unit: str
+    """Its unit."""
+    required: str = ""
+    """What is asked of it: "<= 1.4" or ">= 40", or nothing."""
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the requirement is met; None without one."""
+        if not self.required:
+            return None
+        sign, bound = self.required.split()
+        return self.value <= float(bound) if sign == "<=" else self.value >= float(bound)
+
+
+def machine() -> dict[str, Any]:
+    """What the figures depend on besides the code."""
+    libraries = {name: version(name) for name in LIBRARIES}
+    return {"python": platform.python_version(), "cores": os.cpu_count(), **libraries}
+
+
+def table(figures: Sequence[Figure]) -> str:
+    """Figures in aligned columns."""
+    rows = [("figure", "value", "unit", "required")]
+    for figure in figures:
+        verdict = "" if figure.met is None else f"{figure.required}: {'yes' if figure.met else 'NO'}"
+        rows.append((figure.name, f"{figure.value:.4g}", figure.unit, verdict))
+    widths = [max(len(row[k]) for row in rows) for k in range(4)]
+    rows.insert(1, tuple("-" * width for width in widths))  # type: ignore[arg-type]
+    return "\n".join(
+        f"{name:<{widths[0]}}  {value:>{widths[1]}}  {unit:<{widths[2]}}  {required}".rstrip()
+        for name, value, unit, required in rows
+    )
+
+
+def write(path: Path, figures: Sequence[Figure]) -> None:
+    """Write figures as JSON; the file appears complete or not at all."""
+    content = {
+        "machine": machine(),
+        "figures": [{**figure._asdict(), "met": figure.met} for figure in figures],
+    }
+    partial = path.with_name(f".{path.name}.{os.getpid()}")
+    with partial.open("w", encoding="utf-8") as file:
+        json.dump(content, file, indent=2)
+        file.flush()
+        os.fsync(file.fileno())
+    partial.replace(path)

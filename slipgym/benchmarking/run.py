@@ -1,0 +1,29 @@
+"""All measurements in order."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from slipgym.benchmarking import measure, report
+
+
+def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
+    """Measure and print.
+
+    Args:
+        env_id: Id of the environment.
+        pairs: Pairs of timed blocks of the comparison with the bare loop.
+        json: File to write the figures to.
+    """
+    print(", ".join(f"{name} {value}" for name, value in report.machine().items()))
+    player = measure.Player(env_id)
+    figures = [
+        *measure.against_bare(player, pairs),
+        *measure.breakdown(player, max(1, pairs // 3)),
+        *measure.life(env_id, max(3, pairs // 10)),
+        *measure.contact(),
+    ]
+    player.env.close()
+    print(report.table(figures))
+    if json is not None:
+        report.write(json, figures)

@@ -1,0 +1,133 @@
+"""The benchmark measures what it says; how fast things are is not tested."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pybullet
+import pytest
+
+from slipgym.benchmarking import measure
+from slipgym.benchmarking.bare import BareLoop
+from slipgym.benchmarking.report import Figure, table, write
+from slipgym.benchmarking.timing import Stopwatches, compare, per_call
+from slipgym.config import load
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def bare():
+    loop = BareLoop(load())
+    yield loop
+    loop.close()
+
+
+def test_the_bare_loop_simulates_the_environments_scene(bare):
+    bare.run(1000)
+    assert bare.held()
+    env = measure.Player("slipgym/LinearSlip-v0").env
+    env.reset(seed=0)
+    ours, theirs = bare._client, env._loop.world.client
+    for client in (ours, theirs):
+        assert pybullet.getNumBodies(physicsClientId=client) == 2
+    parameters = [pybullet.getPhysicsEngineParameters(physicsClientId=client) for client in (ours, theirs)]
+    assert parameters[0] == parameters[1]
+    dynamics = [
+        pybullet.getDynamicsInfo(world, -1, physicsClientId=client)[:3]
+        for world, client in ((bare._body, ours), (env._loop.world.body, theirs))
+    ]
+    assert dynamics[0] == dynamics[1]
+    counts = [len(pybullet.getContactPoints(physicsClientId=client)) for client in (ours, theirs)]
+    assert counts == [8, 8]
+    env.close()
+
+
+def test_the_player_lets_the_box_slip_and_goes_on():
+    player = measure.Player("slipgym/LinearSlip-v0")
+    slips = 0
+    for _ in range(40):
+        seconds, steps = player.block()
+        assert seconds > 0.0
+        assert 0 < steps <= 4 * measure.BLOCK
+        slips += abs(player.env._loop.plant.world["slip"][0, 1]) > 1e-3
+    assert slips > 5
+    player.env.close()
+
+
+def test_every_part_of_a_step_is_found_and_put_back():
+    player = measure.Player("slipgym/Hold-v0")
+    env, loop, task = player.env, player.env._loop, player.env._loop.task
+    figures = measure.breakdown(player, 4)
+    assert loop.task is task
+    for owner in (env, loop, loop.world, loop.estimator, measure.loops, measure.bullet):
+        left = [name for name, value in vars(owner).items() if getattr(value, "__name__", "") == "timed"]
+        assert left == []
+    assert all(figure.value > 0.0 for figure in figures)
+    player.env.close()
+
+
+class Sleeper:
+    def outer(self):
+        time.sleep(0.01)
+        self.inner()
+
+    def inner(self):
+        time.sleep(0.03)
+
+
+def test_stopwatches_count_a_function_without_those_it_calls():
+    sleeper = Sleeper()
+    with Stopwatches() as watches:
+        watches.watch("outer", sleeper, "outer")
+        watches.watch("inner", sleeper, "inner")
+        sleeper.outer()
+        sleeper.outer()
+    assert watches.spent["outer"] == pytest.approx(0.02, rel=0.5)
+    assert watches.spent["inner"] == pytest.approx(0.06, rel=0.5)
+    assert vars(sleeper) == {}
+
+
+def test_compare_takes_medians_of_ratios_of_neighbours():
+    first = iter([(1.0, 10), (2.0, 10), (9.0, 10)])
+    second = iter([(3.0, 10), (8.0, 10), (9.0, 10)])
+    result = compare(lambda: next(first), lambda: next(second), 3)
+    assert result == pytest.approx((0.2, 0.8, 3.0))
+
+
+def test_per_call_divides_by_the_calls():
+    assert per_call(lambda: time.sleep(0.002), calls=3, repeats=3) == pytest.approx(0.002, rel=0.9)
+
+
+FIGURES = [Figure("fast", 1.2, "-", "<= 1.4"), Figure("slow", 30.0, "x", ">= 40"), Figure("free", 3.0, "us")]
+
+
+def test_a_table_says_what_is_met():
+    lines = table(FIGURES).splitlines()
+    assert lines[2].endswith("<= 1.4: yes")
+    assert lines[3].endswith(">= 40: NO")
+    assert lines[4].endswith("us")
+
+
+def test_figures_are_written_at_once(tmp_path):
+    path = tmp_path / "figures.json"
+    path.write_text("old")
+    write(path, FIGURES)
+    assert [figure["met"] for figure in json.loads(path.read_text())["figures"]] == [True, False, None]
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("env_id", ["slipgym/LinearSlip-v0", "slipgym/Hold-v0"])
+def test_the_script_runs(tmp_path, env_id):
+    path = tmp_path / "figures.json"
+    script = ROOT / "scripts" / "benchmark.py"
+    command = [sys.executable, script, "--env", env_id, "--pairs", "2", "--json", path]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    names = [figure["name"] for figure in json.loads(path.read_text())["figures"]]
+    assert len(names) == len(set(names)) >= 15
+    assert all(name in done.stdout for name in names)
