@@ -30,7 +30,7 @@ def advance(world, pads, fingers, force_torque, noise, chips):
         fingers: FINGER records (2,).
         force_torque: FORCE_TORQUE records (2,).
         noise: Standard normal draws for the force/torque samples of this control step,
-            shape (2, samples, 12).
+            shape (2, samples, 6).
         chips: SLIP_SENSOR records (2,).
     """
     start = world.tick
