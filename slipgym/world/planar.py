@@ -20,7 +20,7 @@ from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.slip_velocity import accumulate_slip
 from slipgym.world.actuator import relax, take_up, ticks_to_next
 
-HOLDING = 1e-3  # [N]; pads with less normal force than this hold nothing that a gripper handles
+HOLDING = 1e-2  # [N]; pads with less, a fiftieth of the smallest grip, do not hold the object
 
 @njit(cache=True)
 def advance(world, pads, fingers, force_torque, noise, chips):
