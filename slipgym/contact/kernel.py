@@ -7,17 +7,19 @@ Each pad carries three bristle deflections z in the scaled displacement
 
 with u the scaled slip twist and g(v) the Stribeck curve of the slip speed v: |u|
 where the contact slips, 0 where it sticks. (The plastic part of |u| alone would be
-ill-posed: as g falls, z must shrink, which reads as more plastic speed.) A sub-step adds the scaled slip displacement to z and projects the
-result back onto the ball of radius g / sigma_0 (closest-point return mapping,
-Simo & Hughes, Computational Inelasticity, 1998, ch. 3). Inside the ball the
-contact truly sticks: z is elastic and nothing drifts. On the ball z turns into
-the direction of slip, so steady slip lies on the ellipsoid (Waltersson &
-Karayiannidis, arXiv 2507.06824, eqs 1-2; LuGre form in arXiv 2308.01123).
+ill-posed: as g falls z must shrink, which reads as more plastic speed.) A sub-step
+adds the scaled slip displacement to z and projects the result back onto the ball of
+radius g / sigma_0 (closest-point return mapping, Simo & Hughes, Computational
+Inelasticity, 1998, ch. 3). Inside the ball the contact truly sticks: z is elastic
+and nothing drifts. On the ball z turns into the direction of slip, so steady slip
+lies on the ellipsoid (Waltersson & Karayiannidis, arXiv 2507.06824, eqs 1-2; LuGre
+form in arXiv 2308.01123).
 
-The step is backward Euler in the object's momentum, so it knows mass and
-inertia and has no stiffness limit. g is that of the speed expected at the sub-step's
-end, extrapolated from the last two; with g so fixed each pad's force is the gradient of a convex function of the twist: the coupled problem of
-both pads has one solution, which a semi-smooth Newton iteration finds.
+The step is backward Euler in the object's momentum, so it knows mass and inertia
+and has no stiffness limit. g is that of the speed expected at the sub-step's end,
+extrapolated from the last two; with g so fixed each pad's force is the gradient of a
+convex function of the twist: the coupled problem of both pads has one solution,
+which a semi-smooth Newton iteration finds.
 """
 
 from __future__ import annotations

@@ -22,6 +22,7 @@ from slipgym.world.actuator import relax, take_up, ticks_to_next
 
 HOLDING = 1e-2  # [N]; pads with less, a fiftieth of the smallest grip, do not hold the object
 
+
 @njit(cache=True)
 def advance(world, pads, fingers, force_torque, noise, chips):
     """Advance one world by one engine step.
