@@ -13,7 +13,9 @@ radius g / sigma_0 (closest-point return mapping, Simo & Hughes, Computational
 Inelasticity, 1998, ch. 3). Inside the ball the contact truly sticks: z is elastic
 and nothing drifts. On the ball z turns into the direction of slip, so steady slip
 lies on the ellipsoid (Waltersson & Karayiannidis, arXiv 2507.06824, eqs 1-2; LuGre
-form in arXiv 2308.01123).
+form in arXiv 2308.01123). If g has fallen z is brought into the smaller ball first,
+which counts as loss and not as dz/dt: elastic force and damping then take at least
+the energy that they store, whatever the twist.
 
 The step is backward Euler in the object's momentum, so it knows mass and inertia
 and has no stiffness limit. g is that of the speed expected at the sub-step's end,
@@ -43,11 +45,21 @@ def friction_level(pad, h):
 
 
 @njit(cache=True)
+def shrink(pad, limit):
+    """Bring the bristles back onto the ball of a friction level that has fallen."""
+    length = math.sqrt(pad.z[0] * pad.z[0] + pad.z[1] * pad.z[1] + pad.z[2] * pad.z[2])
+    radius = limit / pad.sigma_0
+    if length > radius:
+        for a in range(3):
+            pad.z[a] *= radius / length
+
+
+@njit(cache=True)
 def respond(pad, delta, h, limit):
     """Friction of one pad after a scaled slip displacement over time h.
 
     Args:
-        pad: PAD record; read only.
+        pad: PAD record with z inside the ball of `limit`; read only.
         delta: Scaled slip displacement (x, y, r theta) of the sub-step, tuple of 3 [m].
         h: Sub-step [s].
         limit: Friction level g of the sub-step [-].
@@ -103,5 +115,7 @@ def release(pad, slip_speed):
 def prescribed_step(pad, twist, h):
     """Advance one pad by a prescribed slip twist (v_x, v_y, omega) at its centre of pressure."""
     delta = (h * twist[0], h * twist[1], h * pad.r * twist[2])
-    force, _, _, _, shortening = respond(pad, delta, h, friction_level(pad, h))
+    limit = friction_level(pad, h)
+    shrink(pad, limit)
+    force, _, _, _, shortening = respond(pad, delta, h, limit)
     commit(pad, delta, h, force, shortening)
