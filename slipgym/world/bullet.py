@@ -137,7 +137,7 @@ class BulletWorld:
             fingers[field] = 0
         for field in ("command", "force", "mean_force", "contact_mean_force", "contact_force"):
             fingers[field] = force
-        for field in ("z", "slip_speed", "wrench"):
+        for field in ("z", "slip_speed", "slip_rate", "wrench"):
             self._plant.pads[field] = 0.0
         if any(wrist):
             self._place(wrist)
