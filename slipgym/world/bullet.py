@@ -141,7 +141,7 @@ class BulletWorld:
             self._plant.pads[field] = 0.0
         if any(wrist):
             self._place(wrist)
-        pose, velocity, joints, _ = self._read(client)
+        pose, velocity, joints, _ = self._read()
         self._reading = pose, velocity, joints, (force, force)
 
     def command(self, force: float) -> None:
@@ -196,7 +196,7 @@ class BulletWorld:
                 physicsClientId=client,
             )
             p.stepSimulation(client)
-            self._reading = self._read(client)
+            self._reading = self._read()
         _observe(plant.world, plant.fingers, self._reading[0], self._reading[2], self._reading[3])
 
     def close(self) -> None:
@@ -214,8 +214,8 @@ class BulletWorld:
             "a BulletWorld cannot be copied or pickled: two copies would share one physics client"
         )
 
-    def _read(self, client: int) -> tuple[Any, ...]:
-        body, gripper, left = self._body, self._gripper, FINGER_LINKS[0]
+    def _read(self) -> tuple[Any, ...]:
+        client, body, gripper, left = self.client, self._body, self._gripper, FINGER_LINKS[0]
         pose = p.getBasePositionAndOrientation(body, client)
         velocity = p.getBaseVelocity(body, client)
         joints = p.getJointStates(gripper, WRIST_JOINTS, client)
