@@ -1,4 +1,4 @@
-"""The acceptance figures of the physics, measured in the full PyBullet world."""
+"""The acceptance figures: physics in the full PyBullet world, and the estimator on exact data."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from slipgym.validation.agreement import agreement
 from slipgym.validation.breakaway import breakaway
 from slipgym.validation.creep import creep
 from slipgym.validation.energy import energy
+from slipgym.validation.estimation import estimation
 from slipgym.validation.fall import fall
 from slipgym.validation.figure import Figure
 from slipgym.validation.halving import halving
@@ -21,6 +22,7 @@ EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     halving,
     fall,
     agreement,
+    estimation,
 )
 """Each yields its figures; together about twenty seconds."""
 
