@@ -9,7 +9,7 @@ EPILOG = """
 Examples:\n
 \b
   python scripts/evaluate.py --demo
-  python scripts/evaluate.py linear_slip --jobs 2
+  python scripts/evaluate.py linear_slip hold --jobs 2
   python scripts/evaluate.py hold --trials 20 --friction-source estimated --friction-source true
   python scripts/evaluate.py my_experiment.yaml --seed 1 --output /tmp/runs
 \n
@@ -21,9 +21,9 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    experiment: Annotated[
-        str | None,
-        typer.Argument(help="Name of an experiment, or the path of a YAML file.", show_default=False),
+    experiments: Annotated[
+        list[str] | None,
+        typer.Argument(help="Names of experiments, or paths of YAML files.", show_default=False),
     ] = None,
     demo: Annotated[bool, typer.Option("--demo", help="Run the experiment 'demo': under a minute.")] = False,
     trials: Annotated[int | None, typer.Option(help="Trials per cell instead of the experiment's.")] = None,
@@ -34,24 +34,25 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     seed: Annotated[int | None, typer.Option(help="Seed instead of the experiment's.")] = None,
 ) -> None:
-    """Run an experiment: policies x what they are told about friction x materials.
+    """Run experiments: policies x what they are told about friction x materials.
 
-    Writes one folder with the table of trials, a summary with confidence intervals and figures, and prints
-    where to look.
+    Each writes one folder with the table of trials, a summary with confidence intervals and figures, and
+    prints where to look.
     """
     from policies import evaluation
 
-    if demo == (experiment is not None):
+    if demo == bool(experiments):
         known = ", ".join(evaluation.experiment_names())
-        raise typer.BadParameter(f"give an experiment ({known}, or a YAML file) or --demo")
+        raise typer.BadParameter(f"give experiments ({known}, or YAML files) or --demo")
     try:
-        chosen = evaluation.narrowed(
-            evaluation.load_experiment(experiment or "demo"), trials, seed, friction_source or ()
-        )
+        chosen = [
+            evaluation.narrowed(evaluation.load_experiment(name), trials, seed, friction_source or ())
+            for name in experiments or ["demo"]
+        ]
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
-    folder = evaluation.evaluate(chosen, output, jobs)
-    typer.echo("\n" + evaluation.report(folder))
+    for experiment in chosen:
+        typer.echo("\n" + evaluation.report(evaluation.evaluate(experiment, output, jobs)))
 
 
 if __name__ == "__main__":

@@ -19,7 +19,9 @@ def report(folder: Path) -> str:
         folder: The run's folder.
     """
     task = yaml.safe_load((folder / "experiment.yaml").read_text(encoding="utf-8"))["task"]
-    summary = pd.read_csv(folder / "summary.csv", keep_default_na=False, na_values=[""])
+    # as text: a column of nothing but "true" would turn into booleans
+    names = dict.fromkeys((*KEYS, "material", "metric"), str)
+    summary = pd.read_csv(folder / "summary.csv", dtype=names, keep_default_na=False, na_values=[""])
     metrics = [m for m in MEASURES[task].summary if m.brief]
     rows = []
     for keys, group in groups(where(summary, material="all"), KEYS):

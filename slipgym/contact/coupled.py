@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from slipgym.compiled import compiled
-from slipgym.contact.kernel import commit, release, respond, stribeck
+from slipgym.contact.kernel import commit, friction_level, release, respond, shrink
 
 MAX_NEWTON = 30
 MAX_HALVINGS = 8
@@ -133,7 +133,8 @@ def step_pads(pads, inertia, centre, free, guess, h):
     limits = np.empty(pads.shape[0])
     held = False
     for i in range(pads.shape[0]):
-        limits[i] = stribeck(pads[i], pads[i].slip_speed)
+        limits[i] = friction_level(pads[i], h)
+        shrink(pads[i], limits[i])
         held = held or pads[i].normal > 0.0
     motion = solve_motion(pads, limits, inertia, centre, free, guess, h) if held else free
     for i in range(pads.shape[0]):

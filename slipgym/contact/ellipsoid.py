@@ -92,5 +92,5 @@ class EllipsoidContact:
 
     def reset(self) -> None:
         """Forget the bristle state, as after a loss of contact."""
-        for field in ("z", "slip_speed", "wrench"):
+        for field in ("z", "slip_speed", "slip_rate", "wrench"):
             self._pads[field] = 0.0

@@ -5,18 +5,23 @@ Each pad carries three bristle deflections z in the scaled displacement
 
     f / f_n = sigma_0 z + sigma_1 dz/dt + sigma_2 u,        |z| <= g(v) / sigma_0,
 
-with u the scaled slip twist and g(v) the Stribeck curve of the plastic slip
-speed v. A sub-step adds the scaled slip displacement to z and projects the
-result back onto the ball of radius g / sigma_0 (closest-point return mapping,
-Simo & Hughes, Computational Inelasticity, 1998, ch. 3). Inside the ball the
-contact truly sticks: z is elastic and nothing drifts. On the ball z turns into
-the direction of slip, so steady slip lies on the ellipsoid (Waltersson &
-Karayiannidis, arXiv 2507.06824, eqs 1-2; LuGre form in arXiv 2308.01123).
+with u the scaled slip twist and g(v) the Stribeck curve of the slip speed v: |u|
+where the contact slips, 0 where it sticks. (The plastic part of |u| alone would be
+ill-posed: as g falls z must shrink, which reads as more plastic speed.) A sub-step
+adds the scaled slip displacement to z and projects the result back onto the ball of
+radius g / sigma_0 (closest-point return mapping, Simo & Hughes, Computational
+Inelasticity, 1998, ch. 3). Inside the ball the contact truly sticks: z is elastic
+and nothing drifts. On the ball z turns into the direction of slip, so steady slip
+lies on the ellipsoid (Waltersson & Karayiannidis, arXiv 2507.06824, eqs 1-2; LuGre
+form in arXiv 2308.01123). If g has fallen z is brought into the smaller ball first,
+which counts as loss and not as dz/dt: elastic force and damping then take at least
+the energy that they store, whatever the twist.
 
-The step is backward Euler in the object's momentum, so it knows mass and
-inertia and has no stiffness limit. With g frozen over the sub-step each pad's
-force is the gradient of a convex function of the twist: the coupled problem of
-both pads has one solution, which a semi-smooth Newton iteration finds.
+The step is backward Euler in the object's momentum, so it knows mass and inertia
+and has no stiffness limit. g is that of the speed expected at the sub-step's end,
+extrapolated from the last two; with g so fixed each pad's force is the gradient of a
+convex function of the twist: the coupled problem of both pads has one solution,
+which a semi-smooth Newton iteration finds.
 """
 
 from __future__ import annotations
@@ -34,14 +39,30 @@ def stribeck(pad, slip_speed):
 
 
 @compiled
+def friction_level(pad, h):
+    """Friction level g at the slip speed expected after a sub-step of h [-]."""
+    return stribeck(pad, max(0.0, pad.slip_speed + h * pad.slip_rate))
+
+
+@compiled
+def shrink(pad, limit):
+    """Bring the bristles back onto the ball of a friction level that has fallen."""
+    length = math.sqrt(pad.z[0] * pad.z[0] + pad.z[1] * pad.z[1] + pad.z[2] * pad.z[2])
+    radius = limit / pad.sigma_0
+    if length > radius:
+        for a in range(3):
+            pad.z[a] *= radius / length
+
+
+@compiled
 def respond(pad, delta, h, limit):
     """Friction of one pad after a scaled slip displacement over time h.
 
     Args:
-        pad: PAD record; read only.
+        pad: PAD record with z inside the ball of `limit`; read only.
         delta: Scaled slip displacement (x, y, r theta) of the sub-step, tuple of 3 [m].
         h: Sub-step [s].
-        limit: Frozen friction level g [-].
+        limit: Friction level g of the sub-step [-].
 
     Returns:
         force: Friction opposing `delta`, scaled components, tuple of 3 [N].
@@ -70,13 +91,14 @@ def respond(pad, delta, h, limit):
 
 @compiled
 def commit(pad, delta, h, force, shortening):
-    """Store bristle state, plastic slip speed and wrench that `respond` found."""
-    lost = 0.0
+    """Store bristle state, slip speed and wrench that `respond` found."""
     for a in range(3):
-        trial = pad.z[a] + delta[a]
-        pad.z[a] = shortening * trial
-        lost += ((1.0 - shortening) * trial) ** 2
-    pad.slip_speed = math.sqrt(lost) / h
+        pad.z[a] = shortening * (pad.z[a] + delta[a])
+    speed = 0.0
+    if shortening < 1.0:
+        speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) / h
+    pad.slip_rate = (speed - pad.slip_speed) / h if speed > 0.0 else 0.0
+    pad.slip_speed = speed
     pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
 
 
@@ -86,11 +108,14 @@ def release(pad, slip_speed):
     pad.z[:] = 0.0
     pad.wrench[:] = 0.0
     pad.slip_speed = slip_speed
+    pad.slip_rate = 0.0
 
 
 @compiled
 def prescribed_step(pad, twist, h):
     """Advance one pad by a prescribed slip twist (v_x, v_y, omega) at its centre of pressure."""
     delta = (h * twist[0], h * twist[1], h * pad.r * twist[2])
-    force, _, _, _, shortening = respond(pad, delta, h, stribeck(pad, pad.slip_speed))
+    limit = friction_level(pad, h)
+    shrink(pad, limit)
+    force, _, _, _, shortening = respond(pad, delta, h, limit)
     commit(pad, delta, h, force, shortening)

@@ -60,9 +60,11 @@ class SlipLoop:
         self._step_time = 1.0 / config.physics.control_rate
         self._wrench_rows, self._twist_rows = self.wrenches.reshape(2, 4), self.twists.reshape(2, 3)
         samples = -(-config.sensors.force_torque.rate // config.physics.control_rate) + 1
-        self._noise = np.zeros(2 * (samples * 12 + AXES))
-        self._force_noise = self._noise[: 2 * samples * 12].reshape(1, 2, samples, 12)
-        self._slip_noise = self._noise[2 * samples * 12 :].reshape(1, 2, AXES)
+        sizes = 2 * samples * 6, 2 * AXES, 2 * 6
+        self._noise = np.zeros(sum(sizes))
+        force, slip, drift = np.split(self._noise, np.cumsum(sizes)[:-1])  # views
+        self._force_noise = force.reshape(1, 2, samples, 6)
+        self._slip_noise, self._drift_noise = slip.reshape(1, 2, AXES), drift.reshape(1, 2, 6)
         self.world = BulletWorld(config, self.plant)
 
     @property
@@ -125,7 +127,15 @@ class SlipLoop:
         rng.standard_normal(out=self._noise)
         self.world.command(force)
         self.world.step(self._force_noise)
-        measure(plant.world, plant.force_torque, plant.chips, self._slip_noise, self.wrenches, self.twists)
+        measure(
+            plant.world,
+            plant.force_torque,
+            plant.chips,
+            self._slip_noise,
+            self._drift_noise,
+            self.wrenches,
+            self.twists,
+        )
 
     def _start_episode(
         self, box: Box, options: EpisodeOptions, task_config: TaskConfig, rng: np.random.Generator

@@ -21,7 +21,7 @@ FORCE_TORQUE = np.dtype(
         ("delay", "i8"),  # latency in ticks
         ("mirror", "f8"),  # +1 finger 1, -1 finger 2
         ("noise", "f8", 6),  # standard deviation per sample [N, N m]
-        ("drift", "f8", 6),  # standard deviation of the bias step per sample
+        ("drift", "f8", 6),  # standard deviation of the bias step per control step
         ("bias", "f8", 6),
         ("resolution", "f8", 6),  # one count, 0 = continuous
         ("range", "f8", 6),  # saturation
@@ -39,22 +39,27 @@ def sample_force_torque(sensor, pad, noise):
     Args:
         sensor: FORCE_TORQUE record.
         pad: PAD record with the present wrench and normal force.
-        noise: Standard normal draws, shape (samples, 12); of row `drawn` the first
-            six are noise, the others move the bias.
+        noise: Standard normal draws, shape (samples, 6); row `drawn` is used.
     """
     fx, fy, tau = -pad.wrench[0], -pad.wrench[1], -pad.wrench[2]
     cx, cy = pad.cop
     load = (fx, fy, pad.normal, cy * pad.normal, -cx * pad.normal, sensor.mirror * (tau + cx * fy - cy * fx))
     row = sensor.taken % HISTORY
     for a in range(6):
-        draw = noise[sensor.drawn, a]
-        value = load[a] + sensor.bias[a] + sensor.noise[a] * draw
-        sensor.bias[a] += sensor.drift[a] * noise[sensor.drawn, 6 + a]
+        value = load[a] + sensor.bias[a] + sensor.noise[a] * noise[sensor.drawn, a]
         if sensor.resolution[a] > 0.0:
             value = sensor.resolution[a] * math.floor(value / sensor.resolution[a] + 0.5)
         sensor.history[row, a] = min(max(value, -sensor.range[a]), sensor.range[a])
     sensor.taken += 1
     sensor.drawn += 1
+
+
+@compiled
+def drift_force_torque(sensor, noise):
+    """Move the bias by one control step of its random walk; `noise` holds six standard normal draws."""
+    for a in range(6):
+        sensor.bias[a] += sensor.drift[a] * noise[a]
+    sensor.drawn = 0
 
 
 @compiled

@@ -46,12 +46,8 @@ def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, epi
     episode["steps"] = max(1, round(options.choose("duration", task) / dt))
     amplitude, pitch = options.choose("shake_amplitude", task), options.choose("shake_pitch", task)
     frequency = rng.uniform(*options.choose("shake_frequency", task), size=3)
-    episode["shake"] = [
-        (size, 2.0 * math.pi * f, phase)
-        for size, f, phase in zip(
-            (amplitude, amplitude, pitch), frequency, rng.uniform(0.0, 2.0 * math.pi, 3), strict=True
-        )
-    ]
+    phase = rng.uniform(0.0, 2.0 * math.pi, 3)
+    episode["shake"] = np.column_stack(([amplitude, amplitude, pitch], 2.0 * math.pi * frequency, phase))
     _draw_pokes(config, options, rng, episode)
 
 

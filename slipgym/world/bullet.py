@@ -137,7 +137,7 @@ class BulletWorld:
             fingers[field] = 0
         for field in ("command", "force", "mean_force", "contact_mean_force", "contact_force"):
             fingers[field] = force
-        for field in ("z", "slip_speed", "wrench"):
+        for field in ("z", "slip_speed", "slip_rate", "wrench"):
             self._plant.pads[field] = 0.0
         if any(wrist):
             self._place(wrist)
@@ -161,12 +161,14 @@ class BulletWorld:
         """Advance by one control step.
 
         Args:
-            noise: Standard normal draws for the force/torque sensors, shape (1, 2, samples, 12).
+            noise: Standard normal draws for the force/torque sensors, shape (1, 2, samples, 6).
         """
         client, body, gripper, plant = self.client, self._body, self._gripper, self._plant
+        push, twist, drive = p.applyExternalForce, p.applyExternalTorque, p.setJointMotorControlArray
+        (first, second), world = FINGER_LINKS, p.WORLD_FRAME
         for _ in range(self._config.physics.engine_steps):
             pose, velocity, wrist, normals = self._reading
-            load, first, second, efforts, speeds = _loads(
+            (force, torque), at_first, at_second, efforts, speeds = _loads(
                 plant.world,
                 plant.pads,
                 plant.fingers,
@@ -178,15 +180,14 @@ class BulletWorld:
                 wrist,
                 normals,
             )
-            p.applyExternalForce(body, -1, load[0], pose[0], p.WORLD_FRAME, physicsClientId=client)
-            p.applyExternalTorque(body, -1, load[1], p.WORLD_FRAME, physicsClientId=client)
-            for link, (point, force, torque) in zip(FINGER_LINKS, (first, second), strict=True):
-                p.applyExternalForce(gripper, link, force, point, p.WORLD_FRAME, physicsClientId=client)
-                p.applyExternalTorque(gripper, link, torque, p.WORLD_FRAME, physicsClientId=client)
-            p.setJointMotorControlArray(
-                gripper, FINGER_LINKS, p.TORQUE_CONTROL, forces=efforts, physicsClientId=client
-            )
-            p.setJointMotorControlArray(
+            push(body, -1, force, pose[0], world, client)
+            twist(body, -1, torque, world, client)
+            push(gripper, first, at_first[1], at_first[0], world, client)
+            twist(gripper, first, at_first[2], world, client)
+            push(gripper, second, at_second[1], at_second[0], world, client)
+            twist(gripper, second, at_second[2], world, client)
+            drive(gripper, FINGER_LINKS, p.TORQUE_CONTROL, forces=efforts, physicsClientId=client)
+            drive(
                 gripper,
                 WRIST_JOINTS,
                 p.VELOCITY_CONTROL,
@@ -194,7 +195,7 @@ class BulletWorld:
                 forces=WRIST_FORCE,
                 physicsClientId=client,
             )
-            p.stepSimulation(physicsClientId=client)
+            p.stepSimulation(client)
             self._reading = self._read()
         _observe(plant.world, plant.fingers, self._reading[0], self._reading[2], self._reading[3])
 
@@ -214,13 +215,13 @@ class BulletWorld:
         )
 
     def _read(self) -> tuple[Any, ...]:
-        client, gripper = self.client, self._gripper
-        pose = p.getBasePositionAndOrientation(self._body, physicsClientId=client)
-        velocity = p.getBaseVelocity(self._body, physicsClientId=client)
-        joints = p.getJointStates(gripper, WRIST_JOINTS, physicsClientId=client)
+        client, body, gripper, left = self.client, self._body, self._gripper, FINGER_LINKS[0]
+        pose = p.getBasePositionAndOrientation(body, client)
+        velocity = p.getBaseVelocity(body, client)
+        joints = p.getJointStates(gripper, WRIST_JOINTS, client)
         first, second = [], []
-        for contact in p.getContactPoints(self._body, gripper, physicsClientId=client):
-            (first if contact[_LINK_B] == FINGER_LINKS[0] else second).append(contact[_NORMAL_FORCE])
+        for contact in p.getContactPoints(body, gripper, physicsClientId=client):
+            (first if contact[_LINK_B] == left else second).append(contact[_NORMAL_FORCE])
         # fsum: the engine may list the points in another order after a restore
         normals = math.fsum(first), math.fsum(second)
         return pose, velocity, (joints[0][0], joints[1][0], joints[2][0]), normals

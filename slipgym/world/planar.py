@@ -19,6 +19,8 @@ from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.slip_velocity import accumulate_slip
 from slipgym.world.actuator import relax, take_up, ticks_to_next
 
+HOLDING = 1e-2  # [N]; pads with less, a fiftieth of the smallest grip, do not hold the object
+
 
 @compiled
 def advance(world, pads, fingers, force_torque, noise, chips):
@@ -30,7 +32,7 @@ def advance(world, pads, fingers, force_torque, noise, chips):
         fingers: FINGER records (2,).
         force_torque: FORCE_TORQUE records (2,).
         noise: Standard normal draws for the force/torque samples of this control step,
-            shape (2, samples, 12).
+            shape (2, samples, 6).
         chips: SLIP_SENSOR records (2,).
     """
     start = world.tick
@@ -64,8 +66,12 @@ def substep(world, pads, fingers, chips, h, share):
     ax = world.external[0] / world.mass
     az = world.external[1] / world.mass - world.gravity
     at = world.external[2] / world.inertia
+    # held: backward Euler, as sticking needs; let go: the parabola itself
+    held = pads[0].normal > HOLDING or pads[1].normal > HOLDING
+    lead = 1.0 if held else 0.5
+    late = h * (1.0 - lead)
     drift = relative_motion(world, cos, sin, 0.0, 0.0, 0.0, h)
-    free = relative_motion(world, cos, sin, ax, az, at, h)
+    free = relative_motion(world, cos, sin, lead * ax, lead * az, lead * at, h)
     centre = (world.relative[0], world.relative[1])
     motion = step_pads(pads, (world.mass, world.inertia), centre, free, drift, h)
     braking_x = (motion[0] - free[0]) / h
@@ -73,9 +79,9 @@ def substep(world, pads, fingers, chips, h, share):
     world.velocity[0] += h * ax + cos * braking_x - sin * braking_y
     world.velocity[1] += h * az + sin * braking_x + cos * braking_y
     world.velocity[2] += h * at + (motion[2] - free[2]) / h
-    world.com[0] += h * world.velocity[0]
-    world.com[1] += h * world.velocity[1]
-    world.angle += h * world.velocity[2]
+    world.com[0] += h * (world.velocity[0] - late * ax)
+    world.com[1] += h * (world.velocity[1] - late * az)
+    world.angle += h * (world.velocity[2] - late * at)
     for a in range(3):
         world.relative[a] += motion[a]
         world.relative_velocity[a] = motion[a] / h

@@ -107,7 +107,7 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     array["mirror"] = MIRROR
     array["noise"] = six(sensor.noise_tangential, sensor.noise_normal, sensor.noise_torque)
     array["drift"] = six(sensor.drift_tangential, sensor.drift_normal, sensor.drift_torque)
-    array["drift"] /= math.sqrt(sensor.rate)
+    array["drift"] /= math.sqrt(config.physics.control_rate)
     array["resolution"] = six(sensor.resolution_force, sensor.resolution_force, sensor.resolution_torque)
     array["range"] = six(sensor.force_range, sensor.normal_range, sensor.torque_range)
     return array

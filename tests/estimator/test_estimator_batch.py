@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from friction_oracle import RATE
 
 import estimator
+from slipgym.validation.records import RATE
 
 
 def random_signals(n, samples, seed=0):

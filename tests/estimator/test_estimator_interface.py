@@ -8,9 +8,9 @@ import sys
 
 import numpy as np
 import pytest
-from friction_oracle import ellipsoid, run
 
 import estimator
+from slipgym.validation.records import ellipsoid, run
 
 GOOD = (0.1, (1.0, 0.0, 5.0, 0.01), (0.01, 0.0, 0.1))
 

@@ -5,9 +5,9 @@ import re
 from pathlib import Path
 
 import pytest
-from friction_oracle import ellipsoid
 
 import estimator
+from slipgym.validation.records import ellipsoid
 
 PAGE = (Path(__file__).parents[2] / "docs" / "estimator.md").read_text(encoding="utf-8")
 FIELDS = dataclasses.fields(estimator.RlsParameters)

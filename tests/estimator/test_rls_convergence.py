@@ -6,9 +6,9 @@ forgetting of 0.98 leave 0.98**360 = 7e-4 of it: 0.16 % of the truth for the lar
 
 import numpy as np
 import pytest
-from friction_oracle import RATE, ellipsoid, planar, run
 
 import estimator
+from slipgym.validation.records import RATE, ellipsoid, planar, run
 
 SAMPLES = int(3 * RATE)
 TOLERANCE = 5e-3

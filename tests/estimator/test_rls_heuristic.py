@@ -1,9 +1,9 @@
 """The halt on a fast rise of the normal force, and the loss of contact."""
 
 import pytest
-from friction_oracle import RATE, ellipsoid, run
 
 import estimator
+from slipgym.validation.records import RATE, ellipsoid, run
 
 MU_C, R = 0.4, 0.01
 FAST, SLOW = 1.3, 1.2

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from friction_oracle import RATE, ellipsoid, planar, run
 
 import estimator
+from slipgym.validation.records import RATE, ellipsoid, planar, run
 
 MU_C, R = 0.4, 0.01
 DEFAULTS = estimator.RlsParameters()

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from friction_oracle import RATE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import estimator
+from slipgym.validation.records import RATE
 
 
 def steps(low, high, per_unit):

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from friction_oracle import COUNT, RATE, Phase, counted, ellipsoid, run
 
 import estimator
+from slipgym.validation.records import COUNT, RATE, Phase, counted, ellipsoid, run
 
 F_N, MU_S, MU_C = 5.0, 0.6, 0.4
 STICK = Phase(60, 0.0, (0.3 * F_N, MU_S * F_N))

@@ -77,6 +77,12 @@ def test_the_summary_agrees_with_the_table(run):
     assert str(run / "tracking_constant_force.png") in words
 
 
+def test_a_run_of_true_friction_alone_reports_it(small, tmp_path):
+    """Its label column holds nothing but "true", which a reader could take for a boolean."""
+    folder = evaluate(small(friction=[{"source": "true"}], trials=1), tmp_path, progress=False)
+    assert "constant_force  true " in report(folder)
+
+
 def test_results_do_not_depend_on_the_number_of_processes(small):
     experiment = small()
     one, two = (run_trials(experiment, plan(experiment), jobs, progress=False) for jobs in (1, 2))

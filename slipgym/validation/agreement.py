@@ -1,0 +1,51 @@
+"""Engine and planar world agree; the wrist and the grip follow their commands."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from slipgym.validation.bench import Bench
+from slipgym.validation.figure import Figure
+from slipgym.validation.halving import stick_slip_grip
+
+# Over one engine step of 1/480 s this reads as 5e-7 m/s, a three-hundredth of the slip sensor's noise
+MISMATCH_BOUND = 1e-9  # [m]
+# Velocity motors reach the commanded pose within every engine step; the solver's iterations leave a
+# residual far below a micrometre, of which none integrates because the goal is a position
+WRIST_BOUND = 1e-6  # [m, rad]
+GRIP_BOUND = 1e-3  # of the grip
+SHAKE = np.array([0.01, 0.01, 0.3])  # amplitudes (x, z, pitch) [m, m, rad]
+SHAKE_RATES = 2.0 * math.pi * np.array([1.5, 2.0, 1.0])  # [rad/s]
+
+
+def shake(t: float) -> np.ndarray:
+    """Wrist velocity of a smooth motion that starts from rest."""
+    return SHAKE * SHAKE_RATES * np.sin(SHAKE_RATES * t)
+
+
+def agreement() -> Iterator[Figure]:
+    """Engine against planar world while slipping; object against pads while shaken."""
+    with Bench(force=5.0, com_offset=(0.006, -0.01)) as bench:
+        bench.settle()
+        bench.run(3.0, force=stick_slip_grip, wrist=shake)
+        yield Figure("engine against planar pose, slipping", MISMATCH_BOUND, bench.mismatch, "m")
+    with Bench(force=20.0, com_offset=(0.006, -0.01)) as bench:
+        start = bench.settle()
+        trace = bench.run(10.0, wrist=shake)
+        moved = np.abs(trace.slip - start.slip[-1])
+        lag = np.abs(trace.wrist - trace.wrist_plan)
+        grip = np.abs(trace.normal / trace.force - 1.0).max()
+        mismatch, friction = bench.mismatch, bench.friction
+        give = friction.mu_s / bench.config.contact.sigma_0
+        yield Figure("engine against planar pose, shaken", MISMATCH_BOUND, mismatch, "m")
+        # a stuck object moves by no more than the bristles' reach
+        distance = 1e3 * np.hypot(*moved[:, :2].T).max()
+        yield Figure("held object in a shaken wrist", 1e3 * give, distance, "mm")
+        angle = math.degrees(moved[:, 2].max())
+        yield Figure("held object in a shaken wrist", math.degrees(give / friction.r), angle, "deg")
+        yield Figure("wrist against its command", WRIST_BOUND, lag[:, :2].max(), "m")
+        yield Figure("wrist against its command", WRIST_BOUND, lag[:, 2].max(), "rad")
+        yield Figure("normal force against grip, shaken", GRIP_BOUND, grip, "1")

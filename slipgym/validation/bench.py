@@ -1,0 +1,175 @@
+"""A bench: the full PyBullet world under prescribed loads, grip forces and wrist motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from slipgym.config import Config, load
+from slipgym.validation.trace import Trace
+from slipgym.world.bullet import BulletWorld
+from slipgym.world.plant import build
+from slipgym.world.scene import Box
+
+Signal = Callable[[float], Any]
+SETTLE_TIME = 0.25  # [s]; twenty time constants of the force loop
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Friction of both pads."""
+
+    mu_s: float = 0.5155
+    """Static friction [-]; wood."""
+    mu_c: float = 0.3623
+    """Coulomb friction [-]; wood."""
+    r: float = 0.010
+    """Radius of the equivalent rim contact [m]."""
+
+
+def uniform_box(config: Config, **changes: Any) -> Box:
+    """The configured object as a box, with other fields of `Box` if given."""
+    default = config.object
+    mass = changes.pop("mass", default.mass)
+    size = changes.pop("size", default.size)
+    inertia = changes.pop("inertia", mass * (size[0] ** 2 + size[2] ** 2) / 12.0)
+    values = {"com_offset": default.com_offset, "grasp_offset": default.grasp_offset, **changes}
+    return Box(size=size, mass=mass, inertia=inertia, **values)
+
+
+class _WatchedWorld(BulletWorld):
+    """Notes how far the engine's pose is from the planar one after every engine step."""
+
+    mismatch = 0.0
+
+    def _read(self) -> tuple[Any, ...]:
+        reading = super()._read()
+        world = self._plant.world[0]
+        if world["tick"] > 0:
+            x, _, z = reading[0][0]
+            away = math.hypot(x - world["com"][0], z - world["com"][1])
+            self.mismatch = max(self.mismatch, away)
+        return reading
+
+
+class Bench:
+    """One gripper and one box, driven open loop; a context manager.
+
+    Args:
+        overrides: Overrides of the default configuration; the sensors are ideal.
+        friction: Friction of both pads.
+        force: Grip force per finger at the start [N].
+        wrist: Pad centre (x, z) and pitch at the start [m, m, rad].
+        **box: Fields of `Box` that differ from the configured object.
+    """
+
+    def __init__(
+        self,
+        overrides: Mapping[str, Any] | None = None,
+        friction: Friction | None = None,
+        force: float = 5.0,
+        wrist: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        **box: Any,
+    ) -> None:
+        self.config = load(overrides, "ideal")
+        self.friction = friction or Friction()
+        self.box = uniform_box(self.config, **box)
+        self.plant = build(self.config)
+        for field in ("mu_s", "mu_c", "r"):
+            self.plant.pads[field] = getattr(self.friction, field)
+        self.world = _WatchedWorld(self.config, self.plant)
+        self.world.reset(self.box, force, wrist)
+        self.time = 0.0
+        self._force: float = force
+        self._steps = 0
+        samples = self.config.sensors.force_torque.rate // self.config.physics.control_rate + 2
+        self._noise = np.zeros((1, 2, samples, 6))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.world.close()
+
+    @property
+    def step_time(self) -> float:
+        """Control step [s]."""
+        return 1.0 / self.config.physics.control_rate
+
+    @property
+    def engine_time(self) -> float:
+        """Engine step [s]."""
+        return 1.0 / self.config.physics.engine_rate
+
+    @property
+    def mismatch(self) -> float:
+        """Largest distance between the engine's and the planar object after an engine step [m]."""
+        return self.world.mismatch
+
+    def limit(self) -> float:
+        """Static friction limit mu_s sum f_n of both pads at the engine's normal forces [N]."""
+        return self.friction.mu_s * float(self.plant.fingers["contact_force"].sum())
+
+    def run(
+        self,
+        duration: float,
+        load: Signal | None = None,
+        force: Signal | None = None,
+        wrist: Signal | None = None,
+        until: Callable[[Bench], bool] | None = None,
+    ) -> Trace:
+        """Run for a time; signals are functions of the time since the start of this run [s].
+
+        Args:
+            duration: [s].
+            load: Load (f_x, f_z, torque) on the centre of mass [N, N, N m], held over a step.
+            force: Grip force command per finger [N].
+            wrist: Wrist velocity (x, z, pitch) at the end of the step [m/s, m/s, rad/s].
+            until: Stops the run after the step in which it turns true.
+
+        Returns:
+            What the engine did, one row per control step.
+        """
+        rows = []
+        for i in range(round(duration / self.step_time)):
+            t = i * self.step_time
+            wrench = np.zeros(3) if load is None else np.asarray(load(t), dtype=float)
+            self.world.disturb(wrench)
+            if force is not None:
+                self._force = force(t)
+            self.world.command(self._force)
+            if wrist is not None:
+                velocity = np.asarray(wrist(t + self.step_time), dtype=float)
+                self.world.command_wrist(velocity, self.step_time)
+            self.plant.force_torque["drawn"] = 0
+            self.world.step(self._noise)
+            self._steps += 1
+            self.time = self._steps * self.step_time
+            rows.append(self._row(wrench))
+            if until is not None and until(self):
+                break
+        return Trace.of(rows)
+
+    def settle(self, force: Signal | None = None) -> Trace:
+        """Run until grip and bristles rest."""
+        return self.run(SETTLE_TIME, force=force)
+
+    def _row(self, wrench: np.ndarray) -> tuple[Any, ...]:
+        pose, velocity, wrist, normals = self.world.reading
+        plant = self.plant
+        return (
+            self.time,
+            (pose[0][0], pose[0][2], float(plant.world["angle"][0])),
+            (velocity[0][0], velocity[0][2], -velocity[1][1]),
+            plant.world["slip"][0].copy(),
+            plant.world["slip_twist"][0].copy(),
+            wrist,
+            plant.world["wrist_plan"][0].copy(),
+            normals,
+            plant.fingers["force"][0].copy(),
+            wrench,
+        )

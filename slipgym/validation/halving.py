@@ -1,0 +1,65 @@
+"""Halving every step hardly moves a slide of five seconds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from slipgym.config import load
+from slipgym.validation.bench import Bench, Signal
+from slipgym.validation.figure import Figure
+from slipgym.validation.trace import Trace
+
+BOUND = 0.1  # [mm]
+ANGLE_BOUND = 0.1  # [deg]; at the pad's rim of 15 mm it is 0.03 mm
+DURATION = 5.0  # [s]
+HOLDING_GRIP = 2.2  # [N]; the weight takes 87 % of its limit
+SIZE = 0.08, 0.03, 0.3  # [m]
+
+
+def smooth_grip(t: float) -> float:
+    """Lets the object start, then keeps it sliding at 1 to 3 cm/s [N]."""
+    return 1.86 if t < 0.05 else 2.68 - 0.02 * math.sin(2.0 * math.pi * t / 2.5)
+
+
+def stick_slip_grip(t: float) -> float:
+    """Opens and closes once a second; the object slips and sticks each time [N]."""
+    return 4.0 - 2.17 * max(0.0, math.sin(2.0 * math.pi * t)) ** 4
+
+
+def travel(grip: Signal, refinement: int, com_offset: tuple[float, float]) -> Trace:
+    """The slide under a grip force profile, open loop.
+
+    Args:
+        grip: Grip force per finger [N].
+        refinement: Divides every step.
+        com_offset: Centre of mass (x, z) from the pad centre [m].
+    """
+    default = load().physics
+    finer = {
+        "engine_steps": default.engine_steps * refinement,
+        "substep_max": default.substep_max / refinement,
+    }
+    with Bench({"physics": finer}, force=5.0, com_offset=com_offset, size=SIZE) as bench:
+        bench.settle()
+        bench.settle(force=lambda _: HOLDING_GRIP)
+        return bench.run(DURATION, force=grip)
+
+
+def halving() -> Iterator[Figure]:
+    """Difference between a slide and the same with all steps halved."""
+    cases = {
+        "steady": (smooth_grip, (0.0, 0.0)),
+        "stick-slip": (stick_slip_grip, (0.0, 0.0)),
+        "stick-slip and turning": (stick_slip_grip, (0.003, -0.01)),
+    }
+    for name, (grip, com_offset) in cases.items():
+        coarse, fine = travel(grip, 1, com_offset).slip, travel(grip, 2, com_offset).slip
+        away = np.abs(coarse - fine)
+        length = 1e3 * np.hypot(*coarse[-1, :2])
+        yield Figure(
+            f"halved step, {name}, {length:.0f} mm", BOUND, 1e3 * np.hypot(*away[:, :2].T).max(), "mm"
+        )
+        yield Figure(f"halved step, {name}", ANGLE_BOUND, math.degrees(away[:, 2].max()), "deg")

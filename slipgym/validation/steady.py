@@ -1,0 +1,78 @@
+"""While the object slides, friction lies on the ellipsoid, against the scaled slip twist."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from slipgym.validation.bench import Bench
+from slipgym.validation.figure import Figure
+from slipgym.validation.trace import Trace
+
+BOUND = 1.0  # [%]
+MASS = 0.5  # [kg]
+SPEEDS = 0.01, 0.15  # [m/s], scaled; the Stribeck part has decayed to exp(-100) at 10 v_s
+DIRECTIONS = 13  # gamma_t from 1 to 0
+AZIMUTH = 0.6  # [rad], of the force in the contact plane
+
+
+def friction_and_twist(bench: Bench, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
+    """Friction on the object and slip twist at the pad centre, from the engine's motion alone.
+
+    Friction is what the momentum of the rigid body changes by beyond the load. The wrist
+    must rest at the origin.
+
+    Returns:
+        Scaled friction (f_x, f_z, tau / r) [N] and twist (v_x, v_z, r omega) [m/s], both (n - 1, 3).
+    """
+    mass, inertia, r = bench.box.mass, bench.box.inertia, bench.friction.r
+    rate = np.diff(trace.velocity, axis=0) / bench.step_time
+    force = rate * (mass, mass, inertia) - trace.load[1:]
+    velocity = 0.5 * (trace.velocity[1:] + trace.velocity[:-1])
+    # both belong to times half an engine step before the control step; so must the lever
+    here = trace.position - 0.5 * bench.engine_time * trace.velocity
+    arm = 0.5 * (here[1:] + here[:-1])
+    force[:, 2] += arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
+    velocity[:, 0] += velocity[:, 2] * arm[:, 1]
+    velocity[:, 1] -= velocity[:, 2] * arm[:, 0]
+    return force * (1.0, 1.0, 1.0 / r), velocity * (1.0, 1.0, r)
+
+
+def deviation(angle: float, sigma_2: float) -> tuple[float, np.ndarray]:
+    """Distance of friction from the ellipsoid while a constant load drags the object.
+
+    Args:
+        angle: Of the scaled load from translation to torque [rad].
+        sigma_2: Viscous friction [s/m].
+
+    Returns:
+        Largest distance in % of mu_c sum f_n; gamma_t of the samples.
+    """
+    overrides = {"physics": {"gravity": 0.0}, "contact": {"sigma_2": sigma_2}}
+    # inertia m r^2: the scaled mass is the same in all directions, the twist stays with the load
+    with Bench(overrides, mass=MASS, inertia=MASS * 0.01**2) as bench:
+        r, mu_c = bench.friction.r, bench.friction.mu_c
+        bench.settle()
+        total = bench.plant.fingers["contact_force"].sum()
+        size = 1.05 * bench.limit()
+        f_t = size * math.cos(angle)
+        load = f_t * math.cos(AZIMUTH), f_t * math.sin(AZIMUTH), size * r * math.sin(angle)
+        trace = bench.run(0.15, load=lambda _: load)
+    force, twist = friction_and_twist(bench, trace)
+    speed = np.linalg.norm(twist, axis=1)
+    sliding = (speed > SPEEDS[0]) & (speed < SPEEDS[1])
+    force, twist, speed = force[sliding], twist[sliding], speed[sliding, None]
+    ellipsoid = -(mu_c + sigma_2 * speed) * total * twist / speed
+    away = np.linalg.norm(force - ellipsoid, axis=1) / (mu_c * total)
+    return 100.0 * away.max(), np.hypot(twist[:, 0], twist[:, 1]) / speed[:, 0]
+
+
+def steady() -> Iterator[Figure]:
+    """Steady slip against the ellipsoid for gamma_t from 0 to 1."""
+    for sigma_2 in (0.0, 0.2):
+        found = [deviation(angle, sigma_2) for angle in np.linspace(0.0, 0.5 * math.pi, DIRECTIONS)]
+        gammas = np.concatenate([gamma for _, gamma in found])
+        name = f"steady slip, gamma_t {gammas.min():.2f} to {gammas.max():.2f}, sigma_2 {sigma_2:g} s/m"
+        yield Figure(name, BOUND, max(away for away, _ in found), "%")
