@@ -1,0 +1,145 @@
+import math
+
+import numpy as np
+import pytest
+
+from slipgym.config import load
+from slipgym.sensors.slip_velocity import AXES, accumulate_slip, chip_levers, read_slip, sample_slip
+from slipgym.world.plant import build
+
+COUNT, RADIUS, RATE = 7.94e-6, 0.0243, 120
+SILENT = np.zeros(AXES)
+
+
+def sensors(**slip):
+    """Both fingers' sensors as the environment builds them."""
+    return build(load({"sensors": {"slip": slip}})).chips[0]
+
+
+def run(sensor, motions: np.ndarray, noise: np.ndarray | None = None) -> np.ndarray:
+    """Readings (n, 3) for a slip displacement per sample (n, 3)."""
+    readings = np.zeros((len(motions), 3))
+    for i, motion in enumerate(motions):
+        accumulate_slip(sensor, motion)
+        sample_slip(sensor, SILENT if noise is None else noise[i])
+        read_slip(sensor, readings[i])
+    return readings
+
+
+def exact(**slip):
+    return sensors(counts=False, **{"latency_samples": 0, "window": 1, **slip})
+
+
+@pytest.mark.parametrize("finger", [0, 1])
+@pytest.mark.parametrize("chips", [2, 3, 4])
+def test_without_counting_it_reads_the_twist(finger, chips):
+    twist = np.array([0.01, -0.03, 2.0])
+    reading = run(exact(chips=chips)[finger], np.tile(twist / RATE, (3, 1)))
+    np.testing.assert_allclose(reading, np.tile(twist, (3, 1)), rtol=1e-12)
+
+
+def test_finger_2_is_mirrored():
+    first, second = exact()
+    motion = np.array([[2e-5, -1e-5, 3e-3]])
+    run(first, motion)
+    run(second, motion)
+    # what the chips of finger 2 see is what those of finger 1 would see with omega reversed
+    mirror = exact()[0]
+    run(mirror, motion * (1.0, 1.0, -1.0))
+    np.testing.assert_allclose(second["counted"][0], mirror["counted"][0], rtol=1e-12)
+    solved = second["solve"] @ second["counted"][0]
+    np.testing.assert_allclose(solved, motion[0] * (1.0, 1.0, -1.0), rtol=1e-12)
+
+
+def test_levers_are_those_of_three_chips_on_a_circle():
+    levers = chip_levers(RADIUS, 3)
+    theta = 1e-3
+    for i in range(3):
+        angle = math.pi / 2 + 2 * math.pi * i / 3
+        point = RADIUS * np.array([math.cos(angle), math.sin(angle)])
+        moved = theta * np.array([-point[1], point[0]])
+        np.testing.assert_allclose(levers[2 * i : 2 * i + 2] @ (0.0, 0.0, theta), moved, atol=1e-18)
+    np.testing.assert_array_equal(levers[6:], 0.0)
+
+
+def test_no_count_no_velocity():
+    sensor = sensors()[0]
+    tremble = 0.4 * COUNT * np.random.default_rng(0).uniform(-1, 1, (500, 1)) * (1.0, 1.0, 1.0 / RADIUS)
+    motions = np.diff(np.vstack([np.zeros(3), tremble]), axis=0)
+    assert np.all(run(sensor, motions) == 0.0)
+
+
+def test_latency_and_window():
+    pulse = np.zeros((8, 3))
+    pulse[2] = 20 * COUNT, 0.0, 0.0
+    for window in (1, 2, 3):
+        for delay in (0, 1, 2):
+            reading = run(sensors(window=window, latency_samples=delay)[0], pulse)[:, 0]
+            expected = np.zeros(8)
+            expected[2 + delay : 2 + delay + window] = 20 * COUNT * RATE / window
+            np.testing.assert_allclose(reading, expected, rtol=1e-9, atol=1e-15)
+
+
+def test_a_single_count_of_one_chip():
+    sensor = sensors(latency_samples=0)[0]
+    sensor["carry"][0] = 1.001 * COUNT
+    twist = run(sensor, np.zeros((1, 3)))[0]
+    # one count is 0.95 mm/s on its axis; least squares over three chips leave a third of it
+    np.testing.assert_allclose(twist[0], COUNT * RATE / 3, rtol=1e-9)
+    assert pytest.approx(1e-3, rel=0.05) == COUNT * RATE
+
+
+@pytest.mark.parametrize("finger", [0, 1])
+def test_counts_add_up_to_the_travel(finger):
+    rng = np.random.default_rng(3)
+    sensor = sensors()[finger]
+    motions = rng.normal(size=(2000, 3)) * (3e-5, 3e-5, 1e-3)
+    motions[-2:] = 0.0  # the latency
+    counted = np.zeros(AXES)
+    for motion in motions:
+        run(sensor, motion[None])
+        counted += sensor["counted"][(sensor["taken"] - 1) % len(sensor["counted"])]
+    levers = sensor["lever"] * (1.0, 1.0, sensor["mirror"])
+    # truncation keeps the rest: never a whole count is missing on any axis
+    assert np.all(np.abs(counted - levers @ motions.sum(axis=0)) < COUNT * (1 + 1e-6))
+    # least squares of six axis errors, each below one count
+    away = np.abs(sensor["travel"] - motions.sum(axis=0))
+    assert np.all(away < COUNT * np.abs(sensor["solve"]).sum(axis=1))
+
+
+def test_quantisation_noise():
+    """Error of a count that keeps its rest: f (1 - f) count^2 per axis, f the fraction of a count per sample.
+
+    Averaged over all speeds that is count^2 / 6, twice the count^2 / 12 of rounding; least squares over three chips divide it by 3, and by 3 R^2 for omega.
+    """
+    rng = np.random.default_rng(7)
+    errors = []
+    for _ in range(300):
+        sensor = sensors(latency_samples=0)[0]
+        sensor["carry"] = rng.uniform(0.0, 1.0, AXES) * COUNT
+        twist = rng.uniform(0.5, 1.0, 3) * (0.05, 0.05, 0.0) + (0.0, 0.0, rng.uniform(-0.5, 0.5))
+        errors.append(run(sensor, np.tile(twist / RATE, (20, 1))) - twist)
+    sd = np.sqrt(np.mean(np.concatenate(errors) ** 2, axis=0))
+    per_axis = COUNT * RATE / math.sqrt(6.0)
+    expected = per_axis / math.sqrt(3.0) * np.array([1.0, 1.0, 1.0 / RADIUS])
+    # 300 independent speeds: the variance is known to about sqrt(2 / 300) = 8 %, the sd to 4 %; three sigma
+    np.testing.assert_allclose(sd, expected, rtol=0.12)
+    # 0.16 mm/s and 6.5e-3 rad/s are the figures of rounding each sample by itself
+    np.testing.assert_allclose(expected, math.sqrt(2.0) * np.array([0.16e-3, 0.16e-3, 6.5e-3]), rtol=0.02)
+
+
+def test_noise_is_in_counts_per_sample():
+    rng = np.random.default_rng(1)
+    n = 4000
+    sensor = exact(noise=0.5)[0]
+    readings = run(sensor, np.zeros((n, 3)), rng.standard_normal((n, AXES)))
+    expected = 0.5 * COUNT * RATE / math.sqrt(3.0) * np.array([1.0, 1.0, 1.0 / RADIUS])
+    # sd of n normal samples is known to 1 / sqrt(2 n) = 1.1 %; four sigma
+    np.testing.assert_allclose(readings.std(axis=0), expected, rtol=4.0 / math.sqrt(2.0 * n))
+
+
+def test_saturation_per_axis():
+    sensor = exact(speed_max=0.1)[0]
+    reading = run(sensor, np.tile([0.2 / RATE, -0.05 / RATE, 0.0], (3, 1)))
+    np.testing.assert_allclose(reading, np.tile([0.1, -0.05, 0.0], (3, 1)), atol=1e-12)
+    np.testing.assert_array_equal(sensor["carry"], 0.0)  # what is beyond the range is lost

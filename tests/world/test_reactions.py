@@ -1,0 +1,83 @@
+"""What the object gains the gripper loses."""
+
+import numpy as np
+import pybullet
+import pytest
+
+from slipgym.validation.agreement import shake
+from slipgym.validation.bench import Bench
+from slipgym.world import bullet
+from slipgym.world.scene import FINGER_LINKS, WRIST_JOINTS
+
+
+def record_loads(monkeypatch) -> list:
+    """Note (load on the object, reaction on finger 1, on finger 2) of every engine step."""
+    loads, original = [], bullet._loads
+
+    def recorded(*arguments):
+        answer = original(*arguments)
+        loads.append(answer[:3])
+        return answer
+
+    monkeypatch.setattr(bullet, "_loads", recorded)
+    return loads
+
+
+@pytest.mark.parametrize(("grip", "wrist"), [(10.0, None), (1.85, None), (2.5, shake)])
+def test_friction_and_its_reactions_cancel(monkeypatch, grip, wrist):
+    loads = record_loads(monkeypatch)
+    external = np.array([0.3, -0.2, 0.004])
+    cop = {"cop_offset": [[0.002, 0.001], [-0.001, 0.002]]}
+    with Bench({"contact": cop}, com_offset=(0.005, -0.01)) as bench:
+        bench.settle()
+        loads.clear()
+        bench.run(0.2, force=lambda _: grip, load=lambda _: external, wrist=wrist)
+    assert len(loads) == 24 * bench.config.physics.engine_steps
+    for (force, _), *reactions in loads:
+        # the engine adds the weight itself: it is no part of the load
+        friction = np.array(force) - (external[0], 0.0, external[1])
+        total = friction + sum(np.array(reaction[1]) for reaction in reactions)
+        # rounding of m (velocity change) / dt, of terms of some 100 N
+        np.testing.assert_allclose(total, 0.0, atol=1e-10)
+
+
+def test_torques_cancel_about_any_point(monkeypatch):
+    loads = record_loads(monkeypatch)
+    with Bench({"physics": {"gravity": 0.0}}, com_offset=(0.005, -0.01), force=5.0) as bench:
+        bench.settle()
+        for push in ((3.0, -2.0, 0.05), (9.0, 5.0, -0.2), (0.0, 0.0, 0.3)):
+            for _ in range(5):
+                loads.clear()
+                # the engine applies the last load where the object was before its last step
+                before = bench.world.reading[0][0]
+                bench.run(bench.step_time, load=lambda _, push=push: push)
+                force, torque = loads[0][0]
+                total = np.cross(before, force) + torque
+                total -= (0.0, -push[2], 0.0)
+                total -= np.cross(before, (push[0], 0.0, push[1]))
+                for point, reaction_force, reaction_torque in loads[0][1:]:
+                    total += np.cross(point, reaction_force) + reaction_torque
+                np.testing.assert_allclose(total[1], 0.0, atol=1e-11)
+                # out of the plane: the tilting moment of the pads' tangential forces, at half the thickness
+                np.testing.assert_allclose(total[[0, 2]], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("grip", "sliding"), [(10.0, False), (2.0, True)])
+def test_the_wrist_motor_carries_what_friction_carries(grip, sliding):
+    with Bench(force=10.0) as bench:
+        bench.settle()
+        if sliding:
+            bench.run(0.05, force=lambda _: 1.5)
+        bench.run(0.1, force=lambda _: grip)
+        start = bench.world.reading[1][0][2]
+        trace = bench.run(bench.step_time, force=lambda _: grip)
+        client, gripper = bench.world.client, bench.world.gripper
+        effort = pybullet.getJointState(gripper, WRIST_JOINTS[1], physicsClientId=client)[3]
+        gravity, mass = bench.config.physics.gravity, bench.box.mass
+        acceleration = (trace.velocity[0, 1] - start) / bench.step_time
+        links = (*WRIST_JOINTS[1:], *FINGER_LINKS)
+        carried = sum(pybullet.getDynamicsInfo(gripper, link, physicsClientId=client)[0] for link in links)
+    assert sliding == (abs(start) > 0.01)
+    # the motor's effort is that of one engine step, friction the mean over four: 1 % while it changes
+    friction = mass * (gravity + acceleration)
+    assert effort - gravity * carried == pytest.approx(friction, rel=1e-2 if sliding else 1e-6)
