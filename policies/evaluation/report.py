@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from pathlib import Path
 
 import pandas as pd
@@ -20,7 +21,7 @@ def report(folder: Path) -> str:
     """
     task = yaml.safe_load((folder / "experiment.yaml").read_text(encoding="utf-8"))["task"]
     # as text: a column of nothing but "true" would turn into booleans
-    names = dict.fromkeys((*KEYS, "material", "metric"), str)
+    names: dict[Hashable, type[str]] = dict.fromkeys((*KEYS, "material", "metric"), str)
     summary = pd.read_csv(folder / "summary.csv", dtype=names, keep_default_na=False, na_values=[""])
     metrics = [m for m in MEASURES[task].summary if m.brief]
     rows = []

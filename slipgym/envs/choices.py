@@ -17,6 +17,12 @@ def one_of(name: str, value: object, valid: Iterable[str]) -> str:
     return value
 
 
+def refuse_unknown(given: Iterable[str], known: Iterable[str]) -> None:
+    """Raise TypeError if a keyword argument was given that is not known."""
+    for name in given:
+        raise TypeError(unknown("keyword argument", name, known))
+
+
 def check_action(action: Any) -> float:
     """Return the single component of an action, clipped to [-1, 1].
 

@@ -85,3 +85,18 @@ def _check_inside(
         raise ValueError(
             f"{name} {tuple(point)} m{around} must lie on the object, {size[0]:g} m by {size[2]:g} m"
         )
+
+
+def choose_force(config: Config, options: EpisodeOptions, task: TaskConfig) -> float:
+    """Grip force per finger at reset [N].
+
+    Raises:
+        ValueError: The gripper's force loop cannot hold it.
+    """
+    gripper, force = config.gripper, options.choose("initial_force", task)
+    if not gripper.force_min <= force <= gripper.force_max:
+        raise ValueError(
+            f"option initial_force = {force:g} N must lie within the gripper's "
+            f"{gripper.force_min:g} to {gripper.force_max:g} N"
+        )
+    return force

@@ -77,7 +77,7 @@ class LinearSlipEnv(SlipEnv):
     | Term | Scale | Value before scaling |
     |---|---|---|
     | `tracking` | 1 | exp(-(e / tolerance)^2), e = distance slid less the reference's |
-    | `sideways` | 0.1 | -(abs(x) + 0.01 m abs(theta)) / tolerance, at least -10 |
+    | `sideways` | 0.1 | -(abs(x) + gripper.pad_radius abs(theta)) / tolerance, at least -10 |
     | `effort` | 0.1 | -(mean actuator force / gripper.force_max) |
     | `smoothness` | 0.1 | -(change of the commanded force / gripper.force_max)^2 |
     | `drop` | 100 | -1 on a drop, else 0 |

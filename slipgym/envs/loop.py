@@ -10,7 +10,7 @@ import numpy as np
 import estimator as estimators
 from estimator.batch import BatchEstimator
 from slipgym.config import Config, TaskConfig
-from slipgym.envs.episode import draw_friction, make_box
+from slipgym.envs.episode import choose_force, draw_friction, make_box
 from slipgym.envs.observation import FRICTION_COLUMNS, combine
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import AXES
@@ -88,7 +88,7 @@ class SlipLoop:
         task_config: TaskConfig = getattr(self.config.tasks, self.task.key)
         friction = draw_friction(self.config, options, material, rng)
         box = make_box(self.config, options, task_config, rng)
-        force = options.choose("initial_force", task_config)
+        force = choose_force(self.config, options, task_config)
         self._start_episode(box, options, task_config, rng)
         self.world.reset(box, force)
         self.material = friction.material
@@ -145,6 +145,7 @@ class SlipLoop:
         episode["step_time"] = self._step_time
         episode["force_max"] = self.config.gripper.force_max
         pad = self.config.gripper.pad_radius
+        episode["pad_radius"] = pad
         episode["reach"] = box.size[0] / 2 - pad, box.size[2] / 2 - pad
         episode["object_centre"] = -box.grasp_offset[0], -box.grasp_offset[1]
         scales = [getattr(task_config.reward, term) for term in self.task.terms]

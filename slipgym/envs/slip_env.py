@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 import os
 from collections.abc import Mapping
@@ -12,7 +13,7 @@ import numpy as np
 
 from slipgym.config import load
 from slipgym.envs import observation
-from slipgym.envs.choices import check_action, one_of
+from slipgym.envs.choices import check_action, one_of, refuse_unknown
 from slipgym.envs.loop import SlipLoop
 from slipgym.tasks import Task
 
@@ -38,7 +39,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         config: File or mapping of overrides of the default configuration.
 
     Raises:
-        ValueError: An argument is unknown or not allowed.
+        ValueError: The value of an argument is unknown or not allowed.
+        TypeError: An argument is unknown.
     """
 
     task: ClassVar[Task]
@@ -57,7 +59,9 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         frame_skip: int = 1,
         render_mode: str | None = None,
         config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+        **unknown: Any,
     ) -> None:
+        refuse_unknown(unknown, _KEYWORDS)
         self.friction_source = one_of("friction_source", friction_source, observation.FRICTION_SOURCES)
         one_of("contact", contact, ("ellipsoid",))
         one_of("action_mode", action_mode, ("grip_force",))
@@ -196,3 +200,10 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         info["is_success"] = episode["success"].item()
         info["dropped"] = episode["dropped"].item()
         return info
+
+
+_KEYWORDS = [
+    name
+    for name, parameter in inspect.signature(SlipEnv.__init__).parameters.items()
+    if parameter.kind is parameter.POSITIONAL_OR_KEYWORD and name != "self"
+]

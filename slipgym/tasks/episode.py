@@ -17,6 +17,7 @@ EPISODE = np.dtype(
         ("tolerance", "f8"),  # of success [m]
         ("reach", "f8", 2),  # pad centre may lie this far from the object's centre, (x, z) [m]
         ("object_centre", "f8", 2),  # geometric centre from the grasp point, body frame [m]
+        ("pad_radius", "f8"),  # [m]
         ("force_max", "f8"),  # upper end of the force action [N]
         ("command", "f8"),  # grip force commanded now [N]
         ("last_command", "f8"),  # grip force commanded before [N]

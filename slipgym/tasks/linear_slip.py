@@ -65,7 +65,7 @@ def judge(episodes, worlds, fingers, columns):
         for k in range(3):
             episode.reference[k] = reference[k]
         error = -world.slip[1] - reference[0]
-        sideways = abs(world.slip[0]) + 0.01 * abs(world.slip[2])
+        sideways = abs(world.slip[0]) + episode.pad_radius * abs(world.slip[2])
         episode.dropped = detect_drop(episode, world, fingers[i])
         final = -world.slip[1] - episode.distance
         episode.success = (

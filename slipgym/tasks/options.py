@@ -18,7 +18,7 @@ class EpisodeOptions(Frozen):
     mu_s: Positive | None = Field(default=None, le=5.0, description="Static friction, >= mu_c [-]")
     mu_c: Positive | None = Field(default=None, le=5.0, description="Coulomb friction [-]")
     r: Positive | None = Field(default=None, le=0.1, description="Radius of the equivalent rim contact [m]")
-    object_mass: Positive | None = Field(default=None, le=5.0, description="Mass of the object [kg]")
+    object_mass: float | None = Field(default=None, ge=0.01, le=5.0, description="Mass of the object [kg]")
     object_size: Size | None = Field(default=None, description="Extent along x, the grip axis and z [m]")
     com_offset: Point | None = Field(
         default=None, description="Centre of mass (x, z) from the geometric centre [m]"

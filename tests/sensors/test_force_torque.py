@@ -5,12 +5,17 @@ import pytest
 
 from slipgym.config import load
 from slipgym.contact.records import pads
-from slipgym.sensors.force_torque import read_force_torque, resolve_at_cop, sample_force_torque
+from slipgym.sensors.force_torque import (
+    drift_force_torque,
+    read_force_torque,
+    resolve_at_cop,
+    sample_force_torque,
+)
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.world.plant import build
 
-QUIET = np.zeros((5000, 12))
+QUIET = np.zeros((5000, 6))
 
 
 def sensors(preset: str = "ideal", **force_torque):
@@ -78,7 +83,8 @@ def test_the_twist_is_moved_to_the_centre_of_pressure():
         sample_force_torque(plant.force_torque[0, f], plant.pads[0, f], QUIET)
         plant.chips["carry"][0, f] = plant.chips["lever"][0, f] @ (motion * (1.0, 1.0, (1.0, -1.0)[f]))
     wrenches, twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
-    measure(plant.world, plant.force_torque, plant.chips, np.zeros((1, 2, AXES)), wrenches, twists)
+    slip_noise, drift_noise = np.zeros((1, 2, AXES)), np.zeros((1, 2, 6))
+    measure(plant.world, plant.force_torque, plant.chips, slip_noise, drift_noise, wrenches, twists)
     v_x, v_y, omega = 120 * motion
     expected = [v_x - omega * 0.001, v_y + omega * 0.002, omega]
     np.testing.assert_allclose(twists[0], [expected, expected], rtol=1e-9)
@@ -105,7 +111,7 @@ def test_resolution_and_range():
 
 def test_noise_has_the_configured_deviation():
     n = 4000
-    noise = np.random.default_rng(5).standard_normal((n, 12))
+    noise = np.random.default_rng(5).standard_normal((n, 6))
     values = samples(sensors("realistic")[0], loaded_pad(), n, noise)
     expected = [0.02, 0.02, 0.04, 5e-4, 5e-4, 5e-4]
     # the sd of n normal samples is known to 1 / sqrt(2 n), their mean to sd / sqrt(n): four sigma
@@ -115,12 +121,17 @@ def test_noise_has_the_configured_deviation():
 
 
 def test_drift_is_a_random_walk_per_root_second():
-    n = 2000
-    noise = np.random.default_rng(6).standard_normal((n, 12))
-    values = samples(sensors(drift_normal=0.1)[0], loaded_pad(), n, noise)
-    steps = np.diff(values[:, 2])
-    assert steps.std() == pytest.approx(0.1 / math.sqrt(1000), rel=4.0 / math.sqrt(2 * n))
-    assert np.ptp(values[:, 0]) == 0.0
+    n, sensor = 2000, sensors(drift_normal=0.1)[0]
+    rng, bias = np.random.default_rng(6), [sensor["bias"].copy()]
+    for _ in range(n):
+        drift_force_torque(sensor, rng.standard_normal(6))
+        bias.append(sensor["bias"].copy())
+    steps = np.diff(np.array(bias), axis=0)
+    # one step of the walk per control step of 1/120 s; the sd of n samples is known to 1 / sqrt(2 n)
+    assert steps[:, 2].std() == pytest.approx(0.1 / math.sqrt(120), rel=4.0 / math.sqrt(2 * n))
+    assert np.ptp(steps[:, 0]) == 0.0
+    reading = samples(sensor, loaded_pad(normal=4.0), 1)[0]
+    assert reading[2] == pytest.approx(4.0 + bias[-1][2])
 
 
 @pytest.mark.parametrize(
