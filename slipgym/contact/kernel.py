@@ -6,7 +6,8 @@ Each pad carries three bristle deflections z in the scaled displacement
     f / f_n = sigma_0 z + sigma_1 dz/dt + sigma_2 u,        |z| <= g(v) / sigma_0,
 
 with u the scaled slip twist and g(v) the Stribeck curve of the slip speed v: |u|
-where the contact slips, 0 where it sticks. (The plastic part of |u| alone would be
+where the contact slips; where it sticks v never rises, so that only slip lowers g and
+a sub-step of stick amid slip does not restore it. (The plastic part of |u| alone would be
 ill-posed: as g falls z must shrink, which reads as more plastic speed.) A sub-step
 adds the scaled slip displacement to z and projects the result back onto the ball of
 radius g / sigma_0 (closest-point return mapping, Simo & Hughes, Computational
@@ -94,11 +95,13 @@ def commit(pad, delta, h, force, shortening):
     """Store bristle state, slip speed and wrench that `respond` found."""
     for a in range(3):
         pad.z[a] = shortening * (pad.z[a] + delta[a])
-    speed = 0.0
+    speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) / h
     if shortening < 1.0:
-        speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) / h
-    pad.slip_rate = (speed - pad.slip_speed) / h if speed > 0.0 else 0.0
-    pad.slip_speed = speed
+        pad.slip_rate = (speed - pad.slip_speed) / h
+        pad.slip_speed = speed
+    else:
+        pad.slip_rate = 0.0
+        pad.slip_speed = min(speed, pad.slip_speed)
     pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
 
 

@@ -15,7 +15,7 @@ PAD = np.dtype(
         ("r", "f8"),  # radius of the equivalent rim contact [m]
         ("cop", "f8", 2),  # centre of pressure in the pad frame [m]
         ("z", "f8", 3),  # bristle state in the scaled displacement (x, y, r theta) [m]
-        ("slip_speed", "f8"),  # scaled slip speed of the last sub-step, 0 in stick [m/s]
+        ("slip_speed", "f8"),  # scaled slip speed; does not rise in stick [m/s]
         ("slip_rate", "f8"),  # its rate of change [m/s^2]
         ("normal", "f8"),  # normal force [N]
         ("wrench", "f8", 3),  # on the object at the centre of pressure, pad frame [N, N, N m]

@@ -1,11 +1,12 @@
 """Between the planar world and a rigid-body engine: what the engine did, what it is to do.
 
-World plane: x to the right, z up, seen along the grip axis n = -y. The engine integrates
-with semi-implicit Euler steps, so its velocity is the mean velocity of a step. The wrench
-sent to it is the one that gives the object the mean velocity of the sub-stepped motion
-(friction's mean over the step, staggered by half of one); it and its reactions on the
-fingers cancel. Whatever else the engine did to the object (normal forces, collisions) comes
-back as the difference between the pose expected and the pose found, and is taken over.
+World plane: x to the right, z up; the grip axis n = x × z = -y points at the viewer. The
+engine integrates with semi-implicit Euler steps, so its velocity is the mean velocity of a
+step. The wrench sent to it is the one that gives the object the mean velocity of the
+sub-stepped motion (friction's mean over the step, staggered by half of one); it and its
+reactions on the fingers cancel. Whatever else the engine did to the object (normal forces,
+collisions) comes back as the difference between the pose expected and the pose found, and is
+taken over.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ WORLD = np.dtype(
         ("slip_twist", "f8", 3),  # at the pad centre [m/s, m/s, rad/s]
     ]
 )
-"""One object held by one gripper, seen along the grip axis from finger 1 to finger 2."""
+"""One object held by one gripper, seen from finger 2: the grip axis points at the viewer."""
 
 FINGER = np.dtype(
     [

@@ -108,9 +108,10 @@ def test_counts_add_up_to_the_travel(finger):
 
 
 def test_quantisation_noise():
-    """Error of a count that keeps its rest: f (1 - f) count^2 per axis, f the fraction of a count per sample.
+    """A count that keeps its rest errs by f (1 - f) count^2 per axis, f the fraction per sample.
 
-    Averaged over all speeds that is count^2 / 6, twice the count^2 / 12 of rounding; least squares over three chips divide it by 3, and by 3 R^2 for omega.
+    Averaged over all speeds that is count^2 / 6, twice the count^2 / 12 of rounding. Least
+    squares over three chips divide it by 3, and by 3 R^2 for omega.
     """
     rng = np.random.default_rng(7)
     errors = []
