@@ -39,7 +39,8 @@ def test_observations_stay_in_the_space_through_a_drop(make, env_id, source):
 
 
 @pytest.mark.parametrize(
-    "options", [{"initial_force": 0.6}, {"object_mass": 0.01}, {"object_mass": 5.0}, {"mu_s": 5.0, "mu_c": 5.0}]
+    "options",
+    [{"initial_force": 0.6}, {"object_mass": 0.01}, {"object_mass": 5.0}, {"mu_s": 5.0, "mu_c": 5.0}],
 )
 def test_observations_stay_in_the_space_for_extreme_options(make, env_id, options):
     env = make(env_id)
