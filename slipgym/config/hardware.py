@@ -7,6 +7,11 @@ from pydantic import Field, model_validator
 from slipgym.config.base import Frozen, NonNegative, Point, Positive, Size
 
 
+def box_inertia(mass: float, a: float, b: float) -> float:
+    """Moment of inertia of a uniform box about the axis across its sides a and b [kg m^2]."""
+    return mass * (a * a + b * b) / 12.0
+
+
 class GripperConfig(Frozen):
     """A parallel gripper with a force loop per finger, on a wrist that moves in the contact plane."""
 
@@ -53,7 +58,7 @@ class ObjectConfig(Frozen):
         """Moment of inertia about the grip axis through the centre of mass [kg m^2]."""
         if self.inertia is not None:
             return self.inertia
-        return self.mass * (self.size[0] ** 2 + self.size[2] ** 2) / 12.0
+        return box_inertia(self.mass, self.size[0], self.size[2])
 
     @model_validator(mode="after")
     def _points_lie_inside(self) -> Self:

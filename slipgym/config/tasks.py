@@ -9,6 +9,9 @@ class TaskConfig(Frozen):
     """What every task has."""
 
     initial_force: Positive = Field(description="Force per finger at reset [N]")
+    mass_range: PositiveInterval | None = Field(
+        description="The object's mass is drawn from this range; null: object.mass [kg]"
+    )
     reward: Frozen = Field(description="Scales of the reward terms [-]")
 
 
@@ -47,7 +50,6 @@ class HoldConfig(TaskConfig):
 
     duration: Positive = Field(description="Length of an episode [s]")
     tolerance: Positive = Field(description="Largest slip for success [m]")
-    mass_range: PositiveInterval = Field(description="The object's mass is drawn from this range [kg]")
     shake_amplitude: NonNegative = Field(description="Amplitude of the wrist's shaking along x and z [m]")
     shake_pitch: NonNegative = Field(description="Amplitude of the wrist's shaking in pitch [rad]")
     shake_frequency: PositiveInterval = Field(

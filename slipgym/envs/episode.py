@@ -8,7 +8,8 @@ import numpy as np
 
 from slipgym.config import Config
 from slipgym.config.errors import unknown
-from slipgym.config.tasks import HoldConfig, TaskConfig
+from slipgym.config.hardware import box_inertia
+from slipgym.config.tasks import TaskConfig
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.world.scene import Box
 
@@ -56,16 +57,14 @@ def make_box(config: Config, options: EpisodeOptions, task: TaskConfig, rng: np.
         ValueError: The pads or the centre of mass would not lie on the object.
     """
     default = config.object
-    mass = default.mass
-    if isinstance(task, HoldConfig):
-        mass = rng.uniform(*task.mass_range)
+    mass = default.mass if task.mass_range is None else rng.uniform(*task.mass_range)
     if options.object_mass is not None:
         mass = options.object_mass
     size = default.size if options.object_size is None else options.object_size
     com_offset = options.choose("com_offset", default)
     _check_inside("com_offset", com_offset, size, margin=0.0)
     _check_inside("grasp_offset", default.grasp_offset, size, margin=config.gripper.pad_radius)
-    inertia = default.inertia or mass * (size[0] ** 2 + size[2] ** 2) / 12.0
+    inertia = default.inertia or box_inertia(mass, size[0], size[2])
     return Box(
         size=size,
         com_offset=com_offset,

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import pybullet as p
 
 from slipgym.config import Config
+from slipgym.config.hardware import box_inertia
 
 WRIST_JOINTS = (0, 1, 2)
 FINGER_LINKS = (3, 4)
@@ -49,7 +50,7 @@ class Box:
     def principal_inertia(self) -> tuple[float, float, float]:
         """About x, grip axis and z; the out-of-plane ones are those of a uniform box [kg m^2]."""
         x, y, z = self.size
-        return self.mass * (y * y + z * z) / 12.0, self.inertia, self.mass * (x * x + y * y) / 12.0
+        return box_inertia(self.mass, y, z), self.inertia, box_inertia(self.mass, x, y)
 
 
 def connect() -> int:
