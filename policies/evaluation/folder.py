@@ -34,8 +34,13 @@ _PACKAGES = (
 
 def run_path(experiment: Experiment, output: str | os.PathLike[str]) -> Path:
     """Where a run that starts now goes: <output>/<experiment>__<seed>__<timestamp>."""
+    return stamped(output, f"{experiment.name}__{experiment.seed}")
+
+
+def stamped(output: str | os.PathLike[str], name: str) -> Path:
+    """A folder's path that says what it holds and when it was begun: <output>/<name>__<timestamp>."""
     stamp = datetime.now().strftime("%Y%m%d-%H%M%S-%f")[:-3]
-    return Path(output).expanduser().resolve() / f"{experiment.name}__{experiment.seed}__{stamp}"
+    return Path(output).expanduser().resolve() / f"{name}__{stamp}"
 
 
 @contextmanager
@@ -67,6 +72,11 @@ def write_origin(experiment: Experiment, folder: Path) -> None:
     for name, model in documents.items():
         text = yaml.safe_dump(model.model_dump(mode="json"), sort_keys=False, allow_unicode=True)
         (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
+    write_versions(folder)
+
+
+def write_versions(folder: Path) -> None:
+    """Writes versions.json: what the results were made with."""
     (folder / "versions.json").write_text(json.dumps(versions(), indent=2) + "\n", encoding="utf-8")
 
 

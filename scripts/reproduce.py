@@ -1,0 +1,29 @@
+"""Reproduces the analyses of the paper (arXiv 2507.06824)."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+Output = Annotated[Path, typer.Option(help="Folder for the run's own folder.")]
+
+
+@app.callback()
+def main() -> None:
+    """Reproduce the paper's analyses; each command writes a folder with tables and figures."""
+
+
+@app.command()
+def coupling(output: Output = Path("runs")) -> None:
+    """The coupling of mu_c and r: fixed-point map, explicit iteration, lock-out from start values."""
+    from policies.reproduction import reproduce_coupling
+
+    folder = reproduce_coupling(output)
+    for name in ("slopes.csv", "lock_out.csv"):
+        typer.echo(f"\n{name}\n{(folder / name).read_text().rstrip()}")
+    typer.echo(f"\nLook at:\n  {folder / 'map.png'}\n  {folder / 'lock_out.png'}")
+
+
+if __name__ == "__main__":
+    app()
