@@ -159,7 +159,7 @@ class SlipLoop:
         tangential, normal, torque = sensor.bias_tangential, sensor.bias_normal, sensor.bias_torque
         spread = np.array([tangential, tangential, normal, torque, torque, torque])
         ft["bias"] = spread * rng.standard_normal((1, 2, 6))
-        ft["history"] = chips["counted"] = 0.0
+        ft["history"] = chips["counted"] = chips["moved"] = 0.0
         for field in ("taken", "drawn"):
             ft[field] = 0
         chips["taken"] = 0

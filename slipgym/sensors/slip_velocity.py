@@ -29,6 +29,7 @@ SLIP_SENSOR = np.dtype(
         ("delay", "i8"),  # latency in samples
         ("lever", "f8", (AXES, 3)),  # slip displacement -> displacement along the axes
         ("solve", "f8", (3, AXES)),  # its least-squares inverse
+        ("moved", "f8", 3),  # slip displacement since the last sample, pad frame [m, m, rad]
         ("carry", "f8", AXES),  # displacement not yet counted [m]
         ("counted", "f8", (HISTORY, AXES)),  # counted displacement per sample [m]
         ("taken", "i8"),  # samples since reset
@@ -58,9 +59,8 @@ def chip_levers(radius: float, chips: int) -> np.ndarray:
 @compiled
 def accumulate_slip(sensor, motion):
     """Add a slip displacement (x, y, theta) at the pad centre to what the chips have seen."""
-    for a in range(AXES):
-        lever = sensor.lever[a]
-        sensor.carry[a] += lever[0] * motion[0] + lever[1] * motion[1] + sensor.mirror * lever[2] * motion[2]
+    for k in range(3):
+        sensor.moved[k] += motion[k]
 
 
 @compiled
@@ -71,8 +71,11 @@ def sample_slip(sensor, noise):
     than one count gives none.
     """
     row = sensor.taken % HISTORY
+    x, y, theta = sensor.moved[0], sensor.moved[1], sensor.mirror * sensor.moved[2]
+    sensor.moved[:] = 0.0
     for a in range(AXES):
-        seen = sensor.carry[a] + sensor.noise * noise[a]
+        lever = sensor.lever[a]
+        seen = sensor.carry[a] + lever[0] * x + lever[1] * y + lever[2] * theta + sensor.noise * noise[a]
         seen = min(max(seen, -sensor.range), sensor.range)
         counted = sensor.count * math.trunc(seen / sensor.count) if sensor.count > 0.0 else seen
         sensor.carry[a] = seen - counted
