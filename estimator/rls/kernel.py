@@ -22,6 +22,7 @@ from estimator.stick_slip.kernel import (
     lose_contact,
     publish,
     readable,
+    sd_mu_s,
     shares,
     transition,
 )
@@ -45,6 +46,22 @@ def _rls(theta, covariance, y, phi, p, low, high):
 
 
 @njit
+def _residual(mean_square, theta, covariance, y, phi, p, updates):
+    """Mean square of the innovations, each in units of its own spread, with the memory of the estimate."""
+    innovation = y - phi * theta
+    square = innovation * innovation * p.forgetting / (p.forgetting + phi * phi * covariance)
+    share = max(1.0 / (updates + 1.0), 1.0 - p.forgetting)
+    updated = (1.0 - share) * mean_square + share * square
+    return updated if math.isfinite(updated) else mean_square
+
+
+@njit
+def _spread(theta, mean_square, covariance, updates):
+    """Standard deviation of an estimate, root of residual variance times P; untouched: the value itself."""
+    return math.sqrt(mean_square * covariance) if updates > 0 else theta
+
+
+@njit
 def _stick_slip(state, p, f_t, f_n, gamma_t, speed, halted):
     """Algorithm 1: at each start and stop of slip, mu_s is the mean of the largest f_t / (gamma_t f_n).
 
@@ -59,7 +76,7 @@ def _stick_slip(state, p, f_t, f_n, gamma_t, speed, halted):
     starts, stops = transition(state, p, speed)
     if starts or stops:
         if not halted:
-            learn_mu_s(state, p)
+            learn_mu_s(state, p, 1.0)
         clear_buffer(state)
 
 
@@ -67,14 +84,20 @@ def _stick_slip(state, p, f_t, f_n, gamma_t, speed, halted):
 def _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau):
     """Motion regime: mu_c from (1), then r from (2) with the new mu_c; both gammas from the previous r."""
     if gamma_t > p.eps_t:
+        phi = gamma_t * f_n
+        state.residual_mu_c = _residual(
+            state.residual_mu_c, state.mu_c, state.covariance_mu_c, f_t, phi, p, state.updates_mu_c
+        )
         state.mu_c, state.covariance_mu_c = _rls(
-            state.mu_c, state.covariance_mu_c, f_t, gamma_t * f_n, p, p.mu_min, p.mu_max
+            state.mu_c, state.covariance_mu_c, f_t, phi, p, p.mu_min, p.mu_max
         )
         state.updates_mu_c += 1
     if gamma_tau > p.eps_tau:
-        state.r, state.covariance_r = _rls(
-            state.r, state.covariance_r, tau, gamma_tau * state.mu_c * f_n, p, p.r_min, p.r_max
+        phi = gamma_tau * state.mu_c * f_n
+        state.residual_r = _residual(
+            state.residual_r, state.r, state.covariance_r, tau, phi, p, state.updates_r
         )
+        state.r, state.covariance_r = _rls(state.r, state.covariance_r, tau, phi, p, p.r_min, p.r_max)
         state.updates_r += 1
 
 
@@ -101,6 +124,7 @@ def _update(state, p, t, wrench, twist, estimate):
 
     halted = False
     gamma_t, gamma_tau = 0.0, 0.0
+    updates_mu_c, updates_r = state.updates_mu_c, state.updates_r
     if f_n >= p.eps_fn:
         halted = halts(state, p, f_n, t - state.t)
         if v > (p.eps_v if p.low_speed_gamma_from_force else p.stick_band):
@@ -113,6 +137,11 @@ def _update(state, p, t, wrench, twist, estimate):
     else:
         lose_contact(state)
     publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate)
+    estimate.sd_mu_s = sd_mu_s(state, 1.0)
+    estimate.sd_mu_c = _spread(state.mu_c, state.residual_mu_c, state.covariance_mu_c, state.updates_mu_c)
+    estimate.sd_r = _spread(state.r, state.residual_r, state.covariance_r, state.updates_r)
+    estimate.observable_mu_c = state.updates_mu_c > updates_mu_c
+    estimate.observable_r = state.updates_r > updates_r
 
 
 @entry_point(STATE, RlsParameters.dtype())

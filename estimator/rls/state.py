@@ -6,8 +6,16 @@ from numpy.typing import NDArray
 from estimator.stick_slip.state import STICK_SLIP_STATE
 
 STATE = np.dtype(
-    [*STICK_SLIP_STATE, ("covariance_mu_c", np.float64), ("covariance_r", np.float64)], align=True
+    [
+        *STICK_SLIP_STATE,
+        ("covariance_mu_c", np.float64),
+        ("covariance_r", np.float64),
+        ("residual_mu_c", np.float64),
+        ("residual_r", np.float64),
+    ],
+    align=True,
 )
+"""`covariance_*`: P [1/N^2]; `residual_*`: mean square of the innovations of f_t [N^2], tau [N^2 m^2]."""
 
 
 def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:

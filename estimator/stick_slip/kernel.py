@@ -9,6 +9,9 @@ import math
 
 from numba import njit
 
+SCATTER_GAIN = 0.2
+"""Weight of a new event in the scatter of mu_s, once 1 / SCATTER_GAIN changes have been averaged."""
+
 
 @njit
 def shares(translation, rotation):
@@ -85,11 +88,28 @@ def transition(state, p, speed):
 
 
 @njit
-def learn_mu_s(state, p):
-    """mu_s is the mean of the n_a largest buffered force ratios; too few of them leave it."""
-    if state.buffer_size >= p.n_a:
-        state.mu_s = clamped(take_mean_of_largest(state, p), p.mu_min, p.mu_max)
-        state.events_mu_s += 1
+def learn_mu_s(state, p, gain):
+    """mu_s goes by `gain` towards the mean of the n_a largest buffered force ratios; too few leave it."""
+    if state.buffer_size < p.n_a:
+        return
+    value = clamped(take_mean_of_largest(state, p), p.mu_min, p.mu_max)
+    if state.events_mu_s > 0:
+        share = max(1.0 / state.events_mu_s, SCATTER_GAIN)
+        state.scatter_mu_s = (1.0 - share) * state.scatter_mu_s + share * (value - state.mu_s) ** 2
+    state.mu_s = (1.0 - gain) * state.mu_s + gain * value
+    state.events_mu_s += 1
+
+
+@njit
+def sd_mu_s(state, gain):
+    """Standard deviation of mu_s from the scatter of independent events, averaged with `gain`, [-].
+
+    The newest change has the variance of one event and of the average before it. Up to the second event mu_s
+    stands for itself: nothing is known.
+    """
+    if state.events_mu_s < 2:
+        return state.mu_s
+    return math.sqrt(state.scatter_mu_s * gain / (1.0 + gain))
 
 
 @njit

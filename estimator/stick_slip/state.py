@@ -14,6 +14,7 @@ STICK_SLIP_STATE: list[tuple[Any, ...]] = [
     ("updates_mu_c", np.int64),
     ("updates_r", np.int64),
     ("events_mu_s", np.int64),
+    ("scatter_mu_s", np.float64),
     ("f_n", np.float64),
     ("halt_left", np.float64),
     ("still_samples", np.int64),
@@ -22,4 +23,5 @@ STICK_SLIP_STATE: list[tuple[Any, ...]] = [
     ("buffer", np.float64, (BUFFER_CAPACITY,)),
     ("slipping", np.bool_),
 ]
-"""`f_n`: the previous sample's [N]; `halt_left`: rest of a halt [s]; `buffer`: ring of force ratios [-]."""
+"""`scatter_mu_s`: mean square of the changes that events made; `f_n`: the previous sample's [N]; `halt_left`:
+rest of a halt [s]; `buffer`: ring of force ratios [-]."""
