@@ -12,7 +12,8 @@ simulator as well as on a real gripper.
 """
 
 from estimator.estimate import ESTIMATE, Estimate
+from estimator.joint.parameters import JointParameters
 from estimator.registry import make, make_batch, names
 from estimator.rls.parameters import RlsParameters
 
-__all__ = ["ESTIMATE", "Estimate", "RlsParameters", "make", "make_batch", "names"]
+__all__ = ["ESTIMATE", "Estimate", "JointParameters", "RlsParameters", "make", "make_batch", "names"]

@@ -63,3 +63,4 @@ class BatchEstimator:
         self.estimates[rows] = np.zeros((), ESTIMATE)
         for name in ("mu_s", "mu_c", "r"):
             self.estimates[name][rows] = self.states[name][rows]
+            self.estimates[f"sd_{name}"][rows] = self.states[name][rows]

@@ -38,6 +38,16 @@ class Estimate(NamedTuple):
     """State of the stick-slip machine."""
     halted: bool
     """Whether the heuristic held all updates back on this sample."""
+    sd_mu_s: float
+    """Standard deviation of mu_s [-], from the scatter of its events; untouched: as large as the value."""
+    sd_mu_c: float
+    """Standard deviation of mu_c [-], of noise alone; untouched: as large as the value."""
+    sd_r: float
+    """Standard deviation of r [m], of noise alone; untouched: as large as the value."""
+    observable_mu_c: bool
+    """Whether mu_c learnt on this sample."""
+    observable_r: bool
+    """Whether r learnt on this sample."""
 
 
 ESTIMATE = np.dtype(list(Estimate.__annotations__.items()), align=True)

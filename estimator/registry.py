@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from estimator.batch import BatchEstimator
     from estimator.online import OnlineEstimator
 
-_MODULES = {"rls": "estimator.rls.specification"}
+_MODULES = {"joint": "estimator.joint.specification", "rls": "estimator.rls.specification"}
 """Name -> module that holds its SPECIFICATION; imported on first use, because numba is slow to import."""
 
 
@@ -56,7 +56,7 @@ def make(name: str, **parameters: Any) -> "OnlineEstimator":
 
     Args:
         name: One of `names()`.
-        **parameters: Fields of its parameter dataclass, for "rls" those of `RlsParameters`.
+        **parameters: Fields of its parameter dataclass, for example `RlsParameters`.
 
     Raises:
         ValueError: The name or a parameter is unknown, or a value is of the wrong type or out of range.

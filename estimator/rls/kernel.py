@@ -4,31 +4,28 @@ Source: Waltersson & Karayiannidis, Friction Estimation for In-Hand Planar Motio
 eqs. (1) f_t = gamma_t f_n mu_c and (2) tau = gamma_tau mu_c f_n r, Algorithm 1 for mu_s, and the heuristic
 that halts them all. Where this reads the text differently, docs/estimator.md says how, and which parameter
 takes the reading back.
-
-All compiled functions are in this one file: numba's cache does not see changes of callees in other files.
 """
 
 import math
 
-from numba import from_dtype, njit, types
+from numba import njit
 
-from estimator.estimate import ESTIMATE
+from estimator.compiled import entry_point
 from estimator.rls.parameters import RlsParameters
 from estimator.rls.state import STATE
-
-
-@njit
-def _shares(translation, rotation):
-    """Direction cosines of (translation, rotation); zeros where there is none."""
-    norm = math.hypot(translation, rotation)
-    if norm > 0.0 and math.isfinite(norm):
-        return translation / norm, rotation / norm
-    return 0.0, 0.0
-
-
-@njit
-def _clamped(value, low, high):
-    return min(max(value, low), high)
+from estimator.stick_slip.kernel import (
+    append,
+    clamped,
+    clear_buffer,
+    halts,
+    learn_mu_s,
+    lose_contact,
+    publish,
+    readable,
+    sd_mu_s,
+    shares,
+    transition,
+)
 
 
 @njit
@@ -45,49 +42,23 @@ def _rls(theta, covariance, y, phi, p, low, high):
     theta = theta + covariance * phi / denominator * innovation
     # P / (lambda + phi^2 P) is (1 - K phi) P / lambda without its cancellation: it cannot turn negative.
     covariance = min(covariance / denominator, p.covariance_limit * p.p0)
-    return _clamped(theta, low, high), covariance
+    return clamped(theta, low, high), covariance
 
 
 @njit
-def _halted(state, p, f_n, elapsed):
-    """Heuristic: a rise of f_n faster than eps_delta halts for halt_duration; each new one starts it afresh.
-
-    The sample at which exactly halt_duration has passed learns again; half a sample of tolerance makes that
-    hold for times that carry rounding or jitter.
-    """
-    if not p.heuristic or state.samples == 0:
-        return False
-    state.halt_left = max(state.halt_left - elapsed, 0.0)
-    if (f_n - state.f_n) / elapsed > p.eps_delta:
-        state.halt_left = p.halt_duration - 0.5 * p.sample_time
-    return state.halt_left > 0.0
+def _residual(mean_square, theta, covariance, y, phi, p, updates):
+    """Mean square of the innovations, each in units of its own spread, with the memory of the estimate."""
+    innovation = y - phi * theta
+    square = innovation * innovation * p.forgetting / (p.forgetting + phi * phi * covariance)
+    share = max(1.0 / (updates + 1.0), 1.0 - p.forgetting)
+    updated = (1.0 - share) * mean_square + share * square
+    return updated if math.isfinite(updated) else mean_square
 
 
 @njit
-def _clear(state):
-    state.buffer_size = 0
-    state.buffer_next = 0
-
-
-@njit
-def _append(state, p, ratio):
-    state.buffer[state.buffer_next] = ratio
-    state.buffer_next = (state.buffer_next + 1) % p.n_b
-    state.buffer_size = min(state.buffer_size + 1, p.n_b)
-
-
-@njit
-def _take_mean_of_largest(state, p):
-    """Mean of the n_a largest buffered ratios; takes each out by writing -1 over it, below every ratio."""
-    total = 0.0
-    for _ in range(p.n_a):
-        largest = 0
-        for i in range(state.buffer_size):
-            if state.buffer[i] > state.buffer[largest]:
-                largest = i
-        total += state.buffer[largest]
-        state.buffer[largest] = -1.0
-    return total / p.n_a
+def _spread(theta, mean_square, covariance, updates):
+    """Standard deviation of an estimate, root of residual variance times P; untouched: the value itself."""
+    return math.sqrt(mean_square * covariance) if updates > 0 else theta
 
 
 @njit
@@ -99,50 +70,35 @@ def _stick_slip(state, p, f_t, f_n, gamma_t, speed, halted):
     """
     gate = gamma_t > p.eps_t
     if gate and not halted:
-        _append(state, p, f_t / (gamma_t * f_n))
+        append(state, p, f_t / (gamma_t * f_n))
     if p.machine_gated and not gate:
         return
-    state.still_samples = state.still_samples + 1 if speed <= p.stick_band else 0
-    starts = not state.slipping and speed > p.eps_v
-    stops = state.slipping and state.still_samples >= p.stick_samples
+    starts, stops = transition(state, p, speed)
     if starts or stops:
-        if state.buffer_size >= p.n_a and not halted:
-            state.mu_s = _clamped(_take_mean_of_largest(state, p), p.mu_min, p.mu_max)
-            state.events_mu_s += 1
-        state.slipping = starts
-        _clear(state)
+        if not halted:
+            learn_mu_s(state, p, 1.0)
+        clear_buffer(state)
 
 
 @njit
 def _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau):
     """Motion regime: mu_c from (1), then r from (2) with the new mu_c; both gammas from the previous r."""
     if gamma_t > p.eps_t:
+        phi = gamma_t * f_n
+        state.residual_mu_c = _residual(
+            state.residual_mu_c, state.mu_c, state.covariance_mu_c, f_t, phi, p, state.updates_mu_c
+        )
         state.mu_c, state.covariance_mu_c = _rls(
-            state.mu_c, state.covariance_mu_c, f_t, gamma_t * f_n, p, p.mu_min, p.mu_max
+            state.mu_c, state.covariance_mu_c, f_t, phi, p, p.mu_min, p.mu_max
         )
         state.updates_mu_c += 1
     if gamma_tau > p.eps_tau:
-        state.r, state.covariance_r = _rls(
-            state.r, state.covariance_r, tau, gamma_tau * state.mu_c * f_n, p, p.r_min, p.r_max
+        phi = gamma_tau * state.mu_c * f_n
+        state.residual_r = _residual(
+            state.residual_r, state.r, state.covariance_r, tau, phi, p, state.updates_r
         )
+        state.r, state.covariance_r = _rls(state.r, state.covariance_r, tau, phi, p, p.r_min, p.r_max)
         state.updates_r += 1
-
-
-@njit
-def _publish(state, p, gamma_t, gamma_tau, halted, estimate):
-    estimate.mu_s = state.mu_s
-    estimate.mu_c = state.mu_c
-    estimate.r = state.r
-    estimate.gamma_t = gamma_t
-    estimate.gamma_tau = gamma_tau
-    estimate.support_mu_s = state.events_mu_s / (state.events_mu_s + 1.0)
-    estimate.support_mu_c = 1.0 - p.forgetting**state.updates_mu_c
-    estimate.support_r = 1.0 - p.forgetting**state.updates_r
-    estimate.events_mu_s = state.events_mu_s
-    estimate.updates_mu_c = state.updates_mu_c
-    estimate.updates_r = state.updates_r
-    estimate.slipping = state.slipping
-    estimate.halted = halted
 
 
 @njit
@@ -163,50 +119,34 @@ def _update(state, p, t, wrench, twist, estimate):
     v_t = math.hypot(twist[0], twist[1])
     v_r = state.r * abs(twist[2])
     v = math.hypot(v_t, v_r)
-    elapsed = t - state.t
-    force_finite = math.isfinite(f_t) and math.isfinite(f_n) and math.isfinite(tau)
-    in_order = math.isfinite(t) and (state.samples == 0 or elapsed > 0.0)
-    if not (force_finite and math.isfinite(v) and in_order):
+    if not readable(state, t, f_t, f_n, tau, v):
         return
 
     halted = False
     gamma_t, gamma_tau = 0.0, 0.0
+    updates_mu_c, updates_r = state.updates_mu_c, state.updates_r
     if f_n >= p.eps_fn:
-        halted = _halted(state, p, f_n, elapsed)
+        halted = halts(state, p, f_n, t - state.t)
         if v > (p.eps_v if p.low_speed_gamma_from_force else p.stick_band):
-            gamma_t, gamma_tau = _shares(v_t, v_r)
+            gamma_t, gamma_tau = shares(v_t, v_r)
         else:
-            gamma_t, gamma_tau = _shares(f_t, tau / state.r)
+            gamma_t, gamma_tau = shares(f_t, tau / state.r)
         _stick_slip(state, p, f_t, f_n, gamma_t, v_t if p.machine_gated else v, halted)
         if v > p.eps_v and not halted:
             _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau)
     else:
-        state.halt_left = 0.0
-        state.slipping = False
-        state.still_samples = 0
-        _clear(state)
-
-    state.t = t
-    state.f_n = f_n
-    state.samples += 1
-    _publish(state, p, gamma_t, gamma_tau, halted, estimate)
+        lose_contact(state)
+    publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate)
+    estimate.sd_mu_s = sd_mu_s(state, 1.0)
+    estimate.sd_mu_c = _spread(state.mu_c, state.residual_mu_c, state.covariance_mu_c, state.updates_mu_c)
+    estimate.sd_r = _spread(state.r, state.residual_r, state.covariance_r, state.updates_r)
+    estimate.observable_mu_c = state.updates_mu_c > updates_mu_c
+    estimate.observable_r = state.updates_r > updates_r
 
 
-def _array(dtype, ndim):
-    return types.Array(dtype, ndim, "C")
-
-
-_RECORDS = [_array(from_dtype(dtype), 1) for dtype in (STATE, RlsParameters.dtype(), ESTIMATE)]
-_SIGNATURE = types.void(
-    _RECORDS[0], _RECORDS[1], types.float64, _array(types.float64, 2), _array(types.float64, 2), _RECORDS[2]
-)
-
-
-@njit(_SIGNATURE, cache=True)
+@entry_point(STATE, RlsParameters.dtype())
 def update_batch(states, parameters, t, wrenches, twists, estimates):
     """Update n fingers by one sample each.
-
-    Compiled at import, or read from the cache: no first call is slow.
 
     A row with a value that is not finite, or with a t not later than the row's last, is left as it is.
 

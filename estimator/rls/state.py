@@ -3,30 +3,19 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.estimate import COMMON_STATE
-
-BUFFER_CAPACITY = 64
-"""Largest n_b: the buffer travels inside the state, whose size is fixed."""
+from estimator.stick_slip.state import STICK_SLIP_STATE
 
 STATE = np.dtype(
     [
-        *COMMON_STATE,
+        *STICK_SLIP_STATE,
         ("covariance_mu_c", np.float64),
         ("covariance_r", np.float64),
-        ("updates_mu_c", np.int64),
-        ("updates_r", np.int64),
-        ("events_mu_s", np.int64),
-        ("f_n", np.float64),
-        ("halt_left", np.float64),
-        ("still_samples", np.int64),
-        ("buffer_size", np.int64),
-        ("buffer_next", np.int64),
-        ("buffer", np.float64, (BUFFER_CAPACITY,)),
-        ("slipping", np.bool_),
+        ("residual_mu_c", np.float64),
+        ("residual_r", np.float64),
     ],
     align=True,
 )
-"""`f_n`: the previous sample's [N]; `halt_left`: rest of a halt [s]; `buffer`: ring of force ratios [-]."""
+"""`covariance_*`: P [1/N^2]; `residual_*`: mean square of the innovations of f_t [N^2], tau [N^2 m^2]."""
 
 
 def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:

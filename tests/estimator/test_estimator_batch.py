@@ -6,6 +6,8 @@ import pytest
 import estimator
 from slipgym.validation.records import RATE
 
+pytestmark = pytest.mark.parametrize("name", estimator.names())
+
 
 def random_signals(n, samples, seed=0):
     """Signals that visit every branch: stick, slip, spin, fast rises and losses of contact.
@@ -23,8 +25,8 @@ def random_signals(n, samples, seed=0):
 
 def assert_same(actual, expected):
     assert actual.dtype == expected.dtype
-    for name in actual.dtype.names:
-        np.testing.assert_array_equal(actual[name], expected[name], err_msg=name)
+    for field in actual.dtype.names:
+        np.testing.assert_array_equal(actual[field], expected[field], err_msg=field)
 
 
 def feed(batch, wrenches, twists, first=0):
@@ -35,12 +37,12 @@ def feed(batch, wrenches, twists, first=0):
     return estimates
 
 
-def test_a_batch_equals_its_fingers_bit_for_bit():
+def test_a_batch_equals_its_fingers_bit_for_bit(name):
     n, samples = 7, 400
     wrenches, twists = random_signals(n, samples)
-    estimates = feed(estimator.make_batch("rls", n), wrenches, twists)
+    estimates = feed(estimator.make_batch(name, n, heuristic=True), wrenches, twists)
     for i in range(n):
-        single = estimator.make("rls")
+        single = estimator.make(name, heuristic=True)
         for k in range(samples):
             e = single.update(k / RATE, wrenches[k, i], twists[k, i])
             assert e == estimates[k][i].item()
@@ -52,9 +54,9 @@ def test_a_batch_equals_its_fingers_bit_for_bit():
         assert everything[count].max() > 10, count
 
 
-def test_restored_arrays_continue_bit_for_bit():
+def test_restored_arrays_continue_bit_for_bit(name):
     wrenches, twists = random_signals(3, 300, seed=1)
-    batch = estimator.make_batch("rls", 3)
+    batch = estimator.make_batch(name, 3)
     feed(batch, wrenches[:150], twists[:150])
     states, estimates = batch.states.copy(), batch.estimates.copy()
     first = feed(batch, wrenches[150:], twists[150:], first=150)
@@ -66,9 +68,9 @@ def test_restored_arrays_continue_bit_for_bit():
 
 
 @pytest.mark.parametrize("indices", [[1, 3], np.array([False, True, False, True]), slice(1, None, 2)])
-def test_reset_touches_only_its_rows(indices):
+def test_reset_touches_only_its_rows(name, indices):
     wrenches, twists = random_signals(4, 100, seed=2)
-    batch, fresh = estimator.make_batch("rls", 4), estimator.make_batch("rls", 4)
+    batch, fresh = estimator.make_batch(name, 4), estimator.make_batch(name, 4)
     feed(batch, wrenches, twists)
     states, estimates = batch.states.copy(), batch.estimates.copy()
     batch.reset(indices)
@@ -80,13 +82,13 @@ def test_reset_touches_only_its_rows(indices):
         assert_same(actual[[0, 2]], kept[[0, 2]])
 
 
-def test_rows_may_have_their_own_parameters():
+def test_rows_may_have_their_own_parameters(name):
     wrenches, twists = random_signals(2, 200, seed=3)
-    pair = estimator.make_batch("rls", 2)
-    alone = [estimator.make_batch("rls", 1), estimator.make_batch("rls", 1, r0=0.01, n_b=8, heuristic=False)]
+    pair = estimator.make_batch(name, 2)
+    alone = [estimator.make_batch(name, 1), estimator.make_batch(name, 1, r0=0.008, n_b=8, heuristic=True)]
     pair.parameters_array = np.concatenate([batch.parameters_array for batch in alone])
     pair.reset()
-    assert pair.estimates["r"].tolist() == [0.02, 0.01]
+    assert pair.estimates["r"].tolist() == [estimator.make(name).parameters.as_array()["r0"][0], 0.008]
     feed(pair, wrenches, twists)
     for i, batch in enumerate(alone):
         feed(batch, np.ascontiguousarray(wrenches[:, i : i + 1]), np.ascontiguousarray(twists[:, i : i + 1]))
@@ -95,9 +97,9 @@ def test_rows_may_have_their_own_parameters():
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("column", range(7))
-def test_a_row_that_is_not_finite_is_skipped(bad, column):
+def test_a_row_that_is_not_finite_is_skipped(name, bad, column):
     wrenches, twists = random_signals(2, 60, seed=4)
-    batch = estimator.make_batch("rls", 2)
+    batch = estimator.make_batch(name, 2)
     feed(batch, wrenches[:50], twists[:50])
     states = batch.states.copy()
     (wrenches if column < 4 else twists)[50, 0, column % 4 if column < 4 else column - 4] = bad
@@ -107,9 +109,9 @@ def test_a_row_that_is_not_finite_is_skipped(bad, column):
 
 
 @pytest.mark.parametrize("t", [49 / RATE, 0.0, np.nan, np.inf])
-def test_a_sample_whose_time_does_not_advance_or_is_not_finite_is_skipped(t):
+def test_a_sample_whose_time_does_not_advance_or_is_not_finite_is_skipped(name, t):
     wrenches, twists = random_signals(2, 51, seed=5)
-    batch = estimator.make_batch("rls", 2)
+    batch = estimator.make_batch(name, 2)
     feed(batch, wrenches[:50], twists[:50])
     states = batch.states.copy()
     batch.update(t, wrenches[50], twists[50])
@@ -125,6 +127,6 @@ def test_a_sample_whose_time_does_not_advance_or_is_not_finite_is_skipped(t):
         (np.zeros((2, 8))[:, ::2], np.zeros((2, 3))),
     ],
 )
-def test_wrong_arrays_are_refused(wrenches, twists):
+def test_wrong_arrays_are_refused(name, wrenches, twists):
     with pytest.raises((AssertionError, TypeError)):
-        estimator.make_batch("rls", 2).update(0.0, wrenches, twists)
+        estimator.make_batch(name, 2).update(0.0, wrenches, twists)

@@ -10,7 +10,11 @@ import estimator
 from slipgym.validation.records import ellipsoid
 
 PAGE = (Path(__file__).parents[2] / "docs" / "estimator.md").read_text(encoding="utf-8")
-FIELDS = dataclasses.fields(estimator.RlsParameters)
+FIELDS = [
+    pytest.param(field, id=f"{kind.__name__}.{field.name}")
+    for kind in (estimator.RlsParameters, estimator.JointParameters)
+    for field in dataclasses.fields(kind)
+]
 
 
 def parameter_row(field: dataclasses.Field) -> str:
@@ -19,7 +23,7 @@ def parameter_row(field: dataclasses.Field) -> str:
     return f"| `{field.name}` | {default} | {unit} | {within} | {doc} |"
 
 
-@pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)
+@pytest.mark.parametrize("field", FIELDS)
 def test_every_parameter_is_documented(field):
     assert len(field.metadata["doc"].split()) >= 4
     assert field.metadata["doc"].endswith(".")

@@ -80,7 +80,7 @@ def test_rls_is_weighted_least_squares():
 
 def test_support_counts_the_data_behind_each_value():
     est = estimator.make("rls")
-    assert est.estimate[5:] == (0.0, 0.0, 0.0, 0, 0, 0, False, False)
+    assert est.estimate[5:13] == (0.0, 0.0, 0.0, 0, 0, 0, False, False)
     estimates = run(est, ellipsoid(50, *planar(0.707, R), MU_C, R))
     for n, e in enumerate(estimates, start=1):
         assert (e.updates_mu_c, e.updates_r) == (n, n)

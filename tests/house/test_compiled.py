@@ -1,5 +1,6 @@
 """The cache of compiled kernels notices a change in a function of another file."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -20,12 +21,13 @@ print(held["wrench"][0, 0])
 
 
 def test_an_edited_kernel_is_compiled_again(tmp_path):
-    copy = tmp_path / "slipgym"
-    shutil.copytree(Path(slipgym.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    root, copy = Path(slipgym.__file__).parents[1], tmp_path / "slipgym"
+    shutil.copytree(root / "slipgym", copy, ignore=shutil.ignore_patterns("__pycache__"))
+    paths = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(root)])}
 
     def friction() -> float:
         done = subprocess.run(
-            [sys.executable, "-c", CALL], cwd=tmp_path, capture_output=True, text=True, check=True
+            [sys.executable, "-c", CALL], cwd=tmp_path, env=paths, capture_output=True, text=True, check=True
         )
         return float(done.stdout.split()[-1])
 

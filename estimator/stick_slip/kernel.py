@@ -1,0 +1,149 @@
+"""Functions that the compiled kernels of all estimators call.
+
+Source: Waltersson & Karayiannidis, Friction Estimation for In-Hand Planar Motion (ISER 2025): Algorithm 1 for
+mu_s and the heuristic. `state` is a record whose dtype holds STICK_SLIP_STATE, `p` one of a subclass of
+StickSlipParameters.
+"""
+
+import math
+
+from numba import njit
+
+SCATTER_GAIN = 0.2
+"""Weight of a new event in the scatter of mu_s, once 1 / SCATTER_GAIN changes have been averaged."""
+
+
+@njit
+def shares(translation, rotation):
+    """Direction cosines of (translation, rotation); zeros where there is none."""
+    norm = math.hypot(translation, rotation)
+    if norm > 0.0 and math.isfinite(norm):
+        return translation / norm, rotation / norm
+    return 0.0, 0.0
+
+
+@njit
+def clamped(value, low, high):
+    """The value, or the bound that it exceeds."""
+    return min(max(value, low), high)
+
+
+@njit
+def halts(state, p, f_n, elapsed):
+    """Heuristic: a rise of f_n faster than eps_delta halts for halt_duration; each new one starts it afresh.
+
+    The sample at which exactly halt_duration has passed learns again; half a sample of tolerance makes that
+    hold for times that carry rounding or jitter.
+    """
+    if not p.heuristic or state.samples == 0:
+        return False
+    state.halt_left = max(state.halt_left - elapsed, 0.0)
+    if (f_n - state.f_n) / elapsed > p.eps_delta:
+        state.halt_left = p.halt_duration - 0.5 * p.sample_time
+    return state.halt_left > 0.0
+
+
+@njit
+def clear_buffer(state):
+    """Forgets the buffered force ratios."""
+    state.buffer_size = 0
+    state.buffer_next = 0
+
+
+@njit
+def append(state, p, ratio):
+    """Buffers a force ratio in place of the oldest of n_b."""
+    state.buffer[state.buffer_next] = ratio
+    state.buffer_next = (state.buffer_next + 1) % p.n_b
+    state.buffer_size = min(state.buffer_size + 1, p.n_b)
+
+
+@njit
+def take_mean_of_largest(state, p):
+    """Mean of the n_a largest buffered ratios; takes each out by writing -1 over it, below every ratio."""
+    total = 0.0
+    for _ in range(p.n_a):
+        largest = 0
+        for i in range(state.buffer_size):
+            if state.buffer[i] > state.buffer[largest]:
+                largest = i
+        total += state.buffer[largest]
+        state.buffer[largest] = -1.0
+    return total / p.n_a
+
+
+@njit
+def transition(state, p, speed):
+    """Runs the stick-slip machine by one sample.
+
+    Returns:
+        Whether a slip starts, and whether one stops, at this sample.
+    """
+    state.still_samples = state.still_samples + 1 if speed <= p.stick_band else 0
+    starts = not state.slipping and speed > p.eps_v
+    stops = state.slipping and state.still_samples >= p.stick_samples
+    if starts or stops:
+        state.slipping = starts
+    return starts, stops
+
+
+@njit
+def learn_mu_s(state, p, gain):
+    """mu_s goes by `gain` towards the mean of the n_a largest buffered force ratios; too few leave it."""
+    if state.buffer_size < p.n_a:
+        return
+    value = clamped(take_mean_of_largest(state, p), p.mu_min, p.mu_max)
+    if state.events_mu_s > 0:
+        share = max(1.0 / state.events_mu_s, SCATTER_GAIN)
+        state.scatter_mu_s = (1.0 - share) * state.scatter_mu_s + share * (value - state.mu_s) ** 2
+    state.mu_s = (1.0 - gain) * state.mu_s + gain * value
+    state.events_mu_s += 1
+
+
+@njit
+def sd_mu_s(state, gain):
+    """Standard deviation of mu_s from the scatter of independent events, averaged with `gain`, [-].
+
+    The newest change has the variance of one event and of the average before it. Up to the second event mu_s
+    stands for itself: nothing is known.
+    """
+    if state.events_mu_s < 2:
+        return state.mu_s
+    return math.sqrt(state.scatter_mu_s * gain / (1.0 + gain))
+
+
+@njit
+def lose_contact(state):
+    """Ends a halt and a slip, and empties the buffer."""
+    state.halt_left = 0.0
+    state.slipping = False
+    state.still_samples = 0
+    clear_buffer(state)
+
+
+@njit
+def readable(state, t, f_t, f_n, tau, speed):
+    """Whether a sample is finite and later than the last one."""
+    finite = math.isfinite(f_t) and math.isfinite(f_n) and math.isfinite(tau) and math.isfinite(speed)
+    return finite and math.isfinite(t) and (state.samples == 0 or t - state.t > 0.0)
+
+
+@njit
+def publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate):
+    """Closes a sample: remembers t [s] and f_n [N], writes the ESTIMATE record."""
+    state.t = t
+    state.f_n = f_n
+    state.samples += 1
+    estimate.mu_s = state.mu_s
+    estimate.mu_c = state.mu_c
+    estimate.r = state.r
+    estimate.gamma_t = gamma_t
+    estimate.gamma_tau = gamma_tau
+    estimate.support_mu_s = state.events_mu_s / (state.events_mu_s + 1.0)
+    estimate.support_mu_c = 1.0 - p.forgetting**state.updates_mu_c
+    estimate.support_r = 1.0 - p.forgetting**state.updates_r
+    estimate.events_mu_s = state.events_mu_s
+    estimate.updates_mu_c = state.updates_mu_c
+    estimate.updates_r = state.updates_r
+    estimate.slipping = state.slipping
+    estimate.halted = halted

@@ -1,0 +1,37 @@
+"""The cache of compiled kernels notices a change in a function of another file."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import estimator
+
+CALL = """
+import estimator
+est = estimator.make("rls")
+for k in range(3):
+    e = est.update(k, (2.0, 0.0, 5.0, 0.0), (0.02, 0.0, 0.0))
+print(e.gamma_t)
+"""
+
+
+def test_an_edited_shared_function_is_compiled_again(tmp_path):
+    copy = tmp_path / "estimator"
+    shutil.copytree(Path(estimator.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))
+
+    def gamma_t() -> float:
+        done = subprocess.run(
+            [sys.executable, "-c", CALL], cwd=tmp_path, capture_output=True, text=True, check=True
+        )
+        return float(done.stdout.split()[-1])
+
+    before = gamma_t()
+    assert before == gamma_t() == 1.0
+    kernel = copy / "stick_slip" / "kernel.py"  # called from rls/kernel.py
+    law = kernel.read_text()
+    assert "return translation / norm," in law
+    kernel.write_text(law.replace("return translation / norm,", "return 0.5 * translation / norm,"))
+    assert gamma_t() == pytest.approx(0.5 * before)
