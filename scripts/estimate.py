@@ -55,7 +55,9 @@ def main(
         path = output.expanduser().resolve() / records.run_name(log)
         with filled_in_place(path) as folder:
             records.write(result, folder)
-    except (ValueError, OSError, ModuleNotFoundError) as error:
+    except ModuleNotFoundError as error:
+        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+    except (ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
     typer.echo(f"{records.report(result)}\n\nLook at:")
     for name in ("estimates.png", "summary.md", "estimates.csv"):

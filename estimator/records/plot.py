@@ -9,7 +9,7 @@ import numpy as np
 from estimator.records.extras import extra
 from estimator.records.run import Result
 
-# Okabe and Ito: the colour-blind tell them apart
+# of Okabe and Ito, and Tol: the colour-blind tell them apart
 _BLUE, _VERMILION, _GREEN, _PURPLE = "#0072B2", "#D55E00", "#009E73", "#AA4499"
 _INK, _MUTED, _BAND = "#222222", "#767676", "#E3E8EE"
 _RC: Any = {
@@ -52,7 +52,8 @@ def plot(result: Result) -> Any:
             draw(axes, result)
         _name_halts(panels[0], result)
         panels[-1].set_xlabel("time [s]")
-        panels[-1].set_xlim(result.samples.t[0], result.samples.t[-1])
+        first, last = result.samples.t[[0, -1]]
+        panels[-1].set_xlim(0.0 if 0.0 <= first < 0.05 * last else first, last)
         figure.suptitle(_title(result), x=0.01, ha="left", fontsize=9.0, color=_MUTED)
         figure.align_ylabels()
     return figure

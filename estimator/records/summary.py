@@ -69,7 +69,8 @@ def final_rows(result: Result) -> list[list[str]]:
         ]
         if known and truth is not None:
             true = scale * float(truth[-1, k])
-            cells += [f"{true:.{digits}f}", f"{100.0 * (value / true - 1.0):+.0f} %".replace("-", "−")]
+            error = f"{100.0 * (value / true - 1.0):+.0f} %".replace("-", "−")
+            cells += [f"{true:.{digits}f}", error if last[_COUNTS[name]] else "–"]
         rows.append(cells)
     return rows
 

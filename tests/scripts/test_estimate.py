@@ -19,8 +19,8 @@ SHIPPED = ROOT / "examples" / "linear_slip_wood.csv.gz"
 OPTIONS = {"duration": 0.6, "distance": 0.01, "settle": 0.1, "hold": 0.1}
 
 
-def call(folder, script, *arguments):
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100"}
+def call(folder, script, *arguments, path=ROOT):
+    environment = {**os.environ, "PYTHONPATH": str(path), "COLUMNS": "100"}
     return subprocess.run(
         [sys.executable, ROOT / "scripts" / script, *map(str, arguments)],
         cwd=folder,
@@ -61,6 +61,15 @@ def test_mistakes_are_explained_without_a_traceback_and_leave_nothing(tmp_path, 
     assert message in " ".join(done.stderr.split())
     assert "Traceback" not in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("missing", ["typer", "pandas"])
+def test_a_missing_extra_says_how_to_install_it(tmp_path, missing):
+    (tmp_path / f"{missing}.py").write_text(f"raise ModuleNotFoundError('none', name={missing!r})")
+    done = call(tmp_path, "estimate.py", SHIPPED, path=f"{tmp_path}{os.pathsep}{ROOT}")
+    assert done.returncode != 0
+    assert f"{missing} is not installed: pip install 'slipgym[eval]'" in " ".join(done.stderr.split())
+    assert "Traceback" not in done.stderr
 
 
 def test_from_an_episode_to_estimates(tmp_path):
