@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.records.record import Array, Record, twist_at
+from estimator.records.record import Array, Record, seconds, twist_at
 
 GAP_PERIODS = 5.0
 """Sample periods without a sample that make a gap."""
@@ -89,7 +89,7 @@ def period(t: Array) -> float:
 def _refuse_gaps(source: str, what: str, t: Array, limit: float) -> None:
     at = np.flatnonzero(np.diff(t) > limit)
     if len(at):
-        where = ", ".join(f"{t[k]:.6g} to {t[k + 1]:.6g} s" for k in at[:5])
+        where = ", ".join(f"{seconds(t[k])} to {seconds(t[k + 1])} s" for k in at[:5])
         more = f" and {len(at) - 5} more" if len(at) > 5 else ""
         raise ValueError(
             f"{source}: no {what} for more than {1e3 * limit:.3g} ms: {where}{more}; "
@@ -98,4 +98,4 @@ def _refuse_gaps(source: str, what: str, t: Array, limit: float) -> None:
 
 
 def _span(t: Array) -> str:
-    return f"{t[0]:.6g} to {t[-1]:.6g} s"
+    return f"{seconds(t[0])} to {seconds(t[-1])} s"

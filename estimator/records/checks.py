@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from estimator.online import TWIST, WRENCH
-from estimator.records.record import Array, Rows
+from estimator.records.record import Array, Rows, seconds
 
 _FORCE_MAX = 500.0  # median normal force [N]
 _SPEED_MAX = 5.0  # [m/s]
@@ -39,7 +39,7 @@ def check_time(source: str, t: Array, rows: Rows, what: str) -> None:
         k = int(np.argmax(step <= 0.0))
         how = "repeats" if step[k] == 0.0 else "goes back from"
         raise ValueError(
-            f"{source}: row {rows[k + 1]}: the time {t[k + 1]:.9g} s {how} the {t[k]:.9g} s "
+            f"{source}: row {rows[k + 1]}: the time {seconds(t[k + 1])} s {how} the {seconds(t[k])} s "
             f"of row {rows[k]}; sort the record and drop repetitions"
         )
     if np.median(step) > _PERIOD_MAX:

@@ -90,7 +90,7 @@ def _column(source: str, key: Any, value: Any) -> Column | None:
     unit, sign = given.get("unit", next(iter(units))), given.get("sign", 1)
     if not isinstance(column, str) or not column:
         raise ValueError(f"{source}: {key}: {column!r} must be the name of a column, as text")
-    if unit not in units:
+    if not isinstance(unit, str) or unit not in units:
         raise ValueError(f"{source}: {key}: {unknown('unknown unit', unit, units)}")
     if isinstance(sign, bool) or sign not in (1, -1):
         raise ValueError(f"{source}: {key}: sign = {sign!r} must be 1 or -1")

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from estimator.records.alignment import GAP_PERIODS, period
 from estimator.records.extras import extra
+from estimator.records.record import Array
 from estimator.records.run import Result
 
 # of Okabe and Ito, and Tol: the colour-blind tell them apart
@@ -44,6 +47,7 @@ def plot(result: Result) -> Any:
         ModuleNotFoundError: The extra `slipgym[eval]` is not installed.
     """
     matplotlib = extra("matplotlib")
+    result, clock = _near_zero(result)
     with matplotlib.rc_context(_RC):
         figure = extra("matplotlib.figure").Figure(figsize=(8.4, 7.4))
         panels = figure.subplots(4, 1, sharex=True, height_ratios=(1.15, 1.0, 1.3, 0.8))
@@ -51,7 +55,7 @@ def plot(result: Result) -> Any:
             _shade_halts(axes, result)
             draw(axes, result)
         _name_halts(panels[0], result)
-        panels[-1].set_xlabel("time [s]")
+        panels[-1].set_xlabel(clock)
         first, last = result.samples.t[[0, -1]]
         panels[-1].set_xlim(0.0 if 0.0 <= first < 0.05 * last else first, last)
         figure.suptitle(_title(result), x=0.01, ha="left", fontsize=9.0, color=_MUTED)
@@ -59,11 +63,23 @@ def plot(result: Result) -> Any:
     return figure
 
 
+def _near_zero(result: Result) -> tuple[Result, str]:
+    """The result on a clock that can be read, not in seconds since 1970, and the name of that clock."""
+    record, samples = result.record, result.samples
+    start = min(record.force_t[0], samples.t[0])
+    if abs(start) <= 10.0 * (samples.t[-1] - start):
+        return result, "time [s]"
+    record = replace(record, force_t=record.force_t - start)
+    return replace(
+        result, record=record, samples=replace(samples, t=samples.t - start)
+    ), "time since the start [s]"
+
+
 def _forces(axes: Any, result: Result) -> None:
     record = result.record
     tangential = np.hypot(record.wrench[:, 0], record.wrench[:, 1])
-    axes.plot(record.force_t, record.wrench[:, 2], color=_INK, linewidth=1.0)
-    axes.plot(record.force_t, tangential, color=_BLUE, linewidth=1.0)
+    _line(axes, record.force_t, record.wrench[:, 2], color=_INK, linewidth=1.0)
+    _line(axes, record.force_t, tangential, color=_BLUE, linewidth=1.0)
     axes.set_ylabel("force [N]")
     axes.set_ylim(bottom=min(0.0, float(record.wrench[:, 2].min())))
     _beside(axes, {"normal": (record.wrench[-1, 2], _INK), "tangential": (tangential[-1], _BLUE)})
@@ -73,8 +89,8 @@ def _speed(axes: Any, result: Result) -> None:
     samples, r = result.samples, result.estimates["r"]
     sliding = 1e3 * np.hypot(samples.twist[:, 0], samples.twist[:, 1])
     turning = 1e3 * np.abs(r * samples.twist[:, 2])
-    axes.plot(samples.t, sliding, color=_BLUE, linewidth=1.1)
-    axes.plot(samples.t, turning, color=_PURPLE, linewidth=1.1)
+    _line(axes, samples.t, sliding, color=_BLUE, linewidth=1.1)
+    _line(axes, samples.t, turning, color=_PURPLE, linewidth=1.1)
     axes.set_ylabel("slip speed [mm/s]")
     axes.set_ylim(bottom=0.0)
     _beside(axes, {"sliding": (sliding[-1], _BLUE), "turning, r|ω|": (turning[-1], _PURPLE)})
@@ -100,25 +116,36 @@ def _radius(axes: Any, result: Result) -> None:
     known = _estimate(axes, result, "r", 1e3, _PURPLE)
     _truth(axes, result, 2, 1e3, _PURPLE)
     axes.set_ylabel("radius [mm]")
-    axes.set_ylim(0.0, 1.15 * r.max())
+    true = 0.0 if result.samples.truth is None else 1e3 * np.nan_to_num(result.samples.truth[:, 2]).max()
+    axes.set_ylim(0.0, 1.15 * max(r.max(), true))
     _beside(axes, {f"r {r[-1]:.1f}" if known else "r not observed": (r[-1], _PURPLE)})
 
 
 def _estimate(axes: Any, result: Result, name: str, scale: float, colour: str) -> bool:
     """Draws one value, pale while it is the start value; says whether data stands behind the last."""
-    t, value, known = (
-        result.samples.t,
-        scale * result.estimates[name],
-        result.estimates[f"support_{name}"] > 0.0,
-    )
-    axes.plot(t, np.where(known, np.nan, value), color=colour, alpha=0.35, drawstyle="steps-post")
-    axes.plot(t, np.where(known, value, np.nan), color=colour, drawstyle="steps-post")
+    t, value = result.samples.t, scale * result.estimates[name]
+    known = result.estimates[f"support_{name}"] > 0.0
+    _line(axes, t, np.where(known, np.nan, value), color=colour, alpha=0.35, drawstyle="steps-post")
+    _line(axes, t, np.where(known, value, np.nan), color=colour, drawstyle="steps-post")
     return bool(known[-1])
+
+
+def _line(axes: Any, t: Array, values: Array, **style: Any) -> None:
+    """Draws a line that breaks where the record has a gap."""
+    gaps = np.flatnonzero(np.diff(t) > GAP_PERIODS * period(t)) + 1
+    axes.plot(np.insert(t, gaps, np.nan), np.insert(values, gaps, np.nan), **style)
 
 
 def _truth(axes: Any, result: Result, k: int, scale: float, colour: str) -> None:
     if result.samples.truth is not None:
-        axes.plot(result.samples.t, scale * result.samples.truth[:, k], "--", color=colour, linewidth=1.0)
+        _line(
+            axes,
+            result.samples.t,
+            scale * result.samples.truth[:, k],
+            color=colour,
+            linestyle="--",
+            linewidth=1.0,
+        )
 
 
 def _shade_halts(axes: Any, result: Result) -> None:

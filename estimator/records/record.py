@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,11 @@ class Record:
     """v_x, v_y, omega at the sensor's origin, (m, 3) [m/s, m/s, rad/s]."""
     truth: Array | None
     """mu_s, mu_c, r by force sample, (n, 3) [-, -, m], NaN where unknown; None: the record has none."""
+
+
+def seconds(t: Any) -> str:
+    """A time to the microsecond [s], whatever its origin."""
+    return f"{t:.6f}".rstrip("0").rstrip(".")
 
 
 def wrench_at(wrench: Array, cop: Array) -> Array:

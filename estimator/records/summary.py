@@ -70,7 +70,8 @@ def final_rows(result: Result) -> list[list[str]]:
         if known and truth is not None:
             true = scale * float(truth[-1, k])
             error = f"{100.0 * (value / true - 1.0):+.0f} %".replace("-", "−")
-            cells += [f"{true:.{digits}f}", error if last[_COUNTS[name]] else "–"]
+            compared = last[_COUNTS[name]] > 0 and not np.isnan(true)
+            cells += ["–" if np.isnan(true) else f"{true:.{digits}f}", error if compared else "–"]
         rows.append(cells)
     return rows
 

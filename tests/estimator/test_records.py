@@ -9,6 +9,7 @@ import pytest
 
 import estimator
 from estimator import records
+from estimator.records.plot import plot
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = ROOT / "examples" / "linear_slip_wood.csv.gz"
@@ -117,7 +118,7 @@ def test_without_the_heuristic_the_shipped_record_collapses():
 def test_a_gap_starts_the_estimator_afresh(table, save):
     cut = table.loc[(table["t"] < 0.8) | (table["t"] > 1.2)]
     record = records.load(save(cut))
-    with pytest.raises(ValueError, match=r"no velocity for more than 41\.7 ms: 0\.791667 to 1\.20833 s"):
+    with pytest.raises(ValueError, match=r"no velocity for more than 41\.7 ms: 0\.791667 to 1\.208333 s"):
         records.estimate(record)
     result = records.estimate(record, allow_gaps=True)
     after = result.samples.segment == 1
@@ -164,6 +165,15 @@ def test_a_run_writes_what_it_found(table, save, tmp_path):
         "mu_s: not observed",
     ):
         assert words in page
+
+
+def test_seconds_since_1970_are_a_clock_too(table, save):
+    plain = records.estimate(records.load(save(table)))
+    later = records.estimate(records.load(save(table.assign(t=1.7e9 + table["t"]), "log.parquet")))
+    np.testing.assert_allclose(later.estimates["mu_c"], plain.estimates["mu_c"])
+    axes = plot(later).axes[-1]
+    assert axes.get_xlabel() == "time since the start [s]"
+    assert axes.get_xlim() == pytest.approx((0.0, 2.0), abs=2e-3)
 
 
 def test_no_contact_is_said(table, save):
