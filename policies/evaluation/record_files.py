@@ -9,9 +9,8 @@ from typing import Any
 
 import pandas as pd
 
+from estimator.records.table import TYPES
 from policies.evaluation.sensor_record import TWIST
-
-TYPES = (".csv", ".csv.gz", ".parquet")
 
 
 def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -> None:
