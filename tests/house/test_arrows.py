@@ -86,3 +86,8 @@ def test_import_slipgym_is_light():
 
 def test_a_heavy_import_is_found():
     assert loaded_by("import slipgym, pydantic") & HEAVY == {"pydantic"}
+
+
+def test_the_records_room_loads_tables_and_figures_only_when_used():
+    loaded = loaded_by("import estimator.records")
+    assert loaded & ({"slipgym", "policies", "pandas", "matplotlib", "yaml", "numba"} | LEARNING) == set()

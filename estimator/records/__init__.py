@@ -1,0 +1,32 @@
+"""The estimator on a record: a table of forces and slip velocities from a simulator or a real gripper.
+
+    from estimator import records
+
+    record = records.load("log.csv", records.load_columns("mapping.yaml"))
+    result = records.estimate(record, "rls")
+    print(records.report(result))
+
+pandas, PyYAML and matplotlib are imported when a function needs them: the extra `slipgym[eval]`.
+"""
+
+from estimator.records.columns import Column, Columns, load_columns
+from estimator.records.reading import load
+from estimator.records.record import Record
+from estimator.records.results import write
+from estimator.records.run import Result, estimate
+from estimator.records.settings import parse_settings, run_name
+from estimator.records.summary import report
+
+__all__ = [
+    "Column",
+    "Columns",
+    "Record",
+    "Result",
+    "estimate",
+    "load",
+    "load_columns",
+    "parse_settings",
+    "report",
+    "run_name",
+    "write",
+]

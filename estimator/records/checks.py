@@ -1,0 +1,128 @@
+"""What no record of a finger can be: refusals that say what to do.
+
+Plausible records pass whatever they show; the bounds are an order of magnitude beyond a gripper's finger.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from estimator.online import TWIST, WRENCH
+from estimator.records.record import Array, Rows, seconds
+
+_FORCE_MAX = 500.0  # median normal force [N]
+_SPEED_MAX = 5.0  # [m/s]
+_SPIN_MAX = 200.0  # [rad/s]
+_COP_MAX = 0.5  # median distance of the centre of pressure from the origin [m]
+_LEVER_MAX = 0.1  # torque at the centre of pressure over normal force [m]
+_PERIOD_MAX = 1.0  # [s]
+
+
+def check_time(source: str, t: Array, rows: Rows, what: str) -> None:
+    """Refuses a time that is missing, does not increase, or is in another unit.
+
+    Args:
+        source: Name of the file.
+        t: Time of the samples of one stream, (n,) [s].
+        rows: Their rows in the file, counted from 1, (n,).
+        what: "force" or "velocity".
+
+    Raises:
+        ValueError: As said.
+    """
+    if len(t) < 2:
+        raise ValueError(f"{source}: {len(t)} {what} samples; at least 2 are needed")
+    if np.isnan(t).any():
+        raise ValueError(f"{source}: row {rows[np.argmax(np.isnan(t))]}: the time is missing")
+    step = np.diff(t)
+    if (step <= 0.0).any():
+        k = int(np.argmax(step <= 0.0))
+        how = "repeats" if step[k] == 0.0 else "goes back from"
+        raise ValueError(
+            f"{source}: row {rows[k + 1]}: the time {seconds(t[k + 1])} s {how} the {seconds(t[k])} s "
+            f"of row {rows[k]}; sort the record and drop repetitions"
+        )
+    if np.median(step) > _PERIOD_MAX:
+        raise ValueError(
+            f"{source}: {what} samples are {np.median(step):.4g} s apart; is the time in ms? "
+            "`t: {unit: ms}` in the mapping says so"
+        )
+
+
+def check_wrench(source: str, wrench: Array) -> None:
+    """Refuses normal forces of the wrong sign or unit.
+
+    Args:
+        source: Name of the file.
+        wrench: f_x, f_y, f_n, tau, (n, 4) [N, N, N, N m].
+
+    Raises:
+        ValueError: As said.
+    """
+    f_n = wrench[:, WRENCH.index("f_n")]
+    typical = np.median(f_n)
+    if np.quantile(f_n, 0.99) < 0.0 or (typical < 0.0 and -f_n.min() > 10.0 * f_n.max()):
+        raise ValueError(
+            f"{source}: f_n is negative throughout (median {typical:.4g} N), but pressure is positive; "
+            "`f_n: {sign: -1}` in the mapping turns it"
+        )
+    if typical > _FORCE_MAX:
+        raise ValueError(f"{source}: median of f_n is {typical:.4g} N; in mN? `f_n: {{unit: mN}}` says so")
+
+
+def check_torque(source: str, wrench: Array) -> None:
+    """Refuses torques at the centre of pressure that no friction of these forces can make.
+
+    Args:
+        source: Name of the file.
+        wrench: At the centre of pressure, (n, 4) [N, N, N, N m].
+
+    Raises:
+        ValueError: As said.
+    """
+    force, torque = (np.quantile(np.abs(wrench[:, k]), 0.95) for k in (2, 3))
+    if torque > _LEVER_MAX * max(force, 1.0):
+        raise ValueError(
+            f"{source}: tau reaches {torque:.4g} N m where f_n reaches {force:.4g} N, more than a finger pad "
+            "can hold; in N mm? `tau: {unit: N mm}` says so. Taken far from the pad? Then the record needs "
+            "the CoP (cop_x, cop_y) or the tilting torques (tau_x, tau_y)"
+        )
+
+
+def check_twist(source: str, twist: Array, rows: Rows) -> None:
+    """Refuses velocities that no slip in a grip has.
+
+    Args:
+        source: Name of the file.
+        twist: v_x, v_y, omega, (m, 3) [m/s, m/s, rad/s].
+        rows: Rows in the file, counted from 1, (m,).
+
+    Raises:
+        ValueError: As said.
+    """
+    bounds = ((_SPEED_MAX, "m/s", "mm/s"), (_SPEED_MAX, "m/s", "mm/s"), (_SPIN_MAX, "rad/s", "deg/s"))
+    for k, (bound, unit, meant) in enumerate(bounds):
+        worst = int(np.argmax(np.abs(twist[:, k])))
+        if abs(twist[worst, k]) > bound:
+            raise ValueError(
+                f"{source}: row {rows[worst]}: {TWIST[k]} = {twist[worst, k]:.4g} {unit}, "
+                f"above {bound:g}; in {meant}? `{TWIST[k]}: {{unit: {meant}}}` says so"
+            )
+
+
+def check_cop(source: str, cop: Array) -> None:
+    """Refuses a centre of pressure far from any pad.
+
+    Args:
+        source: Name of the file.
+        cop: (n, 2) [m].
+
+    Raises:
+        ValueError: As said.
+    """
+    distance = np.median(np.hypot(cop[:, 0], cop[:, 1]))
+    if distance > _COP_MAX:
+        raise ValueError(
+            f"{source}: the CoP is {distance:.4g} m from the origin; "
+            "cop_x and cop_y in mm, or tau_x and tau_y in N mm? `{unit: …}` in the mapping says so"
+        )

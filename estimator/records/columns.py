@@ -1,0 +1,97 @@
+"""Which column of a record is what: the mapping."""
+
+from __future__ import annotations
+
+import difflib
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from estimator.records.extras import extra
+from estimator.records.units import OPTIONAL, REQUIRED, UNITS
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a file."""
+
+    column: str
+    """Its name in the file."""
+    unit: str
+    """Its unit, one of `UNITS` of its key."""
+    factor: float
+    """What its values are multiplied with to be SI in slipgym's sign."""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """A mapping from slipgym's names to columns.
+
+    A key that is not given is the column of the same name, in SI units.
+    """
+
+    given: Mapping[str, Column | None] = field(default_factory=dict)
+    """Key -> its column; None: leave out what the file may have under that name."""
+
+    def __getitem__(self, key: str) -> Column | None:
+        if key in self.given:
+            return self.given[key]
+        return Column(key, next(iter(UNITS[key])), 1.0)
+
+    def needs(self, key: str) -> bool:
+        """Whether a file must have the column: all that is required, and what the mapping names."""
+        return self.given.get(key) is not None or key in REQUIRED
+
+
+def load_columns(path: str | os.PathLike[str] | None) -> Columns:
+    """Reads a mapping.
+
+    Args:
+        path: A YAML file; None for the default mapping, whose names are slipgym's own.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        ValueError: It is no mapping, or holds an unknown key, unit or sign.
+    """
+    if path is None:
+        return Columns()
+    path, yaml = Path(path), extra("yaml")
+    try:
+        values = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise ValueError(f"{path.name}: {error}") from error
+    if not isinstance(values, dict):
+        raise ValueError(f"{path.name}: must be a mapping of names to columns, such as `f_n: Fz`")
+    return Columns({key: _column(path.name, key, value) for key, value in values.items()})
+
+
+def unknown(what: str, name: object, valid: Iterable[str]) -> str:
+    """The message for a name that is not a valid one, with a guess at the one that was meant."""
+    valid = list(valid)
+    lower = {known.lower(): known for known in valid}
+    close = difflib.get_close_matches(str(name).lower(), lower, n=1)
+    guess = f"did you mean {lower[close[0]]!r}? " if close else ""
+    return f"{what} {name!r}; {guess}valid: {', '.join(valid)}"
+
+
+def _column(source: str, key: Any, value: Any) -> Column | None:
+    if key not in UNITS:
+        raise ValueError(f"{source}: {unknown('unknown key', key, UNITS)}")
+    if value is None and key in OPTIONAL:
+        return None
+    given = value if isinstance(value, dict) else {"column": value}
+    for name in given:
+        if name not in ("column", "unit", "sign"):
+            raise ValueError(f"{source}: {key}: {unknown('unknown key', name, ('column', 'unit', 'sign'))}")
+    column = given.get("column", key)
+    units = UNITS[key]
+    unit, sign = given.get("unit", next(iter(units))), given.get("sign", 1)
+    if not isinstance(column, str) or not column:
+        raise ValueError(f"{source}: {key}: {column!r} must be the name of a column, as text")
+    if not isinstance(unit, str) or unit not in units:
+        raise ValueError(f"{source}: {key}: {unknown('unknown unit', unit, units)}")
+    if isinstance(sign, bool) or sign not in (1, -1):
+        raise ValueError(f"{source}: {key}: sign = {sign!r} must be 1 or -1")
+    return Column(column, unit, sign * units[unit])

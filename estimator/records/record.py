@@ -1,0 +1,87 @@
+"""A record of one finger: two streams, each at its own rate, in SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Record:
+    """Forces and slip velocities of one finger.
+
+    Wrench and twist are at the centre of pressure (CoP), where the columns allowed to move them there.
+    """
+
+    name: str
+    """Name of its file."""
+    force_t: Array
+    """Time of each force sample, increasing, (n,) [s]."""
+    wrench: Array
+    """f_x, f_y, f_n, tau, (n, 4) [N, N, N, N m]."""
+    cop: Array | None
+    """Centre of pressure by force sample, (n, 2) [m]; None: the record does not say."""
+    twist_t: Array
+    """Time of each velocity sample, increasing, (m,) [s]."""
+    twist: Array
+    """v_x, v_y, omega at the sensor's origin, (m, 3) [m/s, m/s, rad/s]."""
+    truth: Array | None
+    """mu_s, mu_c, r by force sample, (n, 3) [-, -, m], NaN where unknown; None: the record has none."""
+
+
+def seconds(t: Any) -> str:
+    """A time to the microsecond [s], whatever its origin."""
+    return f"{t:.6f}".rstrip("0").rstrip(".")
+
+
+def wrench_at(wrench: Array, cop: Array) -> Array:
+    """Moves wrenches from the sensor's origin to the centre of pressure: tau - c × f_t.
+
+    Args:
+        wrench: f_x, f_y, f_n, tau, (n, 4) [N, N, N, N m].
+        cop: (n, 2) [m].
+
+    Returns:
+        (n, 4), a new array.
+    """
+    moved = wrench.copy()
+    moved[:, 3] -= cop[:, 0] * wrench[:, 1] - cop[:, 1] * wrench[:, 0]
+    return moved
+
+
+def twist_at(twist: Array, cop: Array) -> Array:
+    """Moves twists from the sensor's origin to the centre of pressure: v + omega × c.
+
+    Args:
+        twist: v_x, v_y, omega, (n, 3) [m/s, m/s, rad/s].
+        cop: (n, 2) [m].
+
+    Returns:
+        (n, 3), a new array.
+    """
+    moved = twist.copy()
+    moved[:, 0] -= twist[:, 2] * cop[:, 1]
+    moved[:, 1] += twist[:, 2] * cop[:, 0]
+    return moved
+
+
+def cop_of_tilt(tilt: Array, f_n: Array, threshold: float) -> Array:
+    """Centre of pressure from the tilting torques: c = (-tau_y, tau_x) / f_n.
+
+    Args:
+        tilt: tau_x, tau_y at the sensor's origin, (n, 2) [N m].
+        f_n: Normal force, (n,) [N].
+        threshold: Normal force below which it is taken as the origin [N].
+
+    Returns:
+        (n, 2) [m].
+    """
+    pressed = f_n >= threshold
+    load = np.where(pressed, f_n, 1.0)
+    return np.column_stack((-tilt[:, 1], tilt[:, 0])) / load[:, None] * pressed[:, None]

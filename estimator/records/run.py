@@ -1,0 +1,59 @@
+"""The estimator over a record."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from estimator.estimate import ESTIMATE
+from estimator.parameters import Parameters
+from estimator.records.alignment import Samples, align
+from estimator.records.record import Record
+from estimator.registry import make_batch
+
+
+@dataclass(frozen=True)
+class Result:
+    """A record with its estimates."""
+
+    record: Record
+    """What was read."""
+    samples: Samples
+    """What the estimator got, (k,) rows."""
+    estimates: np.ndarray
+    """What it said, ESTIMATE (k,)."""
+    estimator: str
+    """Its name."""
+    parameters: Parameters
+    """All its parameters."""
+    given: Mapping[str, Any] = field(default_factory=dict)
+    """Those that are not at their default."""
+
+
+def estimate(record: Record, estimator: str = "rls", allow_gaps: bool = False, **parameters: Any) -> Result:
+    """Runs an estimator over a record, once per velocity sample with the newest force at or before it.
+
+    Args:
+        record: From `load`.
+        estimator: One of `estimator.names()`.
+        allow_gaps: Whether to go on after a gap, with the estimator reset.
+        **parameters: Parameters of the estimator.
+
+    Raises:
+        ValueError: The estimator or a parameter is unknown, a value is out of range, there is a gap, or the
+            two streams do not overlap.
+    """
+    finger = make_batch(estimator, 1, **parameters)
+    samples = align(record, allow_gaps)
+    estimates = np.zeros(len(samples.t), ESTIMATE)
+    segment = samples.segment[0]
+    for k, t in enumerate(samples.t):
+        if samples.segment[k] != segment:
+            segment = samples.segment[k]
+            finger.reset()
+        finger.update(t, samples.wrench[k : k + 1], samples.twist[k : k + 1])
+        estimates[k] = finger.estimates[0]
+    return Result(record, samples, estimates, estimator, finger.parameters, parameters)

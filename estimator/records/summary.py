@@ -1,0 +1,134 @@
+"""What a run found, in words and numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from estimator.records.alignment import period
+from estimator.records.reading import CONTACT
+from estimator.records.run import Result
+
+_NAMES = ("mu_s", "mu_c", "r")
+_COUNTS = {"mu_s": "events_mu_s", "mu_c": "updates_mu_c", "r": "updates_r"}
+_LITTLE = 0.5
+_SPARSE = {
+    "mu_s": "it needs slips that start or stop in contact",
+    "mu_c": "it needs slip with translation in it",
+    "r": "it needs slip with rotation in it",
+}
+
+
+def report(result: Result) -> str:
+    """The findings for a terminal: final values with their support, and what was not observable."""
+    rows = final_rows(result)
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    lines = [
+        "  ".join([row[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True))])
+        for row in rows
+    ]
+    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:], "", *not_observable(result)])
+
+
+def markdown(result: Result) -> str:
+    """The findings as a page."""
+    heading, *rows = final_rows(result)
+    facts = record_facts(result)
+    settings = (
+        ", ".join(f"{name} = {value}" for name, value in result.given.items()) or "all at their defaults"
+    )
+    parts = [
+        f"# {result.record.name}",
+        f"Estimator `{result.estimator}`; parameters: {settings}.",
+        "## Final values",
+        "\n".join([_row(heading), "| --- |" + " ---: |" * (len(heading) - 1), *map(_row, rows)]),
+        "Support is 0 for an untouched start value and near 1 once data has replaced it.",
+        "## What was not observable",
+        "\n".join(f"- {line}" for line in not_observable(result)),
+        "## The record",
+        "\n".join(["| | |", "| --- | ---: |", *(_row(fact) for fact in facts)]),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def final_rows(result: Result) -> list[list[str]]:
+    """A heading, then mu_s, mu_c and r as cells: value, support, data behind it, and truth where known."""
+    last, truth = result.estimates[-1], result.samples.truth
+    known = truth is not None and not np.isnan(truth[-1]).all()
+    rows = [["", "final", "support", "data", *(["true", "error"] if known else [])]]
+    for k, name in enumerate(_NAMES):
+        scale, digits = (1e3, 2) if name == "r" else (1.0, 3)
+        data = f"{last[_COUNTS[name]]} {'events' if name == 'mu_s' else 'samples'}"
+        value = scale * float(last[name])
+        cells = [
+            "r [mm]" if name == "r" else name,
+            f"{value:.{digits}f}",
+            f"{last[f'support_{name}']:.2f}",
+            data,
+        ]
+        if known and truth is not None:
+            true = scale * float(truth[-1, k])
+            error = f"{100.0 * (value / true - 1.0):+.0f} %".replace("-", "−")
+            compared = last[_COUNTS[name]] > 0 and not np.isnan(true)
+            cells += ["–" if np.isnan(true) else f"{true:.{digits}f}", error if compared else "–"]
+        rows.append(cells)
+    return rows
+
+
+def not_observable(result: Result) -> list[str]:
+    """A line for each value that the record says little or nothing about."""
+    last, lines = result.estimates[-1], []
+    if not (result.samples.wrench[:, 2] >= CONTACT).any():
+        return [f"f_n never reaches {CONTACT} N: there was no contact."]
+    for name in _NAMES:
+        count, support = int(last[_COUNTS[name]]), float(last[f"support_{name}"])
+        if support >= _LITTLE:
+            continue
+        seen = (
+            "not observed: this is the start value" if count == 0 else f"little data ({count}): be cautious"
+        )
+        lines.append(f"{name}: {seen}; {_SPARSE[name]}.")
+    if result.samples.segment[-1] > 0:
+        lines.append(
+            "After a gap the estimator starts afresh: the final values know only what came after the last."
+        )
+    return lines or ["Everything was observed."]
+
+
+def record_facts(result: Result) -> list[list[str]]:
+    """What the record holds, as pairs of cells."""
+    record, samples, estimates = result.record, result.samples, result.estimates
+    halted, slipping = estimates["halted"], estimates["slipping"]
+    ends = np.append(np.flatnonzero(np.diff(samples.segment)), len(estimates) - 1)
+    contact = samples.wrench[:, 2] >= CONTACT
+    facts: list[tuple[str, Any]] = [
+        ("duration", f"{samples.t[-1] - samples.t[0]:.2f} s"),
+        ("force samples", f"{len(record.force_t)} at {1.0 / period(record.force_t):.0f} Hz"),
+        ("velocity samples", f"{len(record.twist_t)} at {1.0 / period(record.twist_t):.0f} Hz"),
+        ("velocity samples without a new enough force", samples.left_out),
+        ("gaps", samples.segment[-1]),
+        ("centre of pressure", "the origin" if record.cop is None else "from the record"),
+        ("in contact", _share(contact)),
+        ("slipping", _share(slipping)),
+        (
+            "normal force in contact, median",
+            f"{np.median(samples.wrench[contact, 2]):.2f} N" if contact.any() else "–",
+        ),
+        ("slip speed, largest", f"{1e3 * np.hypot(*samples.twist[:, :2].T).max():.1f} mm/s"),
+        ("stick-slip events that set mu_s", estimates["events_mu_s"][ends].sum()),
+        ("halts by the heuristic", f"{_starts(halted)}, {_share(halted)} of the samples"),
+    ]
+    return [[name, str(value)] for name, value in facts]
+
+
+def _row(cells: list[str]) -> str:
+    return "| " + " | ".join(cells) + " |"
+
+
+def _share(flags: np.ndarray) -> str:
+    return f"{100.0 * flags.mean():.0f} %"
+
+
+def _starts(flags: np.ndarray) -> int:
+    return int(np.count_nonzero(np.diff(flags.astype(int), prepend=0) == 1))

@@ -1,0 +1,113 @@
+"""Files as columns of numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from estimator.records.columns import Columns, unknown
+from estimator.records.extras import extra
+from estimator.records.record import Array
+from estimator.records.units import UNITS
+
+TYPES = (".csv", ".csv.gz", ".parquet")
+
+
+@dataclass(frozen=True)
+class Table:
+    """A file and how to find things in it."""
+
+    name: str
+    """Name of the file."""
+    frame: Any
+    """Its pandas.DataFrame."""
+    columns: Columns
+    """The mapping."""
+
+    def has(self, key: str) -> bool:
+        """Whether it holds what a key means; a column that the mapping names must be there.
+
+        Raises:
+            ValueError: The mapping names a column that is not there.
+        """
+        column = self.columns[key]
+        found = column is not None and column.column in self.frame.columns
+        if not found and self.columns.needs(key):
+            self.require([key])
+        return found
+
+    def require(self, keys: Sequence[str]) -> None:
+        """Refuses a file that lacks a column.
+
+        Args:
+            keys: What it must hold.
+
+        Raises:
+            ValueError: One line for each that is missing, then what is there and what a mapping may hold.
+        """
+        there, lines = [str(name) for name in self.frame.columns], []
+        for key in keys:
+            column = self.columns[key]
+            if column is not None and column.column not in there:
+                what = f"{key}: no column" if key != column.column else "no column"
+                lines.append(
+                    f"{self.name}: " + unknown(what, column.column, there).replace("valid", "it has")
+                )
+        if lines:
+            keys_of_mapping = f"map other names with --columns mapping.yaml; its keys: {', '.join(UNITS)}"
+            raise ValueError("\n".join([*lines, keys_of_mapping]))
+
+    def numbers(self, keys: Sequence[str]) -> Array:
+        """Columns in SI units and slipgym's signs; NaN where a cell is empty.
+
+        Args:
+            keys: What to read; `require` them first.
+
+        Returns:
+            (rows, len(keys)).
+
+        Raises:
+            ValueError: A cell is not a finite number.
+        """
+        found = np.empty((len(self.frame), len(keys)))
+        for k, key in enumerate(keys):
+            column = self.columns[key]
+            assert column is not None
+            cells = self.frame[column.column]
+            values = np.asarray(extra("pandas").to_numeric(cells, errors="coerce"), dtype=np.float64)
+            bad = (np.isnan(values) & ~np.asarray(cells.isna())) | np.isinf(values)
+            if bad.any():
+                row = int(np.argmax(bad))
+                cell = f"{column.column} = {cells.iloc[row]}"
+                raise ValueError(f"{self.name}: row {row + 1}: {cell} is not a finite number")
+            found[:, k] = column.factor * values
+        return found
+
+
+def read_table(path: Path, columns: Columns) -> Table:
+    """Reads a file.
+
+    Args:
+        path: A file of one of `TYPES`.
+        columns: The mapping.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        ValueError: It is of another type, or cannot be read as what its name says.
+    """
+    if not path.name.endswith(TYPES):
+        raise ValueError(f"{path.name}: unknown file type; records are {', '.join(TYPES)}")
+    if not path.is_file():
+        raise FileNotFoundError(f"{path}: no such file")
+    pandas = extra("pandas")
+    if path.suffix == ".parquet":
+        extra("pyarrow")
+    try:
+        frame = pandas.read_parquet(path) if path.suffix == ".parquet" else pandas.read_csv(path)
+    except (ValueError, OSError, EOFError) as error:
+        raise ValueError(f"{path.name}: cannot be read: {error}") from error
+    return Table(path.name, frame, columns)

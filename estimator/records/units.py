@@ -1,0 +1,35 @@
+"""What a record can hold, and the units it may come in."""
+
+from __future__ import annotations
+
+import math
+
+from estimator.online import TWIST, WRENCH
+
+TIME, VELOCITY_TIME = "t", "velocity_t"
+COP = ("cop_x", "cop_y")
+TILT = ("tau_x", "tau_y")
+TRUTH = ("true_mu_s", "true_mu_c", "true_r")
+REQUIRED = (TIME, *WRENCH, *TWIST)
+OPTIONAL = (*COP, *TILT, *TRUTH, VELOCITY_TIME)
+
+_SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+_FORCE = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
+_TORQUE = {"N m": 1.0, "N mm": 1e-3, "mN m": 1e-3, "N cm": 1e-2}
+_SPEED = {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "um/s": 1e-6}
+_SPIN = {"rad/s": 1.0, "deg/s": math.pi / 180.0, "mrad/s": 1e-3}
+_LENGTH = {"m": 1.0, "mm": 1e-3, "cm": 1e-2}
+_NUMBER = {"-": 1.0}
+
+UNITS: dict[str, dict[str, float]] = {
+    TIME: _SECONDS,
+    VELOCITY_TIME: _SECONDS,
+    **dict.fromkeys(("f_x", "f_y", "f_n"), _FORCE),
+    **dict.fromkeys(("tau", *TILT), _TORQUE),
+    **dict.fromkeys(("v_x", "v_y"), _SPEED),
+    "omega": _SPIN,
+    **dict.fromkeys(COP, _LENGTH),
+    **dict.fromkeys(("true_mu_s", "true_mu_c"), _NUMBER),
+    "true_r": _LENGTH,
+}
+"""Key of a mapping -> unit -> factor to SI; the first unit is the default."""

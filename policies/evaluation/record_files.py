@@ -1,0 +1,50 @@
+"""Records as files."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from estimator.records.table import TYPES
+from policies.evaluation.sensor_record import TWIST
+
+
+def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -> None:
+    """Writes a record; a csv keeps seven digits, which is finer than any of the sensors.
+
+    Args:
+        frame: From `record_sensors`.
+        path: Its type is in its name: one of `TYPES`.
+        velocity: A file of its own for the velocities; None keeps all in one.
+
+    Raises:
+        ValueError: The type is unknown.
+        OSError: A file cannot be written.
+    """
+    for target in (path, *([] if velocity is None else [velocity])):
+        if not target.name.endswith(TYPES):
+            raise ValueError(f"{target.name}: unknown file type; records are {', '.join(TYPES)}")
+    if velocity is None:
+        _write(frame, path)
+        return
+    twists = ["t", *TWIST]
+    forces = frame.drop(columns=list(TWIST))
+    _write(forces.loc[forces["f_n"].notna()], path)
+    _write(frame.loc[frame["omega"].notna(), twists], velocity)
+
+
+def _write(frame: pd.DataFrame, path: Path) -> None:
+    """Writes beside the target and moves into place."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".partial-", dir=path.parent) as folder:
+        partial = Path(folder) / path.name
+        if path.suffix == ".parquet":
+            frame.to_parquet(partial, index=False)
+        else:
+            packing: Any = {"method": "gzip", "mtime": 0} if path.suffix == ".gz" else None
+            frame.to_csv(partial, index=False, float_format="%.7g", compression=packing)
+        os.replace(partial, path)

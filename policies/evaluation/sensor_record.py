@@ -1,0 +1,106 @@
+"""What the sensors of one finger say during an episode, each at its own rate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pandas as pd
+
+import policies
+from slipgym.config.errors import unknown
+from slipgym.envs.loop import SlipLoop
+from slipgym.sensors.force_torque import HISTORY
+from slipgym.sensors.slip_velocity import read_slip
+from slipgym.tasks import TASKS
+
+FORCE = ("f_x", "f_y", "f_n", "tau_x", "tau_y", "tau")
+TWIST = ("v_x", "v_y", "omega")
+TRUTH = ("true_mu_s", "true_mu_c", "true_r")
+
+
+def record_sensors(
+    task: str,
+    policy: str,
+    finger: int = 1,
+    seed: int = 0,
+    options: Mapping[str, Any] | None = None,
+    **keywords: Any,
+) -> pd.DataFrame:
+    """Runs an episode and keeps every sample of one finger's sensors.
+
+    Args:
+        task: "LinearSlip" or another of `slipgym.tasks.TASKS`.
+        policy: A name of `policies.names()`.
+        finger: 1 or 2.
+        seed: Of the environment.
+        options: Of `reset`.
+        **keywords: Of the environment.
+
+    Returns:
+        A row for each time at which a sample is delivered: `t` [s], `FORCE` [N, N m] and `TWIST` [m/s, rad/s]
+        at the pad centre in the pad frame, NaN where that sensor has none, and `TRUTH` [-, -, m].
+
+    Raises:
+        ValueError: The task, the policy, the finger or an option is unknown or not allowed.
+    """
+    if task not in TASKS:
+        raise ValueError(unknown("task", task, TASKS))
+    if finger not in (1, 2):
+        raise ValueError(f"finger = {finger!r} must be 1 or 2")
+    controller = policies.make(policy)
+    env = gym.make(f"slipgym:slipgym/{task}-v0", disable_env_checker=True, **keywords)
+    try:
+        observation, _ = env.reset(seed=seed, options=dict(options or {}))
+        tap = _Tap(env.unwrapped._loop, finger - 1)  # type: ignore[attr-defined]
+        state, over = None, False
+        while not over:
+            action, state = controller.predict(observation, state=state)
+            observation, _, terminated, truncated, _ = env.step(action)
+            tap.take()
+            over = terminated or truncated
+        return tap.frame()
+    finally:
+        env.close()
+
+
+class _Tap:
+    """Collects the samples of one finger, step by step.
+
+    Args:
+        loop: The environment's loop, just reset.
+        finger: 0 or 1.
+    """
+
+    def __init__(self, loop: SlipLoop, finger: int) -> None:
+        self._loop, self._finger = loop, finger
+        self._start = int(loop.plant.world["tick"][0])
+        self._taken = int(loop.plant.force_torque["taken"][0, finger])
+        self._forces: list[tuple[float, ...]] = []
+        self._twists: list[tuple[float, ...]] = []
+
+    def take(self) -> None:
+        """Keeps what was sampled since the last call, at most `HISTORY` forces."""
+        plant, finger = self._loop.plant, self._finger
+        force = plant.force_torque[0, finger]
+        tick_length = float(plant.world["tick_length"][0])
+        for number in range(self._taken + 1, int(force["taken"]) + 1):
+            ticks = number * int(force["period"]) + int(force["delay"]) - self._start
+            load = force["history"][(number - 1) % HISTORY]
+            self._forces.append((ticks * tick_length, *load[:5], force["mirror"] * load[5]))
+        self._taken = int(force["taken"])
+        twist, chips = np.empty(3), plant.chips.copy()  # reading moves the chips' travel
+        read_slip(chips[0, finger], twist)
+        self._twists.append((self._loop.time, *twist))
+
+    def frame(self) -> pd.DataFrame:
+        """All samples in order of time; times to the microsecond, so that those of both sensors compare."""
+        forces = pd.DataFrame(self._forces, columns=["t", *FORCE])
+        twists = pd.DataFrame(self._twists, columns=["t", *TWIST])
+        for stream in (forces, twists):
+            stream["t"] = stream["t"].round(6)
+        last = twists["t"].iloc[-1]
+        frame = forces.loc[forces["t"] <= last].merge(twists, how="outer", on="t", sort=True)
+        return frame.assign(**dict(zip(TRUTH, self._loop.true_friction, strict=True)))

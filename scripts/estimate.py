@@ -1,0 +1,68 @@
+"""Runs a friction estimator on a record of forces and slip velocities."""
+
+from pathlib import Path
+from typing import Annotated
+
+try:
+    import typer
+except ModuleNotFoundError as error:
+    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+
+EPILOG = """
+Examples:\n
+\b
+  python scripts/estimate.py examples/linear_slip_wood.csv.gz
+  python scripts/estimate.py log.csv --columns examples/columns.yaml
+  python scripts/estimate.py forces.parquet --velocity velocities.parquet --allow-gaps
+  python scripts/estimate.py log.csv --set heuristic=false --set r0=0.01 --output /tmp/runs
+\n
+A record holds one finger: the time t [s], the wrench f_x, f_y, f_n, tau [N, N, N, N m] and the slip
+twist v_x, v_y, omega [m/s, m/s, rad/s]; cells are empty where a stream has no sample. Other names,
+units and signs: --columns. docs/records.md says all of it, and what a run writes.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG)
+def main(
+    log: Annotated[Path, typer.Argument(help="csv, csv.gz or parquet.", show_default=False)],
+    columns: Annotated[
+        Path | None, typer.Option(help="YAML: which column is what, its unit and sign.", show_default=False)
+    ] = None,
+    velocity: Annotated[
+        Path | None, typer.Option(help="A file of its own for the velocities.", show_default=False)
+    ] = None,
+    estimator: Annotated[str, typer.Option(help="Name of the estimator.")] = "rls",
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Its parameters; repeatable.")
+    ] = None,
+    allow_gaps: Annotated[
+        bool, typer.Option("--allow-gaps", help="Go on after a gap, with the estimator reset.")
+    ] = False,
+    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
+) -> None:
+    """Run a friction estimator on a record of one finger.
+
+    It sees each velocity sample with the newest force at or before it. Writes a folder with the estimates, a
+    summary and a figure, and prints the final values and what the record could not tell.
+    """
+    try:
+        from estimator import records
+        from policies.evaluation.folder import filled_in_place
+
+        record = records.load(log, records.load_columns(columns), velocity)
+        result = records.estimate(record, estimator, allow_gaps, **records.parse_settings(set_ or ()))
+        path = output.expanduser().resolve() / records.run_name(log)
+        with filled_in_place(path) as folder:
+            records.write(result, folder)
+    except ModuleNotFoundError as error:
+        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+    except (ValueError, OSError) as error:
+        raise typer.BadParameter(str(error)) from error
+    typer.echo(f"{records.report(result)}\n\nLook at:")
+    for name in ("estimates.png", "summary.md", "estimates.csv"):
+        typer.echo(f"  {path / name}")
+
+
+if __name__ == "__main__":
+    app()

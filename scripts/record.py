@@ -1,0 +1,51 @@
+"""Records the sensors of one finger in a simulated episode, for scripts/estimate.py."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EPILOG = """
+Examples:\n
+\b
+  python scripts/record.py LinearSlip linear_slip slide.csv.gz --material wood --option duration=3
+  python scripts/record.py LinearSlip linear_slip forces.parquet --velocity velocities.parquet --finger 2
+\n
+Forces come at 1000 Hz and velocities at 120 Hz, at the pad centre, with the true friction beside them;
+cells are empty where a sensor has no sample. docs/records.md describes the format.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG)
+def main(
+    task: Annotated[str, typer.Argument(help="LinearSlip, Hold, …", show_default=False)],
+    policy: Annotated[str, typer.Argument(help="Name of a policy.", show_default=False)],
+    record: Annotated[Path, typer.Argument(help="csv, csv.gz or parquet to write.", show_default=False)],
+    velocity: Annotated[
+        Path | None, typer.Option(help="A file of its own for the velocities.", show_default=False)
+    ] = None,
+    finger: Annotated[int, typer.Option(help="1 or 2.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed of the environment.")] = 0,
+    material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
+    sensors: Annotated[str, typer.Option(help="realistic or ideal.")] = "realistic",
+    option: Annotated[
+        list[str] | None, typer.Option(metavar="NAME=VALUE", help="Option of the episode; repeatable.")
+    ] = None,
+) -> None:
+    """Run an episode and write what one finger's sensors said, with its truth."""
+    from estimator.records import parse_settings
+    from policies.evaluation.record_files import save_record
+    from policies.evaluation.sensor_record import record_sensors
+
+    try:
+        options = parse_settings(option or (), "--option")
+        frame = record_sensors(task, policy, finger, seed, options, material=material, sensors=sensors)
+        save_record(frame, record, velocity)
+    except (ValueError, OSError) as error:
+        raise typer.BadParameter(str(error)) from error
+    typer.echo(f"{len(frame)} rows, {frame['t'].iloc[-1]:.2f} s: {record}")
+
+
+if __name__ == "__main__":
+    app()

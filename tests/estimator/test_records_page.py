@@ -1,0 +1,36 @@
+"""docs/records.md says what the code says."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from estimator import records
+from estimator.records.units import UNITS
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "records.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("key", UNITS)
+def test_every_key_and_its_units_are_documented(key):
+    (units,) = [
+        row[1]
+        for row in re.findall(r"^\| (.+?) \| (.+?) \|$", PAGE, flags=re.MULTILINE)
+        if f"`{key}`" in row[0] and row[1] == ", ".join(UNITS[key])
+    ]
+    assert units
+
+
+def test_the_mapping_on_the_page_is_one(tmp_path):
+    (mapping,) = re.findall(r"```yaml\n(.*?)```", PAGE, flags=re.DOTALL)
+    (tmp_path / "mapping.yaml").write_text(mapping)
+    assert records.load_columns(tmp_path / "mapping.yaml")["f_n"] == records.Column("Fz", "N", -1.0)
+
+
+def test_the_figures_on_the_page_are_those_of_the_shipped_record():
+    (printed,) = re.findall(r"```text\n(.*?)```", PAGE, flags=re.DOTALL)
+    record = records.load(ROOT / "examples" / "linear_slip_wood.csv.gz")
+    assert printed.split() == records.report(records.estimate(record)).split()
+    plain = records.estimate(record, heuristic=False).estimates[-1]["mu_c"]
+    assert f"mu_c ends at\n{plain:.3f}:" in PAGE

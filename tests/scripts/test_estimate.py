@@ -1,0 +1,127 @@
+"""Both scripts from a terminal, and the environment's own estimates from its record."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import gymnasium as gym
+import numpy as np
+import pandas as pd
+import pytest
+
+import policies
+from estimator import records
+from policies.evaluation.sensor_record import record_sensors
+
+ROOT = Path(__file__).resolve().parents[2]
+SHIPPED = ROOT / "examples" / "linear_slip_wood.csv.gz"
+OPTIONS = {"duration": 0.6, "distance": 0.01, "settle": 0.1, "hold": 0.1}
+
+
+def call(folder, script, *arguments, path=ROOT):
+    environment = {**os.environ, "PYTHONPATH": str(path), "COLUMNS": "100"}
+    return subprocess.run(
+        [sys.executable, ROOT / "scripts" / script, *map(str, arguments)],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize(
+    ("script", "words"),
+    [
+        ("estimate.py", ("--columns", "--velocity", "--estimator", "--set", "--allow-gaps", "--output")),
+        ("record.py", ("--velocity", "--finger", "--seed", "--material", "--option")),
+    ],
+)
+def test_help_teaches(tmp_path, script, words):
+    done = call(tmp_path, script, "--help")
+    assert done.returncode == 0, done.stderr
+    for word in (*words, "Examples", "docs/records.md"):
+        assert word in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["nowhere.csv"], "no such file"),
+        ([SHIPPED, "--estimator", "rlss"], "unknown estimator 'rlss'; valid: rls"),
+        ([SHIPPED, "--set", "lambda=0.9"], "unknown parameter lambda"),
+        ([SHIPPED, "--set", "n_a"], "must be name=value"),
+        ([SHIPPED, "--columns", "nowhere.yaml"], "nowhere.yaml"),
+    ],
+)
+def test_mistakes_are_explained_without_a_traceback_and_leave_nothing(tmp_path, arguments, message):
+    done = call(tmp_path, "estimate.py", *arguments)
+    assert done.returncode == 2
+    assert message in " ".join(done.stderr.split())
+    assert "Traceback" not in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("missing", ["typer", "pandas"])
+def test_a_missing_extra_says_how_to_install_it(tmp_path, missing):
+    (tmp_path / f"{missing}.py").write_text(f"raise ModuleNotFoundError('none', name={missing!r})")
+    done = call(tmp_path, "estimate.py", SHIPPED, path=f"{tmp_path}{os.pathsep}{ROOT}")
+    assert done.returncode != 0
+    assert f"{missing} is not installed: pip install 'slipgym[eval]'" in " ".join(done.stderr.split())
+    assert "Traceback" not in done.stderr
+
+
+def test_from_an_episode_to_estimates(tmp_path):
+    options = [word for name, value in OPTIONS.items() for word in ("--option", f"{name}={value}")]
+    files = "forces.parquet", "--velocity", "velocities.csv"
+    done = call(tmp_path, "record.py", "LinearSlip", "linear_slip", *files, "--finger", "2", *options)
+    assert done.returncode == 0, done.stderr
+    done = call(tmp_path, "estimate.py", *files, "--set", "heuristic=false", "--output", "out")
+    assert done.returncode == 0, done.stderr
+    (run,) = (tmp_path / "out").iterdir()
+    assert run.name.startswith("forces__")
+    assert {path.suffix for path in run.iterdir()} == {".csv", ".parquet", ".md", ".png"}
+    assert str(run / "estimates.png") in done.stdout
+    assert "mu_c" in done.stdout
+
+
+def test_an_error_while_writing_leaves_nothing(tmp_path, monkeypatch):
+    from policies.evaluation.folder import filled_in_place
+
+    def broken(self, *arguments, **keywords):
+        raise OSError("disk full")
+
+    result = records.estimate(records.load(SHIPPED))
+    monkeypatch.setattr(pd.DataFrame, "to_csv", broken)
+    with pytest.raises(OSError, match="disk full"), filled_in_place(tmp_path / "run") as folder:
+        records.write(result, folder)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("finger", [1, 2])
+def test_a_record_gives_the_environments_own_estimates(tmp_path, finger):
+    keywords = {"material": "wood", "config": {"contact": {"cop_offset": [[0.002, 0.0], [0.0, -0.001]]}}}
+    frame = record_sensors("LinearSlip", "linear_slip", finger, seed=3, options=OPTIONS, **keywords)
+    frame.to_parquet(tmp_path / "log.parquet")
+    result = records.estimate(records.load(tmp_path / "log.parquet"))
+    env = gym.make("slipgym:slipgym/LinearSlip-v0", **keywords)
+    policy, state, over = policies.make("linear_slip"), None, False
+    observation, _ = env.reset(seed=3, options=OPTIONS)
+    estimated = []
+    while not over:
+        action, state = policy.predict(observation, state=state)
+        observation, _, terminated, truncated, info = env.step(action)
+        estimated.append(info["estimated_per_finger"][finger - 1])
+        over = terminated or truncated
+    env.close()
+    ours = np.column_stack([result.estimates[name] for name in ("mu_s", "mu_c", "r")])
+    np.testing.assert_allclose(ours, estimated, rtol=1e-9)
+    assert result.estimates[-1]["updates_mu_c"] > 0
+
+
+def test_a_record_of_nothing_known_is_refused():
+    with pytest.raises(ValueError, match="did you mean 'LinearSlip'"):
+        record_sensors("LinearSlp", "linear_slip")
+    with pytest.raises(ValueError, match="must be 1 or 2"):
+        record_sensors("LinearSlip", "linear_slip", finger=3)
