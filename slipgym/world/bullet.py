@@ -149,9 +149,19 @@ class BulletWorld:
         _command(self._plant.world, self._plant.fingers, force)
 
     def command_wrist(self, velocity: np.ndarray, duration: float) -> None:
-        """Ramp the wrist velocity (x, z, pitch) to a target within `duration` [s]."""
-        world = self._plant.world
-        world["wrist_acceleration"] = (velocity - world["wrist_velocity"]) / duration
+        """Ramp the wrist velocity to a target within `duration`.
+
+        Args:
+            velocity: Along x, along z and in pitch, (3,) [m/s, m/s, rad/s]; brought down to the
+                gripper's `wrist_speed_max`, direction kept, and `wrist_pitch_rate_max`.
+            duration: Length of the ramp [s].
+        """
+        world, gripper = self._plant.world, self._config.gripper
+        x, z, pitch = velocity
+        share = min(1.0, gripper.wrist_speed_max / max(math.hypot(x, z), 1e-12))
+        rate = min(max(pitch, -gripper.wrist_pitch_rate_max), gripper.wrist_pitch_rate_max)
+        goal = np.array([share * x, share * z, rate])
+        world["wrist_acceleration"] = (goal - world["wrist_velocity"]) / duration
 
     def disturb(self, wrench: np.ndarray) -> None:
         """Apply a load (f_x, f_z, torque) to the object's centre of mass until told otherwise."""
