@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
 import estimator as estimators
 from estimator.batch import BatchEstimator
+from estimator.registry import specification
 from slipgym.config import Config, TaskConfig
 from slipgym.envs.episode import choose_force, draw_friction, make_box
 from slipgym.envs.observation import FRICTION_COLUMNS, combine
@@ -50,7 +52,7 @@ class SlipLoop:
     def __init__(self, config: Config, task: Task, estimator: str | Mapping[str, Any]) -> None:
         self.config, self.task = config, task
         self.plant = build(config)
-        self.estimator = _make_estimator(estimator)
+        self.estimator = _make_estimator(estimator, config)
         self.episode = np.zeros(1, EPISODE)
         self.wrenches, self.twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
         self.task_part = np.zeros((1, len(task.columns)))
@@ -166,13 +168,17 @@ class SlipLoop:
         chips["carry"] = rng.uniform(-1.0, 1.0, (1, 2, AXES)) * chips["count"][..., None]
 
 
-def _make_estimator(choice: str | Mapping[str, Any]) -> BatchEstimator:
+def _make_estimator(choice: str | Mapping[str, Any], config: Config) -> BatchEstimator:
+    """Both fingers' estimators; one that asks how old a velocity is gets the sensor's latency."""
     if isinstance(choice, str):
-        return estimators.make_batch(choice, 2)
+        choice = {"name": choice}
     if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
         raise ValueError(
             f"estimator = {choice!r} must be a name or a mapping with a name; "
             f"valid: {', '.join(estimators.names())}"
         )
     parameters = dict(choice)
-    return estimators.make_batch(parameters.pop("name"), 2, **parameters)
+    name = parameters.pop("name")
+    if any(field.name == "velocity_delay" for field in fields(specification(name).parameters)):
+        parameters.setdefault("velocity_delay", config.sensors.slip.latency_samples)
+    return estimators.make_batch(name, 2, **parameters)

@@ -64,6 +64,15 @@ def test_the_heuristic_keeps_mu_c_near_truth_in_stick_slip(heuristic):
     assert ratio == pytest.approx(1.0, abs=0.12) if heuristic else ratio < 0.75
 
 
+@pytest.mark.parametrize("sensors", ["realistic", "ideal"])
+def test_joint_knows_the_latency_of_the_slip_sensor(sensors):
+    """One sample off, mu_c collapses or reads a fifth too high."""
+    env = LinearSlipEnv(estimator="joint", sensors=sensors, material="case")
+    info, _ = play(env, policies.make("linear_slip"), 0, distance=0.02, duration=2.0)
+    env.close()
+    assert info["estimated"][1] == pytest.approx(info["true"][1], rel=0.05)
+
+
 def observation(**values):
     config = load()
     index = ObservationIndex("Hold", config)
