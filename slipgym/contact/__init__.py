@@ -1,5 +1,6 @@
 """Friction between a pad and an object in planar slip."""
 
+from slipgym.contact.distributed import DistributedContact
 from slipgym.contact.ellipsoid import EllipsoidContact
 
-__all__ = ["EllipsoidContact"]
+__all__ = ["DistributedContact", "EllipsoidContact"]
