@@ -13,6 +13,7 @@ import estimator as estimators
 from estimator.registry import specification
 from slipgym.config import Config, TaskConfig
 from slipgym.envs.episode import choose_force, draw_friction, make_box
+from slipgym.envs.guard import Guard
 from slipgym.envs.observation import FRICTION_COLUMNS, combine
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import AXES
@@ -85,6 +86,7 @@ class SlipLoop:
         self._force_noise = force.reshape(1, 2, samples, 6)
         self._slip_noise, self._drift_noise = slip.reshape(1, 2, AXES), drift.reshape(1, 2, 6)
         self.world = BulletWorld(config, self.plant)
+        self._guard = Guard()
 
     @property
     def time(self) -> float:
@@ -110,6 +112,7 @@ class SlipLoop:
         force = choose_force(self.config, options, task_config)
         self._start_episode(box, options, task_config, rng)
         self.world.reset(box, force)
+        self._guard.reset()
         self.material = friction.material
         self.true_friction[:] = friction.mu_s, friction.mu_c, friction.r
         for field, value in zip(("mu_s", "mu_c", "r"), self.true_friction, strict=True):
@@ -129,6 +132,9 @@ class SlipLoop:
         Args:
             force: Grip force per finger [N].
             rng: Source of the sensors' noise.
+
+        Raises:
+            FloatingPointError: Something is no longer a finite number; only a reset helps.
         """
         plant, episode = self.plant, self.episode
         episode["last_command"] = episode["command"]
@@ -139,6 +145,12 @@ class SlipLoop:
         self.estimator.update(self.time, self._wrench_rows, self._twist_rows)
         combine(self.estimator.estimates, self.per_finger, self.estimated)
         self.task.judge(episode, plant.world, plant.fingers, self.task_part)
+        arrays = plant.world, plant.pads, plant.fingers, self.wrenches, self.twists, self.per_finger, episode
+        try:
+            self._guard.watch(self.time, *arrays)
+        except FloatingPointError:
+            self.world.discard()
+            raise
 
     def get_state(self) -> LoopState:
         """Copy everything that the next sample depends on.

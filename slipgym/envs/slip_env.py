@@ -135,7 +135,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
 
         Raises:
             ValueError: The action has the wrong shape or is not finite.
-            RuntimeError: The environment is closed or was never reset.
+            RuntimeError: The environment is closed or needs a reset.
+            FloatingPointError: The simulation left the finite numbers; the message names the first.
         """
         share = 0.5 * (1.0 + check_action(action))
         if not self._ready:
@@ -145,7 +146,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         force = gripper.force_min + share * (gripper.force_max - gripper.force_min)
         loop, episode, rng = self._loop, self._loop.episode, self.np_random
         self._terms[:] = 0.0
-        dropped = finished = False
+        dropped = finished = self._ready = False
         for _ in range(self._frame_skip):
             loop.sample(force, rng)
             self._terms += episode["terms"][0, : len(self._terms)]
@@ -153,6 +154,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             finished = episode["step"].item() >= episode["steps"].item()
             if dropped or finished:
                 break
+        self._ready = True
         reward = math.fsum(self._terms.tolist())
         return self._observation(), reward, dropped, finished and not dropped, self._info()
 

@@ -239,6 +239,10 @@ class BulletWorld:
         self._box, self._reading = state.box, state.reading
         self._place_links()
 
+    def discard(self) -> None:
+        """Give the bodies up: the next reset builds them anew."""
+        self._box = None
+
     def close(self) -> None:
         """Disconnect the client; the world cannot be used again. Closing twice is harmless."""
         if self._client is not None:
