@@ -36,7 +36,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         observation_mode: "flat".
         randomization: "none".
         frame_skip: Slip-velocity samples per step.
-        render_mode: None or "rgb_array".
+        render_mode: None, "rgb_array", "depth_array" or "human".
         config: File or mapping of overrides of the default configuration.
 
     Raises:
@@ -45,7 +45,10 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
     """
 
     task: ClassVar[Task]
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 120}  # noqa: RUF012
+    metadata: dict[str, Any] = {  # noqa: RUF012
+        "render_modes": ["human", "rgb_array", "depth_array"],
+        "render_fps": 120,
+    }
 
     def __init__(
         self,
@@ -100,6 +103,11 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         # the friction part: the merged estimates, or values that stand for the episode
         self._friction = self._loop.estimated if friction_source == "estimated" else np.ones((1, 6))
         self._views = self._info_views()
+        self._renderer: Any = None
+        if render_mode is not None:
+            from slipgym.rendering import Renderer
+
+            self._renderer = Renderer(render_mode, self._loop)
         self._ready = False
 
     def reset(
@@ -124,6 +132,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         elif self.friction_source == "nominal":
             self._friction[0, :3] = nominal.mu_s, nominal.mu_c, nominal.r
         self._terms[:] = 0.0
+        if self._renderer is not None:
+            self._renderer.begin()
         self._ready = True
         return self._observation(), self._info()
 
@@ -152,6 +162,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             self._terms += episode["terms"][0, : len(self._terms)]
             dropped = episode["dropped"].item()
             finished = episode["step"].item() >= episode["steps"].item()
+            if self._renderer is not None:
+                self._renderer.keep()
             if dropped or finished:
                 break
         self._ready = True
@@ -159,19 +171,21 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         return self._observation(), reward, dropped, finished and not dropped, self._info()
 
     def render(self) -> np.ndarray | None:
-        """Picture of the scene, (height, width, 3) uint8, in render mode "rgb_array".
+        """What the render mode asks for; None without one.
+
+        Returns:
+            "rgb_array": picture (480, 720, 3) uint8; "depth_array": distances (480, 448) float32 [m],
+            infinite where nothing is; "human": None, the picture is in the window.
 
         Raises:
             RuntimeError: The environment is closed or was never reset.
         """
         world = self._loop.world
         _ = world.client
-        if self.render_mode is None:
+        if self._renderer is None:
             return None
         _ = world.box
-        from slipgym.rendering import look, picture
-
-        return picture(look(world, self._loop.material, self.config.gripper.pad_radius))
+        return self._renderer.render()
 
     def get_state(self) -> EnvState:
         """Everything that decides what the environment does next, as plain data.
@@ -205,6 +219,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         self._np_random_seed = state.seed
         if state.loop is not None:
             self._loop.set_state(state.loop)
+            if self._renderer is not None:
+                self._renderer.begin()
         self._friction[:] = state.friction
         self._ready = state.loop is not None
 
@@ -217,6 +233,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
     def close(self) -> None:
         """Release the physics client; closing twice is harmless."""
         self._loop.world.close()
+        if self._renderer is not None:
+            self._renderer.close()
         self._ready = False
 
     def _observation(self) -> np.ndarray:
