@@ -1,6 +1,6 @@
 """Pictures of the environments."""
 
-from slipgym.rendering.renderer import HEIGHT, WIDTH, Renderer
+from slipgym.rendering.renderer import HEIGHT, WIDTH, WINDOW_RATE, Renderer
 from slipgym.rendering.window import Window
 
-__all__ = ["HEIGHT", "WIDTH", "Renderer", "Window"]
+__all__ = ["HEIGHT", "WIDTH", "WINDOW_RATE", "Renderer", "Window"]

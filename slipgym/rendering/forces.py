@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from slipgym.rendering.camera import Camera
-from slipgym.rendering.marks import Marks, arc, arrow, stacked, outline
+from slipgym.rendering.marks import Marks, arc, arrow, outline, stacked
 from slipgym.rendering.palette import FRICTION, GRIP, SLIP
 from slipgym.rendering.stage import View
 from slipgym.world.scene import PAD_THICKNESS

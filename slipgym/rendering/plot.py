@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -79,10 +79,10 @@ class Plot:
             stroke(points[[-1, -1]], 3.0 * curve.width, 0.0, mask)
         tint(part, mask, curve.colour)
 
-    def _x(self, time):
+    def _x(self, time: Any) -> Any:
         return self.left + (self.right - self.left) * np.asarray(time) / self.end
 
-    def _y(self, value):
+    def _y(self, value: Any) -> Any:
         return self.bottom - (self.bottom - self.top) * (np.asarray(value) - self.low) / (
             self.high - self.low
         )

@@ -84,14 +84,20 @@ def stroke(points, width, dash, mask):
         dx, dy = bx - ax, by - ay
         square = max(dx * dx + dy * dy, 1e-12)
         top, bottom = max(0, int(min(ay, by) - reach)), min(height - 1, int(max(ay, by) + reach))
-        left, right = max(0, int(min(ax, bx) - reach)), min(breadth - 1, int(max(ax, bx) + reach))
+        low, high = min(ax, bx) - reach, max(ax, bx) + reach
         for row in range(top, bottom + 1):
-            for column in range(left, right + 1):
-                x, y = column + 0.5 - ax, row + 0.5 - ay
+            y = row + 0.5 - ay
+            left, right = low, high
+            if abs(dy) > 1e-6:  # no more of the row than the line's own breadth
+                middle, half = ax + y * dx / dy, reach * math.sqrt(square) / abs(dy)
+                left, right = max(left, middle - half), min(right, middle + half)
+            for column in range(max(0, int(left)), min(breadth - 1, int(right)) + 1):
+                x = column + 0.5 - ax
                 along = min(max((x * dx + y * dy) / square, 0.0), 1.0)
                 if dash > 0.0 and int((ax + along * dx) / dash) % 2 == 1:
                     continue
-                away = math.hypot(x - along * dx, y - along * dy)
+                ex, ey = x - along * dx, y - along * dy
+                away = math.sqrt(ex * ex + ey * ey)
                 mask[row, column] = max(mask[row, column], min(1.0, reach - away))
 
 

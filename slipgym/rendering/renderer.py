@@ -39,9 +39,9 @@ class Renderer:
         """Start an episode, or go on from a restored state: the strip begins anew."""
         self._history = History(self._loop, self._motion)
         names = [column.name for column in self._loop.task.columns]
-        ends = [self._loop.task_part[0, names.index(goal)] for goal in self._motion.goals]
-        self._goal = self._motion.target(float(ends[0])) if ends else 0.0
-        self._camera = camera.framing(footprint(self._view()))
+        told = dict(zip(names, self._loop.task_part[0].tolist(), strict=True))
+        self._goal = self._motion.target(told.get(self._motion.goal, 0.0))
+        self._camera = camera.framing(footprint(self._view(), told.get("wrist_pitch_goal", 0.0)))
         self._show()
 
     def keep(self) -> None:

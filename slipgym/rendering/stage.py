@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -68,14 +68,20 @@ def assemble(view: View) -> tuple[np.ndarray, np.ndarray]:
     return corners, np.concatenate([body_colours, palm[1], finger[1], glass])
 
 
-def footprint(view: View) -> np.ndarray:
-    """Points around gripper and object, and around where gravity can take the object, (n, 3) [m]."""
+def footprint(view: View, swing: float) -> np.ndarray:
+    """Points around gripper and object, and around where they will go, (n, 3) [m].
+
+    Args:
+        view: The start of an episode.
+        swing: Angle by which the wrist is going to pitch [rad].
+    """
     half, at = np.array(view.box.size) / 2, -np.array(view.box.grasp_offset)
     face = np.array([(x, 0.0, z) for x in (-half[0], half[0]) for z in (-half[2], half[2])])
     held = view.place(face + np.array([at[0], 0.0, at[1]]))
-    mirrored = held * (1.0, 1.0, -1.0)
-    palm = view.place(np.array([(view.side * (REACH + 0.07), 0.0, z) for z in (-0.03, 0.03)]))
-    return np.concatenate([held, mirrored, palm])
+    lowered = held * (1.0, 1.0, -1.0) if view.position[2] > view.wrist[1] else held  # by gravity
+    palm = np.array([(view.side * (REACH + 0.07), 0.0, z) for z in (-0.03, 0.03)])
+    pitched = replace(view, wrist=(view.wrist[0], view.wrist[1], view.wrist[2] + swing))
+    return np.concatenate([held, lowered, view.place(palm), pitched.place(palm)])
 
 
 def grid() -> tuple[np.ndarray, np.ndarray]:

@@ -65,7 +65,7 @@ def draw_strip(
         ],
         (1.2 * true_s, 0.1),
     )
-    if not np.isfinite(mu_c).any():
+    if not np.isfinite([mu_c, mu_s]).any():
         write(
             picture, (_LEFT + _RIGHT) / 2, _TOP + 2 * _PITCH + _TALL - 12, "no estimate yet", MUTED, 12, 0.5
         )

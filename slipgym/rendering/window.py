@@ -7,10 +7,7 @@ import os
 import numpy as np
 
 _NO_SCREEN = ("offscreen", "dummy")  # drivers that SDL falls back to
-_HINT = (
-    "use render_mode='rgb_array', or write a film: "
-    "python scripts/play.py LinearSlip linear_slip --video film.mp4"
-)
+_HINT = "use render_mode='rgb_array', or write a film: python scripts/play.py LinearSlip --video film.mp4"
 
 
 class Window:
