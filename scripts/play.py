@@ -60,7 +60,7 @@ def main(
             estimator=estimator,
             sensors=sensors,
         )
-    except (ValueError, OSError, ImportError, RuntimeError) as error:
+    except (ValueError, OSError, RuntimeError) as error:
         raise typer.BadParameter(str(error)) from error
     for outcome in outcomes:
         typer.echo(outcome.words())

@@ -13,9 +13,9 @@ import numpy as np
 from PIL import Image
 
 from slipgym.config.errors import unknown
-from slipgym.rendering import HEIGHT, WIDTH
+from slipgym.rendering import HEIGHT, WIDTH, palette
 
-_COLOURS = 128  # of a GIF
+_SIGNS = palette.INK, palette.MUTED, palette.SLIP, palette.GRIP_2, palette.MU_C, palette.MU_S
 
 
 class _Writer(Protocol):
@@ -41,19 +41,21 @@ class _Mp4:
 
 
 class _Gif:
-    """Frames reduced to few colours, all of them the first one's, so that still parts stay still."""
+    """Frames reduced to the first one's colours and the plots', the same for all: what rests stays still."""
 
     def __init__(self, path: Path, rate: int) -> None:
         self._path, self._rate = path, rate
         self._frames: list[Image.Image] = []
+        self._colours = Image.new("P", (1, 1))
 
     def add(self, picture: np.ndarray) -> None:
         image = Image.fromarray(picture)
-        if self._frames:
-            frame = image.quantize(palette=self._frames[0], dither=Image.Dither.NONE)
-        else:
-            frame = image.quantize(_COLOURS, dither=Image.Dither.NONE)
-        self._frames.append(frame)
+        if not self._frames:
+            pale = [(channel + 255) // 2 for sign in _SIGNS for channel in sign]
+            signs = [channel for sign in _SIGNS for channel in sign] + pale
+            most = image.quantize(256 - len(signs) // 3).getpalette() or []
+            self._colours.putpalette(most[: 768 - len(signs)] + signs)
+        self._frames.append(image.quantize(palette=self._colours, dither=Image.Dither.NONE))
 
     def finish(self) -> None:
         if self._frames:

@@ -112,8 +112,7 @@ def watch(
     Raises:
         ValueError: A value is unknown or not allowed.
         FileNotFoundError: There is no policy at the path.
-        ImportError: A window was asked for and pygame is not installed.
-        RuntimeError: A window was asked for and there is no screen.
+        RuntimeError: A window was asked for and cannot open.
     """
     if task not in TASKS:
         raise ValueError(unknown("task", task, TASKS))

@@ -16,6 +16,7 @@ from slipgym.envs import observation
 from slipgym.envs.choices import check_action, one_of, refuse_unknown
 from slipgym.envs.loop import SlipLoop
 from slipgym.envs.state import EnvState, checked, restored_generator
+from slipgym.screen import obstacle
 from slipgym.tasks import Task
 
 
@@ -42,6 +43,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
     Raises:
         ValueError: The value of an argument is unknown or not allowed.
         TypeError: An argument is unknown.
+        RuntimeError: A window cannot open here; `metadata["render_modes"]` then lacks "human".
     """
 
     task: ClassVar[Task]
@@ -78,7 +80,9 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         self.config = load(config, sensors)
         self.material = one_of("material", material, ("random", *self.config.materials))
         self.render_mode = render_mode
-        self.metadata = {**self.metadata, "render_fps": self.config.physics.control_rate / frame_skip}
+        modes = [mode for mode in self.metadata["render_modes"] if mode != "human" or not obstacle()]
+        rate = self.config.physics.control_rate / frame_skip
+        self.metadata = {**self.metadata, "render_modes": modes, "render_fps": rate}
         self.columns = observation.columns(self.config, self.task, self.friction_source)
         self._low = np.array([c.low for c in self.columns], dtype=np.float32)
         self._high = np.array([c.high for c in self.columns], dtype=np.float32)

@@ -6,8 +6,11 @@ import os
 
 import numpy as np
 
-_NO_SCREEN = ("offscreen", "dummy")  # drivers that SDL falls back to
-_HINT = "use render_mode='rgb_array', or write a film: python scripts/play.py LinearSlip --video film.mp4"
+from slipgym.screen import obstacle
+
+_OTHERWISE = (
+    "; use render_mode='rgb_array', or write a film: python scripts/play.py LinearSlip --video film.mp4"
+)
 
 
 class Window:
@@ -18,25 +21,20 @@ class Window:
         size: Width and height [pixels].
 
     Raises:
-        ImportError: pygame is not installed.
-        RuntimeError: There is no screen.
+        RuntimeError: There is no screen, or pygame is not installed; the message says what to do.
     """
 
     def __init__(self, title: str, size: tuple[int, int]) -> None:
+        if why := obstacle():
+            raise RuntimeError(f"a window cannot open: {why}{_OTHERWISE}")
         os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
-        try:
-            import pygame
-        except ImportError as error:
-            raise ImportError(f"a window needs pygame: pip install 'slipgym[window]'; or {_HINT}") from error
+        import pygame
+
         self._pygame = pygame
         try:
             pygame.display.init()
         except pygame.error as error:
-            raise RuntimeError(f"there is no screen for a window ({error}); {_HINT}") from error
-        driver = pygame.display.get_driver()
-        if driver in _NO_SCREEN and os.environ.get("SDL_VIDEODRIVER") != driver:
-            pygame.display.quit()
-            raise RuntimeError(f"there is no screen for a window; {_HINT}")
+            raise RuntimeError(f"a window cannot open: {error}{_OTHERWISE}") from error
         pygame.display.set_caption(title)
         self._screen = pygame.display.set_mode(size)
         self._clock = pygame.time.Clock()
