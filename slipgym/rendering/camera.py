@@ -12,7 +12,7 @@ WIDTH, HEIGHT = 448, 480
 _CLEAR = 370
 """Height of the view between the words [pixels]."""
 FINE = 2
-"""Samples per pixel in either direction."""
+"""Samples per pixel in either direction, as `raster.shrink` has it."""
 _YAW, _PITCH = math.radians(28.0), math.radians(16.0)
 _FOCAL = 4.5  # in half widths of the view
 _NEAREST = 0.05  # [m]

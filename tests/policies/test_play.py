@@ -11,7 +11,9 @@ from PIL import Image
 from policies.play import Film, own_policy, portrait, watch
 from policies.play.watch import Keyboard
 from slipgym.config import load
+from slipgym.registration import ENVIRONMENTS
 from slipgym.rendering import Window
+from slipgym.tasks import TASKS
 
 SHORT = {"duration": 0.4, "settle": 0.1, "hold": 0.1, "distance": 0.005}
 ROOT = Path(__file__).resolve().parents[2]
@@ -142,3 +144,10 @@ def test_the_command_line(tmp_path):
     done = call("LinearSlip")
     assert done.returncode == 2
     assert "--video" in done.stderr
+
+
+@pytest.mark.parametrize("env_id", ENVIRONMENTS)
+def test_every_environment_has_its_picture_in_the_docs(env_id):
+    key = TASKS[env_id.removeprefix("slipgym/").rpartition("-")[0]].key
+    with Image.open(ROOT / "docs" / "images" / f"{key}.png") as picture:
+        assert picture.size == (720, 480), "run scripts/make_docs.py"
