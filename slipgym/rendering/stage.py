@@ -77,11 +77,13 @@ def footprint(view: View, swing: float) -> np.ndarray:
     """
     half, at = np.array(view.box.size) / 2, -np.array(view.box.grasp_offset)
     face = np.array([(x, 0.0, z) for x in (-half[0], half[0]) for z in (-half[2], half[2])])
-    held = view.place(face + np.array([at[0], 0.0, at[1]]))
+    grasped = face + np.array([at[0], 0.0, at[1]])
+    held = view.place(grasped)
     lowered = held * (1.0, 1.0, -1.0) if view.position[2] > view.wrist[1] else held  # by gravity
     palm = np.array([(view.side * (REACH + 0.07), 0.0, z) for z in (-0.03, 0.03)])
     pitched = replace(view, wrist=(view.wrist[0], view.wrist[1], view.wrist[2] + swing))
-    return np.concatenate([held, lowered, view.place(palm), pitched.place(palm)])
+    ends = pitched.place(np.concatenate([grasped, palm]))
+    return np.concatenate([held, lowered, view.place(palm), ends])
 
 
 def grid() -> tuple[np.ndarray, np.ndarray]:
