@@ -1,0 +1,12 @@
+"""Hinge-v0."""
+
+from __future__ import annotations
+
+from slipgym.envs.slip_env import SlipEnv
+from slipgym.tasks import TASKS
+
+
+class HingeEnv(SlipEnv):
+    """TODO."""
+
+    task = TASKS["Hinge"]
