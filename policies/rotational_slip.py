@@ -17,7 +17,7 @@ class RotationalSlipPolicy(ForcePolicy):
     sticking and turning have a law each, with w the measured rate:
 
         w_cmd = w_d + k_x (theta_d - theta)
-        sticking:  e' = w_cmd,               f = f_slip (1 - k_e e)
+        sticking:  e' = w_cmd - w,           f = f_slip (1 - k_e e)
         turning:   e' = k_m (w_cmd - w),     f = f_slip (1 - k_e e + k_v (w - w_cmd))
 
     and e starts at 0 at every break-away, as it does while the reference rests. The gripper's public
