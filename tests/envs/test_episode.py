@@ -169,7 +169,8 @@ def test_the_friction_source_fills_the_last_columns(make, env_id):
         if source == "true":
             np.testing.assert_allclose(observed[source][-6:-3], info["true"], rtol=1e-6)
     nominal = env.config.nominal
-    np.testing.assert_allclose(observed["nominal"][-6:-3], [nominal.mu_s, nominal.mu_c, nominal.r], rtol=1e-6)
+    r = getattr(env.config.tasks, env.task.key).radius or nominal.r
+    np.testing.assert_allclose(observed["nominal"][-6:-3], [nominal.mu_s, nominal.mu_c, r], rtol=1e-6)
     np.testing.assert_allclose(observed["estimated"][-6:], [1.5, 1.3, 0.02, 0, 0, 0], rtol=1e-6)
     for source in ("true", "nominal"):
         assert observed[source][-3:].tolist() == [1.0, 1.0, 1.0]

@@ -17,7 +17,7 @@ CHANGES = {
     "distance": 0.02,
     "angle": 0.3,
     "turn": 0.3,
-    "direction": 1,
+    "direction": -1,  # seed 0 draws 1
     "duration": 0.5,
     "settle": 0.1,
     "hold": 0.1,
