@@ -75,7 +75,7 @@ class RotationalSlipPolicy(ForcePolicy):
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
         error, torque, turned = np.asarray(state).T
-        angle, omega, tau = columns["travel_theta"], both(columns, "omega"), np.abs(both(columns, "tau"))
+        angle, omega, tau = -columns["travel_theta"], -both(columns, "omega"), np.abs(both(columns, "tau"))
         torque = np.where(torque < 0.0, tau, self.smoothing * torque + (1.0 - self.smoothing) * tau)
         f_slip = torque / self.caution.blend_lever(columns)
         reference, goal = columns["reference_position"], columns["angle"]

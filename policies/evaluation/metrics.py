@@ -95,7 +95,7 @@ def measure_linear_slip(recording: Recording) -> dict[str, Any]:
 
 def measure_rotational_slip(recording: Recording) -> dict[str, Any]:
     """How well the turn by gravity followed its reference, and how far the object slid meanwhile."""
-    turned = recording.slip[:, 2]
+    turned = -recording.slip[:, 2]
     final = math.degrees(turned[-1] - recording.goal)
     return {
         "final_error_deg": final,

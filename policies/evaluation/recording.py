@@ -18,7 +18,7 @@ class Recording:
     time: np.ndarray
     """Since reset, (T,) [s]."""
     slip: np.ndarray
-    """True slip (x, y, theta), (T, 3) [m, m, rad]; gravity pulls along -y."""
+    """True slip (x, y, theta), (T, 3) [m, m, rad]; gravity pulls along -y and turns along -theta."""
     reference: np.ndarray
     """Position, velocity, acceleration the task asks for, (T, 3) [m or rad, per s, per s^2]; in Hinge those
     of the wrist's pitch."""

@@ -15,7 +15,7 @@ class TaskConfig(Frozen):
         description="The object's mass is drawn from this range; null: the object's own [kg]"
     )
     radius: Positive | None = Field(
-        description="Radius r of the equivalent rim contact in this task, true and nominal; null: the common ones [m]"
+        description="Radius r of the equivalent rim contact in this task, also nominal; null: the common [m]"
     )
     reward: Frozen = Field(description="Scales of the reward terms [-]")
 

@@ -24,6 +24,9 @@ class RotationalSlipEnv(SlipEnv):
     Hence the task's own object (`tasks.rotational_slip.object`), light and long: 0.08 kg, 340 mm by 40 mm,
     gripped 140 mm from its centre, which asks for 15 N at mu_c 0.36.
 
+    In almost pure rotation the estimator "rls" locks mu_c out and its r with it; `estimator="joint"` does
+    not.
+
     One step is one sample of the slip-velocity sensors, 1/120 s. The pad frame moves with the wrist: x and y
     span the contact plane (x horizontal and y up while the wrist is level), angles and torques count about
     the grip axis from finger 1 to finger 2. All units are SI.
@@ -60,7 +63,7 @@ class RotationalSlipEnv(SlipEnv):
     | 15 | `travel_y`: the same along the pads' y axis | -1 | 1 | m |
     | 16 | `travel_theta`: the same about the grip axis | -10 | 10 | rad |
     | 17 | `command`: grip force commanded in the last step | 0 | 40 | N |
-    | 18 | `reference_position`: angle the object should have turned | 0 | 2 | rad |
+    | 18 | `reference_position`: angle the object should have turned, clockwise | 0 | 2 | rad |
     | 19 | `reference_velocity`: its rate | 0 | 10 | rad/s |
     | 20 | `reference_acceleration`: its second rate | -100 | 100 | rad/s^2 |
     | 21 | `angle`: angle to turn in the episode | 0 | 2 | rad |
@@ -83,7 +86,7 @@ class RotationalSlipEnv(SlipEnv):
 
     | Term | Scale | Value before scaling |
     |---|---|---|
-    | `tracking` | 1 | exp(-(e / tolerance)^2), e = turned angle - reference |
+    | `tracking` | 1 | exp(-(e / tolerance)^2), e = -theta - reference |
     | `sliding` | 0.1 | -min(slip at the pad centre / slide_tolerance, 10) |
     | `effort` | 0.1 | -(mean actuator force / gripper.force_max) |
     | `smoothness` | 0.1 | -(change of the commanded force / gripper.force_max)^2 |
@@ -92,11 +95,11 @@ class RotationalSlipEnv(SlipEnv):
     ## Starting State
 
     The bar is held still in a grip of `tasks.rotational_slip.initial_force` (25 N), its grasp point between
-    the pads and the bar aligned with them. The wrist is pitched by -angle/2, the bar's heavy end up, so
-    that the turn is symmetric about horizontal and the bar turns counter-clockwise (theta grows). The
-    material is drawn if `material` is "random"; so are the sensors' biases and the fractions of a count
-    that the slip sensors begin with. Grip and sensors run for six samples before time 0. The reference
-    rests for `settle` (0.5 s), turns by `angle` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
+    the pads and the bar aligned with them. The wrist is pitched by angle/2, the bar's heavy end up, so that
+    the turn is symmetric about horizontal; the bar turns clockwise, so theta falls. The material is drawn
+    if `material` is "random"; so are the sensors' biases and the fractions of a count that the slip sensors
+    begin with. Grip and sensors run for six samples before time 0. The reference rests for `settle` (0.5
+    s), turns by `angle` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
 
     ## Episode End
 
@@ -104,9 +107,9 @@ class RotationalSlipEnv(SlipEnv):
     - Truncated: settle + duration + hold have passed (6.5 s, 780 samples). The environment truncates by
       itself; no `TimeLimit` is needed.
 
-    Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, it has turned
-    by `angle` within `tolerance` (2 deg), and it never slid further than `slide_tolerance` (1 mm) at the
-    pad centre.
+    Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, -theta is
+    `angle` within `tolerance` (2 deg), and it never slid further than `slide_tolerance` (1 mm) at the pad
+    centre.
 
     ## Arguments
 

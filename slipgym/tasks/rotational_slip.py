@@ -1,4 +1,4 @@
-"""RotationalSlip: gravity turns the object about the grip axis by a given angle, without sliding."""
+"""RotationalSlip: gravity turns the object clockwise by a given angle, without sliding."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from slipgym.tasks.task import Column, Task
 
 TERMS = ("tracking", "sliding", "effort", "smoothness", "drop")
 COLUMNS = (
-    Column("reference_position", 0.0, 2.0, "rad", "angle the object should have turned"),
+    Column("reference_position", 0.0, 2.0, "rad", "angle the object should have turned, clockwise"),
     Column("reference_velocity", 0.0, 10.0, "rad/s", "its rate"),
     Column("reference_acceleration", -100.0, 100.0, "rad/s^2", "its second rate"),
     Column("angle", 0.0, 2.0, "rad", "angle to turn in the episode"),
@@ -45,7 +45,7 @@ def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, epi
     for field in ("tolerance", "slide_tolerance"):
         episode[field] = options.choose(field, task)
     schedule(options, task, episode)
-    episode["wrist_start"] = 0.0, 0.0, -0.5 * episode["goal"]
+    episode["wrist_start"] = 0.0, 0.0, 0.5 * episode["goal"]
 
 
 @compiled
@@ -69,13 +69,14 @@ def judge(episodes, worlds, fingers, columns):
         reference = trapezoid(time - episode.settle, episode.goal, episode.duration)
         for k in range(3):
             episode.reference[k] = reference[k]
-        error = world.slip[2] - reference[0]
+        turned = -world.slip[2]
+        error = turned - reference[0]
         slip = note_slip(episode, world)
         episode.dropped = detect_drop(episode, world, fingers[i])
         episode.success = (
             episode.step >= episode.steps
             and not episode.dropped
-            and abs(world.slip[2] - episode.goal) <= episode.tolerance
+            and abs(turned - episode.goal) <= episode.tolerance
             and episode.largest_slip <= episode.slide_tolerance
         )
         terms = (

@@ -65,7 +65,7 @@ def test_rotational_slip_measures():
     """Half a degree behind a reference of 1 to 10 degrees, 0.1 of a degree short of the goal in the end."""
     position = np.radians(np.arange(1.0, 11.0))
     slip = np.zeros((10, 3))
-    slip[:, 2] = position - math.radians(0.5)
+    slip[:, 2] = -(position - math.radians(0.5))
     slip[4, :2] = 0.0003, -0.0004
     reference = np.column_stack((position, np.ones((10, 2))))
     goal = math.radians(9.6)

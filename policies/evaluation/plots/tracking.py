@@ -54,7 +54,7 @@ def _linear_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> No
 
 
 def _rotational_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
-    _follow(axes, steps, np.degrees(values(steps, "slip_theta")), np.degrees(1.0), first)
+    _follow(axes, steps, -np.degrees(values(steps, "slip_theta")), np.degrees(1.0), first)
     error = f"final error {trial['final_error_deg']:+.2f}°,\nslid {trial['largest_slip_mm']:.2f} mm"
     words = "dropped" if trial["dropped"] else error.replace("-", "−")
     note(axes, 0.02, 0.98, words, _SLIP, xycoords="axes fraction", va="top")
