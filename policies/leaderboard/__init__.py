@@ -1,0 +1,1 @@
+"""All estimators on the same records."""

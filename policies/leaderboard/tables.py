@@ -1,0 +1,24 @@
+"""Tables as Markdown."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+
+def markdown(table: pd.DataFrame, digits: int = 2) -> str:
+    """A table as Markdown; numbers with a fixed number of digits, NaN as a dash.
+
+    Args:
+        table: The table.
+        digits: Digits after the point of numbers that are not whole.
+    """
+
+    def cell(value: object) -> str:
+        if not isinstance(value, float):
+            return str(value)
+        return "–" if value != value else f"{value:.{digits}f}".replace("-", "−")
+
+    numbers = ["---:" if pd.api.types.is_numeric_dtype(table[name]) else "---" for name in table]
+    rows = [list(map(str, table.columns)), numbers]
+    rows += [[cell(value) for value in row] for row in table.astype(object).itertuples(index=False)]
+    return "".join("| " + " | ".join(row) + " |\n" for row in rows)
