@@ -6,7 +6,7 @@ import pandas as pd
 
 
 def markdown(table: pd.DataFrame, digits: int = 2) -> str:
-    """A table as Markdown; numbers with a fixed number of digits, NaN as a dash.
+    """A table as Markdown; NaN is a dash, an infinite time is "never".
 
     Args:
         table: The table.
@@ -16,6 +16,8 @@ def markdown(table: pd.DataFrame, digits: int = 2) -> str:
     def cell(value: object) -> str:
         if not isinstance(value, float):
             return str(value)
+        if value == float("inf"):
+            return "never"
         return "–" if value != value else f"{value:.{digits}f}".replace("-", "−")
 
     numbers = ["---:" if pd.api.types.is_numeric_dtype(table[name]) else "---" for name in table]
