@@ -84,9 +84,7 @@ def page(table: pd.DataFrame, ranking: pd.DataFrame, best: pd.DataFrame) -> str:
     parts = ["# Leaderboard of the estimators", "Errors in %.", markdown(ranking, 1)]
     parts += ["## The best, by group", markdown(best)]
     for field in FIELDS:
-        figures = {
-            f"{figure}_{field}": figure for figure in ("bias", "spread", "error", "calibration", "time")
-        }
+        figures = {f"{figure}_{field}": figure for figure in FIGURES}
         parts += [f"## {field}", markdown(_seen(table, f"error_{field}", figures))]
     parts += ["## Lock-ups, share of start values", markdown(_seen(table, "lock_ups", {"lock_ups": "share"}))]
     return "\n\n".join(part.rstrip() for part in parts) + "\n"
