@@ -87,6 +87,19 @@ def test_an_r_of_one_episode_leaves_no_trace(make, env_id, play):
     assert play(env) == plain
 
 
+def test_a_saved_state_holds_the_cells(make, env_id):
+    actions = np.random.default_rng(0).uniform(-1.0, -0.6, (80, 1)).astype(np.float32)
+    env = make(env_id, **SMALL)
+    env.reset(seed=4, options={"com_offset": (0.004, 0.01)})
+    for action in actions[:40]:
+        env.step(action)
+    state = env.get_state()
+    first = [repr(env.step(action)) for action in actions[40:]]
+    other = make(env_id, **SMALL)
+    other.set_state(state)
+    assert [repr(other.step(action)) for action in actions[40:]] == first
+
+
 def test_gymnasium_checker(env_id):
     env = gym.make(env_id, **PATCH, render_mode="rgb_array")
     check_env(env.unwrapped)
