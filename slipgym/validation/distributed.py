@@ -61,7 +61,7 @@ def distributed() -> Iterator[Figure]:
         yield Figure(f"{MODEL}: break-away, {name}", BOUND, 100.0 * abs(away), "%")
     angles = np.linspace(0.0, 0.5 * math.pi, DIRECTIONS)
     found = [deviation(angle, 0.0, disc, MODEL) for angle in angles]
-    yield summary(f"{MODEL}: steady slip", "exact disc", found)
+    yield summary(f"{MODEL}: steady slip", "disc", found)
     rises = [throw(seed, vary_grip, MODEL)[0] for seed in range(THROWS) for vary_grip in (False, True)]
     yield Figure(f"{MODEL}: energy gained, random throws", 1.0, max(rises), "store")
     rises = [slide(seed, MODEL) for seed in range(THROWS)]
