@@ -10,7 +10,6 @@ import pybullet as p
 
 from slipgym.compiled import compiled
 from slipgym.config import Config
-from slipgym.contact.records import rest
 from slipgym.world import coupling, scene
 from slipgym.world.actuator import command
 from slipgym.world.planar import locate
@@ -145,9 +144,7 @@ class BulletWorld:
             fingers[field] = 0
         for field in ("command", "force", "mean_force", "contact_mean_force", "contact_force"):
             fingers[field] = force
-        rest(self._plant.pads)
-        if self._plant.cells is not None:
-            rest(self._plant.cells)
+        self._plant.relax()
         if any(wrist):
             self._place(wrist)
         pose, velocity, joints, _ = self._read()

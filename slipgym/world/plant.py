@@ -9,7 +9,7 @@ import numpy as np
 
 from slipgym.config import Config
 from slipgym.contact.pressure import patch_cells
-from slipgym.contact.records import pads, patch
+from slipgym.contact.records import pads, patch, rest
 from slipgym.sensors.force_torque import FORCE_TORQUE
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
@@ -38,6 +38,12 @@ class Plant:
     """FORCE_TORQUE (n, 2)."""
     chips: np.ndarray
     """SLIP_SENSOR (n, 2)."""
+
+    def relax(self) -> None:
+        """Bring the contact of all pads to rest."""
+        rest(self.pads)
+        if self.cells is not None:
+            rest(self.cells)
 
     def restore(self, other: Plant) -> None:
         """Copy every array of another plant of the same size into this one."""

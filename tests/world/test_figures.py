@@ -4,7 +4,6 @@ import pytest
 
 from slipgym.validation import EXPERIMENTS, Figure
 
-
 SLOW = {"distributed"}
 CASES = [
     pytest.param(experiment, id=experiment.__name__, marks=[pytest.mark.slow] * (experiment.__name__ in SLOW))
