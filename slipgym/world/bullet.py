@@ -10,7 +10,6 @@ import pybullet as p
 
 from slipgym.compiled import compiled
 from slipgym.config import Config
-from slipgym.contact.records import rest
 from slipgym.world import coupling, scene
 from slipgym.world.actuator import command
 from slipgym.world.planar import locate
@@ -26,7 +25,7 @@ def _loads(worlds, pads, cells, fingers, force_torque, noise, chips, pose, veloc
     return coupling.step_loads(
         worlds[0],
         pads[0],
-        cells[0],
+        None if cells is None else cells[0],
         fingers[0],
         force_torque[0],
         noise[0],
@@ -145,8 +144,7 @@ class BulletWorld:
             fingers[field] = 0
         for field in ("command", "force", "mean_force", "contact_mean_force", "contact_force"):
             fingers[field] = force
-        rest(self._plant.pads)
-        rest(self._plant.cells)
+        self._plant.relax()
         if any(wrist):
             self._place(wrist)
         pose, velocity, joints, _ = self._read()
