@@ -54,19 +54,23 @@ class Config(Frozen):
 
     @model_validator(mode="after")
     def _contact_fits_pad(self) -> Self:
-        if self.contact_radius > self.gripper.pad_radius:
-            raise ValueError(
-                "contact.radius must not exceed gripper.pad_radius, "
-                f"got {self.contact_radius:g} and {self.gripper.pad_radius:g} m"
-            )
-        self.check_patch("contact.radius", self.contact_radius)
+        radii = {f"tasks.{name}.radius": task.radius for name, task in self.tasks}
+        for name, radius in {"contact.radius": self.contact_radius, **radii}.items():
+            if radius is None:
+                continue
+            if radius > self.gripper.pad_radius:
+                raise ValueError(
+                    f"{name} must not exceed gripper.pad_radius, "
+                    f"got {radius:g} and {self.gripper.pad_radius:g} m"
+                )
+            self.check_patch(name, radius)
         return self
 
     @model_validator(mode="after")
     def _initial_forces_in_range(self) -> Self:
         low, high = self.gripper.force_min, self.gripper.force_max
-        for name in type(self.tasks).model_fields:
-            force = getattr(self.tasks, name).initial_force
+        for name, task in self.tasks:
+            force = task.initial_force
             if not low <= force <= high:
                 raise ValueError(
                     f"tasks.{name}.initial_force must lie within the gripper's {low:g} to {high:g} N, "

@@ -29,7 +29,7 @@ class Friction:
 
 
 def draw_friction(
-    config: Config, options: EpisodeOptions, material: str, rng: np.random.Generator
+    config: Config, options: EpisodeOptions, task: TaskConfig, material: str, rng: np.random.Generator
 ) -> Friction:
     """The material's friction, with what the options fix.
 
@@ -46,7 +46,7 @@ def draw_friction(
     mu_s, mu_c = (options.choose(field, config.materials[name]) for field in ("mu_s", "mu_c"))
     if mu_s < mu_c:
         raise ValueError(f"mu_s = {mu_s:g} must be at least mu_c = {mu_c:g} (material {name!r})")
-    r = config.contact_radius if options.r is None else options.r
+    r = options.r or task.radius or config.contact_radius
     config.check_patch("option r", r)
     return Friction(mu_s, mu_c, r, name)
 
@@ -57,7 +57,7 @@ def make_box(config: Config, options: EpisodeOptions, task: TaskConfig, rng: np.
     Raises:
         ValueError: The pads or the centre of mass would not lie on the object.
     """
-    default = config.object
+    default = task.object or config.object
     mass = default.mass if task.mass_range is None else rng.uniform(*task.mass_range)
     if options.object_mass is not None:
         mass = options.object_mass

@@ -122,7 +122,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         if self.friction_source == "true":
             self._friction[0, :3] = self._loop.true_friction
         elif self.friction_source == "nominal":
-            self._friction[0, :3] = nominal.mu_s, nominal.mu_c, nominal.r
+            radius = getattr(self.config.tasks, self.task.key).radius or nominal.r
+            self._friction[0, :3] = nominal.mu_s, nominal.mu_c, radius
         self._terms[:] = 0.0
         self._ready = True
         return self._observation(), self._info()
