@@ -54,8 +54,10 @@ class Config(Frozen):
 
     @model_validator(mode="after")
     def _contact_fits_pad(self) -> Self:
-        radii = {f"tasks.{name}.radius": task.radius for name, task in self.tasks if task.radius is not None}
+        radii = {f"tasks.{name}.radius": task.radius for name, task in self.tasks}
         for name, radius in {"contact.radius": self.contact_radius, **radii}.items():
+            if radius is None:
+                continue
             if radius > self.gripper.pad_radius:
                 raise ValueError(
                     f"{name} must not exceed gripper.pad_radius, "
