@@ -9,6 +9,8 @@ from typing import Any, Protocol
 import numpy as np
 
 _CLASSES = {
+    "rotational_slip": "policies.rotational_slip:RotationalSlipPolicy",
+    "hinge": "policies.hinge:HingePolicy",
     "constant_force": "policies.constant_force:ConstantForcePolicy",
     "hold": "policies.hold:HoldPolicy",
     "linear_slip": "policies.linear_slip:LinearSlipPolicy",

@@ -61,3 +61,11 @@ class Caution:
         """The friction value `name` of the observation ("mu_c" or "r"), with caution, (n,)."""
         trust = np.minimum(1.0, columns[f"support_{name}"] / self.support)
         return trust * columns[name] + (1.0 - trust) * getattr(self, name)
+
+    def blend_lever(self, columns: Columns) -> np.ndarray:
+        """mu_c r, the torque per normal force in rotation, with caution and never below it, (n,) [m].
+
+        An estimate of r goes with the mu_c that it was found with, so r's support counts for both.
+        """
+        trust, cautious = np.minimum(1.0, columns["support_r"] / self.support), self.mu_c * self.r
+        return np.maximum(cautious, trust * columns["mu_c"] * columns["r"] + (1.0 - trust) * cautious)

@@ -6,6 +6,8 @@ import gymnasium as gym
 
 ENVIRONMENTS = {
     "slipgym/LinearSlip-v0": "slipgym.envs:LinearSlipEnv",
+    "slipgym/RotationalSlip-v0": "slipgym.envs:RotationalSlipEnv",
+    "slipgym/Hinge-v0": "slipgym.envs:HingeEnv",
     "slipgym/Hold-v0": "slipgym.envs:HoldEnv",
 }
 """Id -> entry point."""

@@ -27,11 +27,25 @@ class Metric:
 
 
 @dataclass(frozen=True)
+class Tolerance:
+    """A tolerance of the task in the unit of the table of trials."""
+
+    option: str
+    """Its name among the task's options."""
+    column: str
+    """Its name in the table."""
+    scale: float
+    """From the option's unit to the table's."""
+
+
+@dataclass(frozen=True)
 class Measures:
     """What is measured in the trials of a task."""
 
     measure: Callable[[Recording], dict[str, Any]]
     """The task's own columns."""
+    tolerances: tuple[Tolerance, ...]
+    """What the trials' figures are held against."""
     summary: tuple[Metric, ...]
     """What the summary reports."""
     compared: Metric
@@ -79,12 +93,38 @@ def measure_linear_slip(recording: Recording) -> dict[str, Any]:
     }
 
 
+def measure_rotational_slip(recording: Recording) -> dict[str, Any]:
+    """How well the turn by gravity followed its reference, and how far the object slid meanwhile."""
+    turned = -recording.slip[:, 2]
+    final = math.degrees(turned[-1] - recording.goal)
+    return {
+        "final_error_deg": final,
+        "final_error_abs_deg": abs(final),
+        "rms_error_deg": math.degrees(math.sqrt(np.mean((turned - recording.reference[:, 0]) ** 2))),
+        "largest_slip_mm": largest_slip(recording),
+    }
+
+
+def measure_hinge(recording: Recording) -> dict[str, Any]:
+    """How far the object slid and how far it left the vertical while the wrist pitched."""
+    tilt = recording.slip[:, 2] + recording.reference[:, 0]
+    return {
+        "largest_slip_mm": largest_slip(recording),
+        "largest_tilt_deg": math.degrees(np.abs(tilt).max()),
+    }
+
+
+def largest_slip(recording: Recording) -> float:
+    """Largest distance from the grasp [mm]."""
+    return 1e3 * np.hypot(recording.slip[:, 0], recording.slip[:, 1]).max().item()
+
+
 def measure_hold(recording: Recording) -> dict[str, Any]:
     """How far the object slipped, and how the grip force compares with the least that could do."""
     needed = recording.needed_force
     force = recording.grip_force.mean(axis=1)
     return {
-        "largest_slip_mm": 1e3 * np.hypot(recording.slip[:, 0], recording.slip[:, 1]).max().item(),
+        "largest_slip_mm": largest_slip(recording),
         "needed_force_mean_N": needed.mean().item(),
         "needed_force_peak_N": needed.max().item(),
         "force_ratio": (force.mean() / needed.mean()).item(),
@@ -96,10 +136,14 @@ _DROPPED = Metric("dropped", "dropped [%]", share=True)
 _FORCE = Metric("mean_force_N", "grip force [N]", brief=True)
 _ROTATION = Metric("max_rotation_deg", "largest rotation [°]")
 _FINAL = Metric("final_error_abs_mm", "final error, size [mm]", brief=True)
+_FINAL_ANGLE = Metric("final_error_abs_deg", "final error, size [°]", brief=True)
+_SLIP = Metric("largest_slip_mm", "largest slip [mm]", brief=True)
+_SLIDE = Tolerance("slide_tolerance", "tolerance_mm", 1e3)
 
 MEASURES: dict[str, Measures] = {
     "LinearSlip": Measures(
         measure_linear_slip,
+        (Tolerance("tolerance", "tolerance_mm", 1e3),),
         (
             _SUCCESS,
             _DROPPED,
@@ -112,12 +156,39 @@ MEASURES: dict[str, Measures] = {
         ),
         _FINAL,
     ),
-    "Hold": Measures(
-        measure_hold,
+    "RotationalSlip": Measures(
+        measure_rotational_slip,
+        (Tolerance("tolerance", "tolerance_deg", math.degrees(1.0)), _SLIDE),
         (
             _SUCCESS,
             _DROPPED,
-            Metric("largest_slip_mm", "largest slip [mm]", brief=True),
+            Metric("final_error_deg", "final error, signed [°]", brief=True),
+            _FINAL_ANGLE,
+            Metric("rms_error_deg", "rms tracking error [°]", brief=True),
+            _SLIP,
+            _FORCE,
+        ),
+        _FINAL_ANGLE,
+    ),
+    "Hinge": Measures(
+        measure_hinge,
+        (_SLIDE, Tolerance("tilt_tolerance", "tolerance_deg", math.degrees(1.0))),
+        (
+            _SUCCESS,
+            _DROPPED,
+            _SLIP,
+            Metric("largest_tilt_deg", "largest tilt [°]", brief=True),
+            _FORCE,
+        ),
+        _SLIP,
+    ),
+    "Hold": Measures(
+        measure_hold,
+        (Tolerance("tolerance", "tolerance_mm", 1e3),),
+        (
+            _SUCCESS,
+            _DROPPED,
+            _SLIP,
             _ROTATION,
             _FORCE,
             Metric("needed_force_mean_N", "least needed, mean [N]", brief=True),

@@ -18,9 +18,10 @@ class Recording:
     time: np.ndarray
     """Since reset, (T,) [s]."""
     slip: np.ndarray
-    """True slip (x, y, theta), (T, 3) [m, m, rad]; gravity pulls along -y."""
+    """True slip (x, y, theta), (T, 3) [m, m, rad]; gravity pulls along -y and turns along -theta."""
     reference: np.ndarray
-    """Position, velocity, acceleration the task asks for, (T, 3) [m, m/s, m/s^2]."""
+    """Position, velocity, acceleration the task asks for, (T, 3) [m or rad, per s, per s^2]; in Hinge those
+    of the wrist's pitch."""
     grip_force: np.ndarray
     """Of each finger, (T, 2) [N]."""
     needed_force: np.ndarray
@@ -32,7 +33,7 @@ class Recording:
     reward: np.ndarray
     """Reward of each step, (T,)."""
     goal: float
-    """Distance to slide [m]; 0 where the task has none."""
+    """Distance to slide [m] or angle to turn [rad]; 0 where the task has neither."""
     success: bool
     """Whether the task succeeded."""
     dropped: bool
@@ -58,7 +59,8 @@ class Recorder:
     """
 
     def __init__(self, index: ObservationIndex) -> None:
-        self._goal = index.get("distance")
+        goals = (index.get(name) for name in ("distance", "angle"))
+        self._goal = next((goal for goal in goals if goal is not None), None)
         self._steps: list[tuple[np.ndarray, float, Mapping[str, Any]]] = []
 
     def add(self, observation: np.ndarray, reward: float, info: Mapping[str, Any]) -> None:

@@ -14,7 +14,7 @@ from tqdm import tqdm
 import policies
 from policies.base import ObservationIndex
 from policies.evaluation.experiment import Experiment
-from policies.evaluation.metrics import measure
+from policies.evaluation.metrics import MEASURES, measure
 from policies.evaluation.plan import Trial
 from policies.evaluation.recording import Recorder, Recording
 from slipgym.tasks import TASKS
@@ -60,8 +60,12 @@ def run_trial(experiment: Experiment, trial: Trial) -> Result:
     except Exception as error:
         error.add_note(f"in trial {trial.keys}")
         raise
-    tolerance = TASKS[experiment.task].options.parse(trial.options).choose("tolerance", _task(experiment))
-    row = {**trial.keys, "tolerance_mm": 1e3 * tolerance, **measure(recording, experiment.task)}
+    options, task = TASKS[experiment.task].options.parse(trial.options), _task(experiment)
+    limits = {
+        limit.column: limit.scale * options.choose(limit.option, task)
+        for limit in MEASURES[experiment.task].tolerances
+    }
+    row = {**trial.keys, **limits, **measure(recording, experiment.task)}
     return Result(row, recording.series() if trial.number == 0 else None)
 
 

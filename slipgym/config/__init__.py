@@ -5,13 +5,21 @@ from slipgym.config.load import Overrides, load, names
 from slipgym.config.physics import ContactConfig, Material, NominalConfig, PhysicsConfig
 from slipgym.config.root import Config
 from slipgym.config.sensors import ForceTorqueConfig, SensorsConfig, SlipConfig
-from slipgym.config.tasks import HoldConfig, LinearSlipConfig, TaskConfig, TasksConfig
+from slipgym.config.tasks import (
+    HingeConfig,
+    HoldConfig,
+    LinearSlipConfig,
+    RotationalSlipConfig,
+    TaskConfig,
+    TasksConfig,
+)
 
 __all__ = [
     "Config",
     "ContactConfig",
     "ForceTorqueConfig",
     "GripperConfig",
+    "HingeConfig",
     "HoldConfig",
     "LinearSlipConfig",
     "Material",
@@ -19,6 +27,7 @@ __all__ = [
     "ObjectConfig",
     "Overrides",
     "PhysicsConfig",
+    "RotationalSlipConfig",
     "SensorsConfig",
     "SlipConfig",
     "TaskConfig",

@@ -51,8 +51,9 @@ def _describe(error: ErrorDetails) -> str:
     if location and location[-1] == "[key]":
         return f"{'.'.join(map(str, location[:-2]))}: names must be text, got {error['input']!r}"
     if error["type"] in ("extra_forbidden", "invalid_key"):
-        parent = _schema_at(location[:-1])
-        return f"{dotted}: {unknown('key', location[-1], parent['properties'])}"
+        options = _options(_schema_at(location[:-1]))
+        keys = [key for option in options for key in option.get("properties", ())]
+        return f"{dotted}: {unknown('key', location[-1], keys)}"
     if error["type"] == "value_error":
         message = error["msg"].removeprefix("Value error, ")
         return f"{dotted}: {message}" if dotted else message
@@ -75,19 +76,35 @@ def _schema_at(location: tuple[int | str, ...]) -> dict[str, Any]:
     """The JSON schema of one place in the configuration; of the deepest known one above it otherwise."""
     node = _schema()
     for part in location:
-        child = node.get("properties", {}).get(part) or node.get("additionalProperties")
-        if "prefixItems" in node and isinstance(part, int) and part < len(node["prefixItems"]):
-            child = node["prefixItems"][part]
-        if not isinstance(child, dict):
+        children = [child for option in _options(node) for child in _children(option, part)]
+        if not children:
             break
-        node = _schema()["$defs"][child["$ref"].rpartition("/")[2]] if "$ref" in child else child
+        node = _followed(children[0])
     return node
+
+
+def _children(node: dict[str, Any], part: int | str) -> list[dict[str, Any]]:
+    """The schema that a JSON schema has for one of its parts, if any."""
+    child = node.get("properties", {}).get(part) or node.get("additionalProperties")
+    if "prefixItems" in node and isinstance(part, int) and part < len(node["prefixItems"]):
+        child = node["prefixItems"][part]
+    return [child] if isinstance(child, dict) else []
+
+
+def _options(node: dict[str, Any]) -> list[dict[str, Any]]:
+    """The alternatives of a JSON schema; itself if it has none."""
+    return [_followed(option) for option in node.get("anyOf", [node])]
+
+
+def _followed(node: dict[str, Any]) -> dict[str, Any]:
+    """What a JSON schema refers to; itself if it is no reference."""
+    return _schema()["$defs"][node["$ref"].rpartition("/")[2]] if "$ref" in node else node
 
 
 def _allowed(schema: dict[str, Any]) -> str:
     """Says which values a JSON schema allows."""
     if "anyOf" in schema:
-        text = " or ".join(_allowed(option) for option in schema["anyOf"])
+        text = " or ".join(_allowed(option) for option in _options(schema))
     elif "enum" in schema:
         text = "one of " + ", ".join(repr(value) for value in schema["enum"])
     elif "prefixItems" in schema:

@@ -3,14 +3,19 @@
 from pydantic import Field
 
 from slipgym.config.base import Frozen, Interval, NonNegative, Positive, PositiveInterval
+from slipgym.config.hardware import ObjectConfig
 
 
 class TaskConfig(Frozen):
     """What every task has."""
 
     initial_force: Positive = Field(description="Force per finger at reset [N]")
+    object: ObjectConfig | None = Field(description="The object of this task; null: the common one [-]")
     mass_range: PositiveInterval | None = Field(
-        description="The object's mass is drawn from this range; null: object.mass [kg]"
+        description="The object's mass is drawn from this range; null: the object's own [kg]"
+    )
+    radius: Positive | None = Field(
+        description="Radius r of the equivalent rim contact in this task, also nominal; null: the common [m]"
     )
     reward: Frozen = Field(description="Scales of the reward terms [-]")
 
@@ -29,6 +34,26 @@ class HoldReward(Frozen):
     """Scales of the reward terms of Hold."""
 
     still: float = Field(description="Scale of exp(-(slip / tolerance)^2) [-]")
+    effort: float = Field(description="Scale of -(mean grip force / force_max) [-]")
+    smoothness: float = Field(description="Scale of -(change of the command / force_max)^2 [-]")
+    drop: float = Field(description="Scale of -1 on a drop [-]")
+
+
+class RotationalSlipReward(Frozen):
+    """Scales of the reward terms of RotationalSlip."""
+
+    tracking: float = Field(description="Scale of exp(-(error / tolerance)^2) against the reference [-]")
+    sliding: float = Field(description="Scale of -slip / slide_tolerance [-]")
+    effort: float = Field(description="Scale of -(mean grip force / force_max) [-]")
+    smoothness: float = Field(description="Scale of -(change of the command / force_max)^2 [-]")
+    drop: float = Field(description="Scale of -1 on a drop [-]")
+
+
+class HingeReward(Frozen):
+    """Scales of the reward terms of Hinge."""
+
+    still: float = Field(description="Scale of exp(-(slip / slide_tolerance)^2) [-]")
+    upright: float = Field(description="Scale of exp(-(tilt / tilt_tolerance)^2) [-]")
     effort: float = Field(description="Scale of -(mean grip force / force_max) [-]")
     smoothness: float = Field(description="Scale of -(change of the command / force_max)^2 [-]")
     drop: float = Field(description="Scale of -1 on a drop [-]")
@@ -62,8 +87,34 @@ class HoldConfig(TaskConfig):
     reward: HoldReward = Field(description="Scales of the reward terms [-]")
 
 
+class RotationalSlipConfig(TaskConfig):
+    """The object turns between the pads by a given angle in a given time, then stays."""
+
+    angle: Positive = Field(description="Angle to turn [rad]")
+    duration: Positive = Field(description="Time for the turn [s]")
+    settle: NonNegative = Field(description="Time before the turn, during which the object is held [s]")
+    hold: NonNegative = Field(description="Time after the turn, during which the object is held [s]")
+    tolerance: Positive = Field(description="Largest error of the final angle for success [rad]")
+    slide_tolerance: Positive = Field(description="Largest slip at the pad centre for success [m]")
+    reward: RotationalSlipReward = Field(description="Scales of the reward terms [-]")
+
+
+class HingeConfig(TaskConfig):
+    """The object hangs upright between the pads while the wrist pitches."""
+
+    turn: Positive = Field(description="Angle by which the wrist pitches [rad]")
+    duration: Positive = Field(description="Time for it [s]")
+    settle: NonNegative = Field(description="Time before the wrist moves [s]")
+    hold: NonNegative = Field(description="Time after it has moved [s]")
+    slide_tolerance: Positive = Field(description="Largest slip at the pad centre for success [m]")
+    tilt_tolerance: Positive = Field(description="Largest tilt of the object for success [rad]")
+    reward: HingeReward = Field(description="Scales of the reward terms [-]")
+
+
 class TasksConfig(Frozen):
     """Parameters of the tasks, one group each."""
 
     linear_slip: LinearSlipConfig = Field(description="slipgym/LinearSlip [-]")
     hold: HoldConfig = Field(description="slipgym/Hold [-]")
+    rotational_slip: RotationalSlipConfig = Field(description="slipgym/RotationalSlip [-]")
+    hinge: HingeConfig = Field(description="slipgym/Hinge [-]")

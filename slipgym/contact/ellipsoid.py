@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from slipgym.contact.kernel import prescribed_step
-from slipgym.contact.records import pads
+from slipgym.contact.records import pads, rest
 from slipgym.contact.validation import check_friction, finite_vector, positive
 
 
@@ -22,6 +22,7 @@ class EllipsoidContact:
         mu_c: Coulomb friction [-], > 0.
         mu_s: Static friction [-], >= mu_c.
         stribeck_velocity: Velocity v_s of the Stribeck curve [m/s], > 0.
+        stribeck_exponent: Exponent gamma of the Stribeck curve [-], > 0.
         sigma_0: Bristle stiffness per normal force [1/m], > 0.
         sigma_1: Bristle damping per normal force [s/m], >= 0.
         sigma_2: Viscous friction per normal force [s/m], >= 0.
@@ -36,12 +37,15 @@ class EllipsoidContact:
         mu_c: float = 0.4,
         mu_s: float = 0.55,
         stribeck_velocity: float = 1e-3,
+        stribeck_exponent: float = 2.0,
         sigma_0: float = 1e6,
         sigma_1: float = 80.0,
         sigma_2: float = 0.2,
     ) -> None:
         check_friction(mu_c, mu_s)
-        positive(r=r, stribeck_velocity=stribeck_velocity, sigma_0=sigma_0)
+        positive(
+            r=r, stribeck_velocity=stribeck_velocity, stribeck_exponent=stribeck_exponent, sigma_0=sigma_0
+        )
         positive(allow_zero=True, sigma_1=sigma_1, sigma_2=sigma_2)
         self._pads = pads(
             1,
@@ -49,6 +53,7 @@ class EllipsoidContact:
             mu_c=mu_c,
             mu_s=mu_s,
             stribeck_velocity=stribeck_velocity,
+            stribeck_exponent=stribeck_exponent,
             sigma_0=sigma_0,
             sigma_1=sigma_1,
             sigma_2=sigma_2,
@@ -90,7 +95,22 @@ class EllipsoidContact:
         f_x, f_y, tau = self._pads["wrench"][0]
         return float(f_x), float(f_y), float(tau)
 
+    def change(self, mu_c: float, mu_s: float, effective_radius: float) -> None:
+        """Change the friction and the radius r; the bristle state stays.
+
+        Args:
+            mu_c: Coulomb friction [-], > 0.
+            mu_s: Static friction [-], >= mu_c.
+            effective_radius: Radius of the equivalent rim contact [m], > 0.
+
+        Raises:
+            ValueError: A value is outside its range.
+        """
+        check_friction(mu_c, mu_s)
+        positive(effective_radius=effective_radius)
+        for field, value in (("mu_c", mu_c), ("mu_s", mu_s), ("r", effective_radius)):
+            self._pads[field] = value
+
     def reset(self) -> None:
         """Forget the bristle state, as after a loss of contact."""
-        for field in ("z", "slip_speed", "slip_rate", "wrench"):
-            self._pads[field] = 0.0
+        rest(self._pads)

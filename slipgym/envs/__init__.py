@@ -1,6 +1,8 @@
 """The environments."""
 
+from slipgym.envs.hinge import HingeEnv
 from slipgym.envs.hold import HoldEnv
 from slipgym.envs.linear_slip import LinearSlipEnv
+from slipgym.envs.rotational_slip import RotationalSlipEnv
 
-__all__ = ["HoldEnv", "LinearSlipEnv"]
+__all__ = ["HingeEnv", "HoldEnv", "LinearSlipEnv", "RotationalSlipEnv"]

@@ -29,12 +29,12 @@ class Friction:
 
 
 def draw_friction(
-    config: Config, options: EpisodeOptions, material: str, rng: np.random.Generator
+    config: Config, options: EpisodeOptions, task: TaskConfig, material: str, rng: np.random.Generator
 ) -> Friction:
     """The material's friction, with what the options fix.
 
     Raises:
-        ValueError: The material is unknown, or mu_s would be below mu_c.
+        ValueError: The material is unknown, mu_s would be below mu_c, or the pad has no room for r.
     """
     names = sorted(config.materials)
     drawn = names[rng.integers(len(names))]  # drawn always, so that options do not shift later draws
@@ -46,7 +46,8 @@ def draw_friction(
     mu_s, mu_c = (options.choose(field, config.materials[name]) for field in ("mu_s", "mu_c"))
     if mu_s < mu_c:
         raise ValueError(f"mu_s = {mu_s:g} must be at least mu_c = {mu_c:g} (material {name!r})")
-    r = config.contact.radius if options.r is None else options.r
+    r = options.r or task.radius or config.contact_radius
+    config.check_patch("option r", r)
     return Friction(mu_s, mu_c, r, name)
 
 
@@ -56,7 +57,7 @@ def make_box(config: Config, options: EpisodeOptions, task: TaskConfig, rng: np.
     Raises:
         ValueError: The pads or the centre of mass would not lie on the object.
     """
-    default = config.object
+    default = task.object or config.object
     mass = default.mass if task.mass_range is None else rng.uniform(*task.mass_range)
     if options.object_mass is not None:
         mass = options.object_mass

@@ -107,11 +107,11 @@ class SlipLoop:
         """
         _ = self.world.client
         task_config: TaskConfig = getattr(self.config.tasks, self.task.key)
-        friction = draw_friction(self.config, options, material, rng)
+        friction = draw_friction(self.config, options, task_config, material, rng)
         box = make_box(self.config, options, task_config, rng)
         force = choose_force(self.config, options, task_config)
         self._start_episode(box, options, task_config, rng)
-        self.world.reset(box, force)
+        self.world.reset(box, force, tuple(self.episode["wrist_start"][0].tolist()))
         self._guard.reset()
         self.material = friction.material
         self.true_friction[:] = friction.mu_s, friction.mu_c, friction.r

@@ -1,8 +1,10 @@
 """The tasks, one file each."""
 
-from slipgym.tasks import hold, linear_slip
+from slipgym.tasks import hinge, hold, linear_slip, rotational_slip
 from slipgym.tasks.task import Task
 
-TASKS: dict[str, Task] = {task.name: task for task in (linear_slip.TASK, hold.TASK)}
+TASKS: dict[str, Task] = {
+    module.TASK.name: module.TASK for module in (linear_slip, rotational_slip, hinge, hold)
+}
 
 __all__ = ["TASKS", "Task"]

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 
 from slipgym.compiled import compiled
+from slipgym.tasks.options import EpisodeOptions
 
 TERMS_MAX = 8
 POKES_MAX = 64
@@ -14,7 +18,10 @@ EPISODE = np.dtype(
         ("step", "i8"),  # control steps since reset
         ("step_time", "f8"),  # length of a control step [s]
         ("steps", "i8"),  # length of the episode in control steps
-        ("tolerance", "f8"),  # of success [m]
+        ("tolerance", "f8"),  # of success along the task's coordinate [m or rad]
+        ("slide_tolerance", "f8"),  # largest slip at the pad centre for success [m]
+        ("tilt_tolerance", "f8"),  # largest tilt for success [rad]
+        ("wrist_start", "f8", 3),  # pad centre (x, z) and pitch at reset [m, m, rad]
         ("reach", "f8", 2),  # pad centre may lie this far from the object's centre, (x, z) [m]
         ("object_centre", "f8", 2),  # geometric centre from the grasp point, body frame [m]
         ("pad_radius", "f8"),  # [m]
@@ -26,12 +33,13 @@ EPISODE = np.dtype(
         ("scales", "f8", TERMS_MAX),
         ("success", "?"),
         ("dropped", "?"),
-        # linear slip
-        ("distance", "f8"),  # [m]
+        ("largest_slip", "f8"),  # of the pad centre since reset [m]
+        ("largest_tilt", "f8"),  # of the object against its start since reset [rad]
+        # tasks with a reference
+        ("goal", "f8"),  # where it ends [m or rad]
         ("duration", "f8"),  # [s]
         ("settle", "f8"),  # [s]
         # hold
-        ("largest_slip", "f8"),  # since reset [m]
         ("shake", "f8", (3, 3)),  # amplitude [m, m, rad], angular frequency [rad/s], phase [rad]
         ("pokes", "i8"),  # how many
         ("poke_start", "i8", POKES_MAX),  # control step
@@ -40,6 +48,14 @@ EPISODE = np.dtype(
     ]
 )
 """One episode: clock, reference, reward terms, outcome and the tasks' own parameters."""
+
+
+def schedule(options: EpisodeOptions, task: Any, episode: np.void) -> None:
+    """Fill in settle, duration and length of an episode that settles, follows a reference and holds."""
+    for field in ("settle", "duration"):
+        episode[field] = options.choose(field, task)
+    total = episode["settle"] + episode["duration"] + options.choose("hold", task)
+    episode["steps"] = max(1, round(total / episode["step_time"]))
 
 
 @compiled
@@ -55,6 +71,14 @@ def detect_drop(episode, world, fingers):
     outside = abs(bx) > episode.reach[0] or abs(bz) > episode.reach[1]
     lost = fingers[0].contact_force <= 0.0 and fingers[1].contact_force <= 0.0
     return outside or lost
+
+
+@compiled
+def note_slip(episode, world):
+    """Distance of the object from the grasp at the pad centre [m]; the largest is kept."""
+    slip = math.hypot(world.slip[0], world.slip[1])
+    episode.largest_slip = max(episode.largest_slip, slip)
+    return slip
 
 
 @compiled

@@ -10,7 +10,7 @@ from pydantic import Field
 from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval
-from slipgym.tasks.episode import POKES_MAX, detect_drop, effort, roughness
+from slipgym.tasks.episode import POKES_MAX, detect_drop, effort, note_slip, roughness
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task
 
@@ -104,8 +104,7 @@ def judge(episodes, worlds, fingers, columns):
     """
     for i in range(episodes.shape[0]):
         episode, world = episodes[i], worlds[i]
-        slip = math.hypot(world.slip[0], world.slip[1])
-        episode.largest_slip = max(episode.largest_slip, slip)
+        slip = note_slip(episode, world)
         episode.dropped = detect_drop(episode, world, fingers[i])
         finished = episode.step >= episode.steps and not episode.dropped
         episode.success = finished and episode.largest_slip <= episode.tolerance

@@ -10,7 +10,7 @@ from pydantic import Field
 from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.base import NonNegative, Positive
-from slipgym.tasks.episode import detect_drop, effort, roughness, trapezoid
+from slipgym.tasks.episode import detect_drop, effort, roughness, schedule, trapezoid
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task
 
@@ -37,10 +37,9 @@ class Options(EpisodeOptions):
 def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
     """Fill one EPISODE row; nothing here is drawn at random."""
     task = config.tasks.linear_slip
-    for field in ("distance", "duration", "settle", "tolerance"):
-        episode[field] = options.choose(field, task)
-    total = episode["settle"] + episode["duration"] + options.choose("hold", task)
-    episode["steps"] = max(1, round(total / episode["step_time"]))
+    episode["goal"] = options.choose("distance", task)
+    episode["tolerance"] = options.choose("tolerance", task)
+    schedule(options, task, episode)
 
 
 @compiled
@@ -61,13 +60,13 @@ def judge(episodes, worlds, fingers, columns):
     for i in range(episodes.shape[0]):
         episode, world = episodes[i], worlds[i]
         time = episode.step * episode.step_time
-        reference = trapezoid(time - episode.settle, episode.distance, episode.duration)
+        reference = trapezoid(time - episode.settle, episode.goal, episode.duration)
         for k in range(3):
             episode.reference[k] = reference[k]
         error = -world.slip[1] - reference[0]
         sideways = abs(world.slip[0]) + episode.pad_radius * abs(world.slip[2])
         episode.dropped = detect_drop(episode, world, fingers[i])
-        final = -world.slip[1] - episode.distance
+        final = -world.slip[1] - episode.goal
         episode.success = (
             episode.step >= episode.steps and not episode.dropped and abs(final) <= episode.tolerance
         )
@@ -82,7 +81,7 @@ def judge(episodes, worlds, fingers, columns):
             episode.terms[k] = episode.scales[k] * terms[k]
         for k in range(3):
             columns[i, k] = reference[k]
-        columns[i, 3] = episode.distance
+        columns[i, 3] = episode.goal
         columns[i, 4] = (episode.steps - episode.step) * episode.step_time
 
 

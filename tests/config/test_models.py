@@ -84,5 +84,7 @@ def test_the_numbers_live_in_the_files_alone():
 @pytest.mark.parametrize("path", list(leaves(config.load().model_dump())), ids=".".join)
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), "1", None, True, []], ids=repr)
 def test_no_number_takes_what_is_not_a_finite_number(path, bad):
+    if bad is None and path[::2] == ("tasks", "radius"):
+        pytest.skip("null: the common radius")
     with pytest.raises(ValueError, match=re.escape(".".join(path))):
         config.load(nested(path, bad))

@@ -9,9 +9,9 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-import slipgym  # noqa: F401
+from slipgym.registration import ENVIRONMENTS
 
-IDS = ("slipgym/LinearSlip-v0", "slipgym/Hold-v0")
+IDS = tuple(ENVIRONMENTS)
 ROOT = Path(__file__).resolve().parents[2]
 
 

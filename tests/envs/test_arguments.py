@@ -59,7 +59,7 @@ OPTIONS = [
     ({"object_mass": "heavy"}, "object_mass = 'heavy'", "number"),
     ({"initial_force": 100.0}, "initial_force = 100.0", "40"),
     ({"duration": 0.0}, "duration = 0.0", "greater than 0"),
-    ({"com_offset": (0.05, 0.0)}, "com_offset (0.05, 0.0)", "0.08 m by 0.16 m"),
+    ({"com_offset": (0.5, 0.0)}, "com_offset (0.5, 0.0)", "must lie on the object"),
     ({"object_size": (0.02, 0.02, 0.1)}, "grasp_offset", "0.02 m by 0.1 m"),
     ([("mu_s", 1.0)], "options = [('mu_s', 1.0)]", "must be a mapping"),
 ]
@@ -122,11 +122,14 @@ def test_actions_outside_the_space_act_like_its_ends(make):
 
 
 def test_config_by_file_and_by_mapping_agree(make, env_id, tmp_path, play):
-    path = tmp_path / "mine.yaml"
+    """And a task without an object and a radius of its own takes the common ones."""
+    path, key = tmp_path / "mine.yaml", make(env_id).task.key
     path.write_text(
         "object: {mass: 0.35}\ncontact: {radius: 0.008}\nmaterials: {glass: {mu_c: 0.2, mu_s: 0.25}}\n"
+        f"tasks: {{{key}: {{object: null, radius: null}}}}\n"
     )
     mapping = {
+        "tasks": {key: {"object": None, "radius": None}},
         "object": {"mass": 0.35},
         "contact": {"radius": 0.008},
         "materials": {"glass": {"mu_c": 0.2, "mu_s": 0.25}},

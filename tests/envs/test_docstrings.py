@@ -2,6 +2,7 @@
 
 import importlib
 import inspect
+import math
 import re
 from pathlib import Path
 
@@ -95,7 +96,11 @@ def test_the_numbers_in_the_text_are_the_defaults(env):
     assert f"({1e3 * gripper.dead_time:g} ms)" in action
     assert f"({1e3 * gripper.lag:g} ms)" in action
     assert f"({task.initial_force:g} N)" in section(env, "Starting State")
-    assert f"({1e3 * task.tolerance:g} mm)" in end
+    for name, field in type(task).model_fields.items():
+        if name.endswith("tolerance"):
+            value, length = getattr(task, name), (field.description or "").endswith("[m]")
+            words = f"({1e3 * value:g} mm)" if length else f"({math.degrees(value):.3g} deg)"
+            assert f"`{name}` {words}" in end
     env.reset(seed=0)
     assert f"{env._loop.episode['steps'][0]} samples)" in end
 

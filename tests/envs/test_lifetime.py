@@ -19,7 +19,7 @@ def test_an_environment_holds_one_client_until_closed(make, env_id):
     env = make(env_id)
     assert open_clients() == before + 1
     env.reset(seed=0)
-    env.reset(options={"object_size": (0.05, 0.02, 0.1)})
+    env.reset(options={"object_size": (0.4, 0.02, 0.26)})
     assert open_clients() == before + 1
     env.close()
     env.close()
@@ -90,7 +90,7 @@ GROWTH = """
     print(resident() - before)
 """
 RESET = "env.reset(seed=k); env.step(np.zeros(1, np.float32))"
-REBUILD = 'env.reset(options={"object_size": (0.05 + 0.001 * (k % 7), 0.02, 0.1)})'
+REBUILD = 'env.reset(options={"object_size": (0.4 + 0.001 * (k % 7), 0.02, 0.26)})'
 MAKE = (
     'other = gym.make(env.spec.id, render_mode="rgb_array"); other.reset(seed=k); '
     "other.render(); other.close()"

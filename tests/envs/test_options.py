@@ -11,14 +11,19 @@ CHANGES = {
     "mu_c": 0.3,
     "r": 0.005,
     "object_mass": 0.33,
-    "object_size": (0.05, 0.02, 0.1),
+    "object_size": (0.4, 0.02, 0.26),
     "com_offset": (0.01, 0.02),
     "initial_force": 10.0,
     "distance": 0.02,
-    "duration": 0.25,
+    "angle": 0.3,
+    "turn": 0.3,
+    "direction": -1,  # seed 0 draws 1
+    "duration": 0.5,
     "settle": 0.1,
     "hold": 0.1,
     "tolerance": 0.01,
+    "slide_tolerance": 0.01,
+    "tilt_tolerance": 0.01,
     "shake_amplitude": 0.001,
     "shake_pitch": 0.0,
     "shake_frequency": (0.5, 0.6),
@@ -52,9 +57,9 @@ def test_friction_options_are_the_truth(make, env_id, name, column):
 
 def test_the_mass_is_what_the_fingers_carry(make, env_id):
     env = make(env_id, sensors="ideal")
-    observation, _ = env.reset(seed=0, options={"object_mass": 0.33})
-    f_y = observation[[1, 8]]
-    assert abs(f_y.sum()) == pytest.approx(0.33 * 9.81, rel=1e-3)
+    observation, _ = env.reset(seed=0, options={"object_mass": 0.1})
+    load = observation[[0, 1]] + observation[[7, 8]]
+    assert np.hypot(*load) == pytest.approx(0.1 * 9.81, rel=1e-3)
 
 
 def test_a_shifted_centre_of_mass_is_a_torque(make):

@@ -32,7 +32,7 @@ def test_vector_environments_equal_single_ones(make, env_id, vector):
 
 def test_vector_environments_go_on_after_an_episode(env_id):
     envs = SyncVectorEnv([partial(gym.make, env_id)] * 2)
-    envs.reset(seed=0, options={"duration": 0.1})
+    envs.reset(seed=0, options={"duration": 0.5})
     ended = np.zeros(2, dtype=int)
     for _ in range(300):
         observations, _, terminated, truncated, _ = envs.step(np.full((2, 1), 1.0, np.float32))
@@ -44,7 +44,7 @@ def test_vector_environments_go_on_after_an_episode(env_id):
 
 def test_episode_statistics(env_id):
     env = RecordEpisodeStatistics(gym.make(env_id))
-    env.reset(seed=0, options={"duration": 0.2})
+    env.reset(seed=0, options={"duration": 0.5})
     total, over = 0.0, False
     while not over:
         _, reward, terminated, truncated, info = env.step(np.float32([0.3]))
@@ -60,7 +60,7 @@ def test_record_video_writes_a_film(env_id, tmp_path):
     bare = gym.make(env_id, render_mode="rgb_array", frame_skip=4)
     env = RecordVideo(bare, str(tmp_path / "films"), disable_logger=True)
     assert env.metadata["render_fps"] == 30
-    env.reset(seed=0, options={"duration": 0.2})
+    env.reset(seed=0, options={"duration": 0.5})
     over = False
     while not over:
         _, _, terminated, truncated, _ = env.step(np.float32([0.3]))

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.evaluation import evaluate, load_experiment
+from policies.evaluation import evaluate, load_experiment, narrowed
 
 pytestmark = pytest.mark.slow
 
@@ -49,3 +49,21 @@ def test_hold_holds_and_grips_less_the_more_it_knows(hold, friction):
     # no less than the load needs on average, and no more than the gripper's middle
     assert np.all(trials["mean_force_N"] > trials["needed_force_mean_N"])
     assert trials["mean_force_N"].mean() < 12.5
+
+
+@pytest.mark.parametrize("task", ["rotational_slip", "hinge"])
+def test_turns_end_as_they_should(task, tmp_path):
+    """With friction estimated and true: 15 to 60 degrees in 2 and 5 s, on materials drawn at random."""
+    experiment = narrowed(load_experiment(task), None, None, ["estimated", "true"])
+    folder = evaluate(experiment, tmp_path, progress=False)
+    trials = pd.read_parquet(folder / "trials.parquet")
+    assert not trials["dropped"].any()
+    for _, group in trials.groupby("friction"):
+        assert len(group) == 200
+        assert group["success"].mean() >= 0.95
+        if task == "rotational_slip":
+            assert (group["final_error_abs_deg"] <= 2.0).mean() >= 0.95
+            assert (group["largest_slip_mm"] < 1.0).mean() >= 0.95
+        else:
+            assert (group["largest_tilt_deg"] <= 5.0).mean() >= 0.95
+            assert (group["largest_slip_mm"] < 2.0).mean() >= 0.95

@@ -7,9 +7,15 @@ import policies
 from policies.base import Columns, ObservationIndex
 from policies.sensing import Caution
 from slipgym.config import load
-from slipgym.envs import HoldEnv, LinearSlipEnv
+from slipgym.envs import HingeEnv, HoldEnv, LinearSlipEnv, RotationalSlipEnv
 
 SOURCES = ("estimated", "true", "nominal")
+CONTROLLERS = [
+    ("linear_slip", LinearSlipEnv),
+    ("rotational_slip", RotationalSlipEnv),
+    ("hinge", HingeEnv),
+    ("hold", HoldEnv),
+]
 
 
 def play(env, policy, seed, **options):
@@ -106,7 +112,7 @@ def test_hold_force_is_load_and_reserve_over_friction():
     assert force == pytest.approx(1.2 * (np.sqrt(2.0) + 0.5) / 0.5)
 
 
-@pytest.mark.parametrize(("name", "env_class"), [("linear_slip", LinearSlipEnv), ("hold", HoldEnv)])
+@pytest.mark.parametrize(("name", "env_class"), CONTROLLERS)
 def test_a_batch_is_its_rows(name, env_class):
     env = env_class()
     rows = [env.reset(seed=seed)[0] for seed in range(3)]
@@ -117,7 +123,7 @@ def test_a_batch_is_its_rows(name, env_class):
     np.testing.assert_array_equal(batch, np.stack(single))
 
 
-@pytest.mark.parametrize(("name", "env_class"), [("linear_slip", LinearSlipEnv), ("hold", HoldEnv)])
+@pytest.mark.parametrize(("name", "env_class"), CONTROLLERS)
 def test_without_friction_part_the_controller_says_what_it_needs(name, env_class):
     env = env_class(friction_source="none")
     row, _ = env.reset(seed=0)
@@ -127,8 +133,46 @@ def test_without_friction_part_the_controller_says_what_it_needs(name, env_class
 
 
 @pytest.mark.parametrize(
-    ("name", "bad"), [("linear_slip", {"smoothing": 1.0}), ("hold", {"decay": -0.1}), ("hold", {"gain": 1})]
+    ("name", "bad"),
+    [
+        ("linear_slip", {"smoothing": 1.0}),
+        ("rotational_slip", {"smoothing": -0.1}),
+        ("hinge", {"smoothing": 1.0}),
+        ("hinge", {"k_min": 4.0}),
+        ("hold", {"decay": -0.1}),
+        ("hold", {"gain": 1}),
+    ],
 )
 def test_bad_parameters_are_named(name, bad):
     with pytest.raises(ValueError, match=next(iter(bad))):
         policies.make(name, **bad)
+
+
+@pytest.mark.parametrize("source", ["estimated", "true"])
+@pytest.mark.parametrize(("angle", "duration"), [(0.2618, 5.0), (1.0472, 2.0)])
+def test_rotational_slip_arrives(source, angle, duration):
+    env = RotationalSlipEnv(friction_source=source, estimator="joint")
+    info, largest = play(env, policies.make("rotational_slip"), 2, angle=angle, duration=duration)
+    env.close()
+    assert info["is_success"]
+    # what the limit surface asks for at d = 140 mm, and the leaps' share
+    assert largest < 1.2 * 2.0 * 0.01**2 / 0.14 * np.log(np.tan(np.pi / 4 + angle / 4))
+
+
+@pytest.mark.parametrize("source", ["estimated", "true"])
+@pytest.mark.parametrize(("turn", "direction", "duration"), [(0.2618, -1, 5.0), (1.0472, 1, 2.0)])
+def test_hinge_hangs(source, turn, direction, duration):
+    env = HingeEnv(friction_source=source, estimator="joint")
+    policy = policies.make("hinge")
+    info, _ = play(env, policy, 1, turn=turn, direction=direction, duration=duration)
+    env.close()
+    assert info["is_success"]
+    assert abs(info["reference"][0]) == pytest.approx(turn, rel=1e-3)
+
+
+def test_hinge_without_its_loose_start_swings_up():
+    """Why k_stick is below 1: static friction takes the object along."""
+    env = HingeEnv(friction_source="true", material="plastic")
+    info, _ = play(env, policies.make("hinge", k_stick=2.0), 0, duration=2.0)
+    env.close()
+    assert not info["is_success"]

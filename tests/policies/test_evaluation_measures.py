@@ -61,6 +61,40 @@ def test_a_drop_before_the_cruise_has_no_cruise_estimate():
     assert math.isnan(measure(still, "LinearSlip")["cruise_mu_c"])
 
 
+def test_rotational_slip_measures():
+    """Half a degree behind a reference of 1 to 10 degrees, 0.1 of a degree short of the goal in the end."""
+    position = np.radians(np.arange(1.0, 11.0))
+    slip = np.zeros((10, 3))
+    slip[:, 2] = -(position - math.radians(0.5))
+    slip[4, :2] = 0.0003, -0.0004
+    reference = np.column_stack((position, np.ones((10, 2))))
+    goal = math.radians(9.6)
+    row = measure(recording(slip=slip, reference=reference, goal=goal), "RotationalSlip")
+    assert row["final_error_deg"] == pytest.approx(-0.1)
+    assert row["final_error_abs_deg"] == pytest.approx(0.1)
+    assert row["rms_error_deg"] == pytest.approx(0.5)
+    assert row["largest_slip_mm"] == pytest.approx(0.5)
+
+
+def test_hinge_measures():
+    """The object turns in the grip against the wrist and falls 3 degrees behind."""
+    pitch = -np.radians(np.arange(0.0, 10.0))
+    slip = np.zeros((10, 3))
+    slip[:, 2] = -pitch
+    slip[6, 2] -= math.radians(3.0)
+    slip[7, :2] = 0.0003, -0.0004
+    reference = np.column_stack((pitch, np.ones((10, 2))))
+    row = measure(recording(slip=slip, reference=reference), "Hinge")
+    assert row["largest_tilt_deg"] == pytest.approx(3.0)
+    assert row["largest_slip_mm"] == pytest.approx(0.5)
+
+
+def test_tolerances_are_options_of_their_task():
+    for name, measures in MEASURES.items():
+        for limit in measures.tolerances:
+            assert limit.option in TASKS[name].options.model_fields
+
+
 def test_hold_measures():
     slip = np.zeros((10, 3))
     slip[3, :2] = 0.0003, -0.0004

@@ -4,8 +4,14 @@ import pytest
 
 from slipgym.validation import EXPERIMENTS, Figure
 
+SLOW = {"distributed"}
+CASES = [
+    pytest.param(experiment, id=experiment.__name__, marks=[pytest.mark.slow] * (experiment.__name__ in SLOW))
+    for experiment in EXPERIMENTS
+]
 
-@pytest.mark.parametrize("experiment", EXPERIMENTS, ids=lambda experiment: experiment.__name__)
+
+@pytest.mark.parametrize("experiment", CASES)
 def test_acceptance_figures(experiment):
     figures = list(experiment())
     assert figures

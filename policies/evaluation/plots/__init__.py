@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
@@ -10,8 +12,23 @@ from matplotlib.figure import Figure
 from policies.evaluation.frames import groups
 from policies.evaluation.plots.errors import plot_errors
 from policies.evaluation.plots.grip import plot_grip
+from policies.evaluation.plots.hinge import plot_hinge
 from policies.evaluation.plots.style import STYLE, styled
 from policies.evaluation.plots.tracking import plot_tracking
+
+_OUTCOME: dict[str, tuple[str, Callable[[pd.DataFrame], Figure]]] = {
+    "LinearSlip": (
+        "errors",
+        partial(plot_errors, unit="mm", label="final error of the slip [mm]; negative: too short"),
+    ),
+    "RotationalSlip": (
+        "errors",
+        partial(plot_errors, unit="deg", label="final error of the turn [°]; negative: too short"),
+    ),
+    "Hinge": ("outcome", plot_hinge),
+    "Hold": ("grip", plot_grip),
+}
+"""Task -> name and figure of how its trials ended."""
 
 
 def draw(task: str, trials: pd.DataFrame, series: pd.DataFrame, folder: Path) -> list[Path]:
@@ -31,10 +48,8 @@ def draw(task: str, trials: pd.DataFrame, series: pd.DataFrame, folder: Path) ->
         slug = "".join(c if c.isalnum() else "_" for c in policy)
         with styled():
             figures = {f"tracking_{slug}": plot_tracking(task, group, series)}
-            if task == "LinearSlip":
-                figures[f"errors_{slug}"] = plot_errors(group)
-            else:
-                figures[f"grip_{slug}"] = plot_grip(group)
+            name, plot = _OUTCOME[task]
+            figures[f"{name}_{slug}"] = plot(group)
             written += [_save(figure, folder / f"{name}.png") for name, figure in figures.items()]
     return written
 

@@ -31,11 +31,7 @@ def plot_tracking(task: str, trials: pd.DataFrame, series: pd.DataFrame) -> Figu
     choices = distinct(trials, "friction")
     figure = Figure(figsize=(max(7.0, 3.0 * len(choices)), 6.2))
     grid = figure.subplots(3, len(choices), sharex=True, sharey="row", squeeze=False)
-    panels: list[Callable[..., None]] = [
-        _linear_slip if task == "LinearSlip" else _largest_slip,
-        _force,
-        _friction,
-    ]
+    panels: list[Callable[..., None]] = [_MOTION[task], _force, _friction]
     for column, choice in enumerate(choices):
         trial = where(trials, friction=choice, trial=0).iloc[0]
         steps = where(series, row=trial.name)
@@ -50,13 +46,28 @@ def plot_tracking(task: str, trials: pd.DataFrame, series: pd.DataFrame) -> Figu
 
 
 def _linear_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
-    time, reference = values(steps, "time"), 1e3 * values(steps, "reference")
-    axes.plot(time, -1e3 * values(steps, "slip_y"), color=_SLIP)
-    axes.plot(time, reference, "--", color=STYLE.ink, linewidth=1.0)
+    _follow(axes, steps, -1e3 * values(steps, "slip_y"), 1e3, first)
     error = f"final error {trial['final_error_mm']:+.2f} mm".replace("-", "−")
     note(axes, 0.98, 0.05, "dropped" if trial["dropped"] else error, _SLIP, **_CORNER)
     if first:
         axes.set_ylabel("slip along gravity [mm]")
+
+
+def _rotational_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
+    _follow(axes, steps, -np.degrees(values(steps, "slip_theta")), np.degrees(1.0), first)
+    error = f"final error {trial['final_error_deg']:+.2f}°,\nslid {trial['largest_slip_mm']:.2f} mm"
+    words = "dropped" if trial["dropped"] else error.replace("-", "−")
+    note(axes, 0.02, 0.98, words, _SLIP, xycoords="axes fraction", va="top")
+    if first:
+        axes.set_ylabel("turned by gravity [°]")
+
+
+def _follow(axes: Axes, steps: pd.DataFrame, path: np.ndarray, scale: float, first: bool) -> None:
+    """A path over its reference, which is to be scaled like the path."""
+    time, reference = values(steps, "time"), scale * values(steps, "reference")
+    axes.plot(time, path, color=_SLIP)
+    axes.plot(time, reference, "--", color=STYLE.ink, linewidth=1.0)
+    if first:
         middle = len(time) // 2
         note(axes, time[middle], reference[middle], "reference  ", STYLE.ink, ha="right", va="bottom")
 
@@ -72,6 +83,23 @@ def _largest_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> N
     if first:
         axes.set_ylabel("slip [mm]")
         note(axes, 0.0, tolerance, "tolerance", STYLE.muted, va="bottom")
+
+
+def _tilt(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
+    time, tolerance = values(steps, "time"), trial["tolerance_deg"]
+    pitch, turned = (np.degrees(values(steps, name)) for name in ("reference", "slip_theta"))
+    side = np.sign(pitch[-1])
+    axes.axhspan(-tolerance, tolerance, color=STYLE.band, linewidth=0)
+    axes.plot(time, side * (turned + pitch), color=_SLIP)
+    axes.plot(time, side * pitch, "--", color=STYLE.ink, linewidth=1.0)
+    axes.set_ylim(-1.2 * tolerance, 1.6 * tolerance)
+    largest = f"tilt {trial['largest_tilt_deg']:.1f}°, slid {trial['largest_slip_mm']:.2f} mm"
+    note(axes, 0.98, 0.24, "dropped" if trial["dropped"] else largest, _SLIP, **_CORNER)
+    if first:
+        axes.set_ylabel("tilt of the object [°]")
+        leaves = int(np.argmax(side * pitch > 1.2 * tolerance))
+        note(axes, time[leaves], 1.2 * tolerance, "wrist  ", STYLE.ink, ha="right")
+        note(axes, 0.0, -tolerance, "tolerance", STYLE.muted, va="bottom")
 
 
 def _force(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
@@ -97,6 +125,15 @@ def _friction(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
     if first:
         axes.set_ylabel("friction [–]")
         note(axes, 0.98, 0.05, "estimates of both fingers; dashed: true", STYLE.muted, **_CORNER)
+
+
+_MOTION = {
+    "LinearSlip": _linear_slip,
+    "RotationalSlip": _rotational_slip,
+    "Hinge": _tilt,
+    "Hold": _largest_slip,
+}
+"""Task -> its panel of the object's motion."""
 
 
 def _scenario(task: str, trial: Any) -> str:

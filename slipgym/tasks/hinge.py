@@ -1,0 +1,120 @@
+"""Hinge: the wrist pitches while the object hangs from the pads, upright and without sliding."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from slipgym.compiled import compiled
+from slipgym.config import Config
+from slipgym.config.base import NonNegative, Positive
+from slipgym.tasks.episode import detect_drop, effort, note_slip, roughness, schedule, trapezoid
+from slipgym.tasks.options import EpisodeOptions
+from slipgym.tasks.task import Column, Task
+
+TERMS = ("still", "upright", "effort", "smoothness", "drop")
+COLUMNS = (
+    Column("wrist_pitch", -10.0, 10.0, "rad", "pitch of the wrist since the start"),
+    Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "its rate"),
+    Column("wrist_pitch_acceleration", -100.0, 100.0, "rad/s^2", "its second rate"),
+    Column("wrist_pitch_goal", -10.0, 10.0, "rad", "pitch at the end of the turn"),
+    Column("time_left", 0.0, 1000.0, "s", "time until the episode ends"),
+)
+
+
+class Options(EpisodeOptions):
+    """What `reset(options=...)` can fix."""
+
+    turn: Positive | None = Field(default=None, le=3.0, description="Angle by which the wrist pitches [rad]")
+    direction: Literal[-1, 1] | None = Field(default=None, description="Its sign, 1 or -1 [-]")
+    duration: Positive | None = Field(default=None, le=120.0, description="Time for the turn [s]")
+    settle: NonNegative | None = Field(default=None, le=60.0, description="Time held before the turn [s]")
+    hold: NonNegative | None = Field(default=None, le=60.0, description="Time held after the turn [s]")
+    slide_tolerance: Positive | None = Field(default=None, description="Largest slip for success [m]")
+    tilt_tolerance: Positive | None = Field(default=None, description="Largest tilt for success [rad]")
+
+
+def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
+    """Fill one EPISODE row; the direction of the turn is drawn.
+
+    Raises:
+        ValueError: The wrist cannot turn so fast.
+    """
+    task = config.tasks.hinge
+    schedule(options, task, episode)
+    turn, fastest = options.choose("turn", task), config.gripper.wrist_pitch_rate_max
+    rate = trapezoid(0.5 * episode["duration"], turn, episode["duration"])[1]
+    if rate > fastest:
+        raise ValueError(
+            f"a turn of {turn:g} rad in duration = {episode['duration']:g} s needs {rate:.3g} rad/s; "
+            f"gripper.wrist_pitch_rate_max is {fastest:g} rad/s"
+        )
+    drawn = (-1, 1)[rng.integers(2)]  # drawn always, so that options do not shift later draws
+    episode["goal"] = turn * (getattr(options, "direction", None) or drawn)
+    for field in ("slide_tolerance", "tilt_tolerance"):
+        episode[field] = options.choose(field, task)
+
+
+@compiled
+def plan(episodes, worlds):
+    """Before a control step: the wrist's pitch acceleration over the coming step."""
+    for i in range(episodes.shape[0]):
+        episode, world = episodes[i], worlds[i]
+        time = (episode.step + 1) * episode.step_time - episode.settle
+        goal = trapezoid(time, episode.goal, episode.duration)[1]
+        world.wrist_acceleration[2] = (goal - world.wrist_velocity[2]) / episode.step_time
+
+
+@compiled
+def judge(episodes, worlds, fingers, columns):
+    """After a control step: wrist motion, reward terms, outcome, observation.
+
+    Args:
+        episodes: EPISODE (n,).
+        worlds: WORLD (n,).
+        fingers: FINGER (n, 2).
+        columns: Output (n, 5), see `COLUMNS`.
+    """
+    for i in range(episodes.shape[0]):
+        episode, world = episodes[i], worlds[i]
+        episode.reference[0] = world.wrist[2]
+        episode.reference[1] = world.wrist_velocity[2]
+        episode.reference[2] = world.wrist_acceleration[2]
+        slip = note_slip(episode, world)
+        tilt = abs(world.angle)
+        episode.largest_tilt = max(episode.largest_tilt, tilt)
+        episode.dropped = detect_drop(episode, world, fingers[i])
+        episode.success = (
+            episode.step >= episode.steps
+            and not episode.dropped
+            and episode.largest_slip <= episode.slide_tolerance
+            and episode.largest_tilt <= episode.tilt_tolerance
+        )
+        terms = (
+            math.exp(-((slip / episode.slide_tolerance) ** 2)),
+            math.exp(-((tilt / episode.tilt_tolerance) ** 2)),
+            -effort(episode, fingers[i]),
+            -roughness(episode),
+            -1.0 if episode.dropped else 0.0,
+        )
+        for k in range(5):
+            episode.terms[k] = episode.scales[k] * terms[k]
+        for k in range(3):
+            columns[i, k] = episode.reference[k]
+        columns[i, 3] = episode.goal
+        columns[i, 4] = (episode.steps - episode.step) * episode.step_time
+
+
+TASK = Task(
+    name="Hinge",
+    key="hinge",
+    options=Options,
+    terms=TERMS,
+    columns=COLUMNS,
+    start=start,
+    plan=plan,
+    judge=judge,
+)

@@ -1,0 +1,106 @@
+"""RotationalSlip: gravity turns the object clockwise by a given angle, without sliding."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from pydantic import Field
+
+from slipgym.compiled import compiled
+from slipgym.config import Config
+from slipgym.config.base import NonNegative, Positive
+from slipgym.tasks.episode import detect_drop, effort, note_slip, roughness, schedule, trapezoid
+from slipgym.tasks.options import EpisodeOptions
+from slipgym.tasks.task import Column, Task
+
+TERMS = ("tracking", "sliding", "effort", "smoothness", "drop")
+COLUMNS = (
+    Column("reference_position", 0.0, 2.0, "rad", "angle the object should have turned, clockwise"),
+    Column("reference_velocity", 0.0, 10.0, "rad/s", "its rate"),
+    Column("reference_acceleration", -100.0, 100.0, "rad/s^2", "its second rate"),
+    Column("angle", 0.0, 2.0, "rad", "angle to turn in the episode"),
+    Column("time_left", 0.0, 1000.0, "s", "time until the episode ends"),
+)
+
+
+class Options(EpisodeOptions):
+    """What `reset(options=...)` can fix."""
+
+    angle: Positive | None = Field(default=None, le=1.6, description="Angle to turn [rad]")
+    duration: Positive | None = Field(default=None, le=120.0, description="Time for the turn [s]")
+    settle: NonNegative | None = Field(default=None, le=60.0, description="Time held before the turn [s]")
+    hold: NonNegative | None = Field(default=None, le=60.0, description="Time held after the turn [s]")
+    tolerance: Positive | None = Field(default=None, description="Largest final error for success [rad]")
+    slide_tolerance: Positive | None = Field(default=None, description="Largest slip for success [m]")
+
+
+def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
+    """Fill one EPISODE row; nothing here is drawn at random.
+
+    The wrist starts pitched by half the angle, so that the turn is symmetric about horizontal.
+    """
+    task = config.tasks.rotational_slip
+    episode["goal"] = options.choose("angle", task)
+    for field in ("tolerance", "slide_tolerance"):
+        episode[field] = options.choose(field, task)
+    schedule(options, task, episode)
+    episode["wrist_start"] = 0.0, 0.0, 0.5 * episode["goal"]
+
+
+@compiled
+def plan(episodes, worlds):
+    """Before a control step: the wrist stays where it is and nothing disturbs."""
+
+
+@compiled
+def judge(episodes, worlds, fingers, columns):
+    """After a control step: reference, reward terms, outcome, observation.
+
+    Args:
+        episodes: EPISODE (n,).
+        worlds: WORLD (n,).
+        fingers: FINGER (n, 2).
+        columns: Output (n, 5), see `COLUMNS`.
+    """
+    for i in range(episodes.shape[0]):
+        episode, world = episodes[i], worlds[i]
+        time = episode.step * episode.step_time
+        reference = trapezoid(time - episode.settle, episode.goal, episode.duration)
+        for k in range(3):
+            episode.reference[k] = reference[k]
+        turned = -world.slip[2]
+        error = turned - reference[0]
+        slip = note_slip(episode, world)
+        episode.dropped = detect_drop(episode, world, fingers[i])
+        episode.success = (
+            episode.step >= episode.steps
+            and not episode.dropped
+            and abs(turned - episode.goal) <= episode.tolerance
+            and episode.largest_slip <= episode.slide_tolerance
+        )
+        terms = (
+            math.exp(-((error / episode.tolerance) ** 2)),
+            -min(slip / episode.slide_tolerance, 10.0),
+            -effort(episode, fingers[i]),
+            -roughness(episode),
+            -1.0 if episode.dropped else 0.0,
+        )
+        for k in range(5):
+            episode.terms[k] = episode.scales[k] * terms[k]
+        for k in range(3):
+            columns[i, k] = reference[k]
+        columns[i, 3] = episode.goal
+        columns[i, 4] = (episode.steps - episode.step) * episode.step_time
+
+
+TASK = Task(
+    name="RotationalSlip",
+    key="rotational_slip",
+    options=Options,
+    terms=TERMS,
+    columns=COLUMNS,
+    start=start,
+    plan=plan,
+    judge=judge,
+)
