@@ -31,7 +31,7 @@ def motion_of(task: Task) -> Motion:
     if units.get("reference_position") == "m":
         return Motion("slid down [mm]", lambda s: -1e3 * s[1], _millimetres, "distance")
     if units.get("reference_position") == "rad":
-        return Motion("turned in the grip [°]", lambda s: math.degrees(s[2]), math.degrees, "angle")
+        return Motion("turned by gravity [°]", lambda s: -math.degrees(s[2]), math.degrees, "angle")
     if "wrist_pitch_goal" in units:  # what hangs upright turns against the wrist
         return Motion(
             "turned in the grip [°]",

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+import policies
+from policies.play import own_policy
 from slipgym.rendering.motion import motion_of
 from slipgym.tasks import TASKS, Task
 from slipgym.tasks.task import Column
@@ -41,6 +43,21 @@ def test_a_new_episode_has_a_new_strip(make, changed):
     np.testing.assert_array_equal(env.render(), first)
 
 
+def test_the_plotted_path_follows_the_reference(make):
+    """Signs agree: each task's own controller keeps near the dashed line."""
+    for env_id in ("slipgym/LinearSlip-v0", "slipgym/RotationalSlip-v0", "slipgym/Hinge-v0"):
+        env = make(env_id)
+        policy = policies.make(own_policy(env.task.name))
+        (observation, _), state = env.reset(seed=0, options={"duration": 3.0}), None
+        while env._loop.time < 2.5:
+            action, state = policy.predict(observation, state=state)
+            observation = env.step(action)[0]
+        history = env._renderer._history
+        path, reference = history.column("path")[-1], history.column("reference")[-1]
+        assert path == pytest.approx(reference, rel=0.3)
+        assert abs(reference) > 10.0
+
+
 def columns(*named: tuple[str, str]) -> Task:
     task = TASKS["Hold"]
     listed = tuple(Column(name, -1.0, 1.0, unit, "") for name, unit in named)
@@ -54,7 +71,7 @@ SLIP = np.array([0.003, -0.004, 0.5])
     ("task", "path", "target"),
     [
         (columns(("reference_position", "m")), 4.0, 500.0),
-        (columns(("reference_position", "rad")), np.degrees(0.5), np.degrees(0.5)),
+        (columns(("reference_position", "rad")), -np.degrees(0.5), np.degrees(0.5)),
         (columns(("wrist_pitch_goal", "rad")), np.degrees(0.5), -np.degrees(0.5)),
         (columns(("time_left", "s")), 5.0, 500.0),
     ],
