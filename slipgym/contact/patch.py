@@ -97,10 +97,12 @@ def respond(pad, cells, delta, h):
         cell = cells[i]
         x, y = cell.x, cell.y
         z = (cell.z_x, cell.z_y, 0.0)
+        # as if it carried the whole normal force: what does not differ is computed once
         force, isotropic, radial, direction, _ = kernel.respond(
-            pad, z, cell.share * pad.normal, at_cell(cell, delta), h, cell.reach
+            pad, z, pad.normal, at_cell(cell, delta), h, cell.reach
         )
-        f_x, f_y, _ = force
+        f_x, f_y = cell.share * force[0], cell.share * force[1]
+        isotropic, radial = cell.share * isotropic, cell.share * radial
         n_x, n_y, _ = direction
         n_t = x * n_y - y * n_x
         fx, fy, ft = fx + f_x, fy + f_y, ft + x * f_y - y * f_x

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
+from copy import deepcopy
+from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 import numpy as np
 
 import estimator as estimators
-from estimator.batch import BatchEstimator
 from estimator.registry import specification
 from slipgym.config import Config, TaskConfig
 from slipgym.envs.episode import choose_force, draw_friction, make_box
+from slipgym.envs.guard import Guard
 from slipgym.envs.observation import FRICTION_COLUMNS, combine
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import AXES
@@ -20,10 +21,25 @@ from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.world.bullet import BulletWorld
-from slipgym.world.plant import build
+from slipgym.world.plant import Plant, build
 from slipgym.world.scene import Box
+from slipgym.world.snapshot import EngineState
 
 WARM_UP_STEPS = 6  # control steps before time 0 in which grip and sensors come to rest
+
+
+@dataclass(frozen=True)
+class LoopState:
+    """State of a `SlipLoop` between two samples, as plain data."""
+
+    engine: EngineState
+    """Bodies in the engine."""
+    plant: Plant
+    """World, pads, fingers and sensors."""
+    arrays: Mapping[str, np.ndarray]
+    """Estimators, episode and what they said last."""
+    material: str
+    """Name of the episode's material."""
 
 
 class SlipLoop:
@@ -47,12 +63,14 @@ class SlipLoop:
         true_friction: (mu_s, mu_c, r) of the episode, (3,).
         per_finger: Estimates (mu_s, mu_c, r) per finger, (1, 2, 3).
         estimated: Estimates of both fingers merged, with their support, (1, 6).
+        estimator_choice: Name and all parameters of the estimators.
     """
 
     def __init__(self, config: Config, task: Task, estimator: str | Mapping[str, Any]) -> None:
         self.config, self.task = config, task
         self.plant = build(config)
-        self.estimator = _make_estimator(estimator, config)
+        self.estimator_choice = _choose_estimator(estimator, config)
+        self.estimator = estimators.make_batch(n=2, **self.estimator_choice)
         self.episode = np.zeros(1, EPISODE)
         self.wrenches, self.twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
         self.task_part = np.zeros((1, len(task.columns)))
@@ -68,6 +86,7 @@ class SlipLoop:
         self._force_noise = force.reshape(1, 2, samples, 6)
         self._slip_noise, self._drift_noise = slip.reshape(1, 2, AXES), drift.reshape(1, 2, 6)
         self.world = BulletWorld(config, self.plant)
+        self._guard = Guard()
 
     @property
     def time(self) -> float:
@@ -93,6 +112,7 @@ class SlipLoop:
         force = choose_force(self.config, options, task_config)
         self._start_episode(box, options, task_config, rng)
         self.world.reset(box, force)
+        self._guard.reset()
         self.material = friction.material
         self.true_friction[:] = friction.mu_s, friction.mu_c, friction.r
         for field, value in zip(("mu_s", "mu_c", "r"), self.true_friction, strict=True):
@@ -112,6 +132,9 @@ class SlipLoop:
         Args:
             force: Grip force per finger [N].
             rng: Source of the sensors' noise.
+
+        Raises:
+            FloatingPointError: Something is no longer a finite number; only a reset helps.
         """
         plant, episode = self.plant, self.episode
         episode["last_command"] = episode["command"]
@@ -122,6 +145,47 @@ class SlipLoop:
         self.estimator.update(self.time, self._wrench_rows, self._twist_rows)
         combine(self.estimator.estimates, self.per_finger, self.estimated)
         self.task.judge(episode, plant.world, plant.fingers, self.task_part)
+        arrays = plant.world, plant.pads, plant.fingers, self.wrenches, self.twists, self.per_finger, episode
+        try:
+            self._guard.watch(self.time, *arrays)
+        except FloatingPointError:
+            self.world.discard()
+            raise
+
+    def get_state(self) -> LoopState:
+        """Copy everything that the next sample depends on.
+
+        Raises:
+            RuntimeError: The world is closed, or there was no reset yet.
+        """
+        arrays = {name: array.copy() for name, array in self._arrays().items()}
+        return LoopState(self.world.get_state(), deepcopy(self.plant), arrays, self.material)
+
+    def set_state(self, state: LoopState) -> None:
+        """Go on from a state.
+
+        Raises:
+            RuntimeError: The world is closed.
+        """
+        self.world.set_state(state.engine)
+        self.plant.restore(state.plant)
+        for name, array in self._arrays().items():
+            array[:] = state.arrays[name]
+        self.material = state.material
+
+    def _arrays(self) -> dict[str, np.ndarray]:
+        """Arrays besides the plant's that last from sample to sample."""
+        return {
+            "estimator_states": self.estimator.states,
+            "estimates": self.estimator.estimates,
+            "episode": self.episode,
+            "wrenches": self.wrenches,
+            "twists": self.twists,
+            "task_part": self.task_part,
+            "true_friction": self.true_friction,
+            "per_finger": self.per_finger,
+            "estimated": self.estimated,
+        }
 
     def _advance(self, force: float, rng: np.random.Generator) -> None:
         """One control step of the world and its sensors."""
@@ -168,8 +232,8 @@ class SlipLoop:
         chips["carry"] = rng.uniform(-1.0, 1.0, (1, 2, AXES)) * chips["count"][..., None]
 
 
-def _make_estimator(choice: str | Mapping[str, Any], config: Config) -> BatchEstimator:
-    """Both fingers' estimators; one that asks how old a velocity is gets the sensor's latency."""
+def _choose_estimator(choice: str | Mapping[str, Any], config: Config) -> dict[str, Any]:
+    """Name and all parameters; an estimator that asks how old a velocity is gets the sensor's latency."""
     if isinstance(choice, str):
         choice = {"name": choice}
     if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
@@ -177,8 +241,9 @@ def _make_estimator(choice: str | Mapping[str, Any], config: Config) -> BatchEst
             f"estimator = {choice!r} must be a name or a mapping with a name; "
             f"valid: {', '.join(estimators.names())}"
         )
-    parameters = dict(choice)
-    name = parameters.pop("name")
-    if any(field.name == "velocity_delay" for field in fields(specification(name).parameters)):
-        parameters.setdefault("velocity_delay", config.sensors.slip.latency_samples)
-    return estimators.make_batch(name, 2, **parameters)
+    given = dict(choice)
+    name = given.pop("name")
+    kind = specification(name).parameters
+    if any(field.name == "velocity_delay" for field in fields(kind)):
+        given.setdefault("velocity_delay", config.sensors.slip.latency_samples)
+    return {"name": name, **asdict(kind.create(**given))}

@@ -15,6 +15,7 @@ from slipgym.config import load
 from slipgym.envs import observation
 from slipgym.envs.choices import check_action, one_of, refuse_unknown
 from slipgym.envs.loop import SlipLoop
+from slipgym.envs.state import EnvState, checked, restored_generator
 from slipgym.tasks import Task
 
 
@@ -84,6 +85,18 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         self._terms = np.zeros(len(self.task.terms))
         self._frame_skip = frame_skip
         self._loop = SlipLoop(self.config, self.task, estimator)
+        self._arguments = {
+            "friction_source": friction_source,
+            "estimator": self._loop.estimator_choice,
+            "contact": contact,
+            "sensors": sensors,
+            "material": material,
+            "action_mode": action_mode,
+            "observation_mode": observation_mode,
+            "randomization": randomization,
+            "frame_skip": frame_skip,
+            "config": self.config.model_dump(mode="json"),
+        }
         # the friction part: the merged estimates, or values that stand for the episode
         self._friction = self._loop.estimated if friction_source == "estimated" else np.ones((1, 6))
         self._views = self._info_views()
@@ -122,7 +135,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
 
         Raises:
             ValueError: The action has the wrong shape or is not finite.
-            RuntimeError: The environment is closed or was never reset.
+            RuntimeError: The environment is closed or needs a reset.
+            FloatingPointError: The simulation left the finite numbers; the message names the first.
         """
         share = 0.5 * (1.0 + check_action(action))
         if not self._ready:
@@ -132,7 +146,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         force = gripper.force_min + share * (gripper.force_max - gripper.force_min)
         loop, episode, rng = self._loop, self._loop.episode, self.np_random
         self._terms[:] = 0.0
-        dropped = finished = False
+        dropped = finished = self._ready = False
         for _ in range(self._frame_skip):
             loop.sample(force, rng)
             self._terms += episode["terms"][0, : len(self._terms)]
@@ -140,6 +154,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             finished = episode["step"].item() >= episode["steps"].item()
             if dropped or finished:
                 break
+        self._ready = True
         reward = math.fsum(self._terms.tolist())
         return self._observation(), reward, dropped, finished and not dropped, self._info()
 
@@ -157,6 +172,47 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         from slipgym.rendering import look, picture
 
         return picture(look(world, self._loop.material, self.config.gripper.pad_radius))
+
+    def get_state(self) -> EnvState:
+        """Everything that decides what the environment does next, as plain data.
+
+        Raises:
+            RuntimeError: The environment is closed.
+        """
+        _ = self._loop.world.client
+        return EnvState(
+            made_of={"task": self.task.name, **self._arguments},
+            generator=self.np_random.bit_generator.state,
+            seed=self._np_random_seed,
+            loop=self._loop.get_state() if self._ready else None,
+            friction=self._friction.copy(),
+        )
+
+    def set_state(self, state: EnvState) -> None:
+        """Go on from a state, bit for bit, also from that of another environment or process.
+
+        Args:
+            state: From `get_state` of an environment made with the same arguments.
+
+        Raises:
+            TypeError: It is no state.
+            ValueError: It is of another kind of environment.
+            RuntimeError: This environment is closed.
+        """
+        checked(state).check({"task": self.task.name, **self._arguments})
+        _ = self._loop.world.client
+        self._np_random = restored_generator(state.generator)
+        self._np_random_seed = state.seed
+        if state.loop is not None:
+            self._loop.set_state(state.loop)
+        self._friction[:] = state.friction
+        self._ready = state.loop is not None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickling and copying make a new environment with a world of its own, in the same state."""
+        state = None if self._loop.world.closed else self.get_state()
+        arguments = {**self._arguments, "render_mode": self.render_mode}
+        return _rebuild, (type(self), arguments, state, self.spec)
 
     def close(self) -> None:
         """Release the physics client; closing twice is harmless."""
@@ -200,6 +256,16 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         info["is_success"] = episode["success"].item()
         info["dropped"] = episode["dropped"].item()
         return info
+
+
+def _rebuild(kind: type[SlipEnv], arguments: Mapping[str, Any], state: EnvState | None, spec: Any) -> SlipEnv:
+    env = kind(**arguments)
+    env.spec = spec
+    if state is None:
+        env.close()
+    else:
+        env.set_state(state)
+    return env
 
 
 _KEYWORDS = [

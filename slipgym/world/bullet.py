@@ -16,6 +16,7 @@ from slipgym.world.actuator import command
 from slipgym.world.planar import locate
 from slipgym.world.plant import Plant
 from slipgym.world.scene import FINGER_LINKS, WRIST_FORCE, WRIST_JOINTS, Box
+from slipgym.world.snapshot import EngineState, load_engine, save_engine
 
 _LINK_B, _NORMAL_FORCE = 4, 9  # fields of PyBullet's contact points
 
@@ -80,6 +81,11 @@ class BulletWorld:
         if self._client is None:
             raise RuntimeError("this environment is closed; make a new one")
         return self._client
+
+    @property
+    def closed(self) -> bool:
+        """Whether the world was closed."""
+        return self._client is None
 
     @property
     def box(self) -> Box:
@@ -210,7 +216,35 @@ class BulletWorld:
             )
             p.stepSimulation(client)
             self._reading = self._read()
+        self._place_links()
         _observe(plant.world, plant.fingers, self._reading[0], self._reading[2], self._reading[3])
+
+    def get_state(self) -> EngineState:
+        """Everything that the engine's next step depends on, apart from the plant's arrays.
+
+        Raises:
+            RuntimeError: The world is closed, or there was no reset yet.
+        """
+        box, client = self.box, self.client
+        return EngineState(save_engine(client), box, self._reading)
+
+    def set_state(self, state: EngineState) -> None:
+        """Go on from a state, also from that of another world or process; the plant's arrays are not touched.
+
+        Raises:
+            RuntimeError: The world is closed.
+        """
+        client = self.client
+        if self._box is None or _geometry(state.box) != _geometry(self._box):
+            self._build(state.box)
+        load_engine(client, state.engine)
+        scene.weigh(client, self._body, state.box)
+        self._box, self._reading = state.box, state.reading
+        self._place_links()
+
+    def discard(self) -> None:
+        """Give the bodies up: the next reset builds them anew."""
+        self._box = None
 
     def close(self) -> None:
         """Disconnect the client; the world cannot be used again. Closing twice is harmless."""
@@ -224,7 +258,8 @@ class BulletWorld:
 
     def __reduce__(self) -> NoReturn:
         raise TypeError(
-            "a BulletWorld cannot be copied or pickled: two copies would share one physics client"
+            "a BulletWorld cannot be copied or pickled: two copies would share one physics client; "
+            "save get_state()"
         )
 
     def _read(self) -> tuple[Any, ...]:
@@ -238,6 +273,16 @@ class BulletWorld:
         # fsum: the engine may list the points in another order after a restore
         normals = math.fsum(first), math.fsum(second)
         return pose, velocity, (joints[0][0], joints[1][0], joints[2][0]), normals
+
+    def _place_links(self) -> None:
+        """Have the engine place the gripper's links anew from its joints.
+
+        A step and a restore round the links' transforms differently; placed by the same function after
+        both, a restored world goes on bit for bit. Setting any joint to what it is does it.
+        """
+        joint = WRIST_JOINTS[0]
+        position, velocity = p.getJointState(self._gripper, joint, self.client)[:2]
+        p.resetJointState(self._gripper, joint, position, velocity, physicsClientId=self.client)
 
     def _build(self, box: Box) -> None:
         client = self.client

@@ -1,11 +1,8 @@
 """The same seed gives the same bits: in another process, after other episodes, beside other environments."""
 
-import copy
-import pickle
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 SCRIPT = str(Path(__file__).with_name("rollout.py"))
 
@@ -52,12 +49,3 @@ def test_two_environments_in_turn_do_not_touch_each_other(make, env_id, play):
         for i in (1, 0):
             together[i].append(repr(pair[i].step(actions[i][step])))
     assert together == alone
-
-
-@pytest.mark.parametrize("duplicate", [copy.deepcopy, pickle.dumps])
-def test_environments_refuse_to_be_duplicated(make, env_id, play, duplicate):
-    env, twin = make(env_id), make(env_id)
-    env.reset(seed=0)
-    with pytest.raises(TypeError, match="cannot be copied or pickled"):
-        duplicate(env)
-    assert play(env) == play(twin)

@@ -1,0 +1,80 @@
+"""Everything that decides what an environment does next, as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from slipgym.config.errors import unknown
+from slipgym.envs.loop import LoopState
+
+
+@dataclass(frozen=True)
+class EnvState:
+    """State of a `SlipEnv` between two steps, of an episode or before the first.
+
+    Plain data: it can be pickled, copied, and restored in another process, into any environment made with
+    the same arguments, any number of times. The continuation is equal bit for bit.
+    """
+
+    made_of: Mapping[str, Any]
+    """Task, configuration and arguments that the environment was made with."""
+    generator: Mapping[str, Any]
+    """State of the environment's random generator."""
+    seed: int | None
+    """Seed that the generator was last given."""
+    loop: LoopState | None
+    """Bodies, contacts, sensors, estimators and task; None before the first reset."""
+    friction: np.ndarray
+    """Friction part of the observation, (1, 6)."""
+
+    def check(self, made_of: Mapping[str, Any]) -> None:
+        """Refuse a state of another kind of environment.
+
+        Args:
+            made_of: What the environment that is to take the state was made of.
+
+        Raises:
+            ValueError: Task, configuration or arguments differ; the message names the first.
+        """
+        for name, value in made_of.items():
+            if self.made_of[name] != value:
+                difference = _difference(self.made_of[name], value)
+                raise ValueError(
+                    f"the state is of an environment with another {name}: {difference}; "
+                    "make one with the same arguments"
+                )
+
+
+def checked(state: object) -> EnvState:
+    """Return a state, or raise TypeError if it is none."""
+    if not isinstance(state, EnvState):
+        raise TypeError(f"state must come from get_state(), got {type(state).__name__}")
+    return state
+
+
+def restored_generator(state: Mapping[str, Any]) -> np.random.Generator:
+    """A generator that goes on from a state of its bit generator.
+
+    Raises:
+        ValueError: The kind of bit generator is unknown.
+    """
+    name = state["bit_generator"]
+    if name != "PCG64":
+        raise ValueError(unknown("bit generator", name, ["PCG64"]))
+    bits: Any = np.random.PCG64(0)
+    bits.state = dict(state)
+    return np.random.Generator(bits)
+
+
+def _difference(saved: Any, here: Any, path: str = "") -> str:
+    """The first value that differs, by its dotted key."""
+    if isinstance(saved, Mapping) and isinstance(here, Mapping):
+        for key in saved:
+            if saved[key] != here.get(key):
+                return _difference(saved[key], here.get(key), f"{path}{key}.")
+    at = f"{path.rstrip('.')} = " if path else ""
+    return f"{at}{saved!r}, here {here!r}"

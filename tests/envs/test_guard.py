@@ -1,0 +1,52 @@
+"""A simulation that leaves the numbers stops, says where, and can be started afresh."""
+
+import csv
+import re
+
+import numpy as np
+import pytest
+
+from slipgym.envs.guard import KEPT, QUANTITIES
+
+
+def stopped(env) -> str:
+    """Pushes the object with a force that is no number, and returns what the environment says to it."""
+    env._loop.world.disturb(np.array([np.nan, 0.0, 0.0]))
+    with pytest.raises(FloatingPointError) as caught:
+        env.step(np.zeros(1, np.float32))
+    return str(caught.value)
+
+
+def test_names_the_first_quantity_and_writes_the_last_samples(make):
+    env = make()
+    env.reset(seed=0)
+    for _ in range(9):
+        env.step(np.zeros(1, np.float32))
+    message = stopped(env)
+    assert re.match(r"object_x is nan at t = 0\.0833333 s; the last 10 samples are in ", message)
+    path = re.search(r"in (\S+\.csv);", message)[1]
+    with open(path) as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["time", *QUANTITIES]
+    assert len(rows) == 10
+    assert all(np.isfinite(float(rows[k][name])) for k in range(9) for name in QUANTITIES)
+    lag, commanded = np.exp(-(1 / 120 - 0.004) / 0.012), 12.8
+    assert float(rows[0]["grip_force_1"]) == pytest.approx(commanded + (15.0 - commanded) * lag, abs=0.01)
+    assert rows[9]["disturbance_x"] == "nan"
+
+
+def test_keeps_the_last_second_only(make):
+    env = make(frame_skip=30)
+    env.reset(seed=0)
+    for _ in range(6):
+        env.step(np.zeros(1, np.float32))
+    assert f"the last {KEPT} samples" in stopped(env)
+
+
+def test_starts_afresh(make, play):
+    env = make()
+    env.reset(seed=0)
+    stopped(env)
+    with pytest.raises(RuntimeError, match="reset"):
+        env.step(np.zeros(1, np.float32))
+    assert play(env, seed=3) == play(make(), seed=3)
