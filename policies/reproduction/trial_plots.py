@@ -50,52 +50,58 @@ def plot_trial(record: Record) -> Figure:
     grid[3, 0].set_ylim(0.0, 25.0)
     note(grid[0, 0], 0.98, 0.97, "f$_n$", STYLE.palette[0], **_CORNER)
     note(grid[0, 0], 0.98, 0.82, "f$_t$", STYLE.palette[1], **_CORNER)
-    note(grid[2, 0], 0.98, 0.97, "μ$_s$ of both fingers; dashed: true", _MU_S, **_CORNER)
-    note(grid[2, 0], 0.98, 0.85, "μ$_c$", _MU_C, **_CORNER)
-    figure.suptitle(_words(record), x=0.01, ha="left", color=STYLE.muted, fontsize=9.0)
+    note(grid[2, 0], 0.98, 0.80, "μ$_s$", _MU_S, **_CORNER)
+    note(grid[2, 0], 0.98, 0.65, "μ$_c$", _MU_C, **_CORNER)
+    words = f"{_words(record)}   ·   estimates of both fingers; dashed: true; grey: updates halted"
+    figure.suptitle(words, x=0.01, ha="left", color=STYLE.muted, fontsize=9.0)
     figure.align_ylabels()
     return figure
 
 
 def plot_slip(record: Record) -> Figure:
-    """The slip in the middle of a trial: which samples count as moving, and what they say of mu_c.
+    """The slip in the middle of a trial: which samples count as moving, and what they say of friction.
+
+    That is f_t / (gamma_t f_n) with the measured gamma_t where a sample is called moving, else the load
+    sqrt(f_t^2 + (tau / r)^2) / f_n; both with the true r.
 
     Args:
         record: The trial.
     """
     begin, end = slips(record)[len(slips(record)) // 2]
-    shown = slice(max(begin - _AROUND, 0), end + 2 * _AROUND)
-    time = 1e3 * (record.time - record.time[begin])
-    moving, sliding = called_moving(record)[:, 0], truly_sliding(record)
-    f_x, f_y, f_n, _ = record.wrenches[:, 0].T
+    shown = np.arange(max(begin - _AROUND, 0), min(end + 2 * _AROUND, len(record.time)))
+    time = 1e3 * (record.time[shown] - record.time[begin])
+    r, moving, sliding = record.truth[2], called_moving(record)[shown, 0], truly_sliding(record)[shown]
+    f_x, f_y, f_n, tau = record.wrenches[shown, 0].T
+    measured, true = (series[shown] * (1.0, 1.0, r) for series in (record.twists[:, 0], record.slip_twist))
+    f_t, v_t, v = (
+        np.hypot(f_x, f_y),
+        np.hypot(measured[:, 0], measured[:, 1]),
+        np.linalg.norm(measured, axis=1),
+    )
+    read = np.hypot(f_t, tau / r) / f_n
+    read[moving] = (f_t * v)[moving] / (v_t * f_n)[moving]
     figure = Figure(figsize=(6.4, 5.6))
-    force, speed, ratio = figure.subplots(3, 1, sharex=True)
-    force.plot(time[shown], f_n[shown], ".-", color=STYLE.palette[0])
-    force.plot(time[shown], np.hypot(f_x, f_y)[shown], ".-", color=STYLE.palette[1])
-    _end(force, time, f_n, shown, "f$_n$", STYLE.palette[0])
-    _end(force, time, np.hypot(f_x, f_y), shown, "f$_t$", STYLE.palette[1])
-    for twist, words, colour in (
-        (record.slip_twist, "true", STYLE.ink),
-        (record.twists[:, 0], "measured", STYLE.palette[5]),
-    ):
-        scaled = 1e3 * np.linalg.norm(twist * (1.0, 1.0, record.truth[2]), axis=1)
-        speed.plot(time[shown], scaled[shown], ".-", color=colour, label=words)
-    speed.legend(loc="upper right")
+    force, speed, friction = figure.subplots(3, 1, sharex=True)
+    for series, words, colour in ((f_n, "f$_n$", STYLE.palette[0]), (f_t, "f$_t$", STYLE.palette[1])):
+        force.plot(time, series, ".-", color=colour)
+        _beside(force, series[-1], words, colour)
+    speed.plot(time, 1e3 * np.linalg.norm(true, axis=1), ".-", color=STYLE.ink, label="true")
+    speed.plot(time, 1e3 * v, ".-", color=STYLE.palette[5], label="measured")
     for mask, words, colour in (
         (~moving, "called stuck", STYLE.muted),
         (moving & sliding, "called moving, slides", STYLE.palette[2]),
         (moving & ~sliding, "called moving, is stuck", STYLE.palette[1]),
     ):
-        k = np.flatnonzero(mask)
-        k = k[(k >= shown.start) & (k < shown.stop)]
-        ratio.plot(time[k], (np.hypot(f_x, f_y) / f_n)[k], "o", color=colour, markersize=4, label=words)
-    ratio.axhline(record.truth[1], color=STYLE.ink, linestyle="--", linewidth=0.9)
-    note(ratio, time[shown][-1], record.truth[1], "true μ$_c$", STYLE.ink, ha="right", va="top")
-    ratio.legend(loc="lower right", fontsize=8.0)
+        friction.plot(time[mask], read[mask], "o", color=colour, markersize=4, label=words)
+    friction.axhline(record.truth[1], color=STYLE.ink, linestyle="--", linewidth=0.9)
+    _beside(friction, record.truth[1], "true μ$_c$", STYLE.ink)
+    speed.legend(loc="upper right")
+    friction.legend(loc="lower right", fontsize=8.0)
     force.set(ylabel="force [N]", ylim=(0.0, None))
     speed.set(ylabel="scaled speed [mm/s]")
-    ratio.set(ylabel="f$_t$ / f$_n$ [–]", ylim=(0.0, None), xlabel="time since the slip was first seen [ms]")
+    friction.set(ylabel="friction read [–]", ylim=(0.0, None), xlabel="time since slip was first seen [ms]")
     figure.suptitle(_words(record) + ", finger 1", x=0.01, ha="left", color=STYLE.muted, fontsize=9.0)
+    figure.align_ylabels()
     return figure
 
 
@@ -108,8 +114,10 @@ def _forces(axes: Axes, record: Record, finger: int, halted: np.ndarray) -> None
     axes.set_ylim(0.0, top)
 
 
-def _end(axes: Axes, time: np.ndarray, series: np.ndarray, shown: slice, words: str, colour: str) -> None:
-    note(axes, time[shown][-1], series[shown][-1], f" {words}", colour, va="center")
+def _beside(axes: Axes, height: float, words: str, colour: str) -> None:
+    """A label to the right of the panel."""
+    place: dict[str, Any] = {"xycoords": axes.get_yaxis_transform(), "annotation_clip": False}
+    note(axes, 1.01, height, words, colour, va="center", **place)
 
 
 def _words(record: Record) -> str:
