@@ -1,5 +1,6 @@
 """Reproduces the analyses of the paper (arXiv 2507.06824)."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -43,7 +44,7 @@ def linear(
     """Linear slip, 160 trials: every estimator on the same records, beside the paper's table."""
     from policies.reproduction import reproduce_linear
 
-    _report(reproduce_linear(output, trials, jobs, seed, friction_source, contact))
+    _report(reproduce_linear, output, trials, jobs, seed, friction_source, contact)
 
 
 @app.command()
@@ -57,11 +58,15 @@ def planar(
     """Planar motion, 40 trials: the gripper turns round a hanging object; beside the paper's table."""
     from policies.reproduction import reproduce_planar
 
-    _report(reproduce_planar(output, trials, jobs, seed, contact))
+    _report(reproduce_planar, output, trials, jobs, seed, contact)
 
 
-def _report(folder: Path) -> None:
-    """Prints the tables of a run and where its figures are."""
+def _report(reproduce: Callable[..., Path], *arguments: object) -> None:
+    """Runs an experiment, prints its tables and where its figures are."""
+    try:
+        folder = reproduce(*arguments)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error
     typer.echo("\n" + (folder / "table.md").read_text(encoding="utf-8") + "\nLook at:")
     for path in sorted(folder.glob("*.png")):
         typer.echo(f"  {path}")

@@ -22,6 +22,7 @@ from policies.reproduction.rerun import rows, variants
 from policies.reproduction.table_plot import plot_table
 from policies.reproduction.tables import markdown, mechanism_markdown, nine_columns
 from policies.reproduction.trial_plots import plot_slip, plot_trial
+from slipgym.config import load
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,9 @@ class Campaign:
     record: Callable[..., Record]
     """(scenario, **settings) -> its record."""
     settings: Mapping[str, Any]
-    """What holds for all trials."""
+    """What holds for all trials; with "contact"."""
+    seed: int
+    """What the trials' seeds were made from."""
 
 
 def reproduce(
@@ -65,10 +68,9 @@ def reproduce(
     records = record_all(campaign, scenarios, jobs, progress)
     listed = tqdm(variants(), desc="estimators", unit="estimator", disable=not progress)
     trials = pd.DataFrame([row for variant in listed for record in records for row in rows(record, variant)])
-    path = stamped(output, campaign.name)
+    path = stamped(output, f"{campaign.name}__{campaign.seed}")
     with filled_in_place(path) as folder:
-        write_versions(folder)
-        (folder / "settings.yaml").write_text(yaml.safe_dump(dict(campaign.settings)), encoding="utf-8")
+        write_origin(campaign, folder)
         trials.to_csv(folder / "trials.csv", index=False)
         write_summaries(campaign.name, trials, records, folder)
         shown = next(r for r in records if example.items() <= r.keys.items())
@@ -80,6 +82,17 @@ def reproduce(
             }.items():
                 figure.savefig(folder / f"{name}.png", dpi=STYLE.dpi)
     return path
+
+
+def write_origin(campaign: Campaign, folder: Path) -> None:
+    """Writes where results come from: settings and seed, the worlds' configuration, the versions."""
+    documents = {
+        "settings": {**campaign.settings, "seed": campaign.seed},
+        "environment": load(contact=campaign.settings["contact"]).model_dump(mode="json"),
+    }
+    for name, values in documents.items():
+        (folder / f"{name}.yaml").write_text(yaml.safe_dump(values, sort_keys=False), encoding="utf-8")
+    write_versions(folder)
 
 
 def record_all(

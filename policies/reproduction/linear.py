@@ -56,7 +56,8 @@ def reproduce_linear(
         }
         for material, distance, duration, trial in cells
     ]
-    campaign = Campaign("linear", record_linear, {"friction_source": friction_source, "contact": contact})
+    settings = {"friction_source": friction_source, "contact": contact}
+    campaign = Campaign("linear", record_linear, settings, seed)
     example = {"material": "plastic", "distance": 0.04, "duration": 5.0}
     return reproduce(campaign, scenarios, example, output, jobs, progress)
 

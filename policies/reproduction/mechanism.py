@@ -47,7 +47,9 @@ def summary(records: Sequence[Record]) -> dict[str, Any]:
         samples' share of sum (gamma_t f_n)^2, the weight in the least squares; `fit_all`, `fit_sliding`:
         mu_c over its truth by least squares over all samples called moving, and over those that slide;
         `slips`, `slip_ms`: how many and how long on average, counted at the samples; `rise_N_s`: median of
-        the fastest rise of f_n; `fast_share`: share of slips that rise faster than eps_delta.
+        the fastest rise of f_n; `fast_share`: share of slips that rise faster than eps_delta;
+        `gamma_t`: median true one while sliding; `slid_mm`, `turned_deg`: mean size of the displacement
+        at the trial's end.
     """
     parts = zip(*map(_moving_samples, records), strict=True)
     f_n, phi, y, stuck = (np.concatenate(part) for part in parts)
@@ -65,6 +67,9 @@ def summary(records: Sequence[Record]) -> dict[str, Any]:
         "slip_ms": 1e3 * lengths.mean(),
         "rise_N_s": np.median(rise),
         "fast_share": (rise > _TABLE_1.eps_delta).mean(),
+        "gamma_t": np.median(np.concatenate([_gamma_t(_sliding_twists(record)) for record in records])),
+        "slid_mm": 1e3 * np.mean([np.hypot(*record.slip[-1, :2]) for record in records]),
+        "turned_deg": np.degrees(np.mean([abs(record.slip[-1, 2]) for record in records])),
     }
 
 
@@ -72,9 +77,16 @@ def _moving_samples(record: Record) -> tuple[np.ndarray, ...]:
     """f_n, gamma_t f_n, f_t over the true mu_c, and whether stuck, of all samples called moving."""
     moving = called_moving(record)
     twist, (f_x, f_y, f_n, _) = _scaled(record.twists, record)[moving], record.wrenches[moving].T
-    gamma_t = np.hypot(twist[:, 0], twist[:, 1]) / np.linalg.norm(twist, axis=1)
     stuck = np.repeat(~truly_sliding(record)[:, None], 2, axis=1)[moving]
-    return f_n, gamma_t * f_n, np.hypot(f_x, f_y) / record.truth[1], stuck
+    return f_n, _gamma_t(twist) * f_n, np.hypot(f_x, f_y) / record.truth[1], stuck
+
+
+def _sliding_twists(record: Record) -> np.ndarray:
+    return _scaled(record.slip_twist[truly_sliding(record)], record)
+
+
+def _gamma_t(twist: np.ndarray) -> np.ndarray:
+    return np.hypot(twist[:, 0], twist[:, 1]) / np.linalg.norm(twist, axis=1)
 
 
 def _scaled(twist: np.ndarray, record: Record) -> np.ndarray:

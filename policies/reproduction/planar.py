@@ -52,7 +52,7 @@ def reproduce_planar(
         for material in TABLES["planar"]
         for trial in range(trials)
     ]
-    campaign = Campaign("planar", record_planar, {"contact": contact})
+    campaign = Campaign("planar", record_planar, {"contact": contact}, seed)
     return reproduce(campaign, scenarios, {"material": "plastic"}, output, jobs, progress)
 
 

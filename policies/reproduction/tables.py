@@ -27,7 +27,10 @@ _SAMPLES = {
     "slips": ("slips", "{:.0f}", 1.0),
     "slip_ms": ("mean length [ms]", "{:.0f}", 1.0),
     "rise_N_s": ("median fastest rise of f_n [N/s]", "{:.0f}", 1.0),
-    "fast_share": ("of these above eps_delta [%]", "{:.0f}", 100.0),
+    "fast_share": ("of the slips above eps_delta [%]", "{:.0f}", 100.0),
+    "gamma_t": ("median true gamma_t, sliding", "{:.2f}", 1.0),
+    "slid_mm": ("slid at the end [mm]", "{:.1f}", 1.0),
+    "turned_deg": ("turned at the end [°]", "{:.1f}", 1.0),
 }
 
 
