@@ -6,8 +6,9 @@ to the pads within the sub-step. It solves the momentum balance
     M (q - q_free) / h^2 + sum_i S_i^T f_i(S_i q) = 0,
 
 with S_i the map from q to the scaled slip displacement at pad i's centre of pressure
-and f_i its friction. A pad is an ellipsoid (`slipgym.contact.kernel`) or, if it has cells, a
-patch (`slipgym.contact.patch`): `prepare`, `respond`, `commit` and `release` know which.
+and f_i its friction. Pads are ellipsoids (`slipgym.contact.kernel`) or, if they have cells,
+patches (`slipgym.contact.patch`): `prepare`, `respond`, `commit` and `release` of pad i know
+which. `cells` is None for ellipsoids, so that either kind is compiled for itself.
 The derivative of a bristle's friction is a multiple of the identity less a dyad, so an
 ellipsoid's pull-back needs no matrix products.
 """
@@ -57,23 +58,23 @@ def pulled_back(pad, arm, a):
 
 
 @compiled
-def prepare(pad, cells, h):
+def prepare(pad, cells, i, h):
     """Fix the friction levels of a sub-step; returns their mean over the load [-]."""
-    if cells.shape[0] == 0:
+    if cells is None:
         return kernel.prepare(pad, h)
-    return patch.prepare(pad, cells, patch.expected_twist(pad, h))
+    return patch.prepare(pad, cells[i], patch.expected_twist(pad, h))
 
 
 @compiled
-def respond(pad, cells, limit, arm, motion, h):
+def respond(pad, cells, i, limit, arm, motion, h):
     """Generalised friction force of one pad about the centre of mass, and its derivative.
 
     Returns:
         Force (3,) and derivative (xx, yy, tt, xy, xt, yt), as tuples.
     """
     delta = scaled(pad, arm, motion)
-    if cells.shape[0] > 0:
-        force, derivative = patch.respond(pad, cells, delta, h)
+    if cells is not None:
+        force, derivative = patch.respond(pad, cells[i], delta, h)
         return transposed(pad, arm, force), pulled_back(pad, arm, derivative)
     z = (pad.z[0], pad.z[1], pad.z[2])
     force, isotropic, radial, direction, _ = kernel.respond(pad, z, pad.normal, delta, h, limit / pad.sigma_0)
@@ -89,21 +90,21 @@ def respond(pad, cells, limit, arm, motion, h):
 
 
 @compiled
-def commit(pad, cells, limit, delta, h):
+def commit(pad, cells, i, limit, delta, h):
     """Store the state of a pad after a scaled slip displacement."""
-    if cells.shape[0] == 0:
+    if cells is None:
         kernel.commit(pad, delta, h, limit)
     else:
-        patch.commit(pad, cells, delta, h)
+        patch.commit(pad, cells[i], delta, h)
 
 
 @compiled
-def release(pad, cells, delta, h):
+def release(pad, cells, i, delta, h):
     """Forget the bristles of a pad without normal force, after a scaled slip displacement."""
-    if cells.shape[0] == 0:
+    if cells is None:
         kernel.release(pad, math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h)
     else:
-        patch.release(pad, cells, (delta[0] / h, delta[1] / h, delta[2] / h))
+        patch.release(pad, cells[i], (delta[0] / h, delta[1] / h, delta[2] / h))
 
 
 @compiled
@@ -118,7 +119,7 @@ def assemble(pads, cells, limits, inertia, centre, free, motion, h):
     jy, jxy, jxt, jyt = jx, 0.0, 0.0, 0.0
     for i in range(pads.shape[0]):
         if pads[i].normal > 0.0:
-            force, d = respond(pads[i], cells[i], limits[i], lever(pads[i], centre), motion, h)
+            force, d = respond(pads[i], cells, i, limits[i], lever(pads[i], centre), motion, h)
             rx, ry, rt = rx + force[0], ry + force[1], rt + force[2]
             jx, jy, jt = jx + d[0], jy + d[1], jt + d[2]
             jxy, jxt, jyt = jxy + d[3], jxt + d[4], jyt + d[5]
@@ -174,7 +175,7 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
 
     Args:
         pads: PAD records of the pads that hold the object, shape (p,); updated.
-        cells: Their CELL records, shape (p, n); updated. Without cells pads are ellipsoids.
+        cells: Their CELL records, shape (p, n); updated. None for ellipsoids.
         inertia: Mass [kg] and moment of inertia about the centre of mass [kg m^2].
         centre: Centre of mass in the pad frame [m].
         free: Motion (x, y, theta) of the centre of mass relative to the pads in this
@@ -188,13 +189,13 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
     limits = np.empty(pads.shape[0])
     held = False
     for i in range(pads.shape[0]):
-        limits[i] = prepare(pads[i], cells[i], h)
+        limits[i] = prepare(pads[i], cells, i, h)
         held = held or pads[i].normal > 0.0
     motion = solve_motion(pads, cells, limits, inertia, centre, free, guess, h) if held else free
     for i in range(pads.shape[0]):
         delta = scaled(pads[i], lever(pads[i], centre), motion)
         if pads[i].normal > 0.0:
-            commit(pads[i], cells[i], limits[i], delta, h)
+            commit(pads[i], cells, i, limits[i], delta, h)
         else:
-            release(pads[i], cells[i], delta, h)
+            release(pads[i], cells, i, delta, h)
     return motion

@@ -37,7 +37,7 @@ CELL = np.dtype(
         ("reach", "f8"),  # longest deflection in this step [m]
     ]
 )
-"""One cell of a patch. A pad without cells is an ellipsoid."""
+"""One cell of a patch."""
 
 _STATE = "z", "slip_speed", "slip_rate", "twist", "twist_rate", "wrench", "z_x", "z_y", "cap"
 

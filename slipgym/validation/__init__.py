@@ -26,6 +26,6 @@ EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     distributed,
     estimation,
 )
-"""Each yields its figures; together about twenty seconds."""
+"""Each yields its figures; together about forty seconds."""
 
 __all__ = ["EXPERIMENTS", "Figure"]

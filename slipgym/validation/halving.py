@@ -52,10 +52,11 @@ def travel(
 
 
 def compare(
-    name: str, grip: Signal, com_offset: tuple[float, float], contact: str = "ellipsoid"
+    name: str, grip: Signal, com_offset: tuple[float, float], contact: str = "ellipsoid", refinement: int = 1
 ) -> Iterator[Figure]:
     """Difference between a slide and the same with all steps halved; arguments as of `travel`."""
-    coarse, fine = (travel(grip, refinement, com_offset, contact).slip for refinement in (1, 2))
+    coarse = travel(grip, refinement, com_offset, contact).slip
+    fine = travel(grip, 2 * refinement, com_offset, contact).slip
     away = np.abs(coarse - fine)
     length = 1e3 * np.hypot(*coarse[-1, :2])
     yield Figure(f"{name}, {length:.0f} mm", BOUND, 1e3 * np.hypot(*away[:, :2].T).max(), "mm")

@@ -26,7 +26,7 @@ def _loads(worlds, pads, cells, fingers, force_torque, noise, chips, pose, veloc
     return coupling.step_loads(
         worlds[0],
         pads[0],
-        cells[0],
+        None if cells is None else cells[0],
         fingers[0],
         force_torque[0],
         noise[0],
@@ -146,7 +146,8 @@ class BulletWorld:
         for field in ("command", "force", "mean_force", "contact_mean_force", "contact_force"):
             fingers[field] = force
         rest(self._plant.pads)
-        rest(self._plant.cells)
+        if self._plant.cells is not None:
+            rest(self._plant.cells)
         if any(wrist):
             self._place(wrist)
         pose, velocity, joints, _ = self._read()

@@ -9,7 +9,7 @@ import numpy as np
 
 from slipgym.config import Config
 from slipgym.contact.pressure import patch_cells
-from slipgym.contact.records import CELL, pads, patch
+from slipgym.contact.records import pads, patch
 from slipgym.sensors.force_torque import FORCE_TORQUE
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
@@ -30,8 +30,8 @@ class Plant:
     """WORLD (n,)."""
     pads: np.ndarray
     """PAD (n, 2)."""
-    cells: np.ndarray
-    """CELL (n, 2, m); m = 0 for the ellipsoid."""
+    cells: np.ndarray | None
+    """CELL (n, 2, m); None for ellipsoids."""
     fingers: np.ndarray
     """FINGER (n, 2)."""
     force_torque: np.ndarray
@@ -42,7 +42,9 @@ class Plant:
     def restore(self, other: Plant) -> None:
         """Copy every array of another plant of the same size into this one."""
         for field in fields(self):
-            getattr(self, field.name)[:] = getattr(other, field.name)
+            array = getattr(self, field.name)
+            if array is not None:
+                array[:] = getattr(other, field.name)
 
 
 def build(config: Config, n: int = 1) -> Plant:
@@ -75,11 +77,11 @@ def _pads(config: Config, n: int) -> np.ndarray:
     return array
 
 
-def _cells(config: Config, n: int) -> np.ndarray:
+def _cells(config: Config, n: int) -> np.ndarray | None:
     """The patch of every pad; an episode scales it by its r alone."""
     contact = config.contact
     if contact.model == "ellipsoid":
-        return np.zeros((n, 2, 0), CELL)
+        return None
     positions, shares = patch_cells(contact.pressure, contact.cells)
     # in units of the cells' own r: in pure spin they then carry exactly the torque of r
     return np.tile(patch(positions / (shares @ np.hypot(*positions.T)), shares), (n, 2, 1))

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from slipgym.contact.coupled import assemble, norm, solve_motion, solve_symmetric, step_pads
-from slipgym.contact.records import CELL, pads
+from slipgym.contact.records import pads
 
 H = 5e-4
-NO_CELLS = np.zeros((2, 0), CELL)
+NO_CELLS = None
 UNIT = 1e-6  # [m]; the minimiser works in micrometres
 EQUAL = {
     "mu_c": 0.4,
