@@ -13,6 +13,7 @@ from policies.evaluation.plan import seed as seed_of
 from policies.reproduction.campaign import Campaign, reproduce
 from policies.reproduction.published import TABLES
 from policies.reproduction.records import Record, RecordKeeper
+from slipgym.config import Overrides
 from slipgym.envs import LinearSlipEnv
 
 DISTANCES, DURATIONS = (0.02, 0.04), (2.0, 5.0)  # [m], [s]
@@ -62,16 +63,21 @@ def reproduce_linear(
     return reproduce(campaign, scenarios, example, output, jobs, progress)
 
 
-def record_linear(scenario: Mapping[str, Any], friction_source: str, contact: str) -> Record:
+def record_linear(
+    scenario: Mapping[str, Any], friction_source: str, contact: str, config: Overrides | None = None
+) -> Record:
     """Runs one trial, closed loop with realistic sensors, and keeps what the sensors say.
 
     Args:
         scenario: material, distance [m], duration [s] and seed.
         friction_source: Friction that the controller acts on.
         contact: Friction model of the pads.
+        config: Overrides of the environment's configuration.
     """
     policy = policies.make("linear_slip")
-    env = LinearSlipEnv(friction_source=friction_source, contact=contact, material=scenario["material"])
+    env = LinearSlipEnv(
+        friction_source=friction_source, contact=contact, material=scenario["material"], config=config
+    )
     try:
         options = {name: scenario[name] for name in ("distance", "duration")}
         observation, _ = env.reset(seed=scenario["seed"], options=options)
