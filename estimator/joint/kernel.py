@@ -1,29 +1,20 @@
-"""The compiled update of the "joint" estimator.
-
-The ellipsoid of Waltersson & Karayiannidis (ISER 2025), eqs. (1) f_t = gamma_t f_n mu_c and
-(2) tau = gamma_tau mu_c f_n r, solved for both unknowns in closed form. Their ratio is
-tau / f_t = r^2 omega / v_t, so
-
-    r = sqrt(tau v_t / (f_t omega)),
-    mu_c = sqrt(f_t^2 + (tau / r)^2) / f_n = sqrt(f_t (f_t + tau omega / v_t)) / f_n.
-
-No estimate enters, neither in the equations nor in their gates: nothing can be locked out.
-"""
-
-import math
+"""The compiled update of the "joint" estimator, and of any other that differs in its limit surface."""
 
 from numba import njit
 
 from estimator.compiled import entry_point
-from estimator.joint.memory import learn_mu_c, learn_r, sd_mu_c
+from estimator.joint.memory import sd_mu_c, sd_r
 from estimator.joint.parameters import JointParameters
+from estimator.joint.solution import learn
 from estimator.joint.state import STATE
 from estimator.joint.timing import boundary, reference_speed
+from estimator.limit_surface.shape import ELLIPSOID, wrench_shape
 from estimator.stick_slip.kernel import (
     append,
     clear_buffer,
     halts,
     learn_mu_s,
+    length,
     lose_contact,
     publish,
     readable,
@@ -34,74 +25,12 @@ from estimator.stick_slip.kernel import (
 
 
 @njit
-def _square(x):
-    return x * x
-
-
-@njit(error_model="numpy")  # what overflows is refused where it would be learnt
-def _friction(state, p, f_t, f_n, tau, v_t, omega):
-    """mu_c from the power that friction takes; the centre of rotation may be anywhere."""
-    total = f_t + tau * omega / v_t
-    share = f_t / total  # gamma_t squared
-    y = math.sqrt(f_t * total) / f_n
-    variance = (
-        _square(y * p.law_error)
-        + _square(0.5 * y * (1.0 + share) * p.sd_force / f_t)
-        + _square(y * p.sd_normal / f_n)
-        + _square(0.5 * y * omega * p.sd_torque / (v_t * total))
-        + _square(0.5 * y * tau * p.sd_spin / (v_t * total))
-        + _square(0.5 * y * (1.0 - share) * p.sd_speed / v_t)
-    )
-    return learn_mu_c(state, p, y, variance, v_t / math.sqrt(share))
-
-
-@njit(error_model="numpy")  # what overflows is refused where it would be learnt
-def _radius(state, p, f_t, tau, v_t, omega):
-    """Radius where slide and spin are both seen."""
-    y = math.sqrt(tau * v_t / (f_t * omega))
-    relative = (
-        _square(p.sd_torque / tau)
-        + _square(p.sd_speed / v_t)
-        + _square(p.sd_force / f_t)
-        + _square(p.sd_spin / omega)
-    )
-    return learn_r(state, p, y, _square(y) * (0.25 * relative + _square(p.law_error)))
-
-
-@njit(error_model="numpy")  # what overflows is refused where it would be learnt
-def _radius_of_spin(state, p, f_n, tau, v_t, omega):
-    """Radius where only the spin is seen: eq. (2) with its gamma_tau(r), solved for r with the mu_c known."""
-    friction = max(state.mu_c + state.viscosity * math.hypot(v_t, state.r * omega), p.mu_min)
-    arm, pivot = tau / (friction * f_n), v_t / omega
-    y = math.sqrt(0.5 * arm * (arm + math.hypot(arm, 2.0 * pivot)))
-    relative = _square(p.sd_torque / tau) + _square(p.sd_normal / f_n) + _square(sd_mu_c(state, p) / friction)
-    return learn_r(state, p, y, _square(y) * (relative + _square(p.law_error)))
-
-
-@njit
-def _motion(state, p, f_t, f_n, tau, v_t, omega):
-    """Learns from one instant of sliding what stands above its noise.
-
-    Returns:
-        Whether mu_c, and whether r, was learnt.
-    """
-    gate = p.noise_gate
-    slide = f_t > gate * p.sd_force and v_t > gate * p.sd_speed
-    spin = tau > gate * p.sd_torque and omega > gate * p.sd_spin
-    saw_mu_c = slide and _friction(state, p, f_t, f_n, tau, v_t, omega)
-    if slide and spin and v_t < p.pivot_limit * p.r_max * omega:
-        return saw_mu_c, _radius(state, p, f_t, tau, v_t, omega)
-    if spin and not slide and state.updates_mu_c > 0:
-        return saw_mu_c, _radius_of_spin(state, p, f_n, tau, v_t, omega)
-    return saw_mu_c, False
-
-
-@njit
-def _stick_slip(state, p, f_t, f_n, tau, speed, halted):
-    """mu_s at each start of a slip: the largest sqrt(f_t^2 + (tau / r)^2) / f_n of the stick before it."""
-    gamma_t, _ = shares(f_t, tau / state.r)
-    if gamma_t > p.eps_t and not halted and not state.slipping:
-        append(state, p, f_t / (gamma_t * f_n))
+def learn_static(state, p, surface, f_t, f_n, tau, speed, halted):
+    """mu_s at each start of a slip: the largest mu of the stick before it whose surface the wrench is on."""
+    if not halted and not state.slipping:
+        gamma_t, _ = shares(f_t, tau / state.r)
+        if gamma_t > p.eps_t:
+            append(state, p, f_t / (gamma_t * f_n * wrench_shape(surface, gamma_t * gamma_t)))
     starts, stops = transition(state, p, speed)
     if starts and not halted:
         learn_mu_s(state, p, max(1.0 / (state.events_mu_s + 1.0), p.gain_mu_s))
@@ -110,22 +39,22 @@ def _stick_slip(state, p, f_t, f_n, tau, speed, halted):
 
 
 @njit
-def _update(state, p, t, wrench, twist, estimate):
+def update(state, p, surface, t, wrench, twist, estimate):
     """One finger, one sample.
 
     Args:
         state: STATE record, changed in place.
         p: JointParameters record.
+        surface: ELLIPSOID or DISC.
         t: Time [s].
         wrench: (4,) f_x, f_y, f_n, tau [N, N, N, N m].
         twist: (3,) v_x, v_y, omega [m/s, m/s, rad/s].
         estimate: ESTIMATE record, written.
     """
-    f_t = math.hypot(wrench[0], wrench[1])
+    f_t = length(wrench[0], wrench[1])
     f_n = wrench[2]
     tau = abs(wrench[3])
-    v_t = math.hypot(twist[0], twist[1])
-    speed = reference_speed(p, twist[0], twist[1], twist[2])
+    speed = reference_speed(p, twist)
     if not readable(state, t, f_t, f_n, tau, speed):
         return
 
@@ -133,15 +62,16 @@ def _update(state, p, t, wrench, twist, estimate):
     gamma_t, gamma_tau = 0.0, 0.0
     elapsed = t - state.t
     if f_n >= p.eps_fn:
+        moves = speed > p.eps_v
         halted = halts(state, p, f_n, elapsed)
         slid, f_t_then, f_n_then, tau_then, v_t_then, omega_then = boundary(
-            state, p, f_t, f_n, tau, twist, elapsed
+            state, p, f_t, f_n, tau, twist, moves, elapsed
         )
         if slid and not halted:
-            saw_mu_c, saw_r = _motion(state, p, f_t_then, f_n_then, tau_then, v_t_then, omega_then)
-        _stick_slip(state, p, f_t, f_n, tau, speed, halted)
-        if speed > p.eps_v:
-            gamma_t, gamma_tau = shares(v_t, state.r * abs(twist[2]))
+            saw_mu_c, saw_r = learn(state, p, surface, f_t_then, f_n_then, tau_then, v_t_then, omega_then)
+        learn_static(state, p, surface, f_t, f_n, tau, speed, halted)
+        if moves:
+            gamma_t, gamma_tau = shares(length(twist[0], twist[1]), state.r * abs(twist[2]))
         else:
             gamma_t, gamma_tau = shares(f_t, tau / state.r)
     else:
@@ -150,15 +80,15 @@ def _update(state, p, t, wrench, twist, estimate):
     state.elapsed = elapsed
     publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate)
     estimate.sd_mu_s = sd_mu_s(state, max(1.0 / max(state.events_mu_s, 1), p.gain_mu_s))
-    estimate.sd_mu_c = sd_mu_c(state, p) if state.updates_mu_c > 0 else state.mu_c
-    estimate.sd_r = math.sqrt(state.noise_r) / state.information_r if state.updates_r > 0 else state.r
+    estimate.sd_mu_c = sd_mu_c(state, p)
+    estimate.sd_r = sd_r(state, estimate.sd_mu_c)
     estimate.observable_mu_c = saw_mu_c
     estimate.observable_r = saw_r
 
 
 @entry_point(STATE, JointParameters.dtype())
 def update_batch(states, parameters, t, wrenches, twists, estimates):
-    """Update n fingers by one sample each.
+    """Update n fingers by one sample each, on the ellipsoid.
 
     A row with a value that is not finite, or with a t not later than the row's last, is left as it is.
 
@@ -171,4 +101,5 @@ def update_batch(states, parameters, t, wrenches, twists, estimates):
         estimates: (n,) of dtype ESTIMATE, written.
     """
     for i in range(len(states)):
-        _update(states[i], parameters[i % len(parameters)], t, wrenches[i], twists[i], estimates[i])
+        p = parameters[i % len(parameters)]
+        update(states[i], p, ELLIPSOID, t, wrenches[i], twists[i], estimates[i])

@@ -20,16 +20,23 @@ STATE = np.dtype(
         ("vector", np.float64, (2,)),
         ("information_r", np.float64),
         ("noise_r", np.float64),
+        ("borrowed", np.float64),
+        ("product", np.float64),
+        ("product_information", np.float64),
+        ("product_noise", np.float64),
         ("elapsed", np.float64),
         ("in_a_row", np.int64),
         ("forces", np.float64, (FORCES, 3)),
         ("twist", np.float64, (3,)),
+        ("moved", np.bool_),
     ],
     align=True,
 )
 """Weighted sums over samples (1, v) for (mu_c, viscosity): `information` (11, 12, 22), `noise` the same with
-squared fading, `vector` the right-hand side; for r alike. Last samples: `forces` a ring of (f_t, f_n, |tau|)
-[N, N, N m], `twist` the previous one, `elapsed` its interval [s], `in_a_row` how many came without a gap."""
+squared fading, `vector` the right-hand side; for r, and for `product`, mu_c r [m] of spins before mu_c was known,
+alike. `borrowed`: share of r that came by way of mu_c. Last samples: `forces` a ring of (f_t, f_n, |tau|)
+[N, N, N m], `twist` the previous one, `moved` whether it was faster than eps_v, `elapsed` its interval [s],
+`in_a_row` how many came without a gap."""
 
 
 def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:

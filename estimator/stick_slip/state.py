@@ -13,6 +13,8 @@ STICK_SLIP_STATE: list[tuple[Any, ...]] = [
     *COMMON_STATE,
     ("updates_mu_c", np.int64),
     ("updates_r", np.int64),
+    ("support_mu_c", np.float64),
+    ("support_r", np.float64),
     ("events_mu_s", np.int64),
     ("scatter_mu_s", np.float64),
     ("f_n", np.float64),
