@@ -175,10 +175,11 @@ def test_the_mechanism_is_the_papers(full):
 
 
 @pytest.mark.slow
-def test_the_joint_estimator_reads_the_truth(full):
+@pytest.mark.parametrize("name", ["joint", "disc"])
+def test_the_closed_forms_read_the_truth(full, name):
     table, _ = full
-    assert np.all(np.abs(error(table, "joint", "mu_c")) <= 0.03)
-    assert np.all(np.abs(error(table, "joint", "mu_s")) <= 0.05)
+    assert np.all(np.abs(error(table, name, "mu_c")) <= 0.03)
+    assert np.all(np.abs(error(table, name, "mu_s")) <= 0.05)
 
 
 @pytest.mark.slow
