@@ -1,13 +1,13 @@
-"""The compiled update of the "joint" estimator.
+"""The compiled update of "joint" and "disc": mu_c and r from each sample of sliding, at once.
 
-The ellipsoid of Waltersson & Karayiannidis (ISER 2025), eqs. (1) f_t = gamma_t f_n mu_c and
-(2) tau = gamma_tau mu_c f_n r, solved for both unknowns in closed form. Their ratio is
-tau / f_t = r^2 omega / v_t, so
+The limit surface gives two equations, f_t and tau, for both unknowns. Their ratio with the twist,
+q = tau omega / (f_t v_t), tells where on the surface the slip is, whatever mu_c and r; on the ellipsoid of
+Waltersson & Karayiannidis (ISER 2025), eqs. (1) and (2), in closed form
 
-    r = sqrt(tau v_t / (f_t omega)),
-    mu_c = sqrt(f_t^2 + (tau / r)^2) / f_n = sqrt(f_t (f_t + tau omega / v_t)) / f_n.
+    r = sqrt(q) v_t / omega = sqrt(tau v_t / (f_t omega)),    mu_c = sqrt(1 + q) f_t / f_n,
 
-No estimate enters, neither in the equations nor in their gates: nothing can be locked out.
+on a uniform disc with tabulated factors (`estimator.limit_surface.inverse`). No estimate enters, neither in
+the equations nor in their gates: nothing can be locked out.
 """
 
 import math
@@ -19,6 +19,7 @@ from estimator.joint.memory import learn_mu_c, learn_r, sd_mu_c
 from estimator.joint.parameters import JointParameters
 from estimator.joint.state import STATE
 from estimator.joint.timing import boundary, reference_speed
+from estimator.limit_surface.inverse import load_size, slip_radius, slip_share, spin_radius
 from estimator.stick_slip.kernel import (
     append,
     clear_buffer,
@@ -40,40 +41,36 @@ def _square(x):
 
 @njit(error_model="numpy")  # what overflows is refused where it would be learnt
 def _friction(state, p, f_t, f_n, tau, v_t, omega):
-    """mu_c from the power that friction takes; the centre of rotation may be anywhere."""
-    total = f_t + tau * omega / v_t
-    share = f_t / total  # gamma_t squared
-    y = math.sqrt(f_t * total) / f_n
-    variance = (
-        _square(y * p.law_error)
-        + _square(0.5 * y * (1.0 + share) * p.sd_force / f_t)
-        + _square(y * p.sd_normal / f_n)
-        + _square(0.5 * y * omega * p.sd_torque / (v_t * total))
-        + _square(0.5 * y * tau * p.sd_spin / (v_t * total))
-        + _square(0.5 * y * (1.0 - share) * p.sd_speed / v_t)
+    """mu_c where a slide is seen; the centre of rotation may be anywhere."""
+    rate = omega / (f_t * v_t)  # q over tau
+    q = tau * rate
+    share, slope = slip_share(p.disc, q)
+    y = f_t / (f_n * share)
+    variance = _square(y) * (
+        _square(p.law_error)
+        + _square((1.0 - slope * q) * p.sd_force / f_t)
+        + _square(p.sd_normal / f_n)
+        + _square(slope * rate * p.sd_torque)
+        + _square(slope * tau / (f_t * v_t) * p.sd_spin)
+        + _square(slope * q * p.sd_speed / v_t)
     )
-    return learn_mu_c(state, p, y, variance, v_t / math.sqrt(share))
+    return learn_mu_c(state, p, y, variance, v_t / share)
 
 
 @njit(error_model="numpy")  # what overflows is refused where it would be learnt
 def _radius(state, p, f_t, tau, v_t, omega):
     """Radius where slide and spin are both seen."""
-    y = math.sqrt(tau * v_t / (f_t * omega))
-    relative = (
-        _square(p.sd_torque / tau)
-        + _square(p.sd_speed / v_t)
-        + _square(p.sd_force / f_t)
-        + _square(p.sd_spin / omega)
-    )
-    return learn_r(state, p, y, _square(y) * (0.25 * relative + _square(p.law_error)))
+    y, sensitivity = slip_radius(p.disc, tau * omega / (f_t * v_t), v_t / omega)
+    of_q = _square(p.sd_torque / tau) + _square(p.sd_force / f_t)
+    twist = _square((1.0 - sensitivity) * p.sd_speed / v_t) + _square((1.0 - sensitivity) * p.sd_spin / omega)
+    return learn_r(state, p, y, _square(y) * (_square(sensitivity) * of_q + twist + _square(p.law_error)))
 
 
 @njit(error_model="numpy")  # what overflows is refused where it would be learnt
 def _radius_of_spin(state, p, f_n, tau, v_t, omega):
-    """Radius where only the spin is seen: eq. (2) with its gamma_tau(r), solved for r with the mu_c known."""
+    """Radius where only the spin is seen: from tau, with the mu_c known."""
     friction = max(state.mu_c + state.viscosity * math.hypot(v_t, state.r * omega), p.mu_min)
-    arm, pivot = tau / (friction * f_n), v_t / omega
-    y = math.sqrt(0.5 * arm * (arm + math.hypot(arm, 2.0 * pivot)))
+    y = spin_radius(p.disc, tau / (friction * f_n), v_t / omega)
     relative = _square(p.sd_torque / tau) + _square(p.sd_normal / f_n) + _square(sd_mu_c(state, p) / friction)
     return learn_r(state, p, y, _square(y) * (relative + _square(p.law_error)))
 
@@ -98,10 +95,10 @@ def _motion(state, p, f_t, f_n, tau, v_t, omega):
 
 @njit
 def _stick_slip(state, p, f_t, f_n, tau, speed, halted):
-    """mu_s at each start of a slip: the largest sqrt(f_t^2 + (tau / r)^2) / f_n of the stick before it."""
+    """mu_s at each start of a slip: the largest mu of the stick before it, in units of the limit surface."""
     gamma_t, _ = shares(f_t, tau / state.r)
     if gamma_t > p.eps_t and not halted and not state.slipping:
-        append(state, p, f_t / (gamma_t * f_n))
+        append(state, p, load_size(p.disc, f_t, tau / state.r) / f_n)
     starts, stops = transition(state, p, speed)
     if starts and not halted:
         learn_mu_s(state, p, max(1.0 / (state.events_mu_s + 1.0), p.gain_mu_s))

@@ -18,6 +18,9 @@ class JointParameters(StickSlipParameters):
         ValueError: A value has the wrong type, is NaN, lies outside its interval or contradicts another one.
     """
 
+    disc: bool = parameter(
+        False, "Whether the limit surface is that of a uniform disc; otherwise it is the ellipsoid."
+    )
     heuristic: bool = parameter(
         False, "Whether a fast rise of f_n halts all updates; the test of sliding makes it unnecessary."
     )
