@@ -25,5 +25,20 @@ def coupling(output: Output = Path("runs")) -> None:
     typer.echo(f"\nLook at:\n  {folder / 'map.png'}\n  {folder / 'lock_out.png'}")
 
 
+@app.command()
+def profile(
+    output: Output = Path("runs"),
+    seeds: Annotated[int, typer.Option(min=1, help="Records with noise of their own.")] = 20,
+    seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 0,
+) -> None:
+    """The simulation figure: a uniform disc under a velocity profile, exact and with realistic sensors."""
+    from policies.reproduction import reproduce_profile
+
+    folder = reproduce_profile(output, seeds, seed)
+    for name in ("phases.md", "events.md"):
+        typer.echo(f"\n{name}\n{(folder / name).read_text(encoding='utf-8').rstrip()}")
+    typer.echo(f"\nLook at:\n  {folder / 'ideal.png'}\n  {folder / 'realistic.png'}")
+
+
 if __name__ == "__main__":
     app()

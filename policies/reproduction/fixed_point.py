@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.limit_surface import DISC_RADIUS, disc_friction
+
 
 @dataclass(frozen=True)
 class Slip:
@@ -98,3 +100,22 @@ def explicit_iteration(slip: Slip, r0: float, gain: float, steps: int) -> np.nda
         new = slip.tau * v / (r * slip.omega * mu_c * slip.f_n)
         radii.append(r + gain * (new - r))
     return np.array(radii)
+
+
+def disc_bias(gamma_t: float, viscous: float = 0.0) -> tuple[float, float]:
+    """Relative errors of mu_c and r at which the ellipsoid's equations rest on a uniform disc.
+
+    The disc's exact wrench takes the place of f_t and tau in r^2 = tau v_t / (f_t omega) and
+    (mu_c f_n)^2 = f_t^2 + (tau / r)^2. Viscous friction adds sigma_2 v_t f_n to f_t and, integrated
+    over the disc of radius R, sigma_2 omega f_n R^2 / 2 to tau.
+
+    Args:
+        gamma_t: Share of translation at the disc's true r = 2R/3, in (0, 1) [-].
+        viscous: sigma_2 v / mu_c, v the scaled speed at the true r [-].
+    """
+    gamma_tau = np.sqrt(1.0 - gamma_t**2)
+    v_t, omega = gamma_t, gamma_tau / DISC_RADIUS  # R, v, mu_c and f_n are 1
+    force, torque = disc_friction(v_t / omega)
+    f_t, tau = force + viscous * v_t, torque + viscous * omega / 2.0
+    r = np.sqrt(tau * v_t / (f_t * omega))
+    return float(np.hypot(f_t, tau / r)) - 1.0, float(r / DISC_RADIUS) - 1.0

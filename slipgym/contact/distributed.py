@@ -113,6 +113,22 @@ class DistributedContact:
             self._law, self._cells, self._state, v_x, v_y, omega, float(normal_force), float(dt)
         )
 
+    def change(self, mu_c: float, mu_s: float, effective_radius: float) -> None:
+        """Change the friction and the size of the patch; its pressure profile and its bristles stay.
+
+        Args:
+            mu_c: Coulomb friction [-], > 0.
+            mu_s: Static friction [-], >= mu_c.
+            effective_radius: Radius of the equivalent rim contact [m], > 0.
+
+        Raises:
+            ValueError: A value is outside its range.
+        """
+        check_friction(mu_c, mu_s)
+        positive(effective_radius=effective_radius)
+        self._law = self._law._replace(mu_c=float(mu_c), mu_s=float(mu_s))
+        self._cells[:2] *= effective_radius / self.effective_radius
+
     def reset(self) -> None:
         """Forget the bristle states, as after a loss of contact."""
         self._state[:] = 0.0

@@ -90,6 +90,22 @@ class EllipsoidContact:
         f_x, f_y, tau = self._pads["wrench"][0]
         return float(f_x), float(f_y), float(tau)
 
+    def change(self, mu_c: float, mu_s: float, effective_radius: float) -> None:
+        """Change the friction and the radius r; the bristle state stays.
+
+        Args:
+            mu_c: Coulomb friction [-], > 0.
+            mu_s: Static friction [-], >= mu_c.
+            effective_radius: Radius of the equivalent rim contact [m], > 0.
+
+        Raises:
+            ValueError: A value is outside its range.
+        """
+        check_friction(mu_c, mu_s)
+        positive(effective_radius=effective_radius)
+        for field, value in (("mu_c", mu_c), ("mu_s", mu_s), ("r", effective_radius)):
+            self._pads[field] = value
+
     def reset(self) -> None:
         """Forget the bristle state, as after a loss of contact."""
         for field in ("z", "slip_speed", "slip_rate", "wrench"):

@@ -1,0 +1,48 @@
+"""What a scenario is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from slipgym.synthetic import Record
+
+FIELDS = ("mu_c", "r", "mu_s")
+Judged = Mapping[str, np.ndarray]
+"""Quantity of `FIELDS` -> samples at which it is judged, (n,) bool; missing: not observable there."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One course, as m records."""
+
+    record: Record
+    judged: Judged
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """Records that all estimators are fed."""
+
+    group: str
+    """What it asks."""
+    name: str
+    """Which case of it."""
+    runs: tuple[Run, ...]
+    told: int = 1
+    """Age of a velocity that an estimator is told [samples]."""
+    starts: Mapping[str, np.ndarray] = field(default_factory=dict)
+    """Start value (`r0`, `mu_c0`) -> one for each of the m records; the first are the truth."""
+
+
+def ends(record: Record, *labels: str) -> np.ndarray:
+    """The last sample of every phase with one of these labels, (n,) bool."""
+    last = np.append(record.phase[1:] != record.phase[:-1], True)
+    return last & np.isin(record.phase, labels)
+
+
+def after(record: Record, seconds: float) -> np.ndarray:
+    """The samples after a time, (n,) bool."""
+    return record.t > seconds

@@ -1,0 +1,64 @@
+"""Stick-slip as the force loop makes it: closed-loop trials of the environment, as traces.
+
+A prescribed twist cannot show what hurts an estimator here. In a patch that is held still,
+friction is a share of f_n: when f_n rises, the force rises with it, and the ratio of a stuck
+sample is still that of slip. In closed loop the load stays and the ratio falls.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+import policies
+from slipgym.synthetic import Trace
+
+
+def linear_slip_trace(material: str, distance: float, duration: float, seed: int) -> Trace:
+    """A trial of slipgym/LinearSlip-v0 under its controller, which knows the true friction.
+
+    So the motion is the same whatever an estimator says. The contact is the environment's default,
+    the ellipsoid.
+
+    Args:
+        material: Name of the material.
+        distance: To slide [m].
+        duration: Of the reference [s].
+        seed: Of the environment.
+
+    Returns:
+        What finger 1 truly felt and saw, at 120 Hz; the phase is "slip" where a sample moved on average
+        faster than 1 mm/s, and "stick" elsewhere.
+    """
+    env = gym.make(
+        "slipgym:slipgym/LinearSlip-v0", friction_source="true", material=material, disable_env_checker=True
+    )
+    controller = policies.make("linear_slip")
+    infos: list[dict[str, Any]] = []
+    try:
+        observation, first = env.reset(seed=seed, options={"distance": distance, "duration": duration})
+        state, over = None, False
+        while not over:
+            action, state = controller.predict(observation, state=state)
+            observation, _, terminated, truncated, info = env.step(action)
+            infos.append(info)
+            over = terminated or truncated
+    finally:
+        env.close()
+    t = np.array([info["time"] for info in infos])
+    motion = np.diff([info["slip"] for info in [first, *infos]], axis=0)
+    speed = np.hypot(*motion[:, :2].T) / np.diff(t, prepend=0.0)
+    mu_s, mu_c, r = (np.full(len(t), value) for value in first["true"])
+    return Trace(
+        t=t,
+        wrench=np.array([info["contact_wrench"][0] for info in infos]),
+        normal=np.array([info["grip_force"][0] for info in infos]),
+        twist=np.array([info["slip_twist"] for info in infos]),
+        motion=motion,
+        mu_s=mu_s,
+        mu_c=mu_c,
+        r=r,
+        phase=np.where(speed > 1e-3, "slip", "stick"),
+    )

@@ -1,0 +1,103 @@
+"""Records of a trace: as the gripper's sensors report it, or exact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipgym.compiled import compiled
+from slipgym.config import Overrides, load
+from slipgym.contact.records import pads
+from slipgym.sensors.force_torque import sample_force_torque
+from slipgym.sensors.measure import measure
+from slipgym.sensors.slip_velocity import AXES, accumulate_slip
+from slipgym.synthetic.integration import Trace
+from slipgym.world.plant import build
+
+
+@dataclass(frozen=True)
+class Record:
+    """m records of one course, at 120 Hz; they differ by the sensors' noise."""
+
+    t: np.ndarray
+    """Time, (n,) [s]."""
+    wrenches: np.ndarray
+    """Measured load (f_x, f_y, f_n, tau) on the finger at the CoP, (m, n, 4) [N, N, N, N m]."""
+    twists: np.ndarray
+    """Measured slip twist (v_x, v_y, omega) of the object there, (m, n, 3) [m/s, m/s, rad/s]."""
+    mu_s: np.ndarray
+    """True static friction, (n,) [-]."""
+    mu_c: np.ndarray
+    """True Coulomb friction, (n,) [-]."""
+    r: np.ndarray
+    """True radius of the equivalent rim contact, (n,) [m]."""
+    phase: np.ndarray
+    """Label of the course's phase, (n,)."""
+
+
+def ideal(trace: Trace, instant: bool = False) -> Record:
+    """The trace itself: no noise, no latency, no counts; one record.
+
+    Args:
+        trace: What happened.
+        instant: Whether a twist is that of the sampling instant, as the force is; otherwise it is
+            the mean since the last one.
+    """
+    twists = trace.twist if instant else trace.motion / np.diff(trace.t, prepend=0.0)[:, None]
+    wrenches = np.column_stack([-trace.wrench[:, :2], trace.normal, -trace.wrench[:, 2]])
+    return _record(trace, wrenches[None], twists[None].copy())
+
+
+def sense(
+    trace: Trace, m: int = 1, seed: int = 0, sensors: str = "realistic", config: Overrides | None = None
+) -> Record:
+    """The trace as m fingers' sensors report it.
+
+    These are the environment's own sensors, with one difference: a force is of the sampling
+    instant, not up to 1 ms older, and has no latency.
+
+    Args:
+        trace: What happened.
+        m: Records, each with its own noise and its own rests of counts.
+        seed: Of the noise, >= 0.
+        sensors: Preset of the sensors, "realistic" or "ideal".
+        config: Overrides of the configuration, such as `{"sensors": {"slip": {"latency_samples": 2}}}`.
+
+    Raises:
+        ValueError: The preset or an override is not valid, or m is not positive.
+    """
+    if m < 1:
+        raise ValueError(f"m = {m!r} must be at least 1")
+    plant = build(load(config, sensors), -(-m // 2))  # both fingers of a gripper have noise of their own
+    rng = np.random.default_rng(seed)
+    force_torque, chips = plant.force_torque, plant.chips
+    force_torque["delay"] = 0
+    chips["carry"] = rng.uniform(-1.0, 1.0, chips["carry"].shape) * chips["count"][..., None]
+    fingers, n = chips.shape, len(trace.t)
+    pad = pads(1)
+    wrenches, twists = np.zeros((*fingers, 4)), np.zeros((*fingers, 3))
+    every_wrench, every_twist = np.zeros((m, n, 4)), np.zeros((m, n, 3))
+    for k in range(n):
+        plant.world["tick"] += force_torque["period"][:, 0]
+        pad["wrench"], pad["normal"] = trace.wrench[k], trace.normal[k]
+        force, slip, drift = (rng.standard_normal((*fingers, *axes)) for axes in ((1, 6), (AXES,), (6,)))
+        _expose(force_torque, chips, pad, trace.motion[k], force)
+        measure(plant.world, force_torque, chips, slip, drift, wrenches, twists)
+        every_wrench[:, k] = wrenches.reshape(-1, 4)[:m]
+        every_twist[:, k] = twists.reshape(-1, 3)[:m]
+    return _record(trace, every_wrench, every_twist)
+
+
+@compiled
+def _expose(force_torque, chips, pad, motion, noise):
+    """Lets all fingers feel the pad's load and see its slip since the last sample."""
+    for i in range(chips.shape[0]):
+        for f in range(2):
+            accumulate_slip(chips[i, f], motion)
+            sample_force_torque(force_torque[i, f], pad[0], noise[i, f])
+
+
+def _record(trace: Trace, wrenches: np.ndarray, twists: np.ndarray) -> Record:
+    truth = {name: getattr(trace, name) for name in ("mu_s", "mu_c", "r", "phase")}
+    return Record(trace.t, wrenches, twists, **truth)
