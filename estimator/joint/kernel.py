@@ -46,15 +46,14 @@ def _friction(state, p, f_t, f_n, tau, v_t, omega):
     q = tau * rate
     share, slope = slip_share(p.disc, q)
     y = f_t / (f_n * share)
-    variance = _square(y) * (
-        _square(p.law_error)
-        + _square((1.0 - slope * q) * p.sd_force / f_t)
+    noise = (
+        _square((1.0 - slope * q) * p.sd_force / f_t)
         + _square(p.sd_normal / f_n)
         + _square(slope * rate * p.sd_torque)
         + _square(slope * tau / (f_t * v_t) * p.sd_spin)
         + _square(slope * q * p.sd_speed / v_t)
     )
-    return learn_mu_c(state, p, y, variance, v_t / share)
+    return learn_mu_c(state, p, y, noise, v_t / share)
 
 
 @njit(error_model="numpy")  # what overflows is refused where it would be learnt
@@ -63,7 +62,7 @@ def _radius(state, p, f_t, tau, v_t, omega):
     y, sensitivity = slip_radius(p.disc, tau * omega / (f_t * v_t), v_t / omega)
     of_q = _square(p.sd_torque / tau) + _square(p.sd_force / f_t)
     twist = _square((1.0 - sensitivity) * p.sd_speed / v_t) + _square((1.0 - sensitivity) * p.sd_spin / omega)
-    return learn_r(state, p, y, _square(y) * (_square(sensitivity) * of_q + twist + _square(p.law_error)))
+    return learn_r(state, p, y, _square(sensitivity) * of_q + twist)
 
 
 @njit(error_model="numpy")  # what overflows is refused where it would be learnt
@@ -71,8 +70,8 @@ def _radius_of_spin(state, p, f_n, tau, v_t, omega):
     """Radius where only the spin is seen: from tau, with the mu_c known."""
     friction = max(state.mu_c + state.viscosity * math.hypot(v_t, state.r * omega), p.mu_min)
     y = spin_radius(p.disc, tau / (friction * f_n), v_t / omega)
-    relative = _square(p.sd_torque / tau) + _square(p.sd_normal / f_n) + _square(sd_mu_c(state, p) / friction)
-    return learn_r(state, p, y, _square(y) * (relative + _square(p.law_error)))
+    noise = _square(p.sd_torque / tau) + _square(p.sd_normal / f_n) + _square(sd_mu_c(state, p) / friction)
+    return learn_r(state, p, y, noise)
 
 
 @njit
