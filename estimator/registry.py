@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from estimator.batch import BatchEstimator
     from estimator.online import OnlineEstimator
 
-_MODULES = {name: f"estimator.{name}.specification" for name in ("disc", "joint", "rls")}
+_MODULES = {name: f"estimator.{name}.specification" for name in ("disc", "joint", "rls", "ukf")}
 """Name -> module that holds its SPECIFICATION; imported on first use, because numba is slow to import."""
 
 

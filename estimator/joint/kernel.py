@@ -18,20 +18,8 @@ from estimator.compiled import entry_point
 from estimator.joint.memory import learn_mu_c, learn_r, sd_mu_c
 from estimator.joint.parameters import JointParameters
 from estimator.joint.state import STATE
-from estimator.joint.timing import boundary, reference_speed
-from estimator.limit_surface.inverse import load_size, slip_radius, slip_share, spin_radius
-from estimator.stick_slip.kernel import (
-    append,
-    clear_buffer,
-    halts,
-    learn_mu_s,
-    lose_contact,
-    publish,
-    readable,
-    sd_mu_s,
-    shares,
-    transition,
-)
+from estimator.limit_surface.inverse import slip_radius, slip_share, spin_radius
+from estimator.sliding.update import close_sample, open_sample
 
 
 @njit
@@ -93,63 +81,14 @@ def _motion(state, p, f_t, f_n, tau, v_t, omega):
 
 
 @njit
-def _stick_slip(state, p, f_t, f_n, tau, speed, halted):
-    """mu_s at each start of a slip: the largest mu of the stick before it, in units of the limit surface."""
-    gamma_t, _ = shares(f_t, tau / state.r)
-    if gamma_t > p.eps_t and not halted and not state.slipping:
-        append(state, p, load_size(p.disc, f_t, tau / state.r) / f_n)
-    starts, stops = transition(state, p, speed)
-    if starts and not halted:
-        learn_mu_s(state, p, max(1.0 / (state.events_mu_s + 1.0), p.gain_mu_s))
-    if starts or stops:
-        clear_buffer(state)
-
-
-@njit
 def _update(state, p, t, wrench, twist, estimate):
-    """One finger, one sample.
-
-    Args:
-        state: STATE record, changed in place.
-        p: JointParameters record.
-        t: Time [s].
-        wrench: (4,) f_x, f_y, f_n, tau [N, N, N, N m].
-        twist: (3,) v_x, v_y, omega [m/s, m/s, rad/s].
-        estimate: ESTIMATE record, written.
-    """
-    f_t = math.hypot(wrench[0], wrench[1])
-    f_n = wrench[2]
-    tau = abs(wrench[3])
-    v_t = math.hypot(twist[0], twist[1])
-    speed = reference_speed(p, twist[0], twist[1], twist[2])
-    if not readable(state, t, f_t, f_n, tau, speed):
-        return
-
-    halted, saw_mu_c, saw_r = False, False, False
-    gamma_t, gamma_tau = 0.0, 0.0
-    elapsed = t - state.t
-    if f_n >= p.eps_fn:
-        halted = halts(state, p, f_n, elapsed)
-        slid, f_t_then, f_n_then, tau_then, v_t_then, omega_then = boundary(
-            state, p, f_t, f_n, tau, twist, elapsed
-        )
-        if slid and not halted:
-            saw_mu_c, saw_r = _motion(state, p, f_t_then, f_n_then, tau_then, v_t_then, omega_then)
-        _stick_slip(state, p, f_t, f_n, tau, speed, halted)
-        if speed > p.eps_v:
-            gamma_t, gamma_tau = shares(v_t, state.r * abs(twist[2]))
-        else:
-            gamma_t, gamma_tau = shares(f_t, tau / state.r)
-    else:
-        lose_contact(state)
-        state.in_a_row = 0
-    state.elapsed = elapsed
-    publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate)
-    estimate.sd_mu_s = sd_mu_s(state, max(1.0 / max(state.events_mu_s, 1), p.gain_mu_s))
-    estimate.sd_mu_c = sd_mu_c(state, p) if state.updates_mu_c > 0 else state.mu_c
-    estimate.sd_r = math.sqrt(state.noise_r) / state.information_r if state.updates_r > 0 else state.r
-    estimate.observable_mu_c = saw_mu_c
-    estimate.observable_r = saw_r
+    """One finger, one sample."""
+    taken, halted, slid, instant = open_sample(state, p, t, wrench, twist)
+    if taken:
+        saw_mu_c, saw_r = _motion(state, p, *instant) if slid else (False, False)
+        close_sample(state, p, t, wrench, twist, halted, saw_mu_c, saw_r, estimate)
+        estimate.sd_mu_c = sd_mu_c(state, p) if state.updates_mu_c > 0 else state.mu_c
+        estimate.sd_r = math.sqrt(state.noise_r) / state.information_r if state.updates_r > 0 else state.r
 
 
 @entry_point(STATE, JointParameters.dtype())

@@ -10,7 +10,7 @@ import math
 
 from numba import njit
 
-from estimator.joint.state import FORCES
+from estimator.sliding.state import FORCES
 
 
 @njit
@@ -24,7 +24,7 @@ def boundary(state, p, f_t, f_n, tau, twist, elapsed):
     """Takes the newest sample and looks back to the newest boundary of two windows.
 
     Returns:
-        Whether the contact slid there, and f_t, f_n, |tau|, v_t, |omega| of that instant.
+        Whether the contact slid there, and (f_t, f_n, |tau|, v_t, |omega|) of that instant.
     """
     if state.samples >= 2 and elapsed > 1.5 * state.elapsed:  # one was lost: the windows are not neighbours
         state.in_a_row = 0
@@ -42,4 +42,4 @@ def boundary(state, p, f_t, f_n, tau, twist, elapsed):
     v_t = 0.5 * math.hypot(before[0] + twist[0], before[1] + twist[1])
     omega = 0.5 * abs(before[2] + twist[2])
     before[0], before[1], before[2] = twist[0], twist[1], twist[2]
-    return slid, past[0], past[1], past[2], v_t, omega
+    return slid, (past[0], past[1], past[2], v_t, omega)

@@ -1,0 +1,96 @@
+"""One sample of an estimator that learns from each instant of true sliding: all but the learning."""
+
+import math
+
+from numba import njit
+
+from estimator.limit_surface.inverse import load_size
+from estimator.sliding.timing import boundary, reference_speed
+from estimator.stick_slip.kernel import (
+    append,
+    clear_buffer,
+    halts,
+    learn_mu_s,
+    lose_contact,
+    publish,
+    readable,
+    sd_mu_s,
+    shares,
+    transition,
+)
+
+
+@njit
+def _stick_slip(state, p, f_t, f_n, tau, speed, halted):
+    """mu_s at each start of a slip: the largest mu of the stick before it, in units of the limit surface."""
+    gamma_t, _ = shares(f_t, tau / state.r)
+    if gamma_t > p.eps_t and not halted and not state.slipping:
+        append(state, p, load_size(p.disc, f_t, tau / state.r) / f_n)
+    starts, stops = transition(state, p, speed)
+    if starts and not halted:
+        learn_mu_s(state, p, max(1.0 / (state.events_mu_s + 1.0), p.gain_mu_s))
+    if starts or stops:
+        clear_buffer(state)
+
+
+@njit
+def open_sample(state, p, t, wrench, twist):
+    """Takes a sample in: whether it is valid, and whether there is an instant of sliding to learn from.
+
+    Args:
+        state: Record whose dtype holds SLIDING_STATE, changed in place.
+        p: Record of a subclass of SlidingParameters.
+        t: Time [s].
+        wrench: (4,) f_x, f_y, f_n, tau [N, N, N, N m].
+        twist: (3,) v_x, v_y, omega [m/s, m/s, rad/s].
+
+    Returns:
+        taken: Whether the sample is finite and later than the last; if not, nothing has changed.
+        halted: Whether the heuristic holds all updates back.
+        slid: Whether to learn from the instant.
+        instant: f_t, f_n, |tau|, v_t, |omega| of it [N, N, N m, m/s, rad/s].
+    """
+    f_t, f_n, tau = math.hypot(wrench[0], wrench[1]), wrench[2], abs(wrench[3])
+    speed = reference_speed(p, twist[0], twist[1], twist[2])
+    nothing = (0.0, 0.0, 0.0, 0.0, 0.0)
+    if not readable(state, t, f_t, f_n, tau, speed):
+        return False, False, False, nothing
+    if f_n < p.eps_fn:
+        lose_contact(state)
+        state.in_a_row = 0
+        return True, False, False, nothing
+    elapsed = t - state.t
+    halted = halts(state, p, f_n, elapsed)
+    slid, instant = boundary(state, p, f_t, f_n, tau, twist, elapsed)
+    return True, halted, slid and not halted, instant
+
+
+@njit
+def close_sample(state, p, t, wrench, twist, halted, saw_mu_c, saw_r, estimate):
+    """Runs the stick-slip machine and publishes.
+
+    Args:
+        state: As in `open_sample`, like the next four.
+        p: Parameters.
+        t: Time [s].
+        wrench: (4,).
+        twist: (3,).
+        halted: From `open_sample`.
+        saw_mu_c: Whether mu_c was learnt.
+        saw_r: Whether r was learnt.
+        estimate: ESTIMATE record, written, but for sd_mu_c and sd_r.
+    """
+    f_n, gamma_t, gamma_tau = wrench[2], 0.0, 0.0
+    if f_n >= p.eps_fn:
+        f_t, tau = math.hypot(wrench[0], wrench[1]), abs(wrench[3])
+        speed = reference_speed(p, twist[0], twist[1], twist[2])
+        _stick_slip(state, p, f_t, f_n, tau, speed, halted)
+        if speed > p.eps_v:
+            gamma_t, gamma_tau = shares(math.hypot(twist[0], twist[1]), state.r * abs(twist[2]))
+        else:
+            gamma_t, gamma_tau = shares(f_t, tau / state.r)
+    state.elapsed = t - state.t
+    publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate)
+    estimate.sd_mu_s = sd_mu_s(state, max(1.0 / max(state.events_mu_s, 1), p.gain_mu_s))
+    estimate.observable_mu_c = saw_mu_c
+    estimate.observable_r = saw_r
