@@ -20,6 +20,7 @@ from estimator.joint.parameters import JointParameters
 from estimator.joint.state import STATE
 from estimator.limit_surface.inverse import slip_radius, slip_share, spin_radius
 from estimator.sliding.update import close_sample, open_sample
+from estimator.stick_slip.kernel import norm
 
 
 @njit
@@ -56,7 +57,7 @@ def _radius(state, p, f_t, tau, v_t, omega):
 @njit(error_model="numpy")  # what overflows is refused where it would be learnt
 def _radius_of_spin(state, p, f_n, tau, v_t, omega):
     """Radius where only the spin is seen: from tau, with the mu_c known."""
-    friction = max(state.mu_c + state.viscosity * math.hypot(v_t, state.r * omega), p.mu_min)
+    friction = max(state.mu_c + state.viscosity * norm(v_t, state.r * omega), p.mu_min)
     y = spin_radius(p.disc, tau / (friction * f_n), v_t / omega)
     noise = _square(p.sd_torque / tau) + _square(p.sd_normal / f_n) + _square(sd_mu_c(state, p) / friction)
     return learn_r(state, p, y, noise)
@@ -83,10 +84,10 @@ def _motion(state, p, f_t, f_n, tau, v_t, omega):
 @njit
 def _update(state, p, t, wrench, twist, estimate):
     """One finger, one sample."""
-    taken, halted, slid, instant = open_sample(state, p, t, wrench, twist)
+    taken, halted, slid, instant, seen = open_sample(state, p, t, wrench, twist)
     if taken:
         saw_mu_c, saw_r = _motion(state, p, *instant) if slid else (False, False)
-        close_sample(state, p, t, wrench, twist, halted, saw_mu_c, saw_r, estimate)
+        close_sample(state, p, t, seen, halted, saw_mu_c, saw_r, estimate)
         estimate.sd_mu_c = sd_mu_c(state, p) if state.updates_mu_c > 0 else state.mu_c
         estimate.sd_r = math.sqrt(state.noise_r) / state.information_r if state.updates_r > 0 else state.r
 

@@ -9,7 +9,7 @@ import math
 
 from numba import njit
 
-from estimator.stick_slip.kernel import clamped
+from estimator.stick_slip.kernel import clamped, count_mu_c, count_r
 
 
 @njit(error_model="numpy")
@@ -37,7 +37,7 @@ def learn_mu_c(state, p, y, noise, v):
     b[1], b[2] = fade * b[1] + spread * v, fade * b[2] + spread * v * v
     a[0], a[1], a[2] = a_11, a_12, a_22
     state.vector[0], state.vector[1] = y_1, y_2
-    state.updates_mu_c += 1
+    count_mu_c(state, p)
     return True
 
 
@@ -62,5 +62,5 @@ def learn_r(state, p, y, noise):
     state.r = clamped(state.r + w / information * (y - state.r), p.r_min, p.r_max)
     state.information_r = information
     state.noise_r = p.forgetting**2 * state.noise_r + w * w * y * y * noise + refill
-    state.updates_r += 1
+    count_r(state, p)
     return True

@@ -20,7 +20,7 @@ def slip_friction(disc, v_t, rim_speed):
         f_t / (mu_c f_n) and |tau| / (mu_c f_n r) [-].
     """
     if not disc:
-        speed = math.hypot(v_t, rim_speed)
+        speed = math.sqrt(v_t * v_t + rim_speed * rim_speed)
         return v_t / speed, rim_speed / speed
     ratio = DISC_RADIUS * v_t / rim_speed if rim_speed > 0.0 else math.inf
     force, torque = disc_friction(ratio)

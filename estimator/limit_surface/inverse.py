@@ -98,7 +98,7 @@ def spin_radius(disc, arm, pivot):
         pivot: v_t / omega, small against the radius for a disc [m].
     """
     if not disc:
-        return math.sqrt(0.5 * arm * (arm + math.hypot(arm, 2.0 * pivot)))
+        return math.sqrt(0.5 * arm * (arm + math.sqrt(arm * arm + 4.0 * pivot * pivot)))
     # tau / (mu_c f_n R) = 2/3 - ratio^2 / 2, of which the first term left out is ratio^4 / 16
     return 0.5 * (arm + math.sqrt(arm * arm + 4.0 / 3.0 * pivot * pivot))
 
@@ -115,7 +115,7 @@ def load_size(disc, f_t, rim):
     Returns:
         [N]; 0 without load.
     """
-    size = math.hypot(f_t, rim)
+    size = math.sqrt(f_t * f_t + rim * rim)
     if not disc or size == 0.0:
         return size
     share = f_t / size

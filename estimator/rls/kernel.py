@@ -17,9 +17,12 @@ from estimator.stick_slip.kernel import (
     append,
     clamped,
     clear_buffer,
+    count_mu_c,
+    count_r,
     halts,
     learn_mu_s,
     lose_contact,
+    norm,
     publish,
     readable,
     sd_mu_s,
@@ -91,14 +94,14 @@ def _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau):
         state.mu_c, state.covariance_mu_c = _rls(
             state.mu_c, state.covariance_mu_c, f_t, phi, p, p.mu_min, p.mu_max
         )
-        state.updates_mu_c += 1
+        count_mu_c(state, p)
     if gamma_tau > p.eps_tau:
         phi = gamma_tau * state.mu_c * f_n
         state.residual_r = _residual(
             state.residual_r, state.r, state.covariance_r, tau, phi, p, state.updates_r
         )
         state.r, state.covariance_r = _rls(state.r, state.covariance_r, tau, phi, p, p.r_min, p.r_max)
-        state.updates_r += 1
+        count_r(state, p)
 
 
 @njit
@@ -113,12 +116,12 @@ def _update(state, p, t, wrench, twist, estimate):
         twist: (3,) v_x, v_y, omega [m/s, m/s, rad/s].
         estimate: ESTIMATE record, written.
     """
-    f_t = math.hypot(wrench[0], wrench[1])
+    f_t = norm(wrench[0], wrench[1])
     f_n = wrench[2]
     tau = abs(wrench[3])
-    v_t = math.hypot(twist[0], twist[1])
+    v_t = norm(twist[0], twist[1])
     v_r = state.r * abs(twist[2])
-    v = math.hypot(v_t, v_r)
+    v = norm(v_t, v_r)
     if not readable(state, t, f_t, f_n, tau, v):
         return
 

@@ -1,7 +1,5 @@
 """One sample of an estimator that learns from each instant of true sliding: all but the learning."""
 
-import math
-
 from numba import njit
 
 from estimator.limit_surface.inverse import load_size
@@ -12,6 +10,7 @@ from estimator.stick_slip.kernel import (
     halts,
     learn_mu_s,
     lose_contact,
+    norm,
     publish,
     readable,
     sd_mu_s,
@@ -49,44 +48,44 @@ def open_sample(state, p, t, wrench, twist):
         halted: Whether the heuristic holds all updates back.
         slid: Whether to learn from the instant.
         instant: f_t, f_n, |tau|, v_t, |omega| of it [N, N, N m, m/s, rad/s].
+        seen: f_t, f_n, |tau|, v_t, |omega| and scaled speed of the sample itself.
     """
-    f_t, f_n, tau = math.hypot(wrench[0], wrench[1]), wrench[2], abs(wrench[3])
+    f_t, f_n, tau = norm(wrench[0], wrench[1]), wrench[2], abs(wrench[3])
     speed = reference_speed(p, twist[0], twist[1], twist[2])
+    seen = (f_t, f_n, tau, norm(twist[0], twist[1]), abs(twist[2]), speed)
     nothing = (0.0, 0.0, 0.0, 0.0, 0.0)
     if not readable(state, t, f_t, f_n, tau, speed):
-        return False, False, False, nothing
+        return False, False, False, nothing, seen
     if f_n < p.eps_fn:
         lose_contact(state)
         state.in_a_row = 0
-        return True, False, False, nothing
+        return True, False, False, nothing, seen
     elapsed = t - state.t
     halted = halts(state, p, f_n, elapsed)
-    slid, instant = boundary(state, p, f_t, f_n, tau, twist, elapsed)
-    return True, halted, slid and not halted, instant
+    slid, instant = boundary(state, p, f_t, f_n, tau, twist, speed, elapsed)
+    return True, halted, slid and not halted, instant, seen
 
 
 @njit
-def close_sample(state, p, t, wrench, twist, halted, saw_mu_c, saw_r, estimate):
+def close_sample(state, p, t, seen, halted, saw_mu_c, saw_r, estimate):
     """Runs the stick-slip machine and publishes.
 
     Args:
-        state: As in `open_sample`, like the next four.
+        state: As in `open_sample`, like the next two.
         p: Parameters.
         t: Time [s].
-        wrench: (4,).
-        twist: (3,).
-        halted: From `open_sample`.
+        seen: From `open_sample`, like the next.
+        halted: Whether all updates are held back.
         saw_mu_c: Whether mu_c was learnt.
         saw_r: Whether r was learnt.
         estimate: ESTIMATE record, written, but for sd_mu_c and sd_r.
     """
-    f_n, gamma_t, gamma_tau = wrench[2], 0.0, 0.0
+    f_t, f_n, tau, v_t, omega, speed = seen
+    gamma_t, gamma_tau = 0.0, 0.0
     if f_n >= p.eps_fn:
-        f_t, tau = math.hypot(wrench[0], wrench[1]), abs(wrench[3])
-        speed = reference_speed(p, twist[0], twist[1], twist[2])
         _stick_slip(state, p, f_t, f_n, tau, speed, halted)
         if speed > p.eps_v:
-            gamma_t, gamma_tau = shares(math.hypot(twist[0], twist[1]), state.r * abs(twist[2]))
+            gamma_t, gamma_tau = shares(v_t, state.r * omega)
         else:
             gamma_t, gamma_tau = shares(f_t, tau / state.r)
     state.elapsed = t - state.t

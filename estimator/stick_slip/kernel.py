@@ -14,11 +14,17 @@ SCATTER_GAIN = 0.2
 
 
 @njit
+def norm(x, y):
+    """Length of (x, y); quicker than hypot, whose care for overflow is not needed here."""
+    return math.sqrt(x * x + y * y)
+
+
+@njit
 def shares(translation, rotation):
     """Direction cosines of (translation, rotation); zeros where there is none."""
-    norm = math.hypot(translation, rotation)
-    if norm > 0.0 and math.isfinite(norm):
-        return translation / norm, rotation / norm
+    length = norm(translation, rotation)
+    if length > 0.0 and math.isfinite(length):
+        return translation / length, rotation / length
     return 0.0, 0.0
 
 
@@ -113,6 +119,20 @@ def sd_mu_s(state, gain):
 
 
 @njit
+def count_mu_c(state, p):
+    """Notes an update of mu_c: the share of its memory that data fill grows to 1 - forgetting**updates."""
+    state.updates_mu_c += 1
+    state.support_mu_c += (1.0 - p.forgetting) * (1.0 - state.support_mu_c)
+
+
+@njit
+def count_r(state, p):
+    """Notes an update of r, like `count_mu_c`."""
+    state.updates_r += 1
+    state.support_r += (1.0 - p.forgetting) * (1.0 - state.support_r)
+
+
+@njit
 def lose_contact(state):
     """Ends a halt and a slip, and empties the buffer."""
     state.halt_left = 0.0
@@ -140,8 +160,8 @@ def publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate):
     estimate.gamma_t = gamma_t
     estimate.gamma_tau = gamma_tau
     estimate.support_mu_s = state.events_mu_s / (state.events_mu_s + 1.0)
-    estimate.support_mu_c = 1.0 - p.forgetting**state.updates_mu_c
-    estimate.support_r = 1.0 - p.forgetting**state.updates_r
+    estimate.support_mu_c = state.support_mu_c
+    estimate.support_r = state.support_r
     estimate.events_mu_s = state.events_mu_s
     estimate.updates_mu_c = state.updates_mu_c
     estimate.updates_r = state.updates_r

@@ -11,6 +11,8 @@ BUFFER_CAPACITY = 64
 
 STICK_SLIP_STATE: list[tuple[Any, ...]] = [
     *COMMON_STATE,
+    ("support_mu_c", np.float64),
+    ("support_r", np.float64),
     ("updates_mu_c", np.int64),
     ("updates_r", np.int64),
     ("events_mu_s", np.int64),

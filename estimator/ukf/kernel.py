@@ -13,7 +13,7 @@ from numba import njit
 from estimator.compiled import entry_point
 from estimator.limit_surface.forward import slip_friction
 from estimator.sliding.update import close_sample, open_sample
-from estimator.stick_slip.kernel import clamped
+from estimator.stick_slip.kernel import clamped, count_mu_c, count_r
 from estimator.ukf.parameters import UkfParameters
 from estimator.ukf.state import STATE
 
@@ -94,18 +94,20 @@ def _learn(state, p, f_t, f_n, tau, v_t, omega):
     state.r = clamped(math.exp(x_2), p.r_min, p.r_max)
     state.covariance[0], state.covariance[1], state.covariance[2] = n_11, n_12, n_22
     saw_mu_c, saw_r = n_11 < p_11 - walk, n_22 < p_22 - walk
-    state.updates_mu_c += saw_mu_c
-    state.updates_r += saw_r
+    if saw_mu_c:
+        count_mu_c(state, p)
+    if saw_r:
+        count_r(state, p)
     return saw_mu_c, saw_r
 
 
 @njit
 def _update(state, p, t, wrench, twist, estimate):
     """One finger, one sample."""
-    taken, halted, slid, instant = open_sample(state, p, t, wrench, twist)
+    taken, halted, slid, instant, seen = open_sample(state, p, t, wrench, twist)
     if taken:
         saw_mu_c, saw_r = _learn(state, p, *instant) if slid else (False, False)
-        close_sample(state, p, t, wrench, twist, halted, saw_mu_c, saw_r, estimate)
+        close_sample(state, p, t, seen, halted, saw_mu_c, saw_r, estimate)
         estimate.sd_mu_c = state.mu_c * math.sqrt(state.covariance[0])
         estimate.sd_r = state.r * math.sqrt(state.covariance[2])
 
