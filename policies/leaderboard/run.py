@@ -81,7 +81,7 @@ def judge(scenario: Scenario) -> list[dict[str, object]]:
 
 def page(table: pd.DataFrame, ranking: pd.DataFrame, best: pd.DataFrame) -> str:
     """The tables as a page."""
-    parts = ["# Leaderboard of the estimators", "Errors in %.", markdown(ranking, 1)]
+    parts = ["# Leaderboard of the estimators", "Errors in %.", markdown(ranking)]
     parts += ["## The best, by group", markdown(best)]
     for field in FIELDS:
         figures = {f"{figure}_{field}": figure for figure in FIGURES}

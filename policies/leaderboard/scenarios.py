@@ -142,6 +142,7 @@ def mixed_judged(record: Record) -> dict[str, np.ndarray]:
     }
 
 
+@cache
 def patch(course: Course, cells: int, pressure: str = "uniform") -> Trace:
     """The trace of a distributed contact."""
     return integrate(course, DistributedContact(cells=cells, pressure=pressure))

@@ -19,8 +19,8 @@ from slipgym.synthetic import Trace
 def linear_slip_trace(material: str, distance: float, duration: float, seed: int) -> Trace:
     """A trial of slipgym/LinearSlip-v0 under its controller, which knows the true friction.
 
-    So the motion is the same whatever an estimator says. The contact is the environment's default,
-    the ellipsoid.
+    So the motion is the same whatever an estimator says. The contact is the distributed one: a
+    uniform disc, as everywhere in the leaderboard.
 
     Args:
         material: Name of the material.
@@ -33,7 +33,11 @@ def linear_slip_trace(material: str, distance: float, duration: float, seed: int
         faster than 1 mm/s, and "stick" elsewhere.
     """
     env = gym.make(
-        "slipgym:slipgym/LinearSlip-v0", friction_source="true", material=material, disable_env_checker=True
+        "slipgym:slipgym/LinearSlip-v0",
+        friction_source="true",
+        contact="distributed",
+        material=material,
+        disable_env_checker=True,
     )
     controller = policies.make("linear_slip")
     infos: list[dict[str, Any]] = []

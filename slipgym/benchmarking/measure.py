@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import subprocess
 import sys
+from functools import partial
 from statistics import median
 from time import perf_counter
 from typing import Any
@@ -15,7 +16,7 @@ import numpy as np
 from slipgym.benchmarking.bare import BareLoop
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import Stopwatches, compare, per_call
-from slipgym.contact import EllipsoidContact
+from slipgym.contact import DistributedContact, EllipsoidContact
 from slipgym.envs import loop as loops
 from slipgym.envs.slip_env import SlipEnv
 from slipgym.world import bullet
@@ -145,12 +146,28 @@ def life(env_id: str, repeats: int) -> list[Figure]:
     return figures
 
 
+def distributed(player: Player, env_id: str, pairs: int) -> list[Figure]:
+    """The environment with distributed contact against the same with ellipsoids, in the same run."""
+    figures = []
+    for cells in (11, 21):
+        other = Player(env_id, contact="distributed", config={"contact": {"cells": cells}})
+        compare(player.block, other.block, 3)  # warm up
+        result = compare(player.block, other.block, pairs)
+        other.env.close()
+        name = f"environment, {cells} x {cells} cells"
+        figures.append(Figure(f"{name}, per engine step", 1e6 * result.second, "us"))
+        figures.append(Figure(f"{name} / ellipsoid", result.quartiles[1], "-"))
+    return figures
+
+
 def contact(calls: int = 2000) -> list[Figure]:
     """One step of the contact object, called from Python."""
-    pad = EllipsoidContact()
-    twist = (0.003, -0.02, 0.5)
-    pad.step(twist, 10.0, 1e-3)
-    return [Figure("EllipsoidContact.step", 1e6 * per_call(lambda: pad.step(twist, 10.0, 1e-3), calls), "us")]
+    twist, figures = (0.003, -0.02, 0.5), []
+    for pad, required in ((EllipsoidContact(), ""), (DistributedContact(), "<= 25")):
+        pad.step(twist, 10.0, 1e-3)
+        seconds = per_call(partial(pad.step, twist, 10.0, 1e-3), calls)
+        figures.append(Figure(f"{type(pad).__name__}.step", 1e6 * seconds, "us", required))
+    return figures
 
 
 def _in_new_process(statement: str) -> float:

@@ -21,6 +21,7 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
         *measure.against_bare(player, pairs),
         *measure.breakdown(player, max(1, pairs // 3)),
         *measure.life(env_id, max(3, pairs // 10)),
+        *measure.distributed(player, env_id, max(3, pairs // 5)),
         *measure.contact(),
     ]
     player.env.close()

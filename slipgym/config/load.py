@@ -15,13 +15,16 @@ from slipgym.config.root import Config
 Overrides = str | os.PathLike[str] | Mapping[str, Any]
 
 
-def load(overrides: Overrides | None = None, sensors: str = "realistic") -> Config:
+def load(
+    overrides: Overrides | None = None, sensors: str = "realistic", contact: str | None = None
+) -> Config:
     """Loads the configuration of an environment.
 
     Args:
         overrides: What differs from the defaults, as a mapping or as the path of a YAML file; merged into
             them key by key, at every depth. Lists are replaced as a whole.
         sensors: The sensor preset to start from, one of ``names("sensors")``.
+        contact: The friction model to start from, "ellipsoid" or "distributed"; None: the default one.
 
     Raises:
         FileNotFoundError: The overrides' file does not exist.
@@ -34,6 +37,9 @@ def load(overrides: Overrides | None = None, sensors: str = "realistic") -> Conf
     config = _validate(
         defaults, lambda location: sources.get(location[0], "configs") if location else "configs"
     )
+    if contact is not None:
+        defaults = _merge(defaults, {"contact": {"model": contact}})
+        config = _validate(defaults, lambda _: "contact argument")
     if overrides is None:
         return config
     if isinstance(overrides, Mapping):

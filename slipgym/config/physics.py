@@ -27,16 +27,31 @@ class NominalConfig(Material):
 
 
 class ContactConfig(Frozen):
-    """The friction model of a pad, apart from the material's coefficients."""
+    """The friction model of a pad, apart from the material's coefficients.
+
+    "ellipsoid" is one bristle with an ellipsoidal limit surface; "distributed" a round patch of
+    cells, each a bristle, whose limit surface is that of its pressure. Both are known to the
+    estimators and controllers by r: the torque in pure spin over mu_c times the normal force. A
+    patch with another r than that of the whole pad is smaller in proportion.
+    """
 
     model: Literal["ellipsoid", "distributed"] = Field(description="Friction model of the pads: a name [-]")
+    pressure: Literal["uniform", "hertz", "rim"] = Field(
+        description="Pressure over the patch: constant, Hertz's, or on its edge alone [-]"
+    )
+    cells: int = Field(
+        ge=2,
+        le=101,
+        description="Cells along either side of a distributed patch; 11 are four times as fast [-]",
+    )
     sigma_0: float = Field(ge=1e5, description="Bristle stiffness; softer reads as slip while sticking [1/m]")
     sigma_1: NonNegative = Field(description="Bristle damping [s/m]")
     sigma_2: NonNegative = Field(description="Viscous friction [s/m]")
-    stribeck_velocity: Positive = Field(
-        description="Scaled speed at which mu_s has decayed towards mu_c [m/s]"
+    stribeck_velocity: Positive = Field(description="Slip speed v_s at which mu_s has decayed to mu_c [m/s]")
+    stribeck_exponent: Positive = Field(description="Exponent of that decay [-]")
+    radius: Positive | None = Field(
+        description="Radius r of the equivalent rim contact; null: that of the pressure on the whole pad [m]"
     )
-    radius: Positive = Field(description="Radius r of the equivalent rim contact [m]")
     cop_offset: Points = Field(description="Centre of pressure (x, y) from the pad's centre, per finger [m]")
 
 

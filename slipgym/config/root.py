@@ -10,6 +10,7 @@ from slipgym.config.hardware import GripperConfig, ObjectConfig
 from slipgym.config.physics import ContactConfig, Material, NominalConfig, PhysicsConfig
 from slipgym.config.sensors import SensorsConfig
 from slipgym.config.tasks import TasksConfig
+from slipgym.contact.pressure import OUTER_RADII
 
 
 class Config(Frozen):
@@ -34,13 +35,31 @@ class Config(Frozen):
             )
         return self
 
+    @property
+    def contact_radius(self) -> float:
+        """Radius r of the equivalent rim contact [m]."""
+        if self.contact.radius is not None:
+            return self.contact.radius
+        return self.gripper.pad_radius / OUTER_RADII[self.contact.pressure]
+
+    def check_patch(self, name: str, r: float) -> None:
+        """Raise ValueError if the pad has no room for a distributed patch with this r [m]."""
+        pressure, pad = self.contact.pressure, self.gripper.pad_radius
+        outer = OUTER_RADII[pressure] * r
+        if self.contact.model == "distributed" and outer > pad * (1.0 + 1e-9):
+            raise ValueError(
+                f"{name} = {r:g} m needs a {pressure} patch of {outer:g} m on a pad of {pad:g} m; "
+                f"must be at most {pad / OUTER_RADII[pressure]:g} m"
+            )
+
     @model_validator(mode="after")
     def _contact_fits_pad(self) -> Self:
-        if self.contact.radius > self.gripper.pad_radius:
+        if self.contact_radius > self.gripper.pad_radius:
             raise ValueError(
                 "contact.radius must not exceed gripper.pad_radius, "
-                f"got {self.contact.radius:g} and {self.gripper.pad_radius:g} m"
+                f"got {self.contact_radius:g} and {self.gripper.pad_radius:g} m"
             )
+        self.check_patch("contact.radius", self.contact_radius)
         return self
 
     @model_validator(mode="after")

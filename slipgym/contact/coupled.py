@@ -6,8 +6,10 @@ to the pads within the sub-step. It solves the momentum balance
     M (q - q_free) / h^2 + sum_i S_i^T f_i(S_i q) = 0,
 
 with S_i the map from q to the scaled slip displacement at pad i's centre of pressure
-and f_i the friction of `slipgym.contact.kernel.respond`. The derivative of f_i is a
-multiple of the identity less a dyad, so its pull-back needs no matrix products.
+and f_i its friction. A pad is an ellipsoid (`slipgym.contact.kernel`) or, if it has cells, a
+patch (`slipgym.contact.patch`): `prepare`, `respond`, `commit` and `release` know which.
+The derivative of a bristle's friction is a multiple of the identity less a dyad, so an
+ellipsoid's pull-back needs no matrix products.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ import math
 import numpy as np
 
 from slipgym.compiled import compiled
-from slipgym.contact.kernel import commit, friction_level, release, respond, shrink
+from slipgym.contact import kernel, patch
 
 MAX_NEWTON = 30
 MAX_HALVINGS = 8
@@ -44,7 +46,68 @@ def transposed(pad, arm, vector):
 
 
 @compiled
-def assemble(pads, limits, inertia, centre, free, motion, h):
+def pulled_back(pad, arm, a):
+    """S^T a S of a symmetric a = (xx, yy, tt, xy, xt, yt)."""
+    xx, yy, tt, xy, xt, yt = a
+    x, y, r = arm[0], arm[1], pad.r
+    turn_x = x * xy - y * xx + r * xt
+    turn_y = x * yy - y * xy + r * yt
+    turn_t = x * yt - y * xt + r * tt
+    return xx, yy, x * turn_y - y * turn_x + r * turn_t, xy, turn_x, turn_y
+
+
+@compiled
+def prepare(pad, cells, h):
+    """Fix the friction levels of a sub-step; returns their mean over the load [-]."""
+    if cells.shape[0] == 0:
+        return kernel.prepare(pad, h)
+    return patch.prepare(pad, cells, patch.expected_twist(pad, h))
+
+
+@compiled
+def respond(pad, cells, limit, arm, motion, h):
+    """Generalised friction force of one pad about the centre of mass, and its derivative.
+
+    Returns:
+        Force (3,) and derivative (xx, yy, tt, xy, xt, yt), as tuples.
+    """
+    delta = scaled(pad, arm, motion)
+    if cells.shape[0] > 0:
+        force, derivative = patch.respond(pad, cells, delta, h)
+        return transposed(pad, arm, force), pulled_back(pad, arm, derivative)
+    z = (pad.z[0], pad.z[1], pad.z[2])
+    force, isotropic, radial, direction, _ = kernel.respond(pad, z, pad.normal, delta, h, limit / pad.sigma_0)
+    nx, ny, nt = transposed(pad, arm, direction)
+    return transposed(pad, arm, force), (
+        isotropic - radial * nx * nx,
+        isotropic - radial * ny * ny,
+        isotropic * (arm[0] ** 2 + arm[1] ** 2 + pad.r**2) - radial * nt * nt,
+        -radial * nx * ny,
+        -(isotropic * arm[1] + radial * nx * nt),
+        isotropic * arm[0] - radial * ny * nt,
+    )
+
+
+@compiled
+def commit(pad, cells, limit, delta, h):
+    """Store the state of a pad after a scaled slip displacement."""
+    if cells.shape[0] == 0:
+        kernel.commit(pad, delta, h, limit)
+    else:
+        patch.commit(pad, cells, delta, h)
+
+
+@compiled
+def release(pad, cells, delta, h):
+    """Forget the bristles of a pad without normal force, after a scaled slip displacement."""
+    if cells.shape[0] == 0:
+        kernel.release(pad, math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h)
+    else:
+        patch.release(pad, cells, (delta[0] / h, delta[1] / h, delta[2] / h))
+
+
+@compiled
+def assemble(pads, cells, limits, inertia, centre, free, motion, h):
     """Residual of the momentum balance and its symmetric derivative.
 
     Returns:
@@ -54,20 +117,11 @@ def assemble(pads, limits, inertia, centre, free, motion, h):
     rx, ry, rt = jx * (motion[0] - free[0]), jx * (motion[1] - free[1]), jt * (motion[2] - free[2])
     jy, jxy, jxt, jyt = jx, 0.0, 0.0, 0.0
     for i in range(pads.shape[0]):
-        pad = pads[i]
-        if pad.normal <= 0.0:
-            continue
-        arm = lever(pad, centre)
-        force, isotropic, radial, direction, _ = respond(pad, scaled(pad, arm, motion), h, limits[i])
-        fx, fy, ft = transposed(pad, arm, force)
-        nx, ny, nt = transposed(pad, arm, direction)
-        rx, ry, rt = rx + fx, ry + fy, rt + ft
-        jx += isotropic - radial * nx * nx
-        jy += isotropic - radial * ny * ny
-        jt += isotropic * (arm[0] ** 2 + arm[1] ** 2 + pad.r**2) - radial * nt * nt
-        jxy -= radial * nx * ny
-        jxt -= isotropic * arm[1] + radial * nx * nt
-        jyt += isotropic * arm[0] - radial * ny * nt
+        if pads[i].normal > 0.0:
+            force, d = respond(pads[i], cells[i], limits[i], lever(pads[i], centre), motion, h)
+            rx, ry, rt = rx + force[0], ry + force[1], rt + force[2]
+            jx, jy, jt = jx + d[0], jy + d[1], jt + d[2]
+            jxy, jxt, jyt = jxy + d[3], jxt + d[4], jyt + d[5]
     return (rx, ry, rt), (jx, jy, jt, jxy, jxt, jyt)
 
 
@@ -91,13 +145,13 @@ def norm(residual, radius):
 
 
 @compiled
-def solve_motion(pads, limits, inertia, centre, free, motion, h):
+def solve_motion(pads, cells, limits, inertia, centre, free, motion, h):
     """Damped semi-smooth Newton iteration for the motion that balances momentum and friction."""
     tolerance = 0.0
     for i in range(pads.shape[0]):
         tolerance += FORCE_TOLERANCE * limits[i] * pads[i].normal
     radius = pads[0].r
-    residual, jacobian = assemble(pads, limits, inertia, centre, free, motion, h)
+    residual, jacobian = assemble(pads, cells, limits, inertia, centre, free, motion, h)
     error = norm(residual, radius)
     for _ in range(MAX_NEWTON):
         if error <= tolerance:
@@ -106,7 +160,7 @@ def solve_motion(pads, limits, inertia, centre, free, motion, h):
         share, start, before = 1.0, motion, error
         for _ in range(MAX_HALVINGS):
             motion = (start[0] - share * step[0], start[1] - share * step[1], start[2] - share * step[2])
-            residual, jacobian = assemble(pads, limits, inertia, centre, free, motion, h)
+            residual, jacobian = assemble(pads, cells, limits, inertia, centre, free, motion, h)
             error = norm(residual, radius)
             if error < before:
                 break
@@ -115,11 +169,12 @@ def solve_motion(pads, limits, inertia, centre, free, motion, h):
 
 
 @compiled
-def step_pads(pads, inertia, centre, free, guess, h):
+def step_pads(pads, cells, inertia, centre, free, guess, h):
     """Advance all pads and the object's motion relative to them by one sub-step.
 
     Args:
         pads: PAD records of the pads that hold the object, shape (p,); updated.
+        cells: Their CELL records, shape (p, n); updated. Without cells pads are ellipsoids.
         inertia: Mass [kg] and moment of inertia about the centre of mass [kg m^2].
         centre: Centre of mass in the pad frame [m].
         free: Motion (x, y, theta) of the centre of mass relative to the pads in this
@@ -133,16 +188,13 @@ def step_pads(pads, inertia, centre, free, guess, h):
     limits = np.empty(pads.shape[0])
     held = False
     for i in range(pads.shape[0]):
-        limits[i] = friction_level(pads[i], h)
-        shrink(pads[i], limits[i])
+        limits[i] = prepare(pads[i], cells[i], h)
         held = held or pads[i].normal > 0.0
-    motion = solve_motion(pads, limits, inertia, centre, free, guess, h) if held else free
+    motion = solve_motion(pads, cells, limits, inertia, centre, free, guess, h) if held else free
     for i in range(pads.shape[0]):
-        pad = pads[i]
-        delta = scaled(pad, lever(pad, centre), motion)
-        if pad.normal > 0.0:
-            force, _, _, _, shortening = respond(pad, delta, h, limits[i])
-            commit(pad, delta, h, force, shortening)
+        delta = scaled(pads[i], lever(pads[i], centre), motion)
+        if pads[i].normal > 0.0:
+            commit(pads[i], cells[i], limits[i], delta, h)
         else:
-            release(pad, math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h)
+            release(pads[i], cells[i], delta, h)
     return motion

@@ -8,8 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from slipgym.contact.patch import Law, patch_step
+from slipgym.contact.patch import prescribed_step
 from slipgym.contact.pressure import MAX_CELLS, patch_cells
+from slipgym.contact.records import pads, patch, rest
 from slipgym.contact.validation import check_friction, finite_vector, positive
 
 
@@ -59,32 +60,39 @@ class DistributedContact:
         positive(allow_zero=True, sigma_1=sigma_1, sigma_2=sigma_2)
         if not isinstance(cells, int | np.integer) or not 1 <= cells <= MAX_CELLS:
             raise ValueError(f"cells = {cells!r} must be a whole number from 1 to {MAX_CELLS}")
-        numbers = (mu_c, mu_s, stribeck_velocity, stribeck_exponent, sigma_0, sigma_1, sigma_2)
-        self._law = Law(*map(float, numbers))
-        positions, shares = patch_cells(pressure, radius, int(cells))
-        self._cells = np.array([*positions.T, shares])
-        self._state = np.zeros_like(self._cells)
+        self._pads = pads(
+            1,
+            r=radius,  # the cells' unit of length; their own r is 0 if there is but one
+            mu_c=mu_c,
+            mu_s=mu_s,
+            stribeck_velocity=stribeck_velocity,
+            stribeck_exponent=stribeck_exponent,
+            sigma_0=sigma_0,
+            sigma_1=sigma_1,
+            sigma_2=sigma_2,
+        )
+        self._radius = float(radius)
+        self._cells = patch(*patch_cells(pressure, int(cells)))
 
     @property
     def effective_radius(self) -> float:
         """Torque in steady pure spin over mu_c f_n, the radius of the equivalent rim contact [m]."""
-        x, y, shares = self._cells
-        return float(shares @ np.hypot(x, y))
+        return float(self.shares @ np.hypot(*self.positions.T))
 
     @property
     def positions(self) -> np.ndarray:
         """Copy of the loaded cells' positions from the centre of pressure, shape (n, 2) [m]."""
-        return self._cells[:2].T.copy()
+        return self._radius * np.column_stack((self._cells["x"], self._cells["y"]))
 
     @property
     def shares(self) -> np.ndarray:
         """Copy of the loaded cells' shares of the normal force, shape (n,), sum 1."""
-        return self._cells[2].copy()
+        return self._cells["share"].copy()
 
     @property
     def bristles(self) -> np.ndarray:
         """Copy of the loaded cells' bristle states z, shape (n, 2) [m]."""
-        return self._state[:2].T.copy()
+        return np.column_stack((self._cells["z_x"], self._cells["z_y"]))
 
     def step(self, twist: Sequence[float], normal_force: float, dt: float) -> tuple[float, float, float]:
         """Advance by dt at a prescribed slip twist.
@@ -105,13 +113,14 @@ class DistributedContact:
             finite_vector("twist", twist, 3)
         positive(allow_zero=True, normal_force=normal_force)
         positive(dt=dt)
+        self._pads["normal"] = normal_force
         if normal_force == 0.0:
             self.reset()
-            return 0.0, 0.0, 0.0
-        v_x, v_y, omega = map(float, twist)
-        return patch_step(
-            self._law, self._cells, self._state, v_x, v_y, omega, float(normal_force), float(dt)
-        )
+        else:
+            v_x, v_y, omega = map(float, twist)
+            prescribed_step(self._pads[0], self._cells, (v_x, v_y, omega), float(dt))
+        f_x, f_y, tau = self._pads["wrench"][0].tolist()
+        return f_x, f_y, tau
 
     def change(self, mu_c: float, mu_s: float, effective_radius: float) -> None:
         """Change the friction and the size of the patch; its pressure profile and its bristles stay.
@@ -122,13 +131,18 @@ class DistributedContact:
             effective_radius: Radius of the equivalent rim contact [m], > 0.
 
         Raises:
-            ValueError: A value is outside its range.
+            ValueError: A value is outside its range, or the patch is a single cell, which has no radius.
         """
         check_friction(mu_c, mu_s)
         positive(effective_radius=effective_radius)
-        self._law = self._law._replace(mu_c=float(mu_c), mu_s=float(mu_s))
-        self._cells[:2] *= effective_radius / self.effective_radius
+        present = self.effective_radius
+        if present == 0.0:
+            raise ValueError("a patch of one cell has no radius to change")
+        self._pads["mu_c"], self._pads["mu_s"] = mu_c, mu_s
+        self._radius *= effective_radius / present
+        self._pads["r"] = self._radius
 
     def reset(self) -> None:
         """Forget the bristle states, as after a loss of contact."""
-        self._state[:] = 0.0
+        rest(self._pads)
+        rest(self._cells)

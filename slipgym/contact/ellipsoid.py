@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from slipgym.contact.kernel import prescribed_step
-from slipgym.contact.records import pads
+from slipgym.contact.records import pads, rest
 from slipgym.contact.validation import check_friction, finite_vector, positive
 
 
@@ -22,6 +22,7 @@ class EllipsoidContact:
         mu_c: Coulomb friction [-], > 0.
         mu_s: Static friction [-], >= mu_c.
         stribeck_velocity: Velocity v_s of the Stribeck curve [m/s], > 0.
+        stribeck_exponent: Exponent gamma of the Stribeck curve [-], > 0.
         sigma_0: Bristle stiffness per normal force [1/m], > 0.
         sigma_1: Bristle damping per normal force [s/m], >= 0.
         sigma_2: Viscous friction per normal force [s/m], >= 0.
@@ -36,12 +37,15 @@ class EllipsoidContact:
         mu_c: float = 0.4,
         mu_s: float = 0.55,
         stribeck_velocity: float = 1e-3,
+        stribeck_exponent: float = 2.0,
         sigma_0: float = 1e6,
         sigma_1: float = 80.0,
         sigma_2: float = 0.2,
     ) -> None:
         check_friction(mu_c, mu_s)
-        positive(r=r, stribeck_velocity=stribeck_velocity, sigma_0=sigma_0)
+        positive(
+            r=r, stribeck_velocity=stribeck_velocity, stribeck_exponent=stribeck_exponent, sigma_0=sigma_0
+        )
         positive(allow_zero=True, sigma_1=sigma_1, sigma_2=sigma_2)
         self._pads = pads(
             1,
@@ -49,6 +53,7 @@ class EllipsoidContact:
             mu_c=mu_c,
             mu_s=mu_s,
             stribeck_velocity=stribeck_velocity,
+            stribeck_exponent=stribeck_exponent,
             sigma_0=sigma_0,
             sigma_1=sigma_1,
             sigma_2=sigma_2,
@@ -108,5 +113,4 @@ class EllipsoidContact:
 
     def reset(self) -> None:
         """Forget the bristle state, as after a loss of contact."""
-        for field in ("z", "slip_speed", "slip_rate", "wrench"):
-            self._pads[field] = 0.0
+        rest(self._pads)

@@ -34,9 +34,11 @@ from slipgym.compiled import compiled
 
 @compiled
 def stribeck(pad, slip_speed):
-    """Friction level g(v) = mu_c + (mu_s - mu_c) exp(-(v / v_s)^2) [-]."""
+    """Friction level g(v) = mu_c + (mu_s - mu_c) exp(-(v / v_s)^gamma) [-]."""
     ratio = slip_speed / pad.stribeck_velocity
-    return pad.mu_c + (pad.mu_s - pad.mu_c) * math.exp(-ratio * ratio)
+    power = ratio * ratio if pad.stribeck_exponent == 2.0 else ratio**pad.stribeck_exponent
+    decay = math.exp(-power) if power < 40.0 else 0.0  # exp(-40) is below the rounding of mu_c
+    return pad.mu_c + (pad.mu_s - pad.mu_c) * decay
 
 
 @compiled
@@ -46,24 +48,25 @@ def friction_level(pad, h):
 
 
 @compiled
-def shrink(pad, limit):
-    """Bring the bristles back onto the ball of a friction level that has fallen."""
-    length = math.sqrt(pad.z[0] * pad.z[0] + pad.z[1] * pad.z[1] + pad.z[2] * pad.z[2])
-    radius = limit / pad.sigma_0
-    if length > radius:
-        for a in range(3):
-            pad.z[a] *= radius / length
+def brought_in(z, reach):
+    """Bristles brought back into the ball of a friction level that has fallen."""
+    length = math.sqrt(z[0] * z[0] + z[1] * z[1] + z[2] * z[2])
+    if length > reach:
+        return z[0] * (reach / length), z[1] * (reach / length), z[2] * (reach / length)
+    return z
 
 
 @compiled
-def respond(pad, delta, h, limit):
-    """Friction of one pad after a scaled slip displacement over time h.
+def respond(pad, z, normal, delta, h, reach):
+    """Friction of one bristle after a scaled slip displacement over time h.
 
     Args:
-        pad: PAD record with z inside the ball of `limit`; read only.
+        pad: PAD record with the parameters.
+        z: Deflection inside the ball of `reach`, scaled components, tuple of 3 [m].
+        normal: Normal force that the bristle carries [N].
         delta: Scaled slip displacement (x, y, r theta) of the sub-step, tuple of 3 [m].
         h: Sub-step [s].
-        limit: Friction level g of the sub-step [-].
+        reach: Longest deflection g / sigma_0 in this sub-step [m].
 
     Returns:
         force: Friction opposing `delta`, scaled components, tuple of 3 [N].
@@ -71,30 +74,40 @@ def respond(pad, delta, h, limit):
             isotropic I - radial direction direction^T [N/m].
         shortening: Factor of the return mapping on the trial deflection (1 = stick).
     """
-    y = (pad.z[0] + delta[0], pad.z[1] + delta[1], pad.z[2] + delta[2])
+    y = (z[0] + delta[0], z[1] + delta[1], z[2] + delta[2])
     length = math.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
-    radius = limit / pad.sigma_0
-    elastic = pad.normal * (pad.sigma_0 + pad.sigma_1 / h)
-    damping = pad.normal * pad.sigma_1 / h
-    viscous = pad.normal * pad.sigma_2 / h
+    elastic = normal * (pad.sigma_0 + pad.sigma_1 / h)
+    damping = normal * pad.sigma_1 / h
+    viscous = normal * pad.sigma_2 / h
     shortening, radial = 1.0, 0.0
-    if length > radius:
-        shortening = radius / length
+    if length > reach:
+        shortening = reach / length
         radial = elastic * shortening / (length * length)
     spring = elastic * shortening
     force = (
-        spring * y[0] - damping * pad.z[0] + viscous * delta[0],
-        spring * y[1] - damping * pad.z[1] + viscous * delta[1],
-        spring * y[2] - damping * pad.z[2] + viscous * delta[2],
+        spring * y[0] - damping * z[0] + viscous * delta[0],
+        spring * y[1] - damping * z[1] + viscous * delta[1],
+        spring * y[2] - damping * z[2] + viscous * delta[2],
     )
     return force, spring + viscous, radial, y, shortening
 
 
 @compiled
-def commit(pad, delta, h, force, shortening):
-    """Store bristle state, slip speed and wrench that `respond` found."""
+def prepare(pad, h):
+    """Fix the friction level of a sub-step and bring the bristles into it; returns the level [-]."""
+    limit = friction_level(pad, h)
+    z = brought_in((pad.z[0], pad.z[1], pad.z[2]), limit / pad.sigma_0)
+    pad.z[0], pad.z[1], pad.z[2] = z
+    return limit
+
+
+@compiled
+def commit(pad, delta, h, limit):
+    """Store bristle state, slip speed and wrench after a scaled slip displacement."""
+    z = (pad.z[0], pad.z[1], pad.z[2])
+    force, _, _, trial, shortening = respond(pad, z, pad.normal, delta, h, limit / pad.sigma_0)
     for a in range(3):
-        pad.z[a] = shortening * (pad.z[a] + delta[a])
+        pad.z[a] = shortening * trial[a]
     speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) / h
     if shortening < 1.0:
         pad.slip_rate = (speed - pad.slip_speed) / h
@@ -118,7 +131,4 @@ def release(pad, slip_speed):
 def prescribed_step(pad, twist, h):
     """Advance one pad by a prescribed slip twist (v_x, v_y, omega) at its centre of pressure."""
     delta = (h * twist[0], h * twist[1], h * pad.r * twist[2])
-    limit = friction_level(pad, h)
-    shrink(pad, limit)
-    force, _, _, _, shortening = respond(pad, delta, h, limit)
-    commit(pad, delta, h, force, shortening)
+    commit(pad, delta, h, prepare(pad, h))

@@ -8,7 +8,7 @@ force f_n (LuGre patch of Waltersson & Karayiannidis, arXiv 2308.01123):
     f_i = w_i f_n (sigma_0 z_i + sigma_1 dz_i/dt + sigma_2 v_i),    |z_i| <= g_i / sigma_0
     F = -sum f_i,    tau = -sum x_i x f_i
 
-A step h is the ellipsoid's (`slipgym.contact.kernel`), in two dimensions: z_i is brought
+A cell is a bristle of `slipgym.contact.kernel`, in two dimensions: z_i is brought
 into the ball if g_i has fallen, which is loss and not dz_i/dt; then v_i h is added and the
 result projected onto the ball. Hence it truly sticks, takes at least the energy that it
 stores whatever the twist, and has no limit sigma_0 |v| h / g < 1. Steady slip is LuGre's:
@@ -16,87 +16,138 @@ z_i = g_i v_i / (sigma_0 |v_i|), in which it arrives along the shortest way and 
 exponentially. The exponential step of LuGre has no limit either; but it drifts in stick
 or needs a switching function, and passivity would rest on that function.
 
-The twist is prescribed, so the slip speed to come is known and not extrapolated: s_i is
-|v_i| in slip. In stick it only falls (elastic motion must not lower g), which one number a
-cell keeps: the cap, infinite in slip.
+s_i is |v_i| in slip. In stick it only falls (elastic motion must not lower g), which one
+number a cell keeps: the cap, infinite in slip. |v_i| is that of the twist to come: known if
+it is prescribed, otherwise extrapolated from the last two sub-steps. With s_i so fixed the
+friction of all cells is the gradient of a convex function of the twist.
+
+Twists and displacements are scaled, (x, y, r theta), as the ellipsoid's; x_i is in units of r.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 from slipgym.compiled import compiled
-
-
-class Law(NamedTuple):
-    """Friction law of all cells."""
-
-    mu_c: float
-    """Coulomb friction [-]."""
-    mu_s: float
-    """Static friction [-]."""
-    stribeck_velocity: float
-    """v_s [m/s]."""
-    stribeck_exponent: float
-    """gamma [-]."""
-    sigma_0: float
-    """Bristle stiffness per normal force [1/m]."""
-    sigma_1: float
-    """Bristle damping per normal force [s/m]."""
-    sigma_2: float
-    """Viscous friction per normal force [s/m]."""
+from slipgym.contact import kernel
 
 
 @compiled
-def level(law, speed):
-    """Friction level g = mu_c + (mu_s - mu_c) exp(-(speed / v_s)^gamma) [-]."""
-    ratio = speed / law.stribeck_velocity
-    power = ratio * ratio if law.stribeck_exponent == 2.0 else ratio**law.stribeck_exponent
-    if power > 40.0:  # exp(-40) is below the rounding of mu_c
-        return law.mu_c
-    return law.mu_c + (law.mu_s - law.mu_c) * math.exp(-power)
+def at_cell(cell, motion):
+    """Displacement or velocity of a cell, a tuple of 3 with zero spin."""
+    return motion[0] - motion[2] * cell.y, motion[1] + motion[2] * cell.x, 0.0
 
 
 @compiled
-def patch_step(law, cells, state, v_x, v_y, omega, normal, h):
-    """Advance all cells by a prescribed slip twist at the centre of pressure.
+def speed_at(cell, twist):
+    """Slip speed of a cell by which its friction level goes [m/s]."""
+    v_x, v_y, _ = at_cell(cell, twist)
+    return min(math.sqrt(v_x * v_x + v_y * v_y), cell.cap)
+
+
+@compiled
+def expected_twist(pad, h):
+    """Scaled slip twist expected after a sub-step of h [m/s]."""
+    return (
+        pad.twist[0] + h * pad.twist_rate[0],
+        pad.twist[1] + h * pad.twist_rate[1],
+        pad.twist[2] + h * pad.twist_rate[2],
+    )
+
+
+@compiled
+def prepare(pad, cells, twist):
+    """Fix every cell's friction level and bring its bristle into it.
 
     Args:
-        law: The `Law`.
-        cells: Rows x [m], y [m] and share w, shape (3, n).
-        state: Rows z_x [m], z_y [m] and cap [m/s], shape (3, n); updated.
-        v_x: Slip velocity of the object along x [m/s].
-        v_y: Slip velocity of the object along y [m/s].
-        omega: Slip rate of rotation [rad/s].
-        normal: Normal force [N].
-        h: Step [s].
+        pad: PAD record with the parameters.
+        cells: CELL (n,); updated.
+        twist: Scaled slip twist to come, tuple of 3 [m/s].
 
     Returns:
-        Friction (f_x, f_y, tau) on the object [N, N, N m].
+        Friction level, mean over the load [-].
     """
-    sum_x, sum_y, moment = 0.0, 0.0, 0.0
-    damping = law.sigma_1 / h
-    for i in range(cells.shape[1]):
-        x, y = cells[0, i], cells[1, i]
-        u_x, u_y = v_x - omega * y, v_y + omega * x
-        speed = min(math.sqrt(u_x * u_x + u_y * u_y), state[2, i])
-        reach = level(law, speed) / law.sigma_0
+    mean = 0.0
+    for i in range(cells.shape[0]):
+        cell = cells[i]
+        limit = kernel.stribeck(pad, speed_at(cell, twist))
+        mean += cell.share * limit
+        cell.reach = limit / pad.sigma_0
+        cell.z_x, cell.z_y, _ = kernel.brought_in((cell.z_x, cell.z_y, 0.0), cell.reach)
+    return mean
 
-        z_x, z_y = state[0, i], state[1, i]
-        length = math.sqrt(z_x * z_x + z_y * z_y)
-        if length > reach:
-            z_x, z_y = z_x * (reach / length), z_y * (reach / length)
 
-        end_x, end_y = z_x + h * u_x, z_y + h * u_y
-        length = math.sqrt(end_x * end_x + end_y * end_y)
-        state[2, i] = speed
-        if length > reach:
-            end_x, end_y = end_x * (reach / length), end_y * (reach / length)
-            state[2, i] = math.inf
-        state[0, i], state[1, i] = end_x, end_y
+@compiled
+def respond(pad, cells, delta, h):
+    """Friction of all cells after a scaled slip displacement over time h.
 
-        f_x = cells[2, i] * (law.sigma_0 * end_x + damping * (end_x - z_x) + law.sigma_2 * u_x)
-        f_y = cells[2, i] * (law.sigma_0 * end_y + damping * (end_y - z_y) + law.sigma_2 * u_y)
-        sum_x, sum_y, moment = sum_x + f_x, sum_y + f_y, moment + x * f_y - y * f_x
-    return -normal * sum_x, -normal * sum_y, -normal * moment
+    Args:
+        pad: PAD record with the parameters and the normal force.
+        cells: CELL (n,) from `prepare`; read only.
+        delta: Scaled slip displacement (x, y, r theta) of the sub-step, tuple of 3 [m].
+        h: Sub-step [s].
+
+    Returns:
+        force: Friction opposing `delta`, scaled components, tuple of 3 [N].
+        derivative: Of `force` by `delta`, symmetric (xx, yy, tt, xy, xt, yt) [N/m].
+    """
+    fx, fy, ft = 0.0, 0.0, 0.0
+    xx, yy, tt, xy, xt, yt = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(cells.shape[0]):
+        cell = cells[i]
+        x, y = cell.x, cell.y
+        z = (cell.z_x, cell.z_y, 0.0)
+        # as if it carried the whole normal force: what does not differ is computed once
+        force, isotropic, radial, direction, _ = kernel.respond(
+            pad, z, pad.normal, at_cell(cell, delta), h, cell.reach
+        )
+        f_x, f_y = cell.share * force[0], cell.share * force[1]
+        isotropic, radial = cell.share * isotropic, cell.share * radial
+        n_x, n_y, _ = direction
+        n_t = x * n_y - y * n_x
+        fx, fy, ft = fx + f_x, fy + f_y, ft + x * f_y - y * f_x
+        xx += isotropic - radial * n_x * n_x
+        yy += isotropic - radial * n_y * n_y
+        tt += isotropic * (x * x + y * y) - radial * n_t * n_t
+        xy -= radial * n_x * n_y
+        xt -= isotropic * y + radial * n_x * n_t
+        yt += isotropic * x - radial * n_y * n_t
+    return (fx, fy, ft), (xx, yy, tt, xy, xt, yt)
+
+
+@compiled
+def commit(pad, cells, delta, h):
+    """Store bristle states, slip twist and wrench after a scaled slip displacement."""
+    force, _ = respond(pad, cells, delta, h)
+    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
+    for a in range(3):
+        pad.twist_rate[a] = (delta[a] / h - pad.twist[a]) / h
+        pad.twist[a] = delta[a] / h
+    twist = (pad.twist[0], pad.twist[1], pad.twist[2])
+    for i in range(cells.shape[0]):
+        cell = cells[i]
+        move = at_cell(cell, delta)
+        trial = (cell.z_x + move[0], cell.z_y + move[1], 0.0)
+        cell.z_x, cell.z_y, _ = kernel.brought_in(trial, cell.reach)
+        slips = math.sqrt(trial[0] * trial[0] + trial[1] * trial[1]) > cell.reach
+        cell.cap = math.inf if slips else speed_at(cell, twist)
+
+
+@compiled
+def release(pad, cells, twist):
+    """Forget the bristle states of a patch without normal force."""
+    pad.wrench[:] = 0.0
+    for a in range(3):
+        pad.twist[a] = twist[a]
+        pad.twist_rate[a] = 0.0
+    for i in range(cells.shape[0]):
+        cell = cells[i]
+        cell.z_x, cell.z_y, cell.cap = 0.0, 0.0, math.inf
+
+
+@compiled
+def prescribed_step(pad, cells, twist, h):
+    """Advance a patch by a prescribed slip twist (v_x, v_y, omega) at its centre of pressure."""
+    scaled = (twist[0], twist[1], pad.r * twist[2])
+    prepare(pad, cells, scaled)
+    commit(pad, cells, (h * scaled[0], h * scaled[1], h * scaled[2]), h)

@@ -26,20 +26,22 @@ QUANTILES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 """Radius inside which a share of the load lies, of a disc of radius 1: pressure constant,
 proportional to sqrt(1 - rho^2) (Hertz), or on the edge alone."""
 
+OUTER_RADII = {"uniform": 1.5, "hertz": 16.0 / (3.0 * np.pi), "rim": 1.0}
+"""Radius of the disc over that of the equivalent rim contact, exactly."""
 
-def patch_cells(pressure: str | ArrayLike, radius: float, cells: int) -> tuple[np.ndarray, np.ndarray]:
+
+def patch_cells(pressure: str | ArrayLike, cells: int) -> tuple[np.ndarray, np.ndarray]:
     """Positions and load shares of the cells that carry load.
 
     Args:
         pressure: A name of `QUANTILES`, or relative loads of the cells, shape (cells, cells),
             >= 0, any unit: element (i, j) belongs to the i-th column along x and the j-th row
             along y, and acts at its middle. Loads are taken as they are, in the whole square.
-        radius: Radius of the disc, half the side of the square [m].
         cells: Cells along either side.
 
     Returns:
-        Positions relative to the centre of pressure, shape (n, 2) [m]; shares of the normal
-        force, shape (n,), sum 1.
+        Positions relative to the centre of pressure over the radius of the disc, half the side
+        of the square, shape (n, 2); shares of the normal force, shape (n,), sum 1.
 
     Raises:
         ValueError: An unknown name, or an array of another shape, with a value that is
@@ -51,7 +53,7 @@ def patch_cells(pressure: str | ArrayLike, radius: float, cells: int) -> tuple[n
         loads, moments = _given(np.asarray(pressure, dtype=float), cells)
     loaded = loads > 0.0
     shares = loads[loaded] / loads.sum()
-    positions = radius * moments[loaded] / loads[loaded, None]
+    positions = moments[loaded] / loads[loaded, None]
     return positions - shares @ positions, shares
 
 

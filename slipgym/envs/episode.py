@@ -34,7 +34,7 @@ def draw_friction(
     """The material's friction, with what the options fix.
 
     Raises:
-        ValueError: The material is unknown, or mu_s would be below mu_c.
+        ValueError: The material is unknown, mu_s would be below mu_c, or the pad has no room for r.
     """
     names = sorted(config.materials)
     drawn = names[rng.integers(len(names))]  # drawn always, so that options do not shift later draws
@@ -46,7 +46,8 @@ def draw_friction(
     mu_s, mu_c = (options.choose(field, config.materials[name]) for field in ("mu_s", "mu_c"))
     if mu_s < mu_c:
         raise ValueError(f"mu_s = {mu_s:g} must be at least mu_c = {mu_c:g} (material {name!r})")
-    r = config.contact.radius if options.r is None else options.r
+    r = config.contact_radius if options.r is None else options.r
+    config.check_patch("option r", r)
     return Friction(mu_s, mu_c, r, name)
 
 

@@ -29,7 +29,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             "nominal" or "none".
         estimator: Name of an estimator (`estimator.names()`), or a mapping with its `name`
             and parameters.
-        contact: Friction model of the pads; "ellipsoid".
+        contact: Friction model of the pads, "ellipsoid" or "distributed".
         sensors: Sensor preset, "realistic" or "ideal".
         material: Name of a material, or "random" for another in every episode.
         action_mode: "grip_force".
@@ -64,7 +64,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
     ) -> None:
         refuse_unknown(unknown, _KEYWORDS)
         self.friction_source = one_of("friction_source", friction_source, observation.FRICTION_SOURCES)
-        one_of("contact", contact, ("ellipsoid",))
+        one_of("contact", contact, ("ellipsoid", "distributed"))
         one_of("action_mode", action_mode, ("grip_force",))
         one_of("observation_mode", observation_mode, ("flat",))
         one_of("randomization", randomization, ("none",))
@@ -72,7 +72,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             one_of("render_mode", render_mode, self.metadata["render_modes"])
         if isinstance(frame_skip, bool) or not isinstance(frame_skip, int) or frame_skip < 1:
             raise ValueError(f"frame_skip = {frame_skip!r} must be a whole number >= 1")
-        self.config = load(config, sensors)
+        self.config = load(config, sensors, contact)
         self.material = one_of("material", material, ("random", *self.config.materials))
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": self.config.physics.control_rate / frame_skip}

@@ -1,4 +1,10 @@
-"""Sensor records of a friction patch whose slip is prescribed and whose truth is known."""
+"""Sensor records of a friction patch whose slip is prescribed and whose truth is known.
+
+Twenty fingers see 2 s of sliding; they differ by their noise:
+
+    course = Course.start(mu_c=0.4).to("stick", 0.2).to("slide", 0.1, v_x=0.02).to("slide", 2.0)
+    record = sense(integrate(course), m=20)
+"""
 
 from slipgym.synthetic.course import Course
 from slipgym.synthetic.integration import Trace, integrate

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from slipgym.validation.agreement import agreement
 from slipgym.validation.breakaway import breakaway
 from slipgym.validation.creep import creep
+from slipgym.validation.distributed import distributed
 from slipgym.validation.energy import energy
 from slipgym.validation.estimation import estimation
 from slipgym.validation.fall import fall
@@ -22,6 +23,7 @@ EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     halving,
     fall,
     agreement,
+    distributed,
     estimation,
 )
 """Each yields its figures; together about twenty seconds."""

@@ -64,6 +64,7 @@ class Bench:
         friction: Friction of both pads.
         force: Grip force per finger at the start [N].
         wrist: Pad centre (x, z) and pitch at the start [m, m, rad].
+        contact: Friction model of the pads.
         **box: Fields of `Box` that differ from the configured object.
     """
 
@@ -73,9 +74,10 @@ class Bench:
         friction: Friction | None = None,
         force: float = 5.0,
         wrist: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        contact: str = "ellipsoid",
         **box: Any,
     ) -> None:
-        self.config = load(overrides, "ideal")
+        self.config = load(overrides, "ideal", contact)
         self.friction = friction or Friction()
         self.box = uniform_box(self.config, **box)
         self.plant = build(self.config)

@@ -24,15 +24,20 @@ def broken_away(bench: Bench) -> bool:
     return math.hypot(x, y, bench.friction.r * theta) > BROKEN
 
 
-def ramp(direction: tuple[float, float, float], com_offset: tuple[float, float] = (0.0, 0.0)) -> float:
+def ramp(
+    direction: tuple[float, float, float],
+    com_offset: tuple[float, float] = (0.0, 0.0),
+    contact: str = "ellipsoid",
+) -> float:
     """Load at break-away as a share of mu_s sum f_n.
 
     Args:
         direction: Of the scaled load (f_x, f_z, tau / r) at the pad centre.
         com_offset: Centre of mass (x, z) from the pad centre [m].
+        contact: Friction model of the pads.
     """
     unit = np.array(direction) / np.linalg.norm(direction)
-    with Bench(WITHOUT_GRAVITY, com_offset=com_offset) as bench:
+    with Bench(WITHOUT_GRAVITY, com_offset=com_offset, contact=contact) as bench:
         limit = bench.limit()
         f_x, f_z, scaled_torque = limit * unit
         torque = bench.friction.r * scaled_torque - (com_offset[0] * f_z - com_offset[1] * f_x)

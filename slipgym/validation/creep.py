@@ -32,7 +32,9 @@ def grip_for(level: float, mass: float, eccentricity: float, friction: Friction)
     return load / (2.0 * friction.mu_s * level)
 
 
-def drift(eccentricity: float, wrist: Signal | None = None) -> tuple[float, float]:
+def drift(
+    eccentricity: float, wrist: Signal | None = None, contact: str = "ellipsoid"
+) -> tuple[float, float]:
     """Largest displacement and rotation from where the object was after one second.
 
     Compared at whole seconds, at which the moving wrist is at rest in its first pose and the
@@ -41,6 +43,7 @@ def drift(eccentricity: float, wrist: Signal | None = None) -> tuple[float, floa
     Args:
         eccentricity: Distance of the centre of mass from the pads along x [m].
         wrist: Wrist velocity with a period of 1 s.
+        contact: Friction model of the pads.
 
     Returns:
         Distance [mm] and angle [deg].
@@ -48,7 +51,8 @@ def drift(eccentricity: float, wrist: Signal | None = None) -> tuple[float, floa
     friction, mass = Friction(), 0.2
     level = LEVEL if wrist is None else LEVEL / (1.0 + SWAY_LOAD)
     force = grip_for(level, mass, eccentricity, friction)
-    with Bench(force=force, friction=friction, mass=mass, com_offset=(eccentricity, 0.0)) as bench:
+    com_offset = eccentricity, 0.0
+    with Bench(force=force, friction=friction, mass=mass, com_offset=com_offset, contact=contact) as bench:
         slip = bench.run(1.0 + DURATION, wrist=wrist).slip
     rate = bench.config.physics.control_rate
     moved = slip[rate - 1 :: rate] - slip[rate - 1]

@@ -42,7 +42,7 @@ def elastic_store(bench: Bench, force: float) -> float:
     return 2.0 * force * bench.friction.mu_s**2 / (2.0 * bench.config.contact.sigma_0)
 
 
-def throw(seed: int, vary_grip: bool) -> tuple[float, float]:
+def throw(seed: int, vary_grip: bool, contact: str = "ellipsoid") -> tuple[float, float]:
     """Push an object in zero gravity, let it slide and spin until it rests.
 
     Returns:
@@ -52,7 +52,9 @@ def throw(seed: int, vary_grip: bool) -> tuple[float, float]:
     rng = np.random.default_rng(seed)
     direction = rng.normal(size=3)
     grips = rng.uniform(*GRIP_RANGE, 1000)
-    with Bench({"physics": {"gravity": 0.0}}, force=GRIP, size=SIZE, inertia=INERTIA) as bench:
+    with Bench(
+        {"physics": {"gravity": 0.0}}, force=GRIP, contact=contact, size=SIZE, inertia=INERTIA
+    ) as bench:
         grip: Signal = (lambda t: grips[round(t / bench.step_time)]) if vary_grip else (lambda _: GRIP)
         bench.settle()
         push = 2.0 * bench.limit() * direction / np.linalg.norm(direction) * (1.0, 1.0, bench.friction.r)
@@ -62,7 +64,7 @@ def throw(seed: int, vary_grip: bool) -> tuple[float, float]:
         return largest_rise(energy) / elastic_store(bench, GRIP_RANGE[1]), energy[0]
 
 
-def slide(seed: int) -> float:
+def slide(seed: int, contact: str = "ellipsoid") -> float:
     """Rise of the energy while weight drags the object through sticking and slipping.
 
     Returns:
@@ -70,7 +72,7 @@ def slide(seed: int) -> float:
     """
     low, high = SLIDE_GRIPS
     grips = np.repeat(np.random.default_rng(seed).uniform(low, high, 100), 12)
-    with Bench(force=high, com_offset=(0.004, 0.0), size=LONG) as bench:
+    with Bench(force=high, com_offset=(0.004, 0.0), contact=contact, size=LONG) as bench:
         bench.settle()
         energy = energies(bench, bench.run(2.0, force=lambda t: grips[round(t / bench.step_time)]))
         return largest_rise(energy) / elastic_store(bench, high)

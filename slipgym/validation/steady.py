@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -40,19 +40,31 @@ def friction_and_twist(bench: Bench, trace: Trace) -> tuple[np.ndarray, np.ndarr
     return force * (1.0, 1.0, 1.0 / r), velocity * (1.0, 1.0, r)
 
 
-def deviation(angle: float, sigma_2: float) -> tuple[float, np.ndarray]:
-    """Distance of friction from the ellipsoid while a constant load drags the object.
+def ellipsoid(twist: np.ndarray) -> np.ndarray:
+    """Scaled friction over mu_c f_n of the ellipsoid, opposing scaled twists, both (n, 3)."""
+    return -twist / np.linalg.norm(twist, axis=1)[:, None]
+
+
+def deviation(
+    angle: float,
+    sigma_2: float,
+    law: Callable[[np.ndarray], np.ndarray] = ellipsoid,
+    contact: str = "ellipsoid",
+) -> tuple[float, np.ndarray]:
+    """Distance of friction from its law while a constant load drags the object.
 
     Args:
         angle: Of the scaled load from translation to torque [rad].
         sigma_2: Viscous friction [s/m].
+        law: Scaled friction over mu_c f_n at scaled twists, (n, 3) from (n, 3).
+        contact: Friction model of the pads.
 
     Returns:
         Largest distance in % of mu_c sum f_n; gamma_t of the samples.
     """
     overrides = {"physics": {"gravity": 0.0}, "contact": {"sigma_2": sigma_2}}
     # inertia m r^2: the scaled mass is the same in all directions, the twist stays with the load
-    with Bench(overrides, mass=MASS, inertia=MASS * 0.01**2) as bench:
+    with Bench(overrides, contact=contact, mass=MASS, inertia=MASS * 0.01**2) as bench:
         r, mu_c = bench.friction.r, bench.friction.mu_c
         bench.settle()
         total = bench.plant.fingers["contact_force"].sum()
@@ -63,16 +75,21 @@ def deviation(angle: float, sigma_2: float) -> tuple[float, np.ndarray]:
     force, twist = friction_and_twist(bench, trace)
     speed = np.linalg.norm(twist, axis=1)
     sliding = (speed > SPEEDS[0]) & (speed < SPEEDS[1])
-    force, twist, speed = force[sliding], twist[sliding], speed[sliding, None]
-    ellipsoid = -(mu_c + sigma_2 * speed) * total * twist / speed
-    away = np.linalg.norm(force - ellipsoid, axis=1) / (mu_c * total)
-    return 100.0 * away.max(), np.hypot(twist[:, 0], twist[:, 1]) / speed[:, 0]
+    force, twist = force[sliding], twist[sliding]
+    expected = (mu_c * law(twist) - sigma_2 * twist) * total
+    away = np.linalg.norm(force - expected, axis=1) / (mu_c * total)
+    return 100.0 * away.max(), np.hypot(twist[:, 0], twist[:, 1]) / speed[sliding]
 
 
 def steady() -> Iterator[Figure]:
     """Steady slip against the ellipsoid for gamma_t from 0 to 1."""
     for sigma_2 in (0.0, 0.2):
         found = [deviation(angle, sigma_2) for angle in np.linspace(0.0, 0.5 * math.pi, DIRECTIONS)]
-        gammas = np.concatenate([gamma for _, gamma in found])
-        name = f"steady slip, gamma_t {gammas.min():.2f} to {gammas.max():.2f}, sigma_2 {sigma_2:g} s/m"
-        yield Figure(name, BOUND, max(away for away, _ in found), "%")
+        yield summary("steady slip", f"sigma_2 {sigma_2:g} s/m", found)
+
+
+def summary(name: str, detail: str, found: Sequence[tuple[float, np.ndarray]]) -> Figure:
+    """The largest of some deviations and the range of gamma_t that they cover."""
+    gammas = np.concatenate([gamma for _, gamma in found])
+    span = f"gamma_t {gammas.min():.2f} to {gammas.max():.2f}"
+    return Figure(f"{name}, {span}, {detail}", BOUND, max(away for away, _ in found), "%")

@@ -10,6 +10,7 @@ import pybullet as p
 
 from slipgym.compiled import compiled
 from slipgym.config import Config
+from slipgym.contact.records import rest
 from slipgym.world import coupling, scene
 from slipgym.world.actuator import command
 from slipgym.world.planar import locate
@@ -21,10 +22,11 @@ _LINK_B, _NORMAL_FORCE = 4, 9  # fields of PyBullet's contact points
 
 
 @compiled
-def _loads(worlds, pads, fingers, force_torque, noise, chips, pose, velocity, wrist, normals):
+def _loads(worlds, pads, cells, fingers, force_torque, noise, chips, pose, velocity, wrist, normals):
     return coupling.step_loads(
         worlds[0],
         pads[0],
+        cells[0],
         fingers[0],
         force_torque[0],
         noise[0],
@@ -143,8 +145,8 @@ class BulletWorld:
             fingers[field] = 0
         for field in ("command", "force", "mean_force", "contact_mean_force", "contact_force"):
             fingers[field] = force
-        for field in ("z", "slip_speed", "slip_rate", "wrench"):
-            self._plant.pads[field] = 0.0
+        rest(self._plant.pads)
+        rest(self._plant.cells)
         if any(wrist):
             self._place(wrist)
         pose, velocity, joints, _ = self._read()
@@ -187,6 +189,7 @@ class BulletWorld:
             (force, torque), at_first, at_second, efforts, speeds = _loads(
                 plant.world,
                 plant.pads,
+                plant.cells,
                 plant.fingers,
                 plant.force_torque,
                 noise,

@@ -47,13 +47,26 @@ def observe(world, fingers, position, orientation, wrist, normals):
 
 @compiled
 def step_loads(
-    world, pads, fingers, force_torque, noise, chips, position, orientation, linear, angular, wrist, normals
+    world,
+    pads,
+    cells,
+    fingers,
+    force_torque,
+    noise,
+    chips,
+    position,
+    orientation,
+    linear,
+    angular,
+    wrist,
+    normals,
 ):
     """Advance the planar world by one engine step and say what the engine must apply.
 
     Args:
         world: WORLD record.
         pads: PAD records (2,).
+        cells: CELL records (2, m).
         fingers: FINGER records (2,).
         force_torque: FORCE_TORQUE records (2,).
         noise: As in `advance`.
@@ -72,7 +85,7 @@ def step_loads(
     observe(world, fingers, position, orientation, wrist, normals)
     dt = world.engine_ticks * world.tick_length
     x, z, angle = world.com[0], world.com[1], world.angle
-    advance(world, pads, fingers, force_torque, noise, chips)
+    advance(world, pads, cells, fingers, force_torque, noise, chips)
     # total in-plane load that gives the engine this step's mean velocity
     fx = world.mass * ((world.com[0] - x) / dt - linear[0]) / dt
     fz = world.mass * ((world.com[1] - z) / dt - linear[2]) / dt + world.mass * world.gravity

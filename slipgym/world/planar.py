@@ -23,12 +23,13 @@ HOLDING = 1e-2  # [N]; pads with less, a fiftieth of the smallest grip, do not h
 
 
 @compiled
-def advance(world, pads, fingers, force_torque, noise, chips):
+def advance(world, pads, cells, fingers, force_torque, noise, chips):
     """Advance one world by one engine step.
 
     Args:
         world: WORLD record.
         pads: PAD records (2,).
+        cells: CELL records (2, m); m = 0 for ellipsoids.
         fingers: FINGER records (2,).
         force_torque: FORCE_TORQUE records (2,).
         noise: Standard normal draws for the force/torque samples of this control step,
@@ -47,7 +48,7 @@ def advance(world, pads, fingers, force_torque, noise, chips):
             ticks = ticks_to_next(fingers[f], world.tick, ticks)
             ticks = min(ticks, force_torque[f].period - world.tick % force_torque[f].period)
         share = ticks / world.engine_ticks
-        substep(world, pads, fingers, chips, ticks * world.tick_length, share)
+        substep(world, pads, cells, fingers, chips, ticks * world.tick_length, share)
         world.tick += ticks
         for f in range(2):
             if world.tick % force_torque[f].period == 0:
@@ -55,7 +56,7 @@ def advance(world, pads, fingers, force_torque, noise, chips):
 
 
 @compiled
-def substep(world, pads, fingers, chips, h, share):
+def substep(world, pads, cells, fingers, chips, h, share):
     """Advance wrist, fingers, friction and object by h, a `share` of the engine step."""
     for f in range(2):
         mean = relax(fingers[f], h)
@@ -73,7 +74,7 @@ def substep(world, pads, fingers, chips, h, share):
     drift = relative_motion(world, cos, sin, 0.0, 0.0, 0.0, h)
     free = relative_motion(world, cos, sin, lead * ax, lead * az, lead * at, h)
     centre = (world.relative[0], world.relative[1])
-    motion = step_pads(pads, (world.mass, world.inertia), centre, free, drift, h)
+    motion = step_pads(pads, cells, (world.mass, world.inertia), centre, free, drift, h)
     braking_x = (motion[0] - free[0]) / h
     braking_y = (motion[1] - free[1]) / h
     world.velocity[0] += h * ax + cos * braking_x - sin * braking_y

@@ -8,7 +8,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.contact.records import PAD
+from slipgym.contact.pressure import patch_cells
+from slipgym.contact.records import CELL, pads, patch
 from slipgym.sensors.force_torque import FORCE_TORQUE
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
@@ -29,6 +30,8 @@ class Plant:
     """WORLD (n,)."""
     pads: np.ndarray
     """PAD (n, 2)."""
+    cells: np.ndarray
+    """CELL (n, 2, m); m = 0 for the ellipsoid."""
     fingers: np.ndarray
     """FINGER (n, 2)."""
     force_torque: np.ndarray
@@ -48,6 +51,7 @@ def build(config: Config, n: int = 1) -> Plant:
     return Plant(
         world=_world(config, n, tick_rate),
         pads=_pads(config, n),
+        cells=_cells(config, n),
         fingers=_fingers(config, n, tick_rate),
         force_torque=_force_torque(config, n, tick_rate),
         chips=_chips(config, n),
@@ -65,12 +69,20 @@ def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
 
 def _pads(config: Config, n: int) -> np.ndarray:
     contact = config.contact
-    pads = np.zeros((n, 2), PAD)
-    for field in ("stribeck_velocity", "sigma_0", "sigma_1", "sigma_2"):
-        pads[field] = getattr(contact, field)
-    pads["r"] = contact.radius
-    pads["cop"] = contact.cop_offset
-    return pads
+    fields = "stribeck_velocity", "stribeck_exponent", "sigma_0", "sigma_1", "sigma_2"
+    array = pads((n, 2), r=config.contact_radius, **{field: getattr(contact, field) for field in fields})
+    array["cop"] = contact.cop_offset
+    return array
+
+
+def _cells(config: Config, n: int) -> np.ndarray:
+    """The patch of every pad; an episode scales it by its r alone."""
+    contact = config.contact
+    if contact.model == "ellipsoid":
+        return np.zeros((n, 2, 0), CELL)
+    positions, shares = patch_cells(contact.pressure, contact.cells)
+    # in units of the cells' own r: in pure spin they then carry exactly the torque of r
+    return np.tile(patch(positions / (shares @ np.hypot(*positions.T)), shares), (n, 2, 1))
 
 
 def _fingers(config: Config, n: int, tick_rate: int) -> np.ndarray:

@@ -14,7 +14,7 @@ def test_defaults_are_the_papers_figures():
     c = config.load()
     assert (c.gripper.pad_radius, c.gripper.force_limit, c.gripper.lag) == (0.015, 40.0, 0.012)
     assert (c.contact.sigma_0, c.contact.sigma_1, c.contact.sigma_2) == (1e6, 80.0, 0.2)
-    assert c.contact.radius == pytest.approx(2 / 3 * c.gripper.pad_radius)
+    assert c.contact_radius == pytest.approx(2 / 3 * c.gripper.pad_radius)
     assert (c.materials["wood"].mu_c, c.materials["wood"].mu_s) == (0.3623, 0.5155)
     assert c.physics.engine_rate == 480
 

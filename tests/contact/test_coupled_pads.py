@@ -8,9 +8,10 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from slipgym.contact.coupled import assemble, norm, solve_motion, solve_symmetric, step_pads
-from slipgym.contact.records import pads
+from slipgym.contact.records import CELL, pads
 
 H = 5e-4
+NO_CELLS = np.zeros((2, 0), CELL)
 UNIT = 1e-6  # [m]; the minimiser works in micrometres
 EQUAL = {
     "mu_c": 0.4,
@@ -62,7 +63,7 @@ def potential(q, array, limits, inertia, centre, free):
 
 
 def solve(array, inertia, centre, free, guess):
-    return np.array(solve_motion(array, array["mu_s"], inertia, centre, free, guess, H))
+    return np.array(solve_motion(array, NO_CELLS, array["mu_s"], inertia, centre, free, guess, H))
 
 
 @settings(deadline=None, max_examples=150)
@@ -73,8 +74,8 @@ def test_the_balance_is_met_from_any_guess(problem, guess):
     limit = float(np.sum(limits * array["normal"]))
     found = []
     for start in (free, (0.0, 0.0, 0.0), tuple(1e-5 * g for g in guess)):
-        motion = solve_motion(array, limits, inertia, centre, free, start, H)
-        residual, _ = assemble(array, limits, inertia, centre, free, motion, H)
+        motion = solve_motion(array, NO_CELLS, limits, inertia, centre, free, start, H)
+        residual, _ = assemble(array, NO_CELLS, limits, inertia, centre, free, motion, H)
         assert norm(residual, array["r"][0]) <= 1e-9 * limit  # the solver stops at 1e-10
         found.append(motion)
     # Strong convexity: each motion is within residual / smallest curvature (mass / h^2) of the only one,
@@ -92,7 +93,7 @@ def test_no_other_motion_has_less_potential(problem):
     array, inertia, centre, free = problem
     limits = np.ascontiguousarray(array["mu_s"])
     data = array, limits, inertia, np.array(centre), np.array(free)
-    motion = np.array(solve_motion(array, limits, inertia, centre, free, free, H))
+    motion = np.array(solve_motion(array, NO_CELLS, limits, inertia, centre, free, free, H))
     scale = np.array([UNIT, UNIT, UNIT / 0.01])
     unit = float(np.sum(limits * array["normal"])) * UNIT  # energy of a slip of one unit
     least = potential(motion, *data)
@@ -118,14 +119,14 @@ def test_the_derivative_is_that_of_the_residual(problem):
     array, inertia, centre, free = problem
     limits = np.ascontiguousarray(array["mu_s"])
     at = np.array(free)
-    _, j = assemble(array, limits, inertia, centre, free, tuple(at), H)
+    _, j = assemble(array, NO_CELLS, limits, inertia, centre, free, tuple(at), H)
     jacobian = np.array([[j[0], j[3], j[4]], [j[3], j[1], j[5]], [j[4], j[5], j[2]]])
     assert np.all(np.linalg.eigvalsh(jacobian) > 0.0)
     step = np.array([1e-12, 1e-12, 1e-10])
     for a in range(3):
         shift = step * (np.arange(3) == a)
-        ahead, _ = assemble(array, limits, inertia, centre, free, tuple(at + shift), H)
-        behind, _ = assemble(array, limits, inertia, centre, free, tuple(at - shift), H)
+        ahead, _ = assemble(array, NO_CELLS, limits, inertia, centre, free, tuple(at + shift), H)
+        behind, _ = assemble(array, NO_CELLS, limits, inertia, centre, free, tuple(at - shift), H)
         slope = (np.array(ahead) - np.array(behind)) / (2.0 * step[a])
         # rounding: 1e-16 of forces of 100 N over 1e-12 m; curvature: 1e-12 of bristles of 1e-6 m
         size = np.sqrt(np.diag(jacobian) * jacobian[a, a])
@@ -147,7 +148,7 @@ def test_a_pad_without_normal_force_takes_no_part():
     array["z"] = 1e-7
     alone = array[:1].copy()
     state = (0.2, 5e-4), (0.01, 0.0), (1e-5, 2e-5, 1e-4), (0.0, 0.0, 0.0), H
-    assert step_pads(array, *state) == step_pads(alone, *state)
+    assert step_pads(array, NO_CELLS, *state) == step_pads(alone, NO_CELLS, *state)
     assert array[0] == alone[0]
     np.testing.assert_array_equal(array["wrench"][1], 0.0)
     np.testing.assert_array_equal(array["z"][1], 0.0)
@@ -156,4 +157,4 @@ def test_a_pad_without_normal_force_takes_no_part():
 def test_without_any_normal_force_the_object_is_free():
     array = pads(2, **EQUAL)
     free = (1e-4, -2e-4, 3e-3)
-    assert step_pads(array, (0.2, 5e-4), (0.01, 0.0), free, (0.0, 0.0, 0.0), H) == free
+    assert step_pads(array, NO_CELLS, (0.2, 5e-4), (0.01, 0.0), free, (0.0, 0.0, 0.0), H) == free

@@ -15,12 +15,13 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("env_id")
     parser.add_argument("--disturbed", action="store_true", help="earlier episodes and other environments")
+    parser.add_argument("--contact", default="ellipsoid")
     arguments = parser.parse_args()
     if arguments.disturbed:
-        others = [gym.make(arguments.env_id) for _ in range(3)]
+        others = [gym.make(arguments.env_id, contact=arguments.contact) for _ in range(3)]
         others[0].close()
         episode(others[1], 7, steps=50)
-    env = gym.make(arguments.env_id)
+    env = gym.make(arguments.env_id, contact=arguments.contact)
     if arguments.disturbed:
         episode(env, 5, options={"object_mass": 0.37, "mu_c": 0.2, "mu_s": 0.3}, scale=-1.0)
         episode(env, 6, options={"com_offset": (0.0, 0.01), "object_size": (0.06, 0.02, 0.1)}, steps=100)

@@ -11,11 +11,12 @@ import pytest
 import slipgym
 
 CALL = """
+import numpy as np
 from slipgym.contact.coupled import step_pads
-from slipgym.contact.records import pads
+from slipgym.contact.records import CELL, pads
 
 held = pads(2, mu_c=0.4, mu_s=0.4, stribeck_velocity=1e-3, sigma_0=1e6, r=0.01, normal=1.0)
-step_pads(held, (0.2, 1e-4), (0.0, 0.0), (1e-3, 0.0, 0.0), (1e-3, 0.0, 0.0), 1e-3)
+step_pads(held, np.zeros((2, 0), CELL), (0.2, 1e-4), (0.0, 0.0), (1e-3, 0.0, 0.0), (1e-3, 0.0, 0.0), 1e-3)
 print(held["wrench"][0, 0])
 """
 

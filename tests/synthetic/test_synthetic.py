@@ -85,6 +85,11 @@ def test_a_change_keeps_the_bristles_and_refuses_nonsense(make):
             contact.change(**{"mu_c": 0.3, "mu_s": 0.45, "effective_radius": 0.012, **wrong})
 
 
+def test_one_cell_has_no_radius_to_change():
+    with pytest.raises(ValueError, match="one cell"):
+        DistributedContact(cells=1).change(mu_c=0.4, mu_s=0.5, effective_radius=0.01)
+
+
 def test_a_radius_that_changes_keeps_the_pressure():
     contact = DistributedContact(radius=0.010, pressure="hertz")
     contact.change(mu_c=0.4, mu_s=0.5, effective_radius=1.5 * contact.effective_radius)

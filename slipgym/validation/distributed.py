@@ -1,0 +1,73 @@
+"""The distributed contact in the full world, against what is known of a uniform disc exactly."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from estimator.limit_surface import DISC_RADIUS, disc_friction
+from slipgym.validation.breakaway import BOUND, ramp
+from slipgym.validation.creep import ANGLE_BOUND, DISTANCE_BOUND, drift, sway
+from slipgym.validation.energy import slide, throw
+from slipgym.validation.fall import BOUND as FALL_BOUND
+from slipgym.validation.fall import drop
+from slipgym.validation.figure import Figure
+from slipgym.validation.halving import compare, stick_slip_grip
+from slipgym.validation.steady import deviation, summary
+
+MODEL = "distributed"
+DIRECTIONS = 7  # gamma_t from 1 to 0
+THROWS = 3
+LOADS = {
+    "along x": (1.0, 0.0, 0.0),
+    "oblique": (0.6, 0.8, 0.0),
+    "torque": (0.0, 0.0, 1.0),
+    "force and torque": (0.5, -0.4, 0.77),
+    "force, little torque": (-0.9, 0.3, 0.3),
+}
+
+
+def disc(twist: np.ndarray) -> np.ndarray:
+    """Scaled friction over mu_c f_n of a uniform disc, opposing scaled twists, both (n, 3)."""
+    v_t, spin = np.hypot(twist[:, 0], twist[:, 1]), np.abs(twist[:, 2])
+    tiny = np.finfo(float).tiny
+    force, torque = np.array(
+        [disc_friction(DISC_RADIUS * v / max(s, tiny)) for v, s in zip(v_t, spin, strict=True)]
+    ).T
+    heading = twist[:, :2] / np.maximum(v_t, tiny)[:, None]
+    return -np.column_stack((force[:, None] * heading, np.sign(twist[:, 2]) * torque / DISC_RADIUS))
+
+
+def limit(direction: tuple[float, float, float]) -> float:
+    """Size of the scaled load over mu f_n at which a uniform disc slips, along a direction."""
+    ratios = np.logspace(4.0, -4.0, 4001)  # from translation to spin
+    force, torque = np.array([disc_friction(ratio) for ratio in ratios]).T
+    scaled = torque / DISC_RADIUS
+    angle = math.atan2(abs(direction[2]), math.hypot(direction[0], direction[1]))
+    return float(np.interp(angle, np.arctan2(scaled, force), np.hypot(force, scaled)))
+
+
+def distributed() -> Iterator[Figure]:
+    """Creep, break-away, steady slip, energy, halved steps and free fall."""
+    distance, angle = drift(0.01, sway, MODEL)
+    yield Figure(f"{MODEL}: creep, both, wrist swaying", DISTANCE_BOUND, distance, "mm")
+    yield Figure(f"{MODEL}: creep, both, wrist swaying", ANGLE_BOUND, angle, "deg")
+    # A ramp is slow enough for mu_s in every cell. At break-away the cells nearest to the centre of
+    # rotation have not come to their limit; they carry little
+    for name, direction in LOADS.items():
+        away = ramp(direction, contact=MODEL) / limit(direction) - 1.0
+        yield Figure(f"{MODEL}: break-away, {name}", BOUND, 100.0 * abs(away), "%")
+    angles = np.linspace(0.0, 0.5 * math.pi, DIRECTIONS)
+    found = [deviation(angle, 0.0, disc, MODEL) for angle in angles]
+    yield summary(f"{MODEL}: steady slip", "disc", found)
+    rises = [throw(seed, vary_grip, MODEL)[0] for seed in range(THROWS) for vary_grip in (False, True)]
+    yield Figure(f"{MODEL}: energy gained, random throws", 1.0, max(rises), "store")
+    rises = [slide(seed, MODEL) for seed in range(THROWS)]
+    yield Figure(f"{MODEL}: energy gained, slipping and sticking", 1.0, max(rises), "store")
+    yield from compare(f"{MODEL}: halved step, stick-slip", stick_slip_grip, (0.0, 0.0), MODEL)
+    # turning breaks a patch away in parts: from the default sub-step of 0.25 ms it is 0.13 mm
+    name = f"{MODEL}: step of 0.125 ms halved, turning"
+    yield from compare(name, stick_slip_grip, (0.003, -0.01), MODEL, refinement=2)
+    yield Figure(f"{MODEL}: free fall without grip", FALL_BOUND, drop(MODEL), "%")
