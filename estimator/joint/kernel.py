@@ -15,10 +15,10 @@ import math
 from numba import njit
 
 from estimator.compiled import entry_point
-from estimator.joint.memory import learn_mu_c, learn_r, sd_mu_c
+from estimator.joint.memory import learn_mu_c, learn_r, priors
 from estimator.joint.parameters import JointParameters
 from estimator.joint.state import STATE
-from estimator.limit_surface.inverse import slip_radius, slip_share, spin_radius
+from estimator.limit_surface.inverse import slip_factors, spin_radius
 from estimator.sliding.update import close_sample, open_sample
 from estimator.stick_slip.kernel import norm
 
@@ -28,68 +28,73 @@ def _square(x):
     return x * x
 
 
-@njit(error_model="numpy")  # what overflows is refused where it would be learnt
-def _friction(state, p, f_t, f_n, tau, v_t, omega):
-    """mu_c where a slide is seen; the centre of rotation may be anywhere."""
-    rate = omega / (f_t * v_t)  # q over tau
-    q = tau * rate
-    share, slope = slip_share(p.disc, q)
-    y = f_t / (f_n * share)
+@njit
+def _slide(state, p, prior, instant, near):
+    """mu_c where a slide is seen, and r where a spin is seen with it and `near`.
+
+    With c = d ln mu_c / d ln(1 + q) and a = c q / (1 + q), ln mu_c has the derivatives 1 - a by ln f_t, a by
+    ln tau and ln omega, -a by ln v_t, -1 by ln f_n; with b = d ln r / d ln q, ln r has b by ln tau, -b by
+    ln f_t, 1 - b by ln v_t, b - 1 by ln omega.
+    """
+    f_t, f_n, tau, v_t, omega = instant
+    per_f, per_v, per_n = 1.0 / f_t, 1.0 / v_t, 1.0 / f_n
+    per_power = per_f * per_v
+    q = tau * omega * per_power
+    if not q < math.inf:
+        return False, False
+    s = 1.0 / (1.0 + q)
+    friction, c, radius, b = slip_factors(p.disc, s)
+    a, size = c * (1.0 - s), friction * math.sqrt(1.0 + q)
+    of_force, of_speed = _square(p.sd_force * per_f), _square(p.sd_speed * per_v)
     noise = (
-        _square((1.0 - slope * q) * p.sd_force / f_t)
-        + _square(p.sd_normal / f_n)
-        + _square(slope * rate * p.sd_torque)
-        + _square(slope * tau / (f_t * v_t) * p.sd_spin)
-        + _square(slope * q * p.sd_speed / v_t)
+        _square(1.0 - a) * of_force
+        + _square(a) * of_speed
+        + _square(p.sd_normal * per_n)
+        + _square(c * s * per_power) * (_square(omega * p.sd_torque) + _square(tau * p.sd_spin))
     )
-    return learn_mu_c(state, p, y, noise, v_t / share)
-
-
-@njit(error_model="numpy")  # what overflows is refused where it would be learnt
-def _radius(state, p, f_t, tau, v_t, omega):
-    """Radius where slide and spin are both seen."""
-    y, sensitivity = slip_radius(p.disc, tau * omega / (f_t * v_t), v_t / omega)
-    of_q = _square(p.sd_torque / tau) + _square(p.sd_force / f_t)
-    twist = _square((1.0 - sensitivity) * p.sd_speed / v_t) + _square((1.0 - sensitivity) * p.sd_spin / omega)
-    return learn_r(state, p, y, _square(sensitivity) * of_q + twist)
-
-
-@njit(error_model="numpy")  # what overflows is refused where it would be learnt
-def _radius_of_spin(state, p, f_n, tau, v_t, omega):
-    """Radius where only the spin is seen: from tau, with the mu_c known."""
-    friction = max(state.mu_c + state.viscosity * norm(v_t, state.r * omega), p.mu_min)
-    y = spin_radius(p.disc, tau / (friction * f_n), v_t / omega)
-    noise = _square(p.sd_torque / tau) + _square(p.sd_normal / f_n) + _square(sd_mu_c(state, p) / friction)
-    return learn_r(state, p, y, noise)
+    saw_mu_c = learn_mu_c(state, p, prior, f_t * per_n * size, noise, v_t * size)
+    if not near:
+        return saw_mu_c, False
+    per_omega = 1.0 / omega
+    noise = _square(b) * (of_force + _square(p.sd_torque / tau)) + _square(1.0 - b) * (
+        of_speed + _square(p.sd_spin * per_omega)
+    )
+    return saw_mu_c, learn_r(state, p, prior, radius * math.sqrt(q) * v_t * per_omega, noise)
 
 
 @njit
-def _motion(state, p, f_t, f_n, tau, v_t, omega):
+def _spin(state, p, prior, instant):
+    """R where only the spin is seen: from tau, with the mu_c known."""
+    _, f_n, tau, v_t, omega = instant
+    friction = max(state.mu_c + state.viscosity * norm(v_t, state.r * omega), p.mu_min)
+    y = spin_radius(p.disc, tau / (friction * f_n), v_t / omega)
+    noise = _square(p.sd_torque / tau) + _square(p.sd_normal / f_n) + _square(state.sd_mu_c / friction)
+    return learn_r(state, p, prior, y, noise)
+
+
+@njit
+def _motion(state, p, prior, instant):
     """Learns from one instant of sliding what stands above its noise.
 
     Returns:
         Whether mu_c, and whether r, was learnt.
     """
+    f_t, _, tau, v_t, omega = instant
     gate = p.noise_gate
     slide = f_t > gate * p.sd_force and v_t > gate * p.sd_speed
     spin = tau > gate * p.sd_torque and omega > gate * p.sd_spin
-    saw_mu_c = slide and _friction(state, p, f_t, f_n, tau, v_t, omega)
-    if slide and spin and v_t < p.pivot_limit * p.r_max * omega:
-        return saw_mu_c, _radius(state, p, f_t, tau, v_t, omega)
-    if spin and not slide and state.updates_mu_c > 0:
-        return saw_mu_c, _radius_of_spin(state, p, f_n, tau, v_t, omega)
-    return saw_mu_c, False
+    if slide:
+        return _slide(state, p, prior, instant, spin and v_t < p.pivot_limit * p.r_max * omega)
+    return False, spin and state.updates_mu_c > 0 and _spin(state, p, prior, instant)
 
 
 @njit
-def _update(state, p, t, wrench, twist, estimate):
+def _update(state, p, prior, t, wrench, twist, estimate):
     """One finger, one sample."""
     taken, halted, slid, instant, seen = open_sample(state, p, t, wrench, twist)
     if taken:
-        saw_mu_c, saw_r = _motion(state, p, *instant) if slid else (False, False)
+        saw_mu_c, saw_r = _motion(state, p, prior, instant) if slid else (False, False)
         close_sample(state, p, t, seen, halted, saw_mu_c, saw_r, estimate)
-        estimate.sd_mu_c = sd_mu_c(state, p) if state.updates_mu_c > 0 else state.mu_c
-        estimate.sd_r = math.sqrt(state.noise_r) / state.information_r if state.updates_r > 0 else state.r
 
 
 @entry_point(STATE, JointParameters.dtype())
@@ -106,5 +111,12 @@ def update_batch(states, parameters, t, wrenches, twists, estimates):
         twists: (n, 3) v_x, v_y, omega [m/s, m/s, rad/s] at the CoP.
         estimates: (n,) of dtype ESTIMATE, written.
     """
+    p = parameters[0]
+    prior = priors(p)
     for i in range(len(states)):
-        _update(states[i], parameters[i % len(parameters)], t, wrenches[i], twists[i], estimates[i])
+        if 0 < i < len(parameters):
+            p = parameters[i]
+            prior = priors(p)
+        wrench = wrenches[i, 0], wrenches[i, 1], wrenches[i, 2], wrenches[i, 3]
+        twist = twists[i, 0], twists[i, 1], twists[i, 2]
+        _update(states[i], p, prior, t, wrench, twist, estimates[i])

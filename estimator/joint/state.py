@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.sliding.state import SLIDING_STATE
+from estimator.stick_slip.state import EVENT_STATE, start
 
 STATE = np.dtype(
     [
@@ -14,6 +15,7 @@ STATE = np.dtype(
         ("vector", np.float64, (2,)),
         ("information_r", np.float64),
         ("noise_r", np.float64),
+        *EVENT_STATE,
     ],
     align=True,
 )
@@ -30,10 +32,7 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
     Returns:
         Structured array (m,) of dtype STATE.
     """
-    states = np.zeros(len(parameters), STATE)
-    states["mu_s"] = parameters["mu_s0"]
-    states["mu_c"] = parameters["mu_c0"]
-    states["r"] = parameters["r0"]
+    states = start(parameters, STATE)
     weight = 1.0 / parameters["sd_mu_c0"] ** 2
     states["information"][:, 0] = states["noise"][:, 0] = weight
     states["vector"][:, 0] = weight * parameters["mu_c0"]

@@ -25,7 +25,6 @@ from estimator.stick_slip.kernel import (
     norm,
     publish,
     readable,
-    sd_mu_s,
     shares,
     transition,
 )
@@ -59,12 +58,6 @@ def _residual(mean_square, theta, covariance, y, phi, p, updates):
 
 
 @njit
-def _spread(theta, mean_square, covariance, updates):
-    """Standard deviation of an estimate, root of residual variance times P; untouched: the value itself."""
-    return math.sqrt(mean_square * covariance) if updates > 0 else theta
-
-
-@njit
 def _stick_slip(state, p, f_t, f_n, gamma_t, speed, halted):
     """Algorithm 1: at each start and stop of slip, mu_s is the mean of the largest f_t / (gamma_t f_n).
 
@@ -76,7 +69,7 @@ def _stick_slip(state, p, f_t, f_n, gamma_t, speed, halted):
         append(state, p, f_t / (gamma_t * f_n))
     if p.machine_gated and not gate:
         return
-    starts, stops = transition(state, p, speed)
+    starts, stops = transition(state, p, speed <= p.stick_band, speed > p.eps_v)
     if starts or stops:
         if not halted:
             learn_mu_s(state, p, 1.0)
@@ -85,7 +78,10 @@ def _stick_slip(state, p, f_t, f_n, gamma_t, speed, halted):
 
 @njit
 def _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau):
-    """Motion regime: mu_c from (1), then r from (2) with the new mu_c; both gammas from the previous r."""
+    """Motion regime: mu_c from (1), then r from (2) with the new mu_c; both gammas from the previous r.
+
+    The standard deviation of either is the root of its residual variance times P.
+    """
     if gamma_t > p.eps_t:
         phi = gamma_t * f_n
         state.residual_mu_c = _residual(
@@ -94,6 +90,7 @@ def _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau):
         state.mu_c, state.covariance_mu_c = _rls(
             state.mu_c, state.covariance_mu_c, f_t, phi, p, p.mu_min, p.mu_max
         )
+        state.sd_mu_c = math.sqrt(state.residual_mu_c * state.covariance_mu_c)
         count_mu_c(state, p)
     if gamma_tau > p.eps_tau:
         phi = gamma_tau * state.mu_c * f_n
@@ -101,6 +98,7 @@ def _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau):
             state.residual_r, state.r, state.covariance_r, tau, phi, p, state.updates_r
         )
         state.r, state.covariance_r = _rls(state.r, state.covariance_r, tau, phi, p, p.r_min, p.r_max)
+        state.sd_r = math.sqrt(state.residual_r * state.covariance_r)
         count_r(state, p)
 
 
@@ -139,12 +137,8 @@ def _update(state, p, t, wrench, twist, estimate):
             _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau)
     else:
         lose_contact(state)
-    publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate)
-    estimate.sd_mu_s = sd_mu_s(state, 1.0)
-    estimate.sd_mu_c = _spread(state.mu_c, state.residual_mu_c, state.covariance_mu_c, state.updates_mu_c)
-    estimate.sd_r = _spread(state.r, state.residual_r, state.covariance_r, state.updates_r)
-    estimate.observable_mu_c = state.updates_mu_c > updates_mu_c
-    estimate.observable_r = state.updates_r > updates_r
+    saw_mu_c, saw_r = state.updates_mu_c > updates_mu_c, state.updates_r > updates_r
+    publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate)
 
 
 @entry_point(STATE, RlsParameters.dtype())
@@ -162,4 +156,7 @@ def update_batch(states, parameters, t, wrenches, twists, estimates):
         estimates: (n,) of dtype ESTIMATE, written.
     """
     for i in range(len(states)):
-        _update(states[i], parameters[i % len(parameters)], t, wrenches[i], twists[i], estimates[i])
+        p = parameters[min(i, len(parameters) - 1)]
+        wrench = wrenches[i, 0], wrenches[i, 1], wrenches[i, 2], wrenches[i, 3]
+        twist = twists[i, 0], twists[i, 1], twists[i, 2]
+        _update(states[i], p, t, wrench, twist, estimates[i])

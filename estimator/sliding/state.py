@@ -18,8 +18,7 @@ SLIDING_STATE: list[tuple[Any, ...]] = [
     ("in_a_row", np.int64),
     ("forces", np.float64, (FORCES, 3)),
     ("twist", np.float64, (3,)),
-    ("speed", np.float64),
+    ("moved", np.bool_),
 ]
-"""Last samples: `forces` a ring of (f_t, f_n, |tau|) [N, N, N m], `twist` and its scaled `speed` the
-previous ones, `elapsed` its
-interval [s], `in_a_row` how many came without a gap."""
+"""Last samples: `forces` a ring of (f_t, f_n, |tau|) [N, N, N m], `twist` the previous one and whether it
+`moved`, `elapsed` its interval [s], `in_a_row` how many came without a gap."""

@@ -6,8 +6,6 @@ one of them leaves it slower than eps_v or is over before the other. The mean of
 to second order in time.
 """
 
-import math
-
 from numba import njit
 
 from estimator.limit_surface import DISC_RADIUS
@@ -16,14 +14,14 @@ from estimator.stick_slip.kernel import norm
 
 
 @njit
-def reference_speed(p, v_x, v_y, omega):
-    """Scaled speed at the radius of a uniform pad: whether it moves is not a matter of the estimate."""
+def squared_speed(p, v_x, v_y, omega):
+    """Of the scaled speed at a uniform pad's radius: whether it moves is not a matter of the estimate."""
     rim_speed = DISC_RADIUS * p.r_max * omega
-    return math.sqrt(v_x * v_x + v_y * v_y + rim_speed * rim_speed)
+    return v_x * v_x + v_y * v_y + rim_speed * rim_speed
 
 
 @njit
-def boundary(state, p, f_t, f_n, tau, twist, speed, elapsed):
+def boundary(state, p, f_t, f_n, tau, twist, moves, elapsed):
     """Takes the newest sample and looks back to the newest boundary of two windows.
 
     Returns:
@@ -31,15 +29,14 @@ def boundary(state, p, f_t, f_n, tau, twist, speed, elapsed):
     """
     if state.samples >= 2 and elapsed > 1.5 * state.elapsed:  # one was lost: the windows are not neighbours
         state.in_a_row = 0
-    row = state.samples % FORCES
-    forces = state.forces[row]
+    forces = state.forces[state.samples % FORCES]
     forces[0], forces[1], forces[2] = f_t, f_n, tau
     state.in_a_row += 1
     before = state.twist
     past = state.forces[(state.samples - p.velocity_delay - 1) % FORCES]
-    slid = state.in_a_row >= p.velocity_delay + 3 and speed > p.eps_v and state.speed > p.eps_v
+    slid = state.in_a_row >= p.velocity_delay + 3 and moves and state.moved
     v_t = 0.5 * norm(before[0] + twist[0], before[1] + twist[1])
     omega = 0.5 * abs(before[2] + twist[2])
     before[0], before[1], before[2] = twist[0], twist[1], twist[2]
-    state.speed = speed
+    state.moved = moves
     return slid, (past[0], past[1], past[2], v_t, omega)

@@ -3,7 +3,7 @@
 from numba import njit
 
 from estimator.limit_surface.inverse import load_size
-from estimator.sliding.timing import boundary, reference_speed
+from estimator.sliding.timing import boundary, squared_speed
 from estimator.stick_slip.kernel import (
     append,
     clear_buffer,
@@ -13,19 +13,17 @@ from estimator.stick_slip.kernel import (
     norm,
     publish,
     readable,
-    sd_mu_s,
     shares,
     transition,
 )
 
 
 @njit
-def _stick_slip(state, p, f_t, f_n, tau, speed, halted):
+def _stick_slip(state, p, f_t, f_n, tau, still, moves, halted):
     """mu_s at each start of a slip: the largest mu of the stick before it, in units of the limit surface."""
-    gamma_t, _ = shares(f_t, tau / state.r)
-    if gamma_t > p.eps_t and not halted and not state.slipping:
+    if not state.slipping and not halted and shares(f_t, tau / state.r)[0] > p.eps_t:
         append(state, p, load_size(p.disc, f_t, tau / state.r) / f_n)
-    starts, stops = transition(state, p, speed)
+    starts, stops = transition(state, p, still, moves)
     if starts and not halted:
         learn_mu_s(state, p, max(1.0 / (state.events_mu_s + 1.0), p.gain_mu_s))
     if starts or stops:
@@ -48,13 +46,13 @@ def open_sample(state, p, t, wrench, twist):
         halted: Whether the heuristic holds all updates back.
         slid: Whether to learn from the instant.
         instant: f_t, f_n, |tau|, v_t, |omega| of it [N, N, N m, m/s, rad/s].
-        seen: f_t, f_n, |tau|, v_t, |omega| and scaled speed of the sample itself.
+        seen: f_t, f_n, |tau|, v_t, |omega| and squared scaled speed of the sample itself.
     """
     f_t, f_n, tau = norm(wrench[0], wrench[1]), wrench[2], abs(wrench[3])
-    speed = reference_speed(p, twist[0], twist[1], twist[2])
-    seen = (f_t, f_n, tau, norm(twist[0], twist[1]), abs(twist[2]), speed)
+    speed_2 = squared_speed(p, twist[0], twist[1], twist[2])
+    seen = (f_t, f_n, tau, norm(twist[0], twist[1]), abs(twist[2]), speed_2)
     nothing = (0.0, 0.0, 0.0, 0.0, 0.0)
-    if not readable(state, t, f_t, f_n, tau, speed):
+    if not readable(state, t, f_t, f_n, tau, speed_2):
         return False, False, False, nothing, seen
     if f_n < p.eps_fn:
         lose_contact(state)
@@ -62,7 +60,7 @@ def open_sample(state, p, t, wrench, twist):
         return True, False, False, nothing, seen
     elapsed = t - state.t
     halted = halts(state, p, f_n, elapsed)
-    slid, instant = boundary(state, p, f_t, f_n, tau, twist, speed, elapsed)
+    slid, instant = boundary(state, p, f_t, f_n, tau, twist, speed_2 > p.eps_v * p.eps_v, elapsed)
     return True, halted, slid and not halted, instant, seen
 
 
@@ -78,18 +76,16 @@ def close_sample(state, p, t, seen, halted, saw_mu_c, saw_r, estimate):
         halted: Whether all updates are held back.
         saw_mu_c: Whether mu_c was learnt.
         saw_r: Whether r was learnt.
-        estimate: ESTIMATE record, written, but for sd_mu_c and sd_r.
+        estimate: ESTIMATE record, written.
     """
-    f_t, f_n, tau, v_t, omega, speed = seen
+    f_t, f_n, tau, v_t, omega, speed_2 = seen
     gamma_t, gamma_tau = 0.0, 0.0
     if f_n >= p.eps_fn:
-        _stick_slip(state, p, f_t, f_n, tau, speed, halted)
-        if speed > p.eps_v:
+        moves = speed_2 > p.eps_v * p.eps_v
+        _stick_slip(state, p, f_t, f_n, tau, speed_2 <= p.stick_band * p.stick_band, moves, halted)
+        if moves:
             gamma_t, gamma_tau = shares(v_t, state.r * omega)
         else:
             gamma_t, gamma_tau = shares(f_t, tau / state.r)
     state.elapsed = t - state.t
-    publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate)
-    estimate.sd_mu_s = sd_mu_s(state, max(1.0 / max(state.events_mu_s, 1), p.gain_mu_s))
-    estimate.observable_mu_c = saw_mu_c
-    estimate.observable_r = saw_r
+    publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate)

@@ -19,12 +19,12 @@ def norm(x, y):
     return math.sqrt(x * x + y * y)
 
 
-@njit
+@njit(error_model="numpy")
 def shares(translation, rotation):
     """Direction cosines of (translation, rotation); zeros where there is none."""
-    length = norm(translation, rotation)
-    if length > 0.0 and math.isfinite(length):
-        return translation / length, rotation / length
+    scale = 1.0 / norm(translation, rotation)
+    if 0.0 < scale < math.inf:
+        return min(translation * scale, 1.0), min(rotation * scale, 1.0)
     return 0.0, 0.0
 
 
@@ -60,7 +60,7 @@ def clear_buffer(state):
 def append(state, p, ratio):
     """Buffers a force ratio in place of the oldest of n_b."""
     state.buffer[state.buffer_next] = ratio
-    state.buffer_next = (state.buffer_next + 1) % p.n_b
+    state.buffer_next = state.buffer_next + 1 if state.buffer_next + 1 < p.n_b else 0
     state.buffer_size = min(state.buffer_size + 1, p.n_b)
 
 
@@ -79,14 +79,20 @@ def take_mean_of_largest(state, p):
 
 
 @njit
-def transition(state, p, speed):
+def transition(state, p, still, moves):
     """Runs the stick-slip machine by one sample.
+
+    Args:
+        state: Changed in place.
+        p: Parameters.
+        still: Whether the speed is within stick_band.
+        moves: Whether it is above eps_v.
 
     Returns:
         Whether a slip starts, and whether one stops, at this sample.
     """
-    state.still_samples = state.still_samples + 1 if speed <= p.stick_band else 0
-    starts = not state.slipping and speed > p.eps_v
+    state.still_samples = state.still_samples + 1 if still else 0
+    starts = moves and not state.slipping
     stops = state.slipping and state.still_samples >= p.stick_samples
     if starts or stops:
         state.slipping = starts
@@ -104,10 +110,12 @@ def learn_mu_s(state, p, gain):
         state.scatter_mu_s = (1.0 - share) * state.scatter_mu_s + share * (value - state.mu_s) ** 2
     state.mu_s = (1.0 - gain) * state.mu_s + gain * value
     state.events_mu_s += 1
+    state.support_mu_s = state.events_mu_s / (state.events_mu_s + 1.0)
+    state.sd_mu_s = _sd_mu_s(state, gain)
 
 
 @njit
-def sd_mu_s(state, gain):
+def _sd_mu_s(state, gain):
     """Standard deviation of mu_s from the scatter of independent events, averaged with `gain`, [-].
 
     The newest change has the variance of one event and of the average before it. Up to the second event mu_s
@@ -149,7 +157,7 @@ def readable(state, t, f_t, f_n, tau, speed):
 
 
 @njit
-def publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate):
+def publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate):
     """Closes a sample: remembers t [s] and f_n [N], writes the ESTIMATE record."""
     state.t = t
     state.f_n = f_n
@@ -159,7 +167,7 @@ def publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate):
     estimate.r = state.r
     estimate.gamma_t = gamma_t
     estimate.gamma_tau = gamma_tau
-    estimate.support_mu_s = state.events_mu_s / (state.events_mu_s + 1.0)
+    estimate.support_mu_s = state.support_mu_s
     estimate.support_mu_c = state.support_mu_c
     estimate.support_r = state.support_r
     estimate.events_mu_s = state.events_mu_s
@@ -167,3 +175,8 @@ def publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate):
     estimate.updates_r = state.updates_r
     estimate.slipping = state.slipping
     estimate.halted = halted
+    estimate.sd_mu_s = state.sd_mu_s
+    estimate.sd_mu_c = state.sd_mu_c
+    estimate.sd_r = state.sd_r
+    estimate.observable_mu_c = saw_mu_c
+    estimate.observable_r = saw_r

@@ -44,7 +44,7 @@ def _noise(p, f_t, tau, log_mu_c, log_r, f_n, v_t, omega):
     )
 
 
-@njit(error_model="numpy")  # what overflows is refused
+@njit  # what overflows is refused
 def _learn(state, p, f_t, f_n, tau, v_t, omega):
     """One step of the filter; mu_c and r learn from it what their covariance leaves open.
 
@@ -93,6 +93,7 @@ def _learn(state, p, f_t, f_n, tau, v_t, omega):
     state.mu_c = clamped(math.exp(x_1), p.mu_min, p.mu_max)
     state.r = clamped(math.exp(x_2), p.r_min, p.r_max)
     state.covariance[0], state.covariance[1], state.covariance[2] = n_11, n_12, n_22
+    state.sd_mu_c, state.sd_r = state.mu_c * math.sqrt(n_11), state.r * math.sqrt(n_22)
     saw_mu_c, saw_r = n_11 < p_11 - walk, n_22 < p_22 - walk
     if saw_mu_c:
         count_mu_c(state, p)
@@ -108,8 +109,6 @@ def _update(state, p, t, wrench, twist, estimate):
     if taken:
         saw_mu_c, saw_r = _learn(state, p, *instant) if slid else (False, False)
         close_sample(state, p, t, seen, halted, saw_mu_c, saw_r, estimate)
-        estimate.sd_mu_c = state.mu_c * math.sqrt(state.covariance[0])
-        estimate.sd_r = state.r * math.sqrt(state.covariance[2])
 
 
 @entry_point(STATE, UkfParameters.dtype())
@@ -127,4 +126,7 @@ def update_batch(states, parameters, t, wrenches, twists, estimates):
         estimates: (n,) of dtype ESTIMATE, written.
     """
     for i in range(len(states)):
-        _update(states[i], parameters[i % len(parameters)], t, wrenches[i], twists[i], estimates[i])
+        p = parameters[min(i, len(parameters) - 1)]
+        wrench = wrenches[i, 0], wrenches[i, 1], wrenches[i, 2], wrenches[i, 3]
+        twist = twists[i, 0], twists[i, 1], twists[i, 2]
+        _update(states[i], p, t, wrench, twist, estimates[i])
