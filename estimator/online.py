@@ -17,7 +17,7 @@ _NUMBERS = (float, int, np.floating, np.integer)
 
 
 def _fill(row: NDArray[np.float64], values: Any, what: str, components: Sequence[str]) -> None:
-    """Copies finite numbers into a row; the usual case, a flat sequence, is tried first: it is the quicker."""
+    """Copies finite numbers into a row; the usual case, a flat sequence, is tried first: that is quick."""
     try:
         listed = values.tolist() if isinstance(values, np.ndarray) else values
         plain = len(listed) == len(components) and math.isfinite(sum(listed))

@@ -26,6 +26,7 @@ from estimator.stick_slip.kernel import (
     publish,
     readable,
     shares,
+    take_event,
     transition,
 )
 
@@ -71,8 +72,8 @@ def _stick_slip(state, p, f_t, f_n, gamma_t, speed, halted):
         return
     starts, stops = transition(state, p, speed <= p.stick_band, speed > p.eps_v)
     if starts or stops:
-        if not halted:
-            learn_mu_s(state, p, 1.0)
+        if not halted and state.buffer_size >= p.n_a:
+            learn_mu_s(state, take_event(state, p), 1.0, False)
         clear_buffer(state)
 
 

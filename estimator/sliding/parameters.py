@@ -32,6 +32,9 @@ class SlidingParameters(StickSlipParameters):
     gain_mu_s: float = parameter(
         0.2, "Weight of a new event in mu_s, once 1 / gain_mu_s events have been averaged.", "(0, 1]"
     )
+    jump_mu_s: float = parameter(
+        0.15, "Relative change, if above three deviations too, at which mu_s starts afresh.", "(0, inf]"
+    )
     velocity_delay: int = parameter(
         1, "Age of the velocity in samples: how long ago its window closed.", f"[0, {DELAY_MAX}]"
     )

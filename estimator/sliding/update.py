@@ -1,5 +1,7 @@
 """One sample of an estimator that learns from each instant of true sliding: all but the learning."""
 
+import math
+
 from numba import njit
 
 from estimator.limit_surface.inverse import load_size
@@ -14,8 +16,22 @@ from estimator.stick_slip.kernel import (
     publish,
     readable,
     shares,
+    take_event,
     transition,
 )
+
+JUMP = 3.0
+"""Standard deviations of a change of mu_s that are no longer scatter."""
+
+
+@njit
+def _learn_mu_s(state, p, value):
+    """Averages events; one too far off for their scatter starts the average afresh: mu_s has changed."""
+    change, gain = abs(value - state.mu_s), state.gain_mu_s
+    spread = math.sqrt(state.scatter_mu_s * (1.0 + gain))
+    jumps = change > max(p.jump_mu_s * state.mu_s, JUMP * spread)
+    new = jumps or state.events_mu_s == 0
+    learn_mu_s(state, value, 1.0 if new else max(gain / (1.0 + gain), p.gain_mu_s), jumps)
 
 
 @njit
@@ -24,8 +40,8 @@ def _stick_slip(state, p, f_t, f_n, tau, still, moves, halted):
     if not state.slipping and not halted and shares(f_t, tau / state.r)[0] > p.eps_t:
         append(state, p, load_size(p.disc, f_t, tau / state.r) / f_n)
     starts, stops = transition(state, p, still, moves)
-    if starts and not halted:
-        learn_mu_s(state, p, max(1.0 / (state.events_mu_s + 1.0), p.gain_mu_s))
+    if starts and not halted and state.buffer_size >= p.n_a:
+        _learn_mu_s(state, p, take_event(state, p))
     if starts or stops:
         clear_buffer(state)
 

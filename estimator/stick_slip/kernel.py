@@ -65,8 +65,8 @@ def append(state, p, ratio):
 
 
 @njit
-def take_mean_of_largest(state, p):
-    """Mean of the n_a largest buffered ratios; takes each out by writing -1 over it, below every ratio."""
+def take_event(state, p):
+    """Mean of the n_a largest buffered ratios, within bounds; takes each out by writing -1 over it."""
     total = 0.0
     for _ in range(p.n_a):
         largest = 0
@@ -74,8 +74,8 @@ def take_mean_of_largest(state, p):
             if state.buffer[i] > state.buffer[largest]:
                 largest = i
         total += state.buffer[largest]
-        state.buffer[largest] = -1.0
-    return total / p.n_a
+        state.buffer[largest] = -1.0  # below every ratio
+    return clamped(total / p.n_a, p.mu_min, p.mu_max)
 
 
 @njit
@@ -100,30 +100,23 @@ def transition(state, p, still, moves):
 
 
 @njit
-def learn_mu_s(state, p, gain):
-    """mu_s goes by `gain` towards the mean of the n_a largest buffered force ratios; too few leave it."""
-    if state.buffer_size < p.n_a:
-        return
-    value = clamped(take_mean_of_largest(state, p), p.mu_min, p.mu_max)
-    if state.events_mu_s > 0:
-        share = max(1.0 / state.events_mu_s, SCATTER_GAIN)
-        state.scatter_mu_s = (1.0 - share) * state.scatter_mu_s + share * (value - state.mu_s) ** 2
+def learn_mu_s(state, value, gain, jumps):
+    """mu_s goes by `gain` towards an event's value.
+
+    Its standard deviation comes from the scatter of independent events, averaged with the gain: a change has
+    the variance of one event and of the average before it. One that `jumps` says nothing of it. Up to the
+    first change mu_s stands for itself: nothing is known.
+    """
+    if state.events_mu_s > 0 and not jumps:
+        state.changes_mu_s += 1
+        share = max(1.0 / state.changes_mu_s, SCATTER_GAIN)
+        square = (value - state.mu_s) ** 2 / (1.0 + state.gain_mu_s)
+        state.scatter_mu_s = (1.0 - share) * state.scatter_mu_s + share * square
     state.mu_s = (1.0 - gain) * state.mu_s + gain * value
+    state.gain_mu_s = gain
     state.events_mu_s += 1
     state.support_mu_s = state.events_mu_s / (state.events_mu_s + 1.0)
-    state.sd_mu_s = _sd_mu_s(state, gain)
-
-
-@njit
-def _sd_mu_s(state, gain):
-    """Standard deviation of mu_s from the scatter of independent events, averaged with `gain`, [-].
-
-    The newest change has the variance of one event and of the average before it. Up to the second event mu_s
-    stands for itself: nothing is known.
-    """
-    if state.events_mu_s < 2:
-        return state.mu_s
-    return math.sqrt(state.scatter_mu_s * gain / (1.0 + gain))
+    state.sd_mu_s = math.sqrt(gain * state.scatter_mu_s) if state.changes_mu_s > 0 else state.mu_s
 
 
 @njit

@@ -30,12 +30,15 @@ STICK_SLIP_STATE: list[tuple[Any, ...]] = [
 
 EVENT_STATE: list[tuple[Any, ...]] = [
     ("scatter_mu_s", np.float64),
+    ("changes_mu_s", np.int64),
+    ("gain_mu_s", np.float64),
     ("buffer_size", np.int64),
     ("buffer_next", np.int64),
     ("buffer", np.float64, (BUFFER_CAPACITY,)),
 ]
-"""What stick and its end need; last in a state, out of the way of the rest. `scatter_mu_s`: mean square of
-the changes that events made; `buffer`: ring of force ratios [-]."""
+"""What stick and its end need; last in a state, out of the way of the rest. `scatter_mu_s`: variance of
+one event, from `changes_mu_s` changes; `gain_mu_s`: weight of the last event; `buffer`: ring of force
+ratios [-]."""
 
 
 def start(parameters: NDArray[np.void], dtype: np.dtype[np.void]) -> NDArray[np.void]:
