@@ -21,7 +21,7 @@ SPREAD = math.sqrt(3.0)  # of the points, sqrt(n + kappa)
 
 
 @njit
-def _expected(p, log_mu_c, log_r, f_n, v_t, omega):
+def expected(p, log_mu_c, log_r, f_n, v_t, omega):
     """f_t and |tau| [N, N m] of a slip."""
     r = math.exp(log_r)
     force, torque = slip_friction(p.disc, v_t, r * omega)
@@ -30,10 +30,10 @@ def _expected(p, log_mu_c, log_r, f_n, v_t, omega):
 
 
 @njit
-def _noise(p, f_t, tau, log_mu_c, log_r, f_n, v_t, omega):
+def measurement_noise(p, f_t, tau, log_mu_c, log_r, f_n, v_t, omega):
     """Covariance (11, 12, 22) of the measured f_t and tau about those of the measured twist and f_n."""
-    by_speed = _expected(p, log_mu_c, log_r, f_n, v_t + p.sd_speed, omega)
-    by_spin = _expected(p, log_mu_c, log_r, f_n, v_t, omega + p.sd_spin)
+    by_speed = expected(p, log_mu_c, log_r, f_n, v_t + p.sd_speed, omega)
+    by_spin = expected(p, log_mu_c, log_r, f_n, v_t, omega + p.sd_spin)
     a, b = by_speed[0] - f_t, by_speed[1] - tau
     c, d = by_spin[0] - f_t, by_spin[1] - tau
     share, law = (p.sd_normal / f_n) ** 2, p.law_error**2
@@ -63,18 +63,18 @@ def _learn(state, p, f_t, f_n, tau, v_t, omega):
     mean_f, mean_t = 0.0, 0.0
     s_11, s_12, s_22 = 0.0, 0.0, 0.0
     c_1f, c_1t, c_2f, c_2t = 0.0, 0.0, 0.0, 0.0
-    middle_f, middle_t = _expected(p, x_1, x_2, f_n, v_t, omega)
+    middle_f, middle_t = expected(p, x_1, x_2, f_n, v_t, omega)
     for k in range(4):  # differences to the middle point: their weights alone count
         side = SPREAD if k % 2 == 0 else -SPREAD
         d_1 = side * l_11 if k < 2 else 0.0
         d_2 = side * (l_21 if k < 2 else l_22)
-        z_f, z_t = _expected(p, x_1 + d_1, x_2 + d_2, f_n, v_t, omega)
+        z_f, z_t = expected(p, x_1 + d_1, x_2 + d_2, f_n, v_t, omega)
         z_f, z_t = z_f - middle_f, z_t - middle_t
         mean_f, mean_t = mean_f + z_f / 6.0, mean_t + z_t / 6.0
         s_11, s_12, s_22 = s_11 + z_f * z_f / 6.0, s_12 + z_f * z_t / 6.0, s_22 + z_t * z_t / 6.0
         c_1f, c_1t = c_1f + d_1 * z_f / 6.0, c_1t + d_1 * z_t / 6.0
         c_2f, c_2t = c_2f + d_2 * z_f / 6.0, c_2t + d_2 * z_t / 6.0
-    r_11, r_12, r_22 = _noise(p, middle_f, middle_t, x_1, x_2, f_n, v_t, omega)
+    r_11, r_12, r_22 = measurement_noise(p, middle_f, middle_t, x_1, x_2, f_n, v_t, omega)
     s_11 += r_11 - mean_f * mean_f
     s_12 += r_12 - mean_f * mean_t
     s_22 += r_22 - mean_t * mean_t
