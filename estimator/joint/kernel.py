@@ -19,6 +19,7 @@ from estimator.joint.memory import learn_mu_c, learn_r, priors
 from estimator.joint.parameters import JointParameters
 from estimator.joint.state import STATE
 from estimator.limit_surface.inverse import slip_factors, spin_radius
+from estimator.sliding.gates import slides, spins
 from estimator.sliding.update import close_sample, open_sample
 from estimator.stick_slip.kernel import norm
 
@@ -80,10 +81,8 @@ def _motion(state, p, prior, instant):
         Whether mu_c, and whether r, was learnt.
     """
     f_t, _, tau, v_t, omega = instant
-    gate = p.noise_gate
-    slide = f_t > gate * p.sd_force and v_t > gate * p.sd_speed
-    spin = tau > gate * p.sd_torque and omega > gate * p.sd_spin
-    if slide:
+    spin = spins(p, tau, omega)
+    if slides(p, f_t, v_t):
         return _slide(state, p, prior, instant, spin and v_t < p.pivot_limit * p.r_max * omega)
     return False, spin and state.updates_mu_c > 0 and _spin(state, p, prior, instant)
 

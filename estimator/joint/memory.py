@@ -51,8 +51,8 @@ def learn_mu_c(state, p, prior, y, noise, v):
     b[0], b[1], b[2] = b_11, b_12, b_22
     a[0], a[1], a[2] = a_11, a_12, a_22
     state.vector[0], state.vector[1] = y_1, y_2
-    variance = whole * whole * b_11 - 2.0 * whole * a_12 * b_12 + a_12 * a_12 * b_22
-    state.sd_mu_c = math.sqrt(max(variance, 0.0)) * inverse
+    g, h = whole * inverse, a_12 * inverse
+    state.sd_mu_c = math.sqrt(max(g * g * b_11 - 2.0 * g * h * b_12 + h * h * b_22, 0.0))
     count_mu_c(state, p)
     return True
 

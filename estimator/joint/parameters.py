@@ -19,9 +19,6 @@ class JointParameters(SlidingParameters):
     pivot_limit: float = parameter(
         3.0, "Largest distance v_t / omega of the centre of rotation for r, in pad radii.", "(0, inf)"
     )
-    noise_gate: float = parameter(
-        2.0, "How many of its standard deviations a signal must exceed to count.", "(0, inf)"
-    )
     sd_viscosity: float = parameter(
         0.2, "Spread of the viscous friction, about zero, before it is seen.", "(0, inf)", "s/m"
     )

@@ -39,6 +39,9 @@ class SlidingParameters(StickSlipParameters):
         1, "Age of the velocity in samples: how long ago its window closed.", f"[0, {DELAY_MAX}]"
     )
 
+    noise_gate: float = parameter(
+        2.0, "How many of its standard deviations a signal must exceed to count.", "(0, inf)"
+    )
     sd_force: float = parameter(0.02, "Standard deviation of f_t.", "(0, inf)", "N")
     sd_normal: float = parameter(0.04, "Standard deviation of f_n.", "(0, inf)", "N")
     sd_torque: float = parameter(5e-4, "Standard deviation of tau.", "(0, inf)", "N m")

@@ -12,6 +12,7 @@ from numba import njit
 
 from estimator.compiled import entry_point
 from estimator.limit_surface.forward import slip_friction
+from estimator.sliding.gates import slides, spins
 from estimator.sliding.update import close_sample, open_sample
 from estimator.stick_slip.kernel import clamped, count_mu_c, count_r
 from estimator.ukf.parameters import UkfParameters
@@ -78,6 +79,10 @@ def _learn(state, p, f_t, f_n, tau, v_t, omega):
     s_11 += r_11 - mean_f * mean_f
     s_12 += r_12 - mean_f * mean_t
     s_22 += r_22 - mean_t * mean_t
+    if not slides(p, f_t, v_t):  # the magnitude of noise is no measurement: it counts for nothing
+        c_1f, c_2f, s_12 = 0.0, 0.0, 0.0
+    if not spins(p, tau, omega):
+        c_1t, c_2t, s_12 = 0.0, 0.0, 0.0
 
     determinant = s_11 * s_22 - s_12 * s_12
     g_1f, g_1t = (c_1f * s_22 - c_1t * s_12) / determinant, (c_1t * s_11 - c_1f * s_12) / determinant
