@@ -67,15 +67,16 @@ class FilterpyUkf:
         kalman = self.filter
         f_t, f_n, tau = float(np.hypot(wrench[0], wrench[1])), float(wrench[2]), abs(float(wrench[3]))
         v_t, omega = float(np.hypot(twist[0], twist[1])), abs(float(twist[2]))
-        slip = f_n, v_t, omega
         variances = np.diag(kalman.P)
         kalman.Q = np.diag(np.minimum(variances + self.p.drift**2, self.start) - variances)
         kalman.predict()
-        middle = expected(self.row, *kalman.x, *slip)
-        r_11, r_12, r_22 = measurement_noise(self.row, *middle, *kalman.x, *slip)
-        kalman.update(np.array([f_t, tau]), np.array([[r_11, r_12], [r_12, r_22]]), slip=slip)
+        a, b = kalman.x
+        middle = expected(self.row, a, b, f_n, v_t, omega)
+        r_11, r_12, r_22 = measurement_noise(self.row, middle[0], middle[1], a, b, f_n, v_t, omega)
+        noise = np.array([[r_11, r_12], [r_12, r_22]])
+        kalman.update(np.array([f_t, tau]), noise, f_n=f_n, v_t=v_t, omega=omega)
         mu_c, r = np.exp(kalman.x)
         return float(mu_c), float(r)
 
-    def _measured(self, x: np.ndarray, slip: tuple[float, float, float]) -> np.ndarray:
-        return np.array(expected(self.row, *x, *slip))
+    def _measured(self, x: np.ndarray, f_n: float, v_t: float, omega: float) -> np.ndarray:
+        return np.array(expected(self.row, x[0], x[1], f_n, v_t, omega))
