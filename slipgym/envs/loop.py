@@ -12,6 +12,7 @@ import numpy as np
 import estimator as estimators
 from estimator.registry import specification
 from slipgym.config import Config, TaskConfig
+from slipgym.envs.actions import Actions, interpret
 from slipgym.envs.episode import choose_force, draw_friction, make_box
 from slipgym.envs.guard import Guard
 from slipgym.envs.observation import FRICTION_COLUMNS, combine
@@ -51,6 +52,7 @@ class SlipLoop:
         config: Configuration.
         task: The task.
         estimator: Name of an estimator, or a mapping with its `name` and parameters.
+        actions: What actions mean.
 
     Attributes:
         plant: State of world, pads, fingers and sensors.
@@ -66,8 +68,15 @@ class SlipLoop:
         estimator_choice: Name and all parameters of the estimators.
     """
 
-    def __init__(self, config: Config, task: Task, estimator: str | Mapping[str, Any]) -> None:
+    def __init__(
+        self,
+        config: Config,
+        task: Task,
+        estimator: str | Mapping[str, Any],
+        actions: Actions,
+    ) -> None:
         self.config, self.task = config, task
+        self._components = actions.table
         self.plant = build(config)
         self.estimator_choice = _choose_estimator(estimator, config)
         self.estimator = estimators.make_batch(n=2, **self.estimator_choice)
@@ -126,21 +135,20 @@ class SlipLoop:
         self.episode["command"] = self.episode["last_command"] = force
         self.task.judge(self.episode, self.plant.world, self.plant.fingers, self.task_part)
 
-    def sample(self, force: float, rng: np.random.Generator) -> None:
+    def sample(self, actions: np.ndarray, rng: np.random.Generator) -> None:
         """One slip-velocity sample: act, move, measure, estimate, judge.
 
         Args:
-            force: Grip force per finger [N].
+            actions: (1, m), finite.
             rng: Source of the sensors' noise.
 
         Raises:
             FloatingPointError: Something is no longer a finite number; only a reset helps.
         """
         plant, episode = self.plant, self.episode
-        episode["last_command"] = episode["command"]
-        episode["command"] = force
+        interpret(actions, self._components, episode)
         self.task.plan(episode, plant.world)
-        self._advance(force, rng)
+        self._advance(episode["command"].item(), rng)
         episode["step"] += 1
         self.estimator.update(self.time, self._wrench_rows, self._twist_rows)
         combine(self.estimator.estimates, self.per_finger, self.estimated)
@@ -209,7 +217,8 @@ class SlipLoop:
         episode = self.episode
         episode[:] = 0
         episode["step_time"] = self._step_time
-        episode["force_max"] = self.config.gripper.force_max
+        for field in ("force_min", "force_max", "wrist_speed_max", "wrist_pitch_rate_max"):
+            episode[field] = getattr(self.config.gripper, field)
         pad = self.config.gripper.pad_radius
         episode["pad_radius"] = pad
         episode["reach"] = box.size[0] / 2 - pad, box.size[2] / 2 - pad
