@@ -11,11 +11,13 @@ class Frozen(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
-def _as_tuple(value: object) -> object:
+def as_tuple(value: object) -> object:
+    """A list as a tuple; anything else as it is."""
     return tuple(value) if isinstance(value, list) else value
 
 
-def _ordered(pair: tuple[float, float]) -> tuple[float, float]:
+def ordered(pair: tuple[float, float]) -> tuple[float, float]:
+    """A pair whose first does not lie above its second, or ValueError."""
     if pair[0] > pair[1]:
         raise ValueError(f"the lower end {pair[0]:g} lies above the upper end {pair[1]:g}")
     return pair
@@ -26,9 +28,9 @@ NonNegative = Annotated[float, Field(ge=0)]
 Count = Annotated[int, Field(ge=1)]
 
 # YAML has no tuples: a list becoming one is the only conversion.
-_LIST = BeforeValidator(_as_tuple)
+_LIST = BeforeValidator(as_tuple)
 Point = Annotated[tuple[float, float], _LIST]
 Points = Annotated[tuple[Point, Point], _LIST]
 Size = Annotated[tuple[Positive, Positive, Positive], _LIST]
-Interval = Annotated[tuple[NonNegative, NonNegative], _LIST, AfterValidator(_ordered)]
-PositiveInterval = Annotated[tuple[Positive, Positive], _LIST, AfterValidator(_ordered)]
+Interval = Annotated[tuple[NonNegative, NonNegative], _LIST, AfterValidator(ordered)]
+PositiveInterval = Annotated[tuple[Positive, Positive], _LIST, AfterValidator(ordered)]

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from functools import cache
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from slipgym.config.root import Config
@@ -24,6 +24,7 @@ _KINDS = {
     "null": "null",
     "object": "a mapping of names to values",
     "string": "a text",
+    "array": "a list",
 }
 
 
@@ -35,31 +36,36 @@ def unknown(what: str, name: object, valid: Iterable[str]) -> str:
     return f"unknown {what} {name!r}; {guess}valid: {', '.join(valid)}"
 
 
-def explain(error: ValidationError, source_of: SourceOf) -> ValueError:
+def explain(error: ValidationError, source_of: SourceOf, model: type[BaseModel] = Config) -> ValueError:
     """Turns pydantic's report into a ValueError with one line per fault.
 
     Args:
-        error: The report of a failed ``Config.model_validate``.
+        error: The report of a failed ``model_validate``.
         source_of: Names the file or argument that a location in the configuration came from.
+        model: What was validated.
     """
-    return ValueError("\n".join(f"{source_of(e['loc'])}: {_describe(e)}" for e in error.errors()))
+    return ValueError("\n".join(f"{source_of(e['loc'])}: {_describe(e, model)}" for e in error.errors()))
 
 
-def _describe(error: ErrorDetails) -> str:
+def _describe(error: ErrorDetails, model: type[BaseModel]) -> str:
     location = error["loc"]
     dotted = ".".join(str(part) for part in location)
     if location and location[-1] == "[key]":
         return f"{'.'.join(map(str, location[:-2]))}: names must be text, got {error['input']!r}"
     if error["type"] in ("extra_forbidden", "invalid_key"):
-        options = _options(_schema_at(location[:-1]))
+        options = _Schema(model).options(_Schema(model).at(location[:-1]))
         keys = [key for option in options for key in option.get("properties", ())]
         return f"{dotted}: {unknown('key', location[-1], keys)}"
     if error["type"] == "value_error":
         message = error["msg"].removeprefix("Value error, ")
         return f"{dotted}: {message}" if dotted else message
+    if error["type"].startswith("union_tag"):
+        kinds = _Schema(model).at(location)["discriminator"]["mapping"]
+        return f"{dotted}: {unknown('kind', error.get('ctx', {}).get('tag'), kinds)}"
+    allowed = _Schema(model).allowed(_Schema(model).at(location))
     if error["type"] == "missing":
-        return f"{dotted} is missing: must be {_allowed(_schema_at(location))}"
-    return f"{dotted} = {_shorten(error['input'])}: must be {_allowed(_schema_at(location))}"
+        return f"{dotted} is missing: must be {allowed}"
+    return f"{dotted} = {_shorten(error['input'])}: must be {allowed}"
 
 
 def _shorten(value: object) -> str:
@@ -68,49 +74,63 @@ def _shorten(value: object) -> str:
 
 
 @cache
-def _schema() -> dict[str, Any]:
-    return Config.model_json_schema()
+def _json_schema(model: type[BaseModel]) -> dict[str, Any]:
+    return model.model_json_schema()
 
 
-def _schema_at(location: tuple[int | str, ...]) -> dict[str, Any]:
-    """The JSON schema of one place in the configuration; of the deepest known one above it otherwise."""
-    node = _schema()
-    for part in location:
-        children = [child for option in _options(node) for child in _children(option, part)]
-        if not children:
-            break
-        node = _followed(children[0])
-    return node
+class _Schema:
+    """The JSON schema of a model."""
+
+    def __init__(self, model: type[BaseModel]) -> None:
+        self._root = _json_schema(model)
+
+    def at(self, location: tuple[int | str, ...]) -> dict[str, Any]:
+        """The schema of one place in the model; of the deepest known one above it otherwise."""
+        node = self._root
+        for part in location:
+            children = [child for option in self.options(node) for child in _children(option, part)]
+            if not children:
+                break
+            node = self._followed(children[0])
+        return node
+
+    def options(self, node: dict[str, Any]) -> list[dict[str, Any]]:
+        """The alternatives of a schema; itself if it has none."""
+        return [self._followed(option) for option in node.get("anyOf", [node])]
+
+    def allowed(self, node: dict[str, Any]) -> str:
+        """Says which values a schema allows."""
+        if "anyOf" in node:
+            text = " or ".join(self.allowed(option) for option in self.options(node))
+        elif "enum" in node:
+            text = "one of " + ", ".join(repr(value) for value in node["enum"])
+        elif "prefixItems" in node:
+            items = [self.allowed(item) for item in node["prefixItems"]]
+            text = f"a list of {len(items)}: each {items[0]}"
+        elif "discriminator" in node:
+            text = "one of the kinds " + ", ".join(node["discriminator"]["mapping"])
+        elif "items" in node:
+            least = f" of at least {node['minItems']}" if "minItems" in node else ""
+            text = f"a list{least}: each {self.allowed(self._followed(node['items']))}"
+        else:
+            bounds = " and ".join(f"{sign} {node[key]:g}" for key, sign in _BOUNDS.items() if key in node)
+            text = " ".join([_KINDS[node["type"]], bounds]).strip()
+        return f"{text} ({node['description']})" if "description" in node else text
+
+    def _followed(self, node: dict[str, Any]) -> dict[str, Any]:
+        """What a schema refers to; itself if it is no reference."""
+        if "$ref" not in node:
+            return node
+        return self._root["$defs"][node["$ref"].rpartition("/")[2]]
 
 
 def _children(node: dict[str, Any], part: int | str) -> list[dict[str, Any]]:
-    """The schema that a JSON schema has for one of its parts, if any."""
+    """The schema that a schema has for one of its parts, if any."""
     child = node.get("properties", {}).get(part) or node.get("additionalProperties")
     if "prefixItems" in node and isinstance(part, int) and part < len(node["prefixItems"]):
         child = node["prefixItems"][part]
+    elif "items" in node and isinstance(part, int):
+        child = node["items"]
+    elif part in node.get("discriminator", {}).get("mapping", {}):
+        child = {"$ref": node["discriminator"]["mapping"][part]}
     return [child] if isinstance(child, dict) else []
-
-
-def _options(node: dict[str, Any]) -> list[dict[str, Any]]:
-    """The alternatives of a JSON schema; itself if it has none."""
-    return [_followed(option) for option in node.get("anyOf", [node])]
-
-
-def _followed(node: dict[str, Any]) -> dict[str, Any]:
-    """What a JSON schema refers to; itself if it is no reference."""
-    return _schema()["$defs"][node["$ref"].rpartition("/")[2]] if "$ref" in node else node
-
-
-def _allowed(schema: dict[str, Any]) -> str:
-    """Says which values a JSON schema allows."""
-    if "anyOf" in schema:
-        text = " or ".join(_allowed(option) for option in _options(schema))
-    elif "enum" in schema:
-        text = "one of " + ", ".join(repr(value) for value in schema["enum"])
-    elif "prefixItems" in schema:
-        items = [_allowed(item) for item in schema["prefixItems"]]
-        text = f"a list of {len(items)}: each {items[0]}"
-    else:
-        bounds = " and ".join(f"{sign} {schema[key]:g}" for key, sign in _BOUNDS.items() if key in schema)
-        text = " ".join([_KINDS[schema["type"]], bounds]).strip()
-    return f"{text} ({schema['description']})" if "description" in schema else text

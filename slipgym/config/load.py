@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from slipgym.config import files
 from slipgym.config.errors import SourceOf, explain, unknown
+from slipgym.config.randomization import Randomization
 from slipgym.config.root import Config
 
 Overrides = str | os.PathLike[str] | Mapping[str, Any]
@@ -51,17 +52,50 @@ def load(
     return _validate(_merge(defaults, overrides), lambda _: source)
 
 
+def load_randomization(choice: Overrides = "none") -> Randomization:
+    """Loads what is drawn per episode.
+
+    Args:
+        choice: A preset, one of ``names("randomization")``, the path of a YAML file, or a mapping of the same
+            shape.
+
+    Raises:
+        FileNotFoundError: The file does not exist.
+        ValueError: The preset or a key is unknown, or a value is not allowed. The message names the file or
+            argument, the dotted key, the value, and what is valid there.
+    """
+    source = "randomization argument"
+    if isinstance(choice, Mapping):
+        values = choice
+    elif isinstance(choice, str | os.PathLike):
+        path = Path(choice)
+        if path.suffix not in (".yaml", ".yml"):
+            if choice not in names("randomization"):
+                raise ValueError(unknown("randomization", choice, names("randomization")))
+            path = files.folder() / "randomization" / f"{choice}.yaml"
+        source, values = os.fspath(path), files.read(path)
+    else:
+        raise ValueError(
+            f"randomization = {choice!r} must be a preset, a path or a mapping; "
+            f"presets: {', '.join(names('randomization'))}"
+        )
+    try:
+        return Randomization.model_validate(values)
+    except ValidationError as error:
+        raise explain(error, lambda _: source, Randomization) from error
+
+
 def names(kind: str) -> tuple[str, ...]:
-    """The names that the defaults know of a kind: "materials" or "sensors" (the presets).
+    """The names that the defaults know of a kind: "materials", or the presets "sensors" or "randomization".
 
     Raises:
         ValueError: There is no such kind.
     """
     if kind == "materials":
         return tuple(sorted(files.read(files.folder() / "materials.yaml")))
-    if kind == "sensors":
-        return tuple(sorted(path.stem for path in (files.folder() / "sensors").glob("*.yaml")))
-    raise ValueError(unknown("kind of name", kind, ["materials", "sensors"]))
+    if kind in ("sensors", "randomization"):
+        return tuple(sorted(path.stem for path in (files.folder() / kind).glob("*.yaml")))
+    raise ValueError(unknown("kind of name", kind, ["materials", "sensors", "randomization"]))
 
 
 @cache

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 import estimator as estimators
 from estimator.registry import specification
-from slipgym.config import Config, TaskConfig
+from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import Actions, interpret
-from slipgym.envs.episode import choose_force, draw_friction, make_box
+from slipgym.envs.draw import Draw, Randomizer
+from slipgym.envs.episode import Friction, choose_force, draw_friction, make_box
+from slipgym.envs.equipment import Equipment
 from slipgym.envs.guard import Guard
+from slipgym.envs.happenings import enter
 from slipgym.envs.observation import FRICTION_COLUMNS, combine
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.tasks import Task
+from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.world.bullet import BulletWorld
@@ -26,6 +30,7 @@ from slipgym.world.plant import Plant, build
 from slipgym.world.scene import Box
 from slipgym.world.snapshot import EngineState
 
+_LATENCY = "velocity_delay"
 WARM_UP_STEPS = 6  # control steps before time 0 in which grip and sensors come to rest
 
 
@@ -53,6 +58,7 @@ class SlipLoop:
         task: The task.
         estimator: Name of an estimator, or a mapping with its `name` and parameters.
         actions: What actions mean.
+        randomization: What is drawn per episode.
 
     Attributes:
         plant: State of world, pads, fingers and sensors.
@@ -62,10 +68,11 @@ class SlipLoop:
         twists: Measured slip twist per finger there, (1, 2, 3) [m/s, m/s, rad/s].
         task_part: The task's part of the observation, (1, k).
         material: Name of the episode's material.
-        true_friction: (mu_s, mu_c, r) of the episode, (3,).
+        true_friction: (mu_s, mu_c, r) now, (3,).
         per_finger: Estimates (mu_s, mu_c, r) per finger, (1, 2, 3).
         estimated: Estimates of both fingers merged, with their support, (1, 6).
-        estimator_choice: Name and all parameters of the estimators.
+        estimator_choice: Name and parameters of the estimators; `velocity_delay` only if it was given.
+        drawn: What the randomization drew for the episode, JSON-like; empty without one.
     """
 
     def __init__(
@@ -74,18 +81,25 @@ class SlipLoop:
         task: Task,
         estimator: str | Mapping[str, Any],
         actions: Actions,
+        randomization: Randomization,
     ) -> None:
         self.config, self.task = config, task
         self._components = actions.table
         self.plant = build(config)
-        self.estimator_choice = _choose_estimator(estimator, config)
+        self._randomizer = Randomizer(config, task.key, randomization)
+        self._equipment = Equipment(config, self.plant, self._randomizer.pressures)
+        self._equipment.check(self._randomizer.most)
+        self.estimator_choice = _choose_estimator(estimator)
         self.estimator = estimators.make_batch(n=2, **self.estimator_choice)
+        asked = self.estimator.parameters_array.dtype.names or ()
+        self._tells_latency = _LATENCY in asked and _LATENCY not in self.estimator_choice
         self.episode = np.zeros(1, EPISODE)
         self.wrenches, self.twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
         self.task_part = np.zeros((1, len(task.columns)))
         self.true_friction, self.per_finger = np.zeros(3), np.zeros((1, 2, 3))
         self.estimated = np.zeros((1, len(FRICTION_COLUMNS)))
-        self.material = ""
+        self.material, self.drawn = "", {}
+        self._true_rows = self.true_friction.reshape(1, 3)
         self._step_time = 1.0 / config.physics.control_rate
         self._wrench_rows, self._twist_rows = self.wrenches.reshape(2, 4), self.twists.reshape(2, 3)
         samples = -(-config.sensors.force_torque.rate // config.physics.control_rate) + 1
@@ -116,17 +130,24 @@ class SlipLoop:
         """
         _ = self.world.client
         task_config: TaskConfig = getattr(self.config.tasks, self.task.key)
-        friction = draw_friction(self.config, options, task_config, material, rng)
-        box = make_box(self.config, options, task_config, rng)
+        scale = 1.0 if options.randomization_scale is None else options.randomization_scale
+        draw = self._randomizer.draw(rng, scale)
+        friction = draw_friction(self.config, options, task_config, material, draw, rng)
+        box = make_box(self.config, options, task_config, draw, rng)
         force = choose_force(self.config, options, task_config)
-        self._start_episode(box, options, task_config, rng)
+        self._start_episode(box, friction, options, task_config, draw, rng)
         self.world.reset(box, force, tuple(self.episode["wrist_start"][0].tolist()))
         self._guard.reset()
         self.material = friction.material
+        start = {"mu_s": friction.mu_s, "mu_c": friction.mu_c, "mass": box.mass}
+        self.drawn = {**start, **draw.report(options)} if self._randomizer.active else {}
         self.true_friction[:] = friction.mu_s, friction.mu_c, friction.r
         for field, value in zip(("mu_s", "mu_c", "r"), self.true_friction, strict=True):
             self.plant.pads[field] = value
-        self._start_sensors(rng)
+        self._equipment.fit(draw.values, draw.config.contact.pressure)
+        self._equipment.start_sensors(draw.values["bias_scale"], rng)
+        if self._tells_latency:
+            self.estimator.parameters_array[_LATENCY] = draw.values["slip_latency"]
         for _ in range(WARM_UP_STEPS):
             self._advance(force, rng)
         self.plant.chips["travel"] = 0.0
@@ -147,6 +168,8 @@ class SlipLoop:
         """
         plant, episode = self.plant, self.episode
         interpret(actions, self._components, episode)
+        disturb(episode, plant.world, plant.pads, self._true_rows)
+        self.world.weigh()
         self.task.plan(episode, plant.world)
         self._advance(episode["command"].item(), rng)
         episode["step"] += 1
@@ -184,6 +207,7 @@ class SlipLoop:
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that last from sample to sample."""
         return {
+            "estimator_parameters": self.estimator.parameters_array,
             "estimator_states": self.estimator.states,
             "estimates": self.estimator.estimates,
             "episode": self.episode,
@@ -212,7 +236,13 @@ class SlipLoop:
         )
 
     def _start_episode(
-        self, box: Box, options: EpisodeOptions, task_config: TaskConfig, rng: np.random.Generator
+        self,
+        box: Box,
+        friction: Friction,
+        options: EpisodeOptions,
+        task_config: TaskConfig,
+        draw: Draw,
+        rng: np.random.Generator,
     ) -> None:
         episode = self.episode
         episode[:] = 0
@@ -225,24 +255,17 @@ class SlipLoop:
         episode["object_centre"] = -box.grasp_offset[0], -box.grasp_offset[1]
         scales = [getattr(task_config.reward, term) for term in self.task.terms]
         episode["scales"][0, : len(scales)] = scales
+        episode["mass"], episode["inertia"] = box.mass, box.inertia
+        episode["mu_s"], episode["mu_c"] = friction.mu_s, friction.mu_c
+        episode["mass_factor"] = episode["jump_factor"] = episode["patch_factor"] = 1.0
+        episode["drift"] = draw.values["friction_drift"]
         self.task.start(self.config, options, rng, episode[0])
-
-    def _start_sensors(self, rng: np.random.Generator) -> None:
-        """Start the sensors afresh, with this episode's bias and sub-count phases."""
-        ft, chips = self.plant.force_torque, self.plant.chips
-        sensor = self.config.sensors.force_torque
-        tangential, normal, torque = sensor.bias_tangential, sensor.bias_normal, sensor.bias_torque
-        spread = np.array([tangential, tangential, normal, torque, torque, torque])
-        ft["bias"] = spread * rng.standard_normal((1, 2, 6))
-        ft["history"] = chips["counted"] = chips["moved"] = 0.0
-        for field in ("taken", "drawn"):
-            ft[field] = 0
-        chips["taken"] = 0
-        chips["carry"] = rng.uniform(-1.0, 1.0, (1, 2, AXES)) * chips["count"][..., None]
+        for disturbance, shares in draw.happenings:
+            enter(disturbance, shares, episode[0])
 
 
-def _choose_estimator(choice: str | Mapping[str, Any], config: Config) -> dict[str, Any]:
-    """Name and all parameters; an estimator that asks how old a velocity is gets the sensor's latency."""
+def _choose_estimator(choice: str | Mapping[str, Any]) -> dict[str, Any]:
+    """Name and all parameters; one that asks how old a velocity is, is told unless it was given that."""
     if isinstance(choice, str):
         choice = {"name": choice}
     if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
@@ -252,7 +275,7 @@ def _choose_estimator(choice: str | Mapping[str, Any], config: Config) -> dict[s
         )
     given = dict(choice)
     name = given.pop("name")
-    kind = specification(name).parameters
-    if any(field.name == "velocity_delay" for field in fields(kind)):
-        given.setdefault("velocity_delay", config.sensors.slip.latency_samples)
-    return {"name": name, **asdict(kind.create(**given))}
+    parameters = asdict(specification(name).parameters.create(**given))
+    if _LATENCY not in given:
+        parameters.pop(_LATENCY, None)
+    return {"name": name, **parameters}

@@ -95,6 +95,8 @@ class Observer:
 
     def next(self) -> Observation:
         """The observation after a step."""
+        if self._source == "true":  # it may have changed
+            self.friction[0, :3] = self._loop.true_friction
         if self._history:
             self.frames[:-1] = self.frames[1:]
         observe(*self._sources)

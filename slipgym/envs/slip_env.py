@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import gymnasium as gym
 import numpy as np
 
-from slipgym.config import load
+from slipgym.config import load, load_randomization
 from slipgym.envs.actions import ACTION_MODES, Actions
 from slipgym.envs.choices import one_of, refuse_unknown, whole
 from slipgym.envs.loop import SlipLoop
@@ -39,7 +39,8 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
         observation_mode: "flat", "sensor" (without the friction part) or "dict" (groups "policy" and
             "privileged").
         history: How many earlier observations come along with each.
-        randomization: "none".
+        randomization: What is drawn per episode: "none", "train", "eval_ood", a file or a mapping
+            (see docs/randomization.md).
         frame_skip: Slip-velocity samples per step.
         render_mode: None, "rgb_array", "depth_array" or "human".
         config: File or mapping of overrides of the default configuration.
@@ -66,7 +67,7 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
         action_mode: str = "grip_force",
         observation_mode: str = "flat",
         history: int = 0,
-        randomization: str = "none",
+        randomization: str | os.PathLike[str] | Mapping[str, Any] = "none",
         frame_skip: int = 1,
         render_mode: str | None = None,
         config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
@@ -75,10 +76,10 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
         refuse_unknown(unknown, _KEYWORDS)
         one_of("contact", contact, ("ellipsoid", "distributed"))
         one_of("action_mode", action_mode, ACTION_MODES)
-        one_of("randomization", randomization, ("none",))
         if render_mode is not None:
             one_of("render_mode", render_mode, self.metadata["render_modes"])
         self.config = load(config, sensors, contact)
+        self.randomization = load_randomization(randomization)
         self.material = one_of("material", material, ("random", *self.config.materials))
         self.render_mode = render_mode
         modes = [mode for mode in self.metadata["render_modes"] if mode != "human" or not obstacle()]
@@ -86,7 +87,7 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_modes": modes, "render_fps": rate}
         self._actions = Actions(action_mode, self.config)
-        self._loop = SlipLoop(self.config, self.task, estimator, self._actions)
+        self._loop = SlipLoop(self.config, self.task, estimator, self._actions, self.randomization)
         self._observer = Observer(self._loop, friction_source, action_mode, observation_mode, history)
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns
@@ -101,7 +102,7 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
             "action_mode": action_mode,
             "observation_mode": observation_mode,
             "history": history,
-            "randomization": randomization,
+            "randomization": self.randomization.model_dump(mode="json", exclude_unset=True),
             "frame_skip": frame_skip,
             "config": self.config.model_dump(mode="json"),
         }
@@ -133,7 +134,8 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
         if self._renderer is not None:
             self._renderer.begin()
         self._ready = True
-        return self._observer.begin(), self._info()
+        drawn = {"drawn": dict(self._loop.drawn)} if self._loop.drawn else {}
+        return self._observer.begin(), {**self._info(), **drawn}
 
     def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Act for `frame_skip` slip-velocity samples.

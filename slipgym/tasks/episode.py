@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from slipgym.compiled import compiled
+from slipgym.tasks.disturbance import FIELDS, shake_velocity
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.world.wrist import ramp_wrist
 
 TERMS_MAX = 8
-POKES_MAX = 64
 
 EPISODE = np.dtype(
     [
@@ -46,12 +46,7 @@ EPISODE = np.dtype(
         ("settle", "f8"),  # [s]
         # hinge
         ("scripted_pitch", "f8"),  # of the wrist, as the script alone turns it [rad]
-        # hold
-        ("shake", "f8", (3, 3)),  # amplitude [m, m, rad], angular frequency [rad/s], phase [rad]
-        ("pokes", "i8"),  # how many
-        ("poke_start", "i8", POKES_MAX),  # control step
-        ("poke_steps", "i8"),  # length
-        ("poke_wrench", "f8", (POKES_MAX, 3)),  # [N, N, N m]
+        *FIELDS,
     ]
 )
 """One episode: clock, reference, reward terms, outcome and the tasks' own parameters."""
@@ -67,7 +62,7 @@ def schedule(options: EpisodeOptions, task: Any, episode: np.void) -> None:
 
 @compiled
 def drive_wrist(episode, world, x, z, pitch):
-    """Over the coming step, bring the wrist to the scripted velocity plus what the agent commands.
+    """Over the coming step, bring the wrist to the scripted velocity, shaken, plus what the agent commands.
 
     The gripper's limits hold for the sum.
 
@@ -78,9 +73,12 @@ def drive_wrist(episode, world, x, z, pitch):
         z: Scripted velocity along world z [m/s].
         pitch: Scripted pitch rate [rad/s].
     """
-    extra = episode.wrist_command
+    time = (episode.step + 1) * episode.step_time
+    x += shake_velocity(episode, 0, time) + episode.wrist_command[0]
+    z += shake_velocity(episode, 1, time) + episode.wrist_command[1]
+    pitch += shake_velocity(episode, 2, time) + episode.wrist_command[2]
     limits = episode.wrist_speed_max, episode.wrist_pitch_rate_max
-    ramp_wrist(world, x + extra[0], z + extra[1], pitch + extra[2], limits[0], limits[1], episode.step_time)
+    ramp_wrist(world, x, z, pitch, limits[0], limits[1], episode.step_time)
 
 
 @compiled

@@ -11,6 +11,7 @@ from pydantic import Field
 from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.base import NonNegative, Positive
+from slipgym.tasks.disturbance import shake_velocity
 from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness, schedule, trapezoid
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task
@@ -66,7 +67,9 @@ def plan(episodes, worlds):
         time = (episode.step + 1) * episode.step_time - episode.settle
         last = trapezoid(time - episode.step_time, episode.goal, episode.duration)[1]
         rate = trapezoid(time, episode.goal, episode.duration)[1]
-        episode.scripted_pitch += 0.5 * (last + rate) * episode.step_time
+        shaken = shake_velocity(episode, 2, episode.step * episode.step_time)
+        shaken += shake_velocity(episode, 2, (episode.step + 1) * episode.step_time)
+        episode.scripted_pitch += 0.5 * (last + rate + shaken) * episode.step_time
         drive_wrist(episode, world, 0.0, 0.0, rate)
 
 

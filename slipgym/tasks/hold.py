@@ -10,7 +10,8 @@ from pydantic import Field
 from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval
-from slipgym.tasks.episode import POKES_MAX, detect_drop, drive_wrist, effort, note_slip, roughness
+from slipgym.tasks.disturbance import POKES_MAX
+from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task
 
@@ -21,7 +22,6 @@ COLUMNS = (
     Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "commanded wrist pitch rate"),
     Column("time_left", 0.0, 1000.0, "s", "time until the episode ends"),
 )
-_SHAKE_RISE = 0.5  # [s] over which the shaking builds up, so that it starts without a jerk
 
 
 class Options(EpisodeOptions):
@@ -47,7 +47,7 @@ def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, epi
     amplitude, pitch = options.choose("shake_amplitude", task), options.choose("shake_pitch", task)
     frequency = rng.uniform(*options.choose("shake_frequency", task), size=3)
     phase = rng.uniform(0.0, 2.0 * math.pi, 3)
-    episode["shake"] = np.column_stack(([amplitude, amplitude, pitch], 2.0 * math.pi * frequency, phase))
+    episode["shakes"][0] = np.column_stack(([amplitude, amplitude, pitch], 2.0 * math.pi * frequency, phase))
     _draw_pokes(config, options, rng, episode)
 
 
@@ -61,38 +61,18 @@ def _draw_pokes(config: Config, options: EpisodeOptions, rng: np.random.Generato
     heading = rng.uniform(0.0, 2.0 * math.pi, POKES_MAX)
     size = rng.uniform(*impulse, size=POKES_MAX) / (steps * dt)
     lever = rng.uniform(-task.poke_offset, task.poke_offset, POKES_MAX)
-    episode["poke_steps"] = steps
-    episode["pokes"] = np.count_nonzero(begin < episode["steps"])
-    episode["poke_start"] = begin
-    episode["poke_wrench"] = np.column_stack((size * np.cos(heading), size * np.sin(heading), size * lever))
-
-
-@compiled
-def shake_velocity(episode, axis, time):
-    """Wrist velocity along one axis at a time; the shaking rises smoothly from rest."""
-    amplitude, omega, phase = episode.shake[axis]
-    speed = amplitude * omega * math.cos(omega * time + phase)
-    if time < _SHAKE_RISE:
-        speed *= 0.5 - 0.5 * math.cos(math.pi * time / _SHAKE_RISE)
-    return speed
+    wrench = np.column_stack((size * np.cos(heading), size * np.sin(heading), size * lever))
+    n = episode["pushes"] = np.count_nonzero(begin < episode["steps"])
+    episode["push_start"][:n] = begin[:n]
+    episode["push_end"][:n] = begin[:n] + steps
+    episode["push_wrench"][:n] = wrench[:n]
 
 
 @compiled
 def plan(episodes, worlds):
-    """Before a control step: wrist acceleration and poke of the coming step."""
+    """Before a control step: the wrist is shaken, and moves as the agent commands."""
     for i in range(episodes.shape[0]):
-        episode, world = episodes[i], worlds[i]
-        time = (episode.step + 1) * episode.step_time
-        x, z, pitch = (
-            shake_velocity(episode, 0, time),
-            shake_velocity(episode, 1, time),
-            shake_velocity(episode, 2, time),
-        )
-        drive_wrist(episode, world, x, z, pitch)
-        world.external[:] = 0.0
-        for k in range(episode.pokes):
-            if 0 <= episode.step - episode.poke_start[k] < episode.poke_steps:
-                world.external[:] = episode.poke_wrench[k]
+        drive_wrist(episodes[i], worlds[i], 0.0, 0.0, 0.0)
 
 
 @compiled

@@ -24,6 +24,9 @@ class EpisodeOptions(Frozen):
         default=None, description="Centre of mass (x, z) from the geometric centre [m]"
     )
     initial_force: Positive | None = Field(default=None, le=40.0, description="Force per finger at reset [N]")
+    randomization_scale: float | None = Field(
+        default=None, ge=0.0, le=1.0, description="Share of the randomization's ranges: 0 none, 1 all [-]"
+    )
 
     @classmethod
     def parse(cls, options: Mapping[str, Any] | None) -> Self:

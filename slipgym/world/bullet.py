@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any, NoReturn
 
 import numpy as np
@@ -166,6 +167,13 @@ class BulletWorld:
         gripper = self._config.gripper
         limits = gripper.wrist_speed_max, gripper.wrist_pitch_rate_max
         ramp_wrist(self._plant.world[0], *velocity, *limits, duration)
+
+    def weigh(self) -> None:
+        """Give the engine's box the planar world's mass and inertia, if they have changed."""
+        mass = self._plant.world["mass"].item()
+        if mass != self.box.mass:
+            self._box = replace(self.box, mass=mass, inertia=self._plant.world["inertia"].item())
+            scene.weigh(self.client, self._body, self._box)
 
     def disturb(self, wrench: np.ndarray) -> None:
         """Apply a load (f_x, f_z, torque) to the object's centre of mass until told otherwise."""

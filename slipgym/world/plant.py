@@ -55,15 +55,48 @@ class Plant:
 
 def build(config: Config, n: int = 1) -> Plant:
     """Return n worlds at rest with the configuration's default object and no friction yet."""
-    tick_rate = math.lcm(config.physics.engine_rate, config.sensors.force_torque.rate)
+    tick_rate = ticks_per_second(config)
     return Plant(
         world=_world(config, n, tick_rate),
         pads=_pads(config, n),
         cells=_cells(config, n),
-        fingers=_fingers(config, n, tick_rate),
+        fingers=_fingers(config, n),
         force_torque=_force_torque(config, n, tick_rate),
         chips=_chips(config, n),
     )
+
+
+def ticks_per_second(config: Config) -> int:
+    """Rate of the clock that all others are whole fractions of [Hz]."""
+    return math.lcm(config.physics.engine_rate, config.sensors.force_torque.rate)
+
+
+def dead_ticks(config: Config, dead_time: float, name: str = "gripper.dead_time") -> int:
+    """A dead time of the force loop in ticks.
+
+    Raises:
+        ValueError: More commands would be under way than the queue holds.
+    """
+    ticks, rate = round(dead_time * ticks_per_second(config)), config.physics.control_rate
+    if ticks * rate >= QUEUE * ticks_per_second(config):
+        raise ValueError(f"{name} = {dead_time:g} s must be below {QUEUE} control steps ({QUEUE / rate:g} s)")
+    return ticks
+
+
+def check_slip_latency(config: Config, samples: int, name: str = "latency_samples") -> None:
+    """Raise ValueError if the slip sensor does not remember samples as old as this."""
+    window = config.sensors.slip.window
+    if window + samples >= SLIP_HISTORY:
+        raise ValueError(f"sensors.slip: window + {name} = {window + samples} must be below {SLIP_HISTORY}")
+
+
+def patch_of(config: Config) -> np.ndarray:
+    """Cells of a pad's patch, CELL (m,), in units of their own r.
+
+    In pure spin they then carry exactly the torque of r.
+    """
+    positions, shares = patch_cells(config.contact.pressure, config.contact.cells)
+    return patch(positions / (shares @ np.hypot(*positions.T)), shares)
 
 
 def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
@@ -85,25 +118,16 @@ def _pads(config: Config, n: int) -> np.ndarray:
 
 def _cells(config: Config, n: int) -> np.ndarray | None:
     """The patch of every pad; an episode scales it by its r alone."""
-    contact = config.contact
-    if contact.model == "ellipsoid":
+    if config.contact.model == "ellipsoid":
         return None
-    positions, shares = patch_cells(contact.pressure, contact.cells)
-    # in units of the cells' own r: in pure spin they then carry exactly the torque of r
-    return np.tile(patch(positions / (shares @ np.hypot(*positions.T)), shares), (n, 2, 1))
+    return np.tile(patch_of(config), (n, 2, 1))
 
 
-def _fingers(config: Config, n: int, tick_rate: int) -> np.ndarray:
+def _fingers(config: Config, n: int) -> np.ndarray:
     gripper = config.gripper
-    dead_ticks = round(gripper.dead_time * tick_rate)
-    if dead_ticks * config.physics.control_rate >= QUEUE * tick_rate:
-        raise ValueError(
-            f"gripper.dead_time = {gripper.dead_time:g} s must be below {QUEUE} control steps "
-            f"({QUEUE / config.physics.control_rate:g} s)"
-        )
     fingers = np.zeros((n, 2), FINGER)
     fingers["lag"] = gripper.lag
-    fingers["dead_ticks"] = dead_ticks
+    fingers["dead_ticks"] = dead_ticks(config, gripper.dead_time)
     fingers["force_limit"] = gripper.force_limit
     fingers["open_below"] = gripper.open_below
     return fingers
@@ -135,11 +159,7 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
 
 def _chips(config: Config, n: int) -> np.ndarray:
     sensor = config.sensors.slip
-    if sensor.window + sensor.latency_samples >= SLIP_HISTORY:
-        raise ValueError(
-            f"sensors.slip: window + latency_samples = {sensor.window + sensor.latency_samples} "
-            f"must be below {SLIP_HISTORY}"
-        )
+    check_slip_latency(config, sensor.latency_samples)
     levers = chip_levers(sensor.chip_radius, sensor.chips)
     chips = np.zeros((n, 2), SLIP_SENSOR)
     chips["mirror"] = MIRROR

@@ -30,7 +30,8 @@ def test_presets_differ_in_what_they_say_they_do():
 def test_names():
     assert config.names("materials") == ("cardboard", "case", "plastic", "wood")
     assert config.names("sensors") == ("ideal", "realistic")
-    with pytest.raises(ValueError, match="materials, sensors"):
+    assert config.names("randomization") == ("eval_ood", "none", "train")
+    with pytest.raises(ValueError, match="materials, randomization, sensors"):
         config.names("colours")
 
 

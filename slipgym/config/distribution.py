@@ -1,0 +1,63 @@
+"""Numbers that are drawn anew in every episode."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Annotated, Self
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from slipgym.config.base import Frozen, PositiveInterval, as_tuple, ordered
+
+Ends = Annotated[tuple[float, float], BeforeValidator(as_tuple), AfterValidator(ordered)]
+Numbers = Annotated[tuple[float, ...], Field(min_length=1), BeforeValidator(as_tuple)]
+
+
+class Distribution(Frozen):
+    """A range, linear or logarithmic, or a list of choices: exactly one of them."""
+
+    uniform: Ends | None = Field(default=None, description="Ends of an even range [-]")
+    log_uniform: PositiveInterval | None = Field(
+        default=None, description="Ends of a range that is even in the logarithm [-]"
+    )
+    choices: Numbers | None = Field(default=None, description="Values of the same probability [-]")
+
+    @model_validator(mode="after")
+    def _is_one_kind(self) -> Self:
+        kinds = list(type(self).model_fields)
+        given = [kind for kind in kinds if getattr(self, kind) is not None]
+        if len(given) != 1:
+            raise ValueError(f"needs exactly one of {', '.join(kinds)}, got {', '.join(given) or 'none'}")
+        return self
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Smallest and largest value."""
+        values = self.uniform or self.log_uniform or self.choices or ()
+        return min(values), max(values)
+
+    def at(self, share: float) -> float:
+        """The value below which a share of the draws lies.
+
+        Args:
+            share: In [0, 1).
+        """
+        if self.choices is not None:
+            return self.choices[int(share * len(self.choices))]
+        low, high = self.ends
+        if self.log_uniform is not None:
+            return min(max(low * math.exp(share * math.log(high / low)), low), high)
+        return min(low + share * (high - low), high)
+
+
+def _within(low: float, high: float, drawn: Distribution | None) -> Distribution | None:
+    if drawn is not None and not low <= drawn.ends[0] <= drawn.ends[1] <= high:
+        least, most = drawn.ends
+        raise ValueError(f"must lie within {low:g} to {high:g}, got {least:g} to {most:g}")
+    return drawn
+
+
+def within(low: float, high: float) -> AfterValidator:
+    """Validator of a distribution whose values must lie within bounds."""
+    return AfterValidator(partial(_within, low, high))

@@ -1,0 +1,128 @@
+"""What is drawn anew in every episode beyond the task's own draws."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import Annotated, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from slipgym.config.base import Frozen, as_tuple
+from slipgym.config.distribution import Distribution, within
+from slipgym.config.disturbances import AnyDisturbance
+from slipgym.config.errors import unknown
+from slipgym.config.tasks import TasksConfig
+
+PUSHES_MAX = 16
+
+Names = Annotated[tuple[str, ...], Field(min_length=1), BeforeValidator(as_tuple)]
+Pressures = Annotated[
+    tuple[Literal["uniform", "hertz", "rim"], ...], Field(min_length=1), BeforeValidator(as_tuple)
+]
+
+
+class Ranges(Frozen):
+    """What is drawn; a field that is null or left out stays what the configuration says."""
+
+    materials: Names | None = Field(
+        default=None, description="Materials to draw from, if no other friction is [-]"
+    )
+    mu_c: Annotated[Distribution | None, within(0.01, 5.0)] = Field(
+        default=None, description="Coulomb friction, whatever the material [-]"
+    )
+    mu_s: Annotated[Distribution | None, within(0.01, 5.0)] = Field(
+        default=None, description="Static friction; not below mu_c [-]"
+    )
+    friction_ratio: Annotated[Distribution | None, within(1.0, 5.0)] = Field(
+        default=None, description="Static over Coulomb friction, instead of mu_s [-]"
+    )
+    friction_drift: Annotated[Distribution | None, within(-1.0, 1.0)] = Field(
+        default=None, description="Relative rate at which both change [1/s]"
+    )
+    stribeck_velocity: Annotated[Distribution | None, within(1e-5, 0.1)] = Field(
+        default=None, description="Slip speed at which mu_s has decayed to mu_c [m/s]"
+    )
+    sigma_0: Annotated[Distribution | None, within(1e5, 1e8)] = Field(
+        default=None, description="Bristle stiffness [1/m]"
+    )
+    radius_scale: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
+        default=None, description="Contact radius r over the task's [-]"
+    )
+    pressure: Pressures | None = Field(default=None, description="Pressures over the patch to draw from [-]")
+    mass_scale: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
+        default=None, description="Object's mass over the task's [-]"
+    )
+    size_scale: Annotated[Distribution | None, within(0.5, 2.0)] = Field(
+        default=None, description="Object's extents along x and z, grasp included, over the task's [-]"
+    )
+    com_x: Annotated[Distribution | None, within(-0.4, 0.4)] = Field(
+        default=None, description="Centre of mass along x off the task's, over the extent [-]"
+    )
+    com_z: Annotated[Distribution | None, within(-0.4, 0.4)] = Field(
+        default=None, description="Centre of mass along z off the task's, over the extent [-]"
+    )
+    lag: Annotated[Distribution | None, within(0.0, 0.2)] = Field(
+        default=None, description="Time constant of the force loop [s]"
+    )
+    dead_time: Annotated[Distribution | None, within(0.0, 0.1)] = Field(
+        default=None, description="Dead time of the force loop [s]"
+    )
+    noise_scale: Annotated[Distribution | None, within(0.0, 10.0)] = Field(
+        default=None, description="White noise of all sensors over the configured [-]"
+    )
+    bias_scale: Annotated[Distribution | None, within(0.0, 100.0)] = Field(
+        default=None,
+        description="Spread of force and torque biases beyond the configured, over the configured noise [-]",
+    )
+    slip_latency: Annotated[Distribution | None, within(0.0, 6.0)] = Field(
+        default=None, description="Age of a slip velocity when it arrives, rounded [samples]"
+    )
+    disturbances: Annotated[tuple[AnyDisturbance, ...], BeforeValidator(as_tuple)] = Field(
+        default=(), description="What can happen during an episode [-]"
+    )
+
+    @model_validator(mode="after")
+    def _friction_is_told_once(self) -> Self:
+        if self.mu_s is not None and self.friction_ratio is not None:
+            raise ValueError("mu_s and friction_ratio exclude each other")
+        if self.mu_s is not None and (self.mu_c is None or self.mu_s.ends[0] < self.mu_c.ends[1]):
+            raise ValueError("mu_s needs a mu_c that never lies above it")
+        if self.materials is not None and (self.mu_c is not None or self.friction_ratio is not None):
+            raise ValueError("materials are drawn only where mu_c and friction_ratio are not")
+        return self
+
+    @model_validator(mode="after")
+    def _happens_once(self) -> Self:
+        for kind, count in Counter(disturbance.kind for disturbance in self.disturbances).items():
+            most = PUSHES_MAX if kind == "push" else 1
+            if count > most:
+                raise ValueError(f"disturbances hold {count} of kind {kind}; at most {most}")
+        return self
+
+
+class Randomization(Ranges):
+    """Ranges for all tasks, and what differs from them in single tasks."""
+
+    tasks: Mapping[str, Ranges] = Field(default={}, description="Fields that differ, by task [-]")
+
+    @model_validator(mode="after")
+    def _tasks_exist(self) -> Self:
+        for name in self.tasks:
+            if name not in TasksConfig.model_fields:
+                raise ValueError(unknown("task", name, TasksConfig.model_fields))
+            self.of(name)
+        return self
+
+    def of(self, task: str) -> Ranges:
+        """The ranges of a task.
+
+        Args:
+            task: Its key in the configuration.
+
+        Raises:
+            ValueError: The task's fields contradict the common ones.
+        """
+        values = {name: getattr(self, name) for name in Ranges.model_fields}
+        own = self.tasks.get(task, Ranges())
+        return Ranges(**values | {name: getattr(own, name) for name in own.model_fields_set})

@@ -1,0 +1,80 @@
+"""Pads, force loop and sensors as an episode draws them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from slipgym.config import Config
+from slipgym.contact.records import CELL
+from slipgym.world.plant import Plant, check_slip_latency, dead_ticks, patch_of
+
+
+def with_pressure(config: Config, pressure: str) -> Config:
+    """The configuration with another pressure over the patch."""
+    return config.model_copy(update={"contact": config.contact.model_copy(update={"pressure": pressure})})
+
+
+class Equipment:
+    """Sets a plant's parameters anew for every episode.
+
+    Args:
+        config: Configuration of the plant.
+        plant: The plant as it was built; its patches make room for the largest one.
+        pressures: Pressures that an episode may have.
+    """
+
+    def __init__(self, config: Config, plant: Plant, pressures: Sequence[str]) -> None:
+        self._config, self._plant = config, plant
+        self._force_noise = plant.force_torque["noise"].copy()
+        self._slip_noise = plant.chips["noise"].copy()
+        self._cells: dict[str, np.ndarray] = {}
+        if plant.cells is not None:
+            patches = {pressure: patch_of(with_pressure(config, pressure)) for pressure in pressures}
+            room = max(map(len, patches.values()))
+            for pressure, cells in patches.items():
+                self._cells[pressure] = np.zeros(room, CELL)  # a cell without share of the load does nothing
+                self._cells[pressure][: len(cells)] = cells
+            plant.cells = np.zeros((*plant.pads.shape, room), CELL)
+
+    def check(self, most: Mapping[str, float]) -> None:
+        """Raise ValueError unless the plant has room for the longest times that may be drawn."""
+        dead_ticks(self._config, most["dead_time"], "randomization.dead_time")
+        check_slip_latency(self._config, round(most["slip_latency"]), "randomization.slip_latency")
+
+    def fit(self, values: Mapping[str, float], pressure: str) -> None:
+        """Set the parameters of an episode.
+
+        Args:
+            values: Fields of `slipgym.config.Ranges`, every one that is used here.
+            pressure: Over the patch.
+        """
+        plant = self._plant
+        for field in ("stribeck_velocity", "sigma_0"):
+            plant.pads[field] = values[field]
+        if plant.cells is not None:
+            plant.cells[:] = self._cells[pressure]
+        plant.fingers["lag"] = values["lag"]
+        plant.fingers["dead_ticks"] = dead_ticks(self._config, values["dead_time"])
+        plant.force_torque["noise"] = values["noise_scale"] * self._force_noise
+        plant.chips["noise"] = values["noise_scale"] * self._slip_noise
+        plant.chips["delay"] = values["slip_latency"]
+
+    def start_sensors(self, bias_scale: float, rng: np.random.Generator) -> None:
+        """Start the sensors afresh, with this episode's bias and sub-count phases.
+
+        Args:
+            bias_scale: Spread of the biases beyond the configured one, over the configured noise [-].
+            rng: Source of both.
+        """
+        ft, chips = self._plant.force_torque, self._plant.chips
+        sensor = self._config.sensors.force_torque
+        tangential, normal, torque = sensor.bias_tangential, sensor.bias_normal, sensor.bias_torque
+        spread = np.array([tangential, tangential, normal, torque, torque, torque])
+        ft["bias"] = (spread + bias_scale * self._force_noise) * rng.standard_normal(ft["bias"].shape)
+        ft["history"] = chips["counted"] = chips["moved"] = 0.0
+        for field in ("taken", "drawn"):
+            ft[field] = 0
+        chips["taken"] = 0
+        chips["carry"] = rng.uniform(-1.0, 1.0, chips["carry"].shape) * chips["count"][..., None]

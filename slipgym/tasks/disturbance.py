@@ -1,0 +1,94 @@
+"""What happens to object, wrist and friction during an episode, written into it before it begins."""
+
+from __future__ import annotations
+
+import math
+
+from slipgym.compiled import compiled
+
+SHAKES = 2
+"""Shakings of the wrist that add up: the task's own and a drawn one."""
+POKES_MAX = 64
+"""Pushes that a task can have of its own."""
+PUSHES_MAX = POKES_MAX + 16
+"""And with drawn ones."""
+_SHAKE_RISE = 0.5  # [s] over which a shaking builds up, so that it starts without a jerk
+_LEAST, _MOST = 0.2, 5.0  # drift takes friction no further than this, over the drawn one
+
+FIELDS = [
+    (
+        "shakes",
+        "f8",
+        (SHAKES, 3, 3),
+    ),  # per axis: amplitude [m, rad], omega [rad/s], phase [rad]
+    ("pushes", "i8"),  # how many
+    ("push_start", "i8", PUSHES_MAX),  # control step
+    ("push_end", "i8", PUSHES_MAX),  # first control step without it
+    ("push_wrench", "f8", (PUSHES_MAX, 3)),  # on the centre of mass, world [N, N, N m]
+    ("mass", "f8"),  # of the object at reset [kg]
+    ("inertia", "f8"),  # likewise [kg m^2]
+    ("mass_step", "i8"),  # control step at which both change
+    ("mass_factor", "f8"),  # after over before [-]
+    ("mu_s", "f8"),  # at reset [-]
+    ("mu_c", "f8"),
+    ("drift", "f8"),  # relative rate of both [1/s]
+    ("jump_step", "i8"),  # control step at which both change
+    ("jump_factor", "f8"),  # after over before [-]
+    ("patch", "f8", 2),  # distance from the grasp at which it begins and ends [m]
+    ("patch_factor", "f8"),  # friction on it over elsewhere [-]
+]
+"""Fields of EPISODE."""
+
+
+@compiled
+def shake_velocity(episode, axis, time):
+    """Wrist velocity along one axis at a time; a shaking rises smoothly from rest.
+
+    Args:
+        episode: EPISODE record.
+        axis: 0, 1 or 2: x, z or pitch.
+        time: Since reset [s].
+    """
+    total = 0.0
+    for k in range(episode.shakes.shape[0]):
+        amplitude, omega, phase = episode.shakes[k, axis]
+        speed = amplitude * omega * math.cos(omega * time + phase)
+        if time < _SHAKE_RISE:
+            speed *= 0.5 - 0.5 * math.cos(math.pi * time / _SHAKE_RISE)
+        total += speed
+    return total
+
+
+@compiled
+def friction_factor(episode, world):
+    """Friction now over that at reset [-]: drift, jump, and the patch under the pads."""
+    factor = min(max(math.exp(episode.drift * episode.step * episode.step_time), _LEAST), _MOST)
+    if episode.step >= episode.jump_step:
+        factor *= episode.jump_factor
+    if episode.patch[0] <= math.hypot(world.slip[0], world.slip[1]) < episode.patch[1]:
+        factor *= episode.patch_factor
+    return factor
+
+
+@compiled
+def disturb(episodes, worlds, pads, friction):
+    """Before a control step: load on the object, its mass, and friction over the coming step.
+
+    Args:
+        episodes: EPISODE (n,).
+        worlds: WORLD (n,).
+        pads: PAD (n, 2).
+        friction: Output (n, 3): mu_s and mu_c now; r is left as it is.
+    """
+    for i in range(episodes.shape[0]):
+        episode, world = episodes[i], worlds[i]
+        world.external[:] = 0.0
+        for k in range(episode.pushes):  # of those at the same time the last listed acts
+            if episode.push_start[k] <= episode.step < episode.push_end[k]:
+                world.external[:] = episode.push_wrench[k]
+        heavier = episode.mass_factor if episode.step >= episode.mass_step else 1.0
+        world.mass, world.inertia = heavier * episode.mass, heavier * episode.inertia
+        factor = friction_factor(episode, world)
+        friction[i, 0], friction[i, 1] = factor * episode.mu_s, factor * episode.mu_c
+        for f in range(pads.shape[1]):
+            pads[i, f].mu_s, pads[i, f].mu_c = friction[i, 0], friction[i, 1]
