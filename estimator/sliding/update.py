@@ -61,13 +61,13 @@ def open_sample(state, p, t, wrench, twist):
         taken: Whether the sample is finite and later than the last; if not, nothing has changed.
         halted: Whether the heuristic holds all updates back.
         slid: Whether to learn from the instant.
-        instant: f_t, f_n, |tau|, v_t, |omega| of it [N, N, N m, m/s, rad/s].
+        instant: f_t, f_n, |tau|, v_t, |omega| of it [N, N, N m, m/s, rad/s], variances of v_t and omega.
         seen: f_t, f_n, |tau|, v_t, |omega| and squared scaled speed of the sample itself.
     """
     f_t, f_n, tau = norm(wrench[0], wrench[1]), wrench[2], abs(wrench[3])
     speed_2 = squared_speed(p, twist[0], twist[1], twist[2])
     seen = (f_t, f_n, tau, norm(twist[0], twist[1]), abs(twist[2]), speed_2)
-    nothing = (0.0, 0.0, 0.0, 0.0, 0.0)
+    nothing = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     if not readable(state, t, f_t, f_n, tau, speed_2):
         return False, False, False, nothing, seen
     if f_n < p.eps_fn:
