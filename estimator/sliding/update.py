@@ -36,9 +36,15 @@ def _learn_mu_s(state, p, value):
 
 @njit
 def _stick_slip(state, p, f_t, f_n, tau, still, moves, halted):
-    """mu_s at each start of a slip: the largest mu of the stick before it, in units of the limit surface."""
-    if not state.slipping and not halted and shares(f_t, tau / state.r)[0] > p.eps_t:
-        append(state, p, load_size(p.disc, f_t, tau / state.r) / f_n)
+    """mu_s at each start of a slip: the largest mu of the stick before it, in units of the limit surface.
+
+    A torque beyond the gate empties the buffer: of the spin that it may start, the loads before tell nothing.
+    """
+    if not state.slipping and not halted:
+        if shares(f_t, tau / state.r)[0] > p.eps_t:
+            append(state, p, load_size(p.disc, f_t, tau / state.r) / f_n)
+        else:
+            clear_buffer(state)
     starts, stops = transition(state, p, still, moves)
     if starts and not halted and state.buffer_size >= p.n_a:
         _learn_mu_s(state, p, take_event(state, p))
