@@ -93,10 +93,10 @@ def test_the_heuristic_can_halt_it_too():
 
 
 def test_a_translation_that_breaks_off_counts_for_little():
-    """While the object spins on its translation stops within a window: the mean of two windows is then no instant's.
+    """The object spins on while its translation stops within a window: no instant has the mean velocity.
 
-    The wrench is the ellipsoid's of the instant; the largest normal force is at the end of each slide. Taken at
-    face value the mean would put gamma_t at 0.95 where it is 0.15: mu_c 2.5 times too small in one sample in five.
+    The wrench is the ellipsoid's of the instant; the normal force is largest at the end of each slide. Taken
+    at face value the mean puts gamma_t far above what it is, and mu_c ends at half its value.
     """
     r, omega, fine = 0.01, 0.8, 64
     slide = np.concatenate([np.linspace(0.005, 0.065, 4 * fine), np.full(fine // 2, 0.065)])
