@@ -12,6 +12,7 @@ rim's friction is the mean over the edge (k^2 = 4 q / (1 + q)^2):
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -19,8 +20,10 @@ from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipkm1
 
 from estimator.limit_surface import disc_friction
+from slipgym.compiled import compiled
 
-NODES = 64
+GAUSS = np.polynomial.legendre.leggauss(64)
+"""Nodes and weights for Hertz."""
 
 
 def uniform_friction(ratio: float) -> tuple[float, float]:
@@ -30,18 +33,24 @@ def uniform_friction(ratio: float) -> tuple[float, float]:
 
 def hertz_friction(ratio: float) -> tuple[float, float]:
     """Steady friction of a disc with Hertzian pressure; arguments and result as `rim_friction`."""
-    # the integrand has a logarithm where a disc's edge passes through the centre of rotation; towards it the
-    # nodes are drawn by a square
-    bend = float(np.arcsin(min(ratio, 1.0)))
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    near, slope = (0.5 * (nodes + 1.0)) ** 2, 0.5 * (nodes + 1.0) * weights
+    return _hertz(ratio, *GAUSS)
+
+
+@compiled
+def _hertz(ratio, nodes, weights):
+    # where a disc's edge passes through the centre of rotation its friction has a logarithm: towards that
+    # the nodes are drawn by a square
+    bend = math.asin(min(ratio, 1.0))
     force, torque = 0.0, 0.0
-    for end in (end for end in (0.0, 0.5 * np.pi) if end != bend):
-        for t, weight in zip(bend + (end - bend) * near, abs(end - bend) * slope, strict=True):
-            a = float(np.sin(t))
+    for end in (0.0, 0.5 * math.pi):
+        if end == bend:
+            continue
+        for i in range(len(nodes)):
+            near = 0.5 * (nodes[i] + 1.0)
+            a = math.sin(bend + (end - bend) * near * near)
+            share = 1.5 * a**3 * abs(end - bend) * near * weights[i]
             f, m = disc_friction(ratio / a)
-            force += 1.5 * weight * a**3 * f
-            torque += 1.5 * weight * a**4 * m
+            force, torque = force + share * f, torque + share * a * m
     return force, torque
 
 
