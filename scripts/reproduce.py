@@ -40,5 +40,16 @@ def profile(
     typer.echo(f"\nLook at:\n  {folder / 'ideal.png'}\n  {folder / 'realistic.png'}")
 
 
+@app.command()
+def surface(output: Output = Path("runs")) -> None:
+    """Limit surfaces of a disc by its pressure, the cells against them, and what the ellipsoid gets wrong."""
+    from policies.reproduction import reproduce_surface
+
+    folder = reproduce_surface(output)
+    for name in ("cells.md", "bias.md"):
+        typer.echo(f"\n{name}\n{(folder / name).read_text(encoding='utf-8').rstrip()}")
+    typer.echo(f"\nLook at:\n  {folder / 'surface.png'}")
+
+
 if __name__ == "__main__":
     app()

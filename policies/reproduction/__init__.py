@@ -2,5 +2,6 @@
 
 from policies.reproduction.coupling import reproduce_coupling
 from policies.reproduction.profile import reproduce_profile
+from policies.reproduction.surface import reproduce_surface
 
-__all__ = ["reproduce_coupling", "reproduce_profile"]
+__all__ = ["reproduce_coupling", "reproduce_profile", "reproduce_surface"]
