@@ -1,21 +1,29 @@
-"""Writes docs/environments/ from the environments' docstrings."""
+"""Writes docs/environments/ from the environments' docstrings, and a picture of each to docs/images/."""
 
-import argparse
 from pathlib import Path
+from typing import Annotated
 
-from slipgym.envs.page import pages
+import typer
 
-FOLDER = Path(__file__).resolve().parents[1] / "docs" / "environments"
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-def main() -> None:
-    """Writes every page."""
-    argparse.ArgumentParser(description=__doc__).parse_args()
-    FOLDER.mkdir(parents=True, exist_ok=True)
+@app.command()
+def main(
+    pictures: Annotated[bool, typer.Option(help="Whether to make the pictures too.")] = True,
+) -> None:
+    """Write a page and a picture for every registered environment."""
+    from policies.play import write_portraits
+    from slipgym.envs.page import pages
+
     for name, text in pages().items():
-        (FOLDER / name).write_text(text, encoding="utf-8")
-        print(FOLDER / name)
+        (DOCS / "environments" / name).write_text(text, encoding="utf-8")
+        typer.echo(DOCS / "environments" / name)
+    if pictures:
+        for path in write_portraits(DOCS / "images"):
+            typer.echo(path)
 
 
 if __name__ == "__main__":
-    main()
+    app()

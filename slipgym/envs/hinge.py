@@ -114,14 +114,14 @@ class HingeEnv(SlipEnv):
     |---|---|---|
     | `friction_source` | `"estimated"` | friction in the observation: or `"true"`, `"nominal"`, `"none"` |
     | `estimator` | `"rls"` | a name of `estimator.names()`, or a mapping with its `name` and parameters |
-    | `contact` | `"ellipsoid"` | friction model of the pads |
+    | `contact` | `"ellipsoid"` | friction model of the pads: or `"distributed"` (see `contact.pressure`) |
     | `sensors` | `"realistic"` | sensor preset: `"realistic"` or `"ideal"` |
     | `material` | `"random"` | name of a material, or `"random"` for another in every episode |
     | `action_mode` | `"grip_force"` | what an action means |
     | `observation_mode` | `"flat"` | how an observation is laid out |
     | `randomization` | `"none"` | preset of what else is drawn per episode |
     | `frame_skip` | `1` | slip-velocity samples per step; the action is repeated, the rewards are summed |
-    | `render_mode` | `None` | `None` or `"rgb_array"`: 480 by 480 pictures |
+    | `render_mode` | `None` | `None`, `"rgb_array"`: 720 by 480 pictures, `"depth_array"`, `"human"` |
     | `config` | `None` | file or mapping of overrides, merged over the defaults in `configs/` |
 
     ## Reset Options

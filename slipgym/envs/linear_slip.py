@@ -110,7 +110,7 @@ class LinearSlipEnv(SlipEnv):
     | `observation_mode` | `"flat"` | how an observation is laid out |
     | `randomization` | `"none"` | preset of what else is drawn per episode |
     | `frame_skip` | `1` | slip-velocity samples per step; the action is repeated, the rewards are summed |
-    | `render_mode` | `None` | `None` or `"rgb_array"`: 480 by 480 pictures |
+    | `render_mode` | `None` | `None`, `"rgb_array"`: 720 by 480 pictures, `"depth_array"`, `"human"` |
     | `config` | `None` | file or mapping of overrides, merged over the defaults in `configs/` |
 
     ## Reset Options

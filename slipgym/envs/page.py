@@ -19,7 +19,10 @@ def page(name: str, environment: type[SlipEnv]) -> str:
         environment: Its class.
     """
     use = f'```python\nimport gymnasium as gym\n\nenv = gym.make("slipgym:{name}")\n```'
-    return f"# {name}\n\n{_NOTE}\n\n{use}\n\n{inspect.getdoc(environment)}\n"
+    picture = (
+        f"![{environment.task.name}: view and plots of an episode](../images/{environment.task.key}.png)"
+    )
+    return f"# {name}\n\n{_NOTE}\n\n{use}\n\n{picture}\n\n{inspect.getdoc(environment)}\n"
 
 
 def pages() -> dict[str, str]:

@@ -24,8 +24,8 @@ class RotationalSlipEnv(SlipEnv):
     Hence the task's own object (`tasks.rotational_slip.object`), light and long: 0.08 kg, 340 mm by 40 mm,
     gripped 140 mm from its centre, which asks for 15 N at mu_c 0.36.
 
-    In almost pure rotation the estimator "rls" locks mu_c out and its r with it; `estimator="joint"` does
-    not.
+    In turns of short leaps and almost without translation the estimator "rls" learns little;
+    `estimator="joint"` learns enough.
 
     One step is one sample of the slip-velocity sensors, 1/120 s. The pad frame moves with the wrist: x and y
     span the contact plane (x horizontal and y up while the wrist is level), angles and torques count about
@@ -117,14 +117,14 @@ class RotationalSlipEnv(SlipEnv):
     |---|---|---|
     | `friction_source` | `"estimated"` | friction in the observation: or `"true"`, `"nominal"`, `"none"` |
     | `estimator` | `"rls"` | a name of `estimator.names()`, or a mapping with its `name` and parameters |
-    | `contact` | `"ellipsoid"` | friction model of the pads |
+    | `contact` | `"ellipsoid"` | friction model of the pads: or `"distributed"` (see `contact.pressure`) |
     | `sensors` | `"realistic"` | sensor preset: `"realistic"` or `"ideal"` |
     | `material` | `"random"` | name of a material, or `"random"` for another in every episode |
     | `action_mode` | `"grip_force"` | what an action means |
     | `observation_mode` | `"flat"` | how an observation is laid out |
     | `randomization` | `"none"` | preset of what else is drawn per episode |
     | `frame_skip` | `1` | slip-velocity samples per step; the action is repeated, the rewards are summed |
-    | `render_mode` | `None` | `None` or `"rgb_array"`: 480 by 480 pictures |
+    | `render_mode` | `None` | `None`, `"rgb_array"`: 720 by 480 pictures, `"depth_array"`, `"human"` |
     | `config` | `None` | file or mapping of overrides, merged over the defaults in `configs/` |
 
     ## Reset Options

@@ -16,6 +16,7 @@ from slipgym.envs import observation
 from slipgym.envs.choices import check_action, one_of, refuse_unknown
 from slipgym.envs.loop import SlipLoop
 from slipgym.envs.state import EnvState, checked, restored_generator
+from slipgym.screen import obstacle
 from slipgym.tasks import Task
 
 
@@ -36,16 +37,20 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         observation_mode: "flat".
         randomization: "none".
         frame_skip: Slip-velocity samples per step.
-        render_mode: None or "rgb_array".
+        render_mode: None, "rgb_array", "depth_array" or "human".
         config: File or mapping of overrides of the default configuration.
 
     Raises:
         ValueError: The value of an argument is unknown or not allowed.
         TypeError: An argument is unknown.
+        RuntimeError: A window cannot open here; `metadata["render_modes"]` then lacks "human".
     """
 
     task: ClassVar[Task]
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 120}  # noqa: RUF012
+    metadata: dict[str, Any] = {  # noqa: RUF012
+        "render_modes": ["human", "rgb_array", "depth_array"],
+        "render_fps": 120,
+    }
 
     def __init__(
         self,
@@ -75,7 +80,9 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         self.config = load(config, sensors, contact)
         self.material = one_of("material", material, ("random", *self.config.materials))
         self.render_mode = render_mode
-        self.metadata = {**self.metadata, "render_fps": self.config.physics.control_rate / frame_skip}
+        modes = [mode for mode in self.metadata["render_modes"] if mode != "human" or not obstacle()]
+        rate = self.config.physics.control_rate / frame_skip
+        self.metadata = {**self.metadata, "render_modes": modes, "render_fps": rate}
         self.columns = observation.columns(self.config, self.task, self.friction_source)
         self._low = np.array([c.low for c in self.columns], dtype=np.float32)
         self._high = np.array([c.high for c in self.columns], dtype=np.float32)
@@ -100,6 +107,11 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         # the friction part: the merged estimates, or values that stand for the episode
         self._friction = self._loop.estimated if friction_source == "estimated" else np.ones((1, 6))
         self._views = self._info_views()
+        self._renderer: Any = None
+        if render_mode is not None:
+            from slipgym.rendering import Renderer
+
+            self._renderer = Renderer(render_mode, self._loop)
         self._ready = False
 
     def reset(
@@ -125,6 +137,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             radius = getattr(self.config.tasks, self.task.key).radius or nominal.r
             self._friction[0, :3] = nominal.mu_s, nominal.mu_c, radius
         self._terms[:] = 0.0
+        if self._renderer is not None:
+            self._renderer.begin()
         self._ready = True
         return self._observation(), self._info()
 
@@ -153,6 +167,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             self._terms += episode["terms"][0, : len(self._terms)]
             dropped = episode["dropped"].item()
             finished = episode["step"].item() >= episode["steps"].item()
+            if self._renderer is not None:
+                self._renderer.keep()
             if dropped or finished:
                 break
         self._ready = True
@@ -160,19 +176,21 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         return self._observation(), reward, dropped, finished and not dropped, self._info()
 
     def render(self) -> np.ndarray | None:
-        """Picture of the scene, (height, width, 3) uint8, in render mode "rgb_array".
+        """What the render mode asks for; None without one.
+
+        Returns:
+            "rgb_array": picture (480, 720, 3) uint8; "depth_array": distances (480, 448) float32 [m],
+            infinite where nothing is; "human": None, the picture is in the window.
 
         Raises:
             RuntimeError: The environment is closed or was never reset.
         """
         world = self._loop.world
         _ = world.client
-        if self.render_mode is None:
+        if self._renderer is None:
             return None
         _ = world.box
-        from slipgym.rendering import look, picture
-
-        return picture(look(world, self._loop.material, self.config.gripper.pad_radius))
+        return self._renderer.render()
 
     def get_state(self) -> EnvState:
         """Everything that decides what the environment does next, as plain data.
@@ -206,6 +224,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         self._np_random_seed = state.seed
         if state.loop is not None:
             self._loop.set_state(state.loop)
+            if self._renderer is not None:
+                self._renderer.begin()
         self._friction[:] = state.friction
         self._ready = state.loop is not None
 
@@ -218,6 +238,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
     def close(self) -> None:
         """Release the physics client; closing twice is harmless."""
         self._loop.world.close()
+        if self._renderer is not None:
+            self._renderer.close()
         self._ready = False
 
     def _observation(self) -> np.ndarray:

@@ -1,7 +1,6 @@
-"""Pictures of the scene."""
+"""Pictures of the environments."""
 
-from slipgym.rendering.bullet import look
-from slipgym.rendering.camera import picture
-from slipgym.rendering.stage import View
+from slipgym.rendering.renderer import HEIGHT, WIDTH, WINDOW_RATE, Renderer
+from slipgym.rendering.window import Window
 
-__all__ = ["View", "look", "picture"]
+__all__ = ["HEIGHT", "WIDTH", "WINDOW_RATE", "Renderer", "Window"]

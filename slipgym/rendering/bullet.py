@@ -23,4 +23,5 @@ def look(world: BulletWorld, material: str, pad_radius: float) -> View:
     rotation = np.reshape(p.getMatrixFromQuaternion(orientation), (3, 3))
     joints = p.getJointStates(world.gripper, (*WRIST_JOINTS, *FINGER_LINKS), physicsClientId=client)
     x, z, pitch, first, second = (joint[0] for joint in joints)
-    return View(world.box, material, position, rotation, (x, z, pitch), (first, second), pad_radius)
+    centre = np.array(position)
+    return View(world.box, material, centre, rotation, (x, z, pitch), (first, second), pad_radius)

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
-from slipgym.rendering import solids
+from slipgym.rendering import materials, solids
+from slipgym.rendering.materials import Part
 from slipgym.world.scene import PAD_THICKNESS, Box
 
-COLOURS = {
-    "wood": (0.76, 0.56, 0.35),
-    "case": (0.36, 0.52, 0.66),
-    "plastic": (0.83, 0.40, 0.33),
-    "cardboard": (0.82, 0.71, 0.51),
-}
-"""Colour of the object by its material's name."""
-_OTHER = (0.52, 0.63, 0.50)
+REACH = 0.12
+"""Length of a finger [m]."""
 _PAD, _FINGER, _PALM = (0.17, 0.19, 0.23), (0.50, 0.55, 0.62), (0.33, 0.37, 0.43)
 _INK, _MARK, _GRID = (0.13, 0.12, 0.12), (0.97, 0.97, 0.95), (0.83, 0.85, 0.88)
-_SEE_THROUGH = 0.4  # opacity of the finger between camera and object
+_SEE_THROUGH = 0.35  # opacity of the finger between camera and object
 _LIFT = 2e-4  # [m] of what is printed on a face, so that it is seen
 
 
@@ -33,8 +27,8 @@ class View:
     """The object."""
     material: str
     """Its material's name."""
-    position: tuple[float, float, float]
-    """Its centre of mass [m]."""
+    position: np.ndarray
+    """Its centre of mass (3,) [m]."""
     rotation: np.ndarray
     """From its frame to the world's, (3, 3)."""
     wrist: tuple[float, float, float]
@@ -44,65 +38,105 @@ class View:
     pad_radius: float
     """[m]."""
 
+    def place(self, points: np.ndarray) -> np.ndarray:
+        """Points (..., 3) of the pad frame in the world; y stays."""
+        cos, sin = np.cos(self.wrist[2]), np.sin(self.wrist[2])
+        turn = np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
+        return points @ turn.T + (self.wrist[0], 0.0, self.wrist[1])
+
+    def carry(self, points: np.ndarray) -> np.ndarray:
+        """Points (..., 3) from the object's geometric centre, on its axes, in the world."""
+        x, z = self.box.com_offset
+        return (points - (x, 0.0, z)) @ self.rotation.T + self.position
+
+    @property
+    def side(self) -> float:
+        """Where the gripper reaches in from: -1 the left, 1 the right; not where the object is."""
+        return 1.0 if self.box.grasp_offset[0] > 0.0 else -1.0
+
 
 def assemble(view: View) -> tuple[np.ndarray, np.ndarray]:
     """All triangles (n, 3, 3) in the world [m] and their colours (n, 4), the see-through ones last."""
     body, body_colours = _object(view.box, view.material)
-    body = body @ view.rotation.T + view.position
-    palm, finger = _gripper(view.pad_radius)
+    palm, finger = _gripper(view.pad_radius, view.side)
     offset = view.box.size[1] / 2 + PAD_THICKNESS / 2
-    cos, sin = math.cos(view.wrist[2]), math.sin(view.wrist[2])
-    turn = np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
-    wrist = np.array([view.wrist[0], 0.0, view.wrist[1]])
     far = finger[0] + [0.0, offset - view.closing[0], 0.0]
-    near = finger[0] * [1.0, -1.0, 1.0] - [0.0, offset - view.closing[1], 0.0]
-    near = near[:, ::-1]  # mirroring turned them inside out
+    near = _mirrored(finger[0], 1) - [0.0, offset - view.closing[1], 0.0]
     glass = finger[1] * [1.0, 1.0, 1.0, _SEE_THROUGH]
-    held = np.concatenate([palm[0], far, near]) @ turn.T + wrist
-    corners = np.concatenate([body, held])
+    held = view.place(np.concatenate([palm[0], far, near]))
+    corners = np.concatenate([view.carry(body), held])
     return corners, np.concatenate([body_colours, palm[1], finger[1], glass])
 
 
-def _painted(parts: list[tuple[solids.Triangles, tuple[float, float, float]]]) -> tuple[np.ndarray, ...]:
+def footprint(view: View, swing: float) -> np.ndarray:
+    """Points around gripper and object, and around where they will go, (n, 3) [m].
+
+    Args:
+        view: The start of an episode.
+        swing: Angle by which the wrist is going to pitch [rad].
+    """
+    half, at = np.array(view.box.size) / 2, -np.array(view.box.grasp_offset)
+    face = np.array([(x, 0.0, z) for x in (-half[0], half[0]) for z in (-half[2], half[2])])
+    grasped = face + np.array([at[0], 0.0, at[1]])
+    held = view.place(grasped)
+    lowered = held * (1.0, 1.0, -1.0) if view.position[2] > view.wrist[1] else held  # by gravity
+    palm = np.array([(view.side * (REACH + 0.07), 0.0, z) for z in (-0.03, 0.03)])
+    pitched = replace(view, wrist=(view.wrist[0], view.wrist[1], view.wrist[2] + swing))
+    ends = pitched.place(np.concatenate([grasped, palm]))
+    return np.concatenate([held, lowered, view.place(palm), ends])
+
+
+def grid() -> tuple[np.ndarray, np.ndarray]:
+    """Lines every 50 mm on a plane behind everything: they show how the wrist moves."""
+    y, far, thick = 0.12, 0.9, 5e-4
+    lines = []
+    for k in range(-18, 19):
+        at = 0.05 * k
+        lines.append(solids.patch((at - thick, at + thick), (-far, far), y))
+        lines.append(solids.patch((-far, far), (at - thick, at + thick), y))
+    return _painted([(line, _GRID) for line in lines])
+
+
+def _painted(parts: list[Part]) -> tuple[np.ndarray, np.ndarray]:
     colours = [np.broadcast_to((*colour, 1.0), (len(part), 4)) for part, colour in parts]
     return np.concatenate([part for part, _ in parts]), np.concatenate(colours)
 
 
 @lru_cache(maxsize=64)
-def _object(box: Box, material: str) -> tuple[np.ndarray, ...]:
-    """The box with a ruler of 10 mm and a dot where it was grasped, in its own frame."""
+def _object(box: Box, material: str) -> tuple[np.ndarray, np.ndarray]:
+    """The box with a ruler of 10 mm and a dot where it was grasped, from its geometric centre."""
     half = box.size[0] / 2, box.size[1] / 2, box.size[2] / 2
     face = -half[1] - _LIFT
-    parts = [(solids.box(half), COLOURS.get(material, _OTHER))]
+    parts = [(solids.box(half), materials.BASE.get(material, materials.OTHER))]
+    parts += materials.printed(material, box, face)
+    face -= _LIFT
     height = min(half[2] - 0.005, 0.5)
     for k in range(-int(height / 0.01), int(height / 0.01) + 1):
         length, thick = (0.011, 4e-4) if k % 5 == 0 else (0.006, 2.5e-4)
         z = 0.01 * k
         parts.append((solids.patch((half[0] - length, half[0]), (z - thick, z + thick), face), _INK))
     grasp = np.array([box.grasp_offset[0], 0.0, box.grasp_offset[1]])
-    parts.append((solids.disc(0.006, face) + grasp, _MARK))
-    parts.append((solids.disc(0.004, face - _LIFT) + grasp, _INK))
-    corners, colours = _painted(parts)
-    return corners - [box.com_offset[0], 0.0, box.com_offset[1]], colours
+    parts.append((solids.disc(0.005, face) + grasp, _MARK))
+    parts.append((solids.disc(0.0033, face - _LIFT) + grasp, _INK))
+    return _painted(parts)
 
 
 @lru_cache(maxsize=8)
-def _gripper(pad_radius: float) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
-    """Palm around the wrist's axis, and finger 1 around its pad's middle; it reaches in from the left."""
+def _gripper(pad_radius: float, side: float) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
+    """Palm around the wrist's axis, and finger 1 around its pad's middle; it reaches in from that side."""
     pad = solids.cylinder(pad_radius, PAD_THICKNESS)
-    reach = 0.12
-    bar = solids.box((reach / 2, 0.005, 0.009), (-reach / 2 + 0.008, PAD_THICKNESS / 2 + 0.005, 0.0))
-    rail = solids.box((0.014, 0.062, 0.016), (-reach - 0.004, 0.0, 0.0))
-    flange = solids.box((0.03, 0.03, 0.024), (-reach - 0.048, 0.0, 0.0))
-    return _painted([(rail, _PALM), (flange, _FINGER)]), _painted([(pad, _PAD), (bar, _FINGER)])
+    bar = solids.box((REACH / 2, 0.005, 0.009), (-REACH / 2 + 0.008, PAD_THICKNESS / 2 + 0.005, 0.0))
+    rail = solids.box((0.014, 0.062, 0.016), (-REACH - 0.004, 0.0, 0.0))
+    flange = solids.box((0.03, 0.03, 0.024), (-REACH - 0.048, 0.0, 0.0))
+    parts = _painted([(rail, _PALM), (flange, _FINGER)]), _painted([(pad, _PAD), (bar, _FINGER)])
+    if side < 0.0:
+        return parts
+    (palm, palm_colours), (finger, finger_colours) = parts
+    return (_mirrored(palm, 0), palm_colours), (_mirrored(finger, 0), finger_colours)
 
 
-def grid() -> tuple[np.ndarray, ...]:
-    """Lines every 50 mm on a plane behind everything: they show how the wrist moves."""
-    y, far, thick = 0.12, 0.45, 5e-4
-    lines = []
-    for k in range(-9, 10):
-        at = 0.05 * k
-        lines.append(solids.patch((at - thick, at + thick), (-far, far), y))
-        lines.append(solids.patch((-far, far), (at - thick, at + thick), y))
-    return _painted([(line, _GRID) for line in lines])
+def _mirrored(corners: np.ndarray, axis: int) -> np.ndarray:
+    """Triangles mirrored along an axis, and turned so that they still face outside."""
+    flip = np.ones(3)
+    flip[axis] = -1.0
+    return (corners * flip)[:, ::-1]

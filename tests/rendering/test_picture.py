@@ -4,27 +4,19 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-import slipgym  # noqa: F401
-
-IDS = ("slipgym/LinearSlip-v0", "slipgym/Hold-v0")
+from slipgym.rendering import camera
 
 
-@pytest.fixture(params=IDS)
-def env(request):
-    env = gym.make(request.param, render_mode="rgb_array").unwrapped
-    yield env
-    env.close()
+def view(picture: np.ndarray) -> np.ndarray:
+    """The scene without the words above and below it."""
+    return picture[50 : camera.HEIGHT - 46, : camera.WIDTH]
 
 
-def changed(before: np.ndarray, after: np.ndarray) -> int:
-    """Pixels that differ by more than noise of rounding."""
-    return int((np.abs(before.astype(int) - after).max(axis=-1) > 8).sum())
-
-
-def test_a_picture_is_the_callers_own(env):
+def test_a_picture_is_the_callers_own(make, env_id):
+    env = make(env_id)
     env.reset(seed=0)
     first = env.render()
-    assert first.shape == (480, 480, 3)
+    assert first.shape == (480, 720, 3)
     assert first.dtype == np.uint8
     assert first.flags.owndata
     kept = first.copy()
@@ -32,80 +24,159 @@ def test_a_picture_is_the_callers_own(env):
     np.testing.assert_array_equal(env.render(), kept)
 
 
-def test_pictures_repeat(env):
-    films = []
-    for _ in range(2):
+def test_pictures_repeat(make, env_id):
+    def film(env) -> list[np.ndarray]:
         env.reset(seed=3)
-        film = []
+        pictures = []
         for _ in range(20):
             env.step(np.float32([-0.9]))
-            film.append(env.render())
-        films.append(film)
-    np.testing.assert_array_equal(*films)
+            pictures.append(env.render())
+        return pictures
+
+    env = make(env_id)
+    first = film(env)
+    np.testing.assert_array_equal(film(env), first)
+    np.testing.assert_array_equal(film(make(env_id)), first)
 
 
-def test_rendering_does_not_change_the_simulation(env):
-    def play(rendering: bool) -> list[str]:
+@pytest.mark.parametrize("mode", ["rgb_array", "depth_array", "human"])
+def test_rendering_does_not_change_the_simulation(make, env_id, mode, hidden_screen):
+    def play(mode: str | None) -> list[str]:
+        env = make(env_id, render_mode=mode)
         with np.printoptions(precision=17, floatmode="unique"):
             said = [repr(env.reset(seed=1))]
             for action in np.random.default_rng(1).uniform(-1.0, 1.0, (60, 1)):
                 said.append(repr(env.step(action)))
-                if rendering:
-                    env.render()
+                env.render()
             return said
 
-    assert play(rendering=True) == play(rendering=False)
+    assert play(mode) == play(None)
 
 
-def test_a_slide_moves_the_object_down(env):
-    env.reset(seed=0, options={"object_mass": 0.3})
-    before = env.render()
-    while env.step(np.float32([-1.0]))[4]["slip"][1] > -0.03:
+def test_a_slide_moves_the_object_down_and_leaves_its_outline(make):
+    def lowest(picture: np.ndarray) -> int:
+        """Row of the wooden object's lower end."""
+        return int(np.flatnonzero((picture[..., 0].astype(int) - picture[..., 2] > 60).any(axis=1)).max())
+
+    env = make()
+    env.reset(seed=0, options={"object_mass": 0.3, "material": "wood"})
+    before = view(env.render())
+    while env.step(np.float32([-1.0]))[4]["slip"][1] > -0.02:
         pass
-    after = env.render()
-    rows = np.flatnonzero((np.abs(before.astype(int) - after).max(axis=-1) > 8).any(axis=1))
-    assert changed(before, after) > 1000
-    assert rows.max() > 330  # below where the lower edge was
+    after = view(env.render())
+    assert lowest(after) > lowest(before) + 10
+    blue = (np.abs(after.astype(int) - (0x00, 0x72, 0xB2)).max(axis=-1) < 40).sum()
+    assert blue > 200  # outline and arrow
 
 
-def test_an_object_that_fell_leaves_the_picture(env):
+def test_an_object_that_fell_leaves_the_picture(make, changed):
+    env = make()
     env.reset(seed=0)
     held = env.render()
     for _ in range(120):
         env.step(np.float32([-1.0]))
-    assert changed(held, env.render()) > 10_000
-    assert env.render().min() < 100  # the gripper is still there
+    assert changed(view(held), view(env.render())).sum() > 10_000
+    assert view(env.render()).min() < 100  # the gripper is still there
 
 
-def test_the_material_is_seen(env):
-    pictures = {}
+def test_the_material_is_seen(make, changed):
+    env = make()
+    pictures = []
     for material in env.config.materials:
         env.reset(seed=0, options={"material": material})
-        pictures[material] = env.render()
-    names = list(pictures)
-    for i, first in enumerate(names):
-        assert all(changed(pictures[first], pictures[second]) > 5000 for second in names[i + 1 :])
+        pictures.append(view(env.render()))
+    for i, first in enumerate(pictures):
+        assert all(changed(first, second).sum() > 5000 for second in pictures[i + 1 :])
 
 
-def test_the_object_hides_finger_1_and_shows_through_finger_2(env):
-    env.reset(seed=0, options={"material": "plastic"})
-    red, _, blue = env.render()[215, 255].astype(int)  # on the near pad
-    assert red > blue + 20
+def test_a_material_of_ones_own_can_be_drawn(make):
+    env = make(config={"materials": {"glass": {"mu_c": 0.2, "mu_s": 0.3}}}, material="glass")
+    env.reset(seed=0)
+    assert env.render().shape == (480, 720, 3)
 
 
 @pytest.mark.parametrize("size", [(0.04, 0.005, 0.04), (2.0, 1.0, 2.0)])
-def test_any_object_can_be_drawn(env, size):
+def test_any_object_can_be_drawn(make, size):
+    env = make()
     env.reset(seed=0, options={"object_size": size, "object_mass": 0.2})
-    assert env.render().shape == (480, 480, 3)
+    assert env.render().shape == (480, 720, 3)
 
 
-def test_without_a_reset_there_is_nothing_to_see(env):
+def test_a_harder_grip_has_longer_arrows(make):
+    env = make()
+
+    def dark(force: float) -> int:
+        env.reset(seed=0, options={"initial_force": force, "material": "cardboard"})
+        return int((view(env.render()).max(axis=-1) < 45).sum())
+
+    assert dark(4.0) < dark(8.0) < dark(16.0)
+
+
+def test_friction_is_drawn_where_there_is_some(make):
+    env = make()
+
+    def orange(mass: float) -> int:
+        env.reset(seed=0, options={"object_mass": mass, "material": "case"})
+        return int((np.abs(view(env.render()).astype(int) - (0xD5, 0x5E, 0x00)).max(axis=-1) < 40).sum())
+
+    assert orange(0.01) < orange(0.2) < orange(0.4)
+
+
+def test_depths(make, env_id):
+    env = make(env_id, render_mode="depth_array")
+    env.reset(seed=0)
+    depth = env.render()
+    assert depth.shape == (480, 448)
+    assert depth.dtype == np.float32
+    seen = np.isfinite(depth)
+    assert 0.02 < seen.mean() < 0.5
+    assert np.all(depth[seen] > 0.3)
+    assert np.all(depth[seen] < 3.0)
+
+
+def test_the_depth_of_a_wide_face_is_its_distance(make):
+    env = make(render_mode="depth_array")
+    env.reset(seed=0, options={"object_size": (0.2, 0.02, 0.2), "object_mass": 0.2})
+    held = env._renderer._camera
+    corner = np.array([0.06, -0.01, 0.05])
+    x, y, near = held.project(corner)
+    assert env.render()[int(y / camera.FINE), int(x / camera.FINE)] == pytest.approx(1.0 / near, rel=2e-3)
+
+
+def test_without_a_reset_there_is_nothing_to_see(make):
     with pytest.raises(RuntimeError, match=r"call reset\(\) first"):
-        env.render()
+        make().render()
 
 
-def test_without_a_render_mode_there_is_no_picture():
-    env = gym.make(IDS[0]).unwrapped
+def test_without_a_render_mode_there_is_no_picture_and_nothing_is_kept(make):
+    env = make(render_mode=None)
     env.reset(seed=0)
     assert env.render() is None
+    assert env._renderer is None
+
+
+def test_collected_and_observed_pictures(env_id):
+    env = gym.make(env_id, render_mode="rgb_array_list", frame_skip=4)
+    env.reset(seed=0)
+    for _ in range(3):
+        env.step(np.float32([0.0]))
+    pictures = env.render()
+    assert [picture.shape for picture in pictures] == [(480, 720, 3)] * 4
     env.close()
+    seen = gym.wrappers.AddRenderObservation(gym.make(env_id, render_mode="rgb_array"))
+    stacked = gym.wrappers.FrameStackObservation(seen, 2)
+    observation, _ = stacked.reset(seed=0)
+    assert observation.shape == (2, 480, 720, 3)
+    stacked.close()
+
+
+def test_a_restored_state_begins_a_new_strip(make, changed):
+    env = make()
+    env.reset(seed=0)
+    for _ in range(30):
+        env.step(np.float32([0.5]))
+    state, picture = env.get_state(), env.render()
+    other = make()
+    other.set_state(state)
+    np.testing.assert_array_equal(view(other.render()), view(picture))
+    assert changed(other.render()[:, camera.WIDTH :], picture[:, camera.WIDTH :]).any()

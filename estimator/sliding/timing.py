@@ -6,40 +6,37 @@ one of them leaves it slower than eps_v or is over before the other. The mean of
 to second order in time.
 """
 
-import math
-
 from numba import njit
 
-from estimator.joint.state import FORCES
+from estimator.limit_surface import DISC_RADIUS
+from estimator.sliding.state import FORCES
+from estimator.stick_slip.kernel import norm
 
 
 @njit
-def reference_speed(p, v_x, v_y, omega):
-    """Scaled speed at a fixed radius, 2/3 of the pad's: whether it moves is not a matter of the estimate."""
-    return math.hypot(math.hypot(v_x, v_y), 2.0 / 3.0 * p.r_max * omega)
+def squared_speed(p, v_x, v_y, omega):
+    """Of the scaled speed at a uniform pad's radius: whether it moves is not a matter of the estimate."""
+    rim_speed = DISC_RADIUS * p.r_max * omega
+    return v_x * v_x + v_y * v_y + rim_speed * rim_speed
 
 
 @njit
-def boundary(state, p, f_t, f_n, tau, twist, elapsed):
+def boundary(state, p, f_t, f_n, tau, twist, moves, elapsed):
     """Takes the newest sample and looks back to the newest boundary of two windows.
 
     Returns:
-        Whether the contact slid there, and f_t, f_n, |tau|, v_t, |omega| of that instant.
+        Whether the contact slid there, and (f_t, f_n, |tau|, v_t, |omega|) of that instant.
     """
     if state.samples >= 2 and elapsed > 1.5 * state.elapsed:  # one was lost: the windows are not neighbours
         state.in_a_row = 0
-    row = state.samples % FORCES
-    forces = state.forces[row]
+    forces = state.forces[state.samples % FORCES]
     forces[0], forces[1], forces[2] = f_t, f_n, tau
     state.in_a_row += 1
     before = state.twist
     past = state.forces[(state.samples - p.velocity_delay - 1) % FORCES]
-    slid = (
-        state.in_a_row >= p.velocity_delay + 3
-        and reference_speed(p, twist[0], twist[1], twist[2]) > p.eps_v
-        and reference_speed(p, before[0], before[1], before[2]) > p.eps_v
-    )
-    v_t = 0.5 * math.hypot(before[0] + twist[0], before[1] + twist[1])
+    slid = state.in_a_row >= p.velocity_delay + 3 and moves and state.moved
+    v_t = 0.5 * norm(before[0] + twist[0], before[1] + twist[1])
     omega = 0.5 * abs(before[2] + twist[2])
     before[0], before[1], before[2] = twist[0], twist[1], twist[2]
-    return slid, past[0], past[1], past[2], v_t, omega
+    state.moved = moves
+    return slid, (past[0], past[1], past[2], v_t, omega)

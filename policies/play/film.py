@@ -1,0 +1,109 @@
+"""Films as files: MP4 or GIF."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from PIL import Image
+
+from slipgym.config.errors import unknown
+from slipgym.rendering import HEIGHT, WIDTH, palette
+
+_SIGNS = palette.INK, palette.MUTED, palette.SLIP, palette.GRIP_2, palette.MU_C, palette.MU_S
+
+
+class _Writer(Protocol):
+    def add(self, picture: np.ndarray) -> None: ...
+
+    def finish(self) -> None: ...
+
+
+class _Mp4:
+    """H.264, one frame at a time to ffmpeg."""
+
+    def __init__(self, path: Path, rate: int) -> None:
+        from imageio_ffmpeg import write_frames
+
+        self._frames = write_frames(str(path), (WIDTH, HEIGHT), fps=rate, codec="libx264", quality=7)
+        self._frames.send(None)
+
+    def add(self, picture: np.ndarray) -> None:
+        self._frames.send(np.ascontiguousarray(picture))
+
+    def finish(self) -> None:
+        self._frames.close()
+
+
+class _Gif:
+    """Frames reduced to the first one's colours and the plots', the same for all: what rests stays still."""
+
+    def __init__(self, path: Path, rate: int) -> None:
+        self._path, self._rate = path, rate
+        self._frames: list[Image.Image] = []
+        self._colours = Image.new("P", (1, 1))
+
+    def add(self, picture: np.ndarray) -> None:
+        image = Image.fromarray(picture)
+        if not self._frames:
+            pale = [(channel + 255) // 2 for sign in _SIGNS for channel in sign]
+            signs = [channel for sign in _SIGNS for channel in sign] + pale
+            most = image.quantize(256 - len(signs) // 3).getpalette() or []
+            self._colours.putpalette(most[: 768 - len(signs)] + signs)
+        self._frames.append(image.quantize(palette=self._colours, dither=Image.Dither.NONE))
+
+    def finish(self) -> None:
+        if self._frames:
+            first, *rest = self._frames
+            first.save(
+                self._path, save_all=True, append_images=rest, duration=1000 // self._rate, loop=0, disposal=1
+            )
+
+
+FILM_TYPES: dict[str, tuple[Callable[[Path, int], _Writer], int]] = {".mp4": (_Mp4, 30), ".gif": (_Gif, 25)}
+"""File type -> writer and frames per second; a GIF counts time in hundredths of a second."""
+
+
+class Film:
+    """A film that appears at its path when it is complete, or not at all.
+
+    Use it in a `with` statement; an error inside leaves nothing behind.
+
+    Args:
+        path: Where it shall appear; its type is in its name.
+
+    Raises:
+        ValueError: The type is unknown.
+        OSError: The folder cannot be written.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self._path = Path(path)
+        kind = self._path.suffix.lower()
+        if kind not in FILM_TYPES:
+            raise ValueError(unknown("type of film", kind, FILM_TYPES))
+        self._make, self.rate = FILM_TYPES[kind]
+
+    def __enter__(self) -> Film:
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        self._folder = Path(tempfile.mkdtemp(prefix=".partial-", dir=self._path.parent))
+        self._partial = self._folder / self._path.name
+        self._writer = self._make(self._partial, self.rate)
+        return self
+
+    def add(self, picture: np.ndarray) -> None:
+        """Append a picture (HEIGHT, WIDTH, 3) uint8."""
+        self._writer.add(picture)
+
+    def __exit__(self, kind: Any, *_: object) -> None:
+        try:
+            self._writer.finish()
+            if kind is None and self._partial.exists():
+                os.replace(self._partial, self._path)
+        finally:
+            shutil.rmtree(self._folder, ignore_errors=True)

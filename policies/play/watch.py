@@ -1,0 +1,196 @@
+"""Plays episodes before someone's eyes."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from tqdm import tqdm
+
+import policies
+from policies.play.film import Film
+from policies.play.portrait import own_policy
+from policies.registry import Policy
+from slipgym.config import Config
+from slipgym.config.errors import unknown
+from slipgym.envs.slip_env import SlipEnv
+from slipgym.rendering import HEIGHT, WIDTH, WINDOW_RATE, Window
+from slipgym.tasks import TASKS
+
+KEYBOARD = "keyboard"
+"""Name of the policy that is whoever sits at the keyboard."""
+_FORCE_RATE = 8.0  # of a key held down [N/s]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How an episode went."""
+
+    seed: int
+    """Of the environment."""
+    time: float
+    """When it ended [s]."""
+    success: bool
+    dropped: bool
+    slip: tuple[float, float, float]
+    """Slip displacement at the end (x, y, theta) [m, m, rad]."""
+    reward: float
+    """Sum over the episode."""
+
+    def words(self) -> str:
+        """One line about it."""
+        end = "dropped" if self.dropped else "success" if self.success else "no success"
+        slid, turned = 1e3 * math.hypot(*self.slip[:2]), math.degrees(self.slip[2])
+        return (
+            f"seed {self.seed}: {end} after {self.time:.2f} s; "
+            f"slid {slid:.1f} mm, turned {round(turned, 1) + 0.0:.1f}°; reward {self.reward:.1f}"
+        )
+
+
+class Keyboard:
+    """A policy by hand: the up key grips harder, the down key more loosely.
+
+    Args:
+        window: Where the keys are read.
+        config: Of the environment.
+        force: Grip force per finger at the start [N].
+    """
+
+    def __init__(self, window: Window, config: Config, force: float) -> None:
+        self._window, self._gripper, self._start = window, config.gripper, force
+        self._change = _FORCE_RATE / config.physics.control_rate
+
+    def predict(
+        self,
+        observation: np.ndarray,
+        state: float | None = None,
+        episode_start: np.ndarray | None = None,
+        deterministic: bool = True,
+    ) -> tuple[np.ndarray, float]:
+        """Action for whatever is seen, and the force as the memory."""
+        low, high = self._gripper.force_min, self._gripper.force_max
+        force = self._start if state is None else state
+        force = min(max(force + self._change * self._window.vertical(), low), high)
+        return np.array([2.0 * (force - low) / (high - low) - 1.0], dtype=np.float32), force
+
+
+def watch(
+    task: str,
+    policy: str | None = None,
+    video: str | os.PathLike[str] | None = None,
+    episodes: int = 1,
+    seed: int = 0,
+    speed: float = 1.0,
+    options: Mapping[str, Any] | None = None,
+    progress: bool = True,
+    **keywords: Any,
+) -> list[Outcome]:
+    """Plays a policy in a window, or into a film.
+
+    Args:
+        task: "LinearSlip" or another of `slipgym.tasks.TASKS`.
+        policy: A name of `policies.names()`, the path of a trained policy, or `KEYBOARD` in a window;
+            None for the task's own.
+        video: MP4 or GIF to write; None opens a window.
+        episodes: How many, one after the other.
+        seed: Of the first; the others' follow.
+        speed: Seconds of simulation per second of watching.
+        options: Of every reset.
+        progress: Whether a film's making shows a progress bar.
+        **keywords: Of the environment.
+
+    Returns:
+        How each episode went; fewer than asked for if someone closed the window.
+
+    Raises:
+        ValueError: A value is unknown or not allowed.
+        FileNotFoundError: There is no policy at the path.
+        RuntimeError: A window was asked for and cannot open.
+    """
+    if task not in TASKS:
+        raise ValueError(unknown("task", task, TASKS))
+    if not 0.01 <= speed <= 100.0:
+        raise ValueError(f"speed = {speed!r} must lie in 0.01 to 100")
+    if episodes < 1:
+        raise ValueError(f"episodes = {episodes!r} must be at least 1")
+    if policy == KEYBOARD and video is not None:
+        raise ValueError(
+            f"policy {KEYBOARD!r} needs a window; valid for a film: {', '.join(policies.names())}"
+        )
+    outcomes = []
+    with ExitStack() as stack:
+        player: Policy | None = None if policy == KEYBOARD else _policy(policy or own_policy(task))
+        env: Any = gym.make(
+            f"slipgym:slipgym/{task}-v0", render_mode="rgb_array", disable_env_checker=True, **keywords
+        ).unwrapped
+        stack.callback(env.close)
+        if video is None:
+            window = Window(f"slipgym {task}", (WIDTH, HEIGHT))
+            stack.callback(window.close)
+            force = getattr(env.config.tasks, env.task.key).initial_force
+            player = player or Keyboard(window, env.config, force)
+            rate: float = WINDOW_RATE
+
+            def show(picture: np.ndarray) -> bool:
+                window.show(picture, WINDOW_RATE)
+                return not window.closed
+        else:
+            film = stack.enter_context(Film(video))
+            rate = film.rate
+
+            def show(picture: np.ndarray) -> bool:
+                film.add(picture)
+                return True
+
+        for number in range(episodes):
+            bar = progress and video is not None
+            outcome = _episode(env, player, show, speed / rate, seed + number, options, bar)
+            if outcome is None:
+                break
+            outcomes.append(outcome)
+    return outcomes
+
+
+def _episode(
+    env: SlipEnv,
+    policy: Any,
+    show: Callable[[np.ndarray], bool],
+    interval: float,
+    seed: int,
+    options: Mapping[str, Any] | None,
+    progress: bool,
+) -> Outcome | None:
+    """One episode, a picture each interval [s] and at the end; None if it was broken off."""
+    observation, info = env.reset(seed=seed, options=dict(options or {}))
+    state, over, shown, reward = None, False, 0, 0.0
+    steps = int(env._loop.episode["steps"][0])
+    with tqdm(total=steps, desc=f"{env.task.name}, seed {seed}", unit="sample", disable=not progress) as bar:
+        while not over:
+            while info["time"] >= shown * interval - 1e-9:
+                shown += 1
+                if not show(env.render()):  # type: ignore[arg-type]
+                    return None
+            action, state = policy.predict(observation, state=state)
+            observation, gained, terminated, truncated, info = env.step(action)
+            reward, over = reward + gained, terminated or truncated
+            bar.update(int(env._loop.episode["step"][0]) - bar.n)
+    show(env.render())  # type: ignore[arg-type]
+    slip = tuple(info["slip"].tolist())
+    return Outcome(seed, info["time"], info["is_success"], info["dropped"], slip, reward)
+
+
+def _policy(name: str) -> Policy:
+    """A policy by its name, or from where it was saved."""
+    known = [KEYBOARD, *policies.names()]
+    if name in known:
+        return policies.make(name)
+    if Path(name).exists() or os.sep in name:
+        return policies.load(name)
+    raise ValueError(f"{unknown('policy', name, known)}; or the path of a trained one")

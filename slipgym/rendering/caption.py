@@ -1,0 +1,60 @@
+"""Words over the view: what is played, how it stands, and the keys of the marks."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from slipgym.rendering.camera import HEIGHT, WIDTH
+from slipgym.rendering.forces import Contact
+from slipgym.rendering.palette import FRICTION, GRIP, INK, MUTED, PAPER, SLIP
+from slipgym.rendering.text import write
+
+_FOOT = 46  # height of the band with the keys [pixels]
+
+
+def caption(
+    picture: np.ndarray,
+    title: str,
+    about: str,
+    time: float,
+    state: str,
+    contact: Contact,
+    slip: np.ndarray,
+) -> None:
+    """Write over the view.
+
+    Args:
+        picture: The view (HEIGHT, WIDTH, 3) uint8, written into.
+        title: What is played.
+        about: What the object is.
+        time: Since the start [s].
+        state: How the object fares.
+        contact: What the pads do.
+        slip: Slip displacement (x, y, theta) [m, m, rad].
+    """
+    write(picture, 14, 26, title, INK, 17)
+    write(picture, 14, 45, about, MUTED, 13)
+    write(picture, WIDTH - 14, 26, f"{time:.2f} s", INK, 17, align=1.0)
+    write(picture, WIDTH - 14, 45, state, MUTED, 13, align=1.0)
+    foot = picture[HEIGHT - _FOOT :]
+    foot[:] = (foot.astype(np.uint16) + 3 * np.array(PAPER, np.uint16)) // 4
+    friction, torque = math.hypot(*contact.friction), 1e3 * contact.torque
+    sliding, turn = 1e3 * math.hypot(slip[0], slip[1]), math.degrees(slip[2])
+    keys = (
+        ("grip force", GRIP, f"{contact.grip[0]:.1f} N", f"{contact.grip[1]:.1f} N"),
+        ("friction on the object", FRICTION, f"{friction:.2f} N", f"{_signed(torque, 0)} mN m"),
+        ("slip since the grasp", SLIP, f"{sliding:.1f} mm", f"{_signed(turn, 1)}°"),
+    )
+    for k, (words, colour, first, second) in enumerate(keys):
+        x = 14 + (0, 128, 296)[k]
+        write(picture, x, HEIGHT - _FOOT + 19, words, colour, 13)
+        write(picture, x, HEIGHT - _FOOT + 36, first, INK, 13)
+        write(picture, x + 58, HEIGHT - _FOOT + 36, second, INK, 13)
+
+
+def _signed(value: float, digits: int) -> str:
+    """A number with its sign, and zero without."""
+    rounded = round(value, digits)
+    return f"{rounded:+.{digits}f}" if rounded else f"{0:.{digits}f}"

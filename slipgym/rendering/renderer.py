@@ -1,0 +1,103 @@
+"""Pictures of an environment: the view, the words over it and the strip beside it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from slipgym.envs.loop import SlipLoop
+from slipgym.rendering import camera, strip
+from slipgym.rendering.bullet import look
+from slipgym.rendering.caption import caption
+from slipgym.rendering.forces import Contact
+from slipgym.rendering.history import History
+from slipgym.rendering.motion import motion_of
+from slipgym.rendering.scene import draw_scene, measure_depth
+from slipgym.rendering.stage import View, footprint
+from slipgym.rendering.window import Window
+
+WIDTH, HEIGHT = camera.WIDTH + strip.WIDTH, camera.HEIGHT
+"""Size of a picture [pixels]."""
+WINDOW_RATE = 30
+"""Pictures per second in a window."""
+_SLIPPING = 5e-4, 0.05  # slip speed [m/s] and rate [rad/s] from which the object counts as slipping
+
+
+class Renderer:
+    """Draws an environment's loop; reads it and changes nothing.
+
+    Args:
+        mode: "rgb_array", "depth_array" or "human".
+        loop: The environment's loop.
+    """
+
+    def __init__(self, mode: str, loop: SlipLoop) -> None:
+        self._mode, self._loop = mode, loop
+        self._motion = motion_of(loop.task)
+        self._window = Window(f"slipgym {loop.task.name}", (WIDTH, HEIGHT)) if mode == "human" else None
+
+    def begin(self) -> None:
+        """Start an episode, or go on from a restored state: the strip begins anew."""
+        self._history = History(self._loop, self._motion)
+        names = [column.name for column in self._loop.task.columns]
+        told = dict(zip(names, self._loop.task_part[0].tolist(), strict=True))
+        self._goal = self._motion.target(told.get(self._motion.goal, 0.0))
+        self._camera = camera.framing(footprint(self._view(), told.get("wrist_pitch_goal", 0.0)))
+        self._show()
+
+    def keep(self) -> None:
+        """Keep the present sample for the strip; a window shows every so many of them."""
+        self._history.keep()
+        if self._window is not None:
+            every = max(1, round(1.0 / (WINDOW_RATE * self._history.step_time)))
+            if self._history.step % every == 0:
+                self._show()
+
+    def render(self) -> np.ndarray | None:
+        """What the mode asks for: a picture (HEIGHT, WIDTH, 3) uint8, depths, or None and a window."""
+        if self._mode == "depth_array":
+            return measure_depth(self._view(), self._camera)
+        if self._mode == "rgb_array":
+            return self.picture()
+        self._show()
+        return None
+
+    def picture(self) -> np.ndarray:
+        """Picture (HEIGHT, WIDTH, 3) uint8; the caller's own."""
+        loop = self._loop
+        picture = np.empty((HEIGHT, WIDTH, 3), np.uint8)
+        view, beside = picture[:, : camera.WIDTH], picture[:, camera.WIDTH :]
+        contact = self._contact()
+        draw_scene(view, self._view(), contact, self._camera)
+        about = f"{loop.material}, {1e3 * loop.world.box.mass:.0f} g"
+        slip = loop.plant.world["slip"][0]
+        caption(view, loop.task.name, about, loop.time, self._state(), contact, slip)
+        true = float(loop.true_friction[0]), float(loop.true_friction[1])
+        strip.draw_strip(beside, self._history, self._motion, self._goal, true)
+        return picture
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        if self._window is not None:
+            self._window.close()
+
+    def _show(self) -> None:
+        if self._window is not None:
+            self._window.show(self.picture(), WINDOW_RATE)
+
+    def _view(self) -> View:
+        return look(self._loop.world, self._loop.material, self._loop.config.gripper.pad_radius)
+
+    def _contact(self) -> Contact:
+        x, y, torque = self._loop.plant.pads["wrench"][0].sum(axis=0).tolist()
+        first, second = self._loop.plant.fingers["contact_force"][0].tolist()
+        return Contact((x, y), torque, (first, second))
+
+    def _state(self) -> str:
+        loop = self._loop
+        if loop.episode["dropped"][0]:
+            return "dropped"
+        if loop.episode["success"][0]:
+            return "success"
+        x, y, rate = loop.plant.world["slip_twist"][0]
+        slips = np.hypot(x, y) > _SLIPPING[0] or abs(rate) > _SLIPPING[1]
+        return "slips" if slips else "sticks"

@@ -1,0 +1,69 @@
+"""The view: gripper and object in their light, with forces and slip over them."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from slipgym.rendering import forces
+from slipgym.rendering.camera import FINE, HEIGHT, WIDTH, Camera
+from slipgym.rendering.forces import Contact
+from slipgym.rendering.raster import fill, shrink
+from slipgym.rendering.stage import View, assemble, grid
+
+_LIGHT = np.array([-0.25, -0.75, 0.61])
+_AMBIENT = 0.6
+_TOP, _BOTTOM = np.array([249.0, 250.0, 251.0]), np.array([229.0, 232.0, 237.0])
+_SIZE = FINE * HEIGHT, FINE * WIDTH
+
+
+def draw_scene(picture: np.ndarray, view: View, contact: Contact, camera: Camera) -> None:
+    """Draw the scene.
+
+    Args:
+        picture: (HEIGHT, WIDTH, 3) uint8, drawn over.
+        view: What is where.
+        contact: What the pads do.
+        camera: Who looks.
+    """
+    corners, colours = assemble(view)
+    shaded = colours.copy()
+    shaded[:, :3] *= 255.0 * _brightness(corners)[:, None]
+    image, nearness = _backdrop(camera).copy(), np.zeros(_SIZE, dtype=np.float32)
+    fill(camera.project(corners), shaded, image, nearness)
+    fill(*forces.before(view, contact, camera), image, nearness)
+    nearness[:] = 0.0
+    fill(*forces.above(view, contact, camera), image, nearness)
+    shrink(image, picture)
+
+
+def measure_depth(view: View, camera: Camera) -> np.ndarray:
+    """Distance of what is seen along the camera's axis, (HEIGHT, WIDTH) float32 [m]; the far is infinite."""
+    corners, colours = assemble(view)
+    solid = colours.copy()
+    solid[:, 3] = 1.0
+    nearness = np.zeros(_SIZE, dtype=np.float32)
+    fill(camera.project(corners), solid, np.zeros((*_SIZE, 3), np.uint8), nearness)
+    rows = np.maximum(nearness[::FINE], nearness[1::FINE])
+    nearest = np.maximum(rows[:, ::FINE], rows[:, 1::FINE])
+    return np.divide(1.0, nearest, out=np.full_like(nearest, math.inf), where=nearest > 0.0)
+
+
+@lru_cache(maxsize=4)
+def _backdrop(camera: Camera) -> np.ndarray:
+    """The picture of an empty scene, with `FINE` samples per pixel."""
+    shades = np.linspace(0.0, 1.0, _SIZE[0])[:, None]
+    image = np.empty((*_SIZE, 3), dtype=np.uint8)
+    image[:] = np.rint((1.0 - shades) * _TOP + shades * _BOTTOM)[:, None]
+    corners, colours = grid()
+    fill(camera.project(corners), colours * [255.0, 255.0, 255.0, 1.0], image, np.zeros(_SIZE, np.float32))
+    return image
+
+
+def _brightness(corners: np.ndarray) -> np.ndarray:
+    """Share of a triangle's colour that is seen: ambient light and a lamp at the upper left."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    facing = normals @ _LIGHT / np.maximum(np.linalg.norm(normals, axis=1), 1e-30)
+    return _AMBIENT + (1.0 - _AMBIENT) * np.maximum(facing, 0.0)

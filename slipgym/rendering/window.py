@@ -1,0 +1,66 @@
+"""A window on the screen, by pygame."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+
+from slipgym.screen import obstacle
+
+_OTHERWISE = (
+    "; use render_mode='rgb_array', or write a film: python scripts/play.py LinearSlip --video film.mp4"
+)
+
+
+class Window:
+    """Shows pictures, and tells which keys are down.
+
+    Args:
+        title: In its bar.
+        size: Width and height [pixels].
+
+    Raises:
+        RuntimeError: There is no screen, or pygame is not installed; the message says what to do.
+    """
+
+    def __init__(self, title: str, size: tuple[int, int]) -> None:
+        if why := obstacle():
+            raise RuntimeError(f"a window cannot open: {why}{_OTHERWISE}")
+        os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+        import pygame
+
+        self._pygame = pygame
+        try:
+            pygame.display.init()
+        except pygame.error as error:
+            raise RuntimeError(f"a window cannot open: {error}{_OTHERWISE}") from error
+        pygame.display.set_caption(title)
+        self._screen = pygame.display.set_mode(size)
+        self._clock = pygame.time.Clock()
+        self.closed = False
+        """Whether someone closed the window, or pressed Escape."""
+
+    def show(self, picture: np.ndarray, rate: float) -> None:
+        """Show a picture, no sooner than 1/rate after the last one.
+
+        Args:
+            picture: (height, width, 3) uint8.
+            rate: Pictures per second, at most.
+        """
+        pygame = self._pygame
+        for event in pygame.event.get():
+            escaped = event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE
+            self.closed = self.closed or escaped or event.type == pygame.QUIT
+        pygame.surfarray.blit_array(self._screen, picture.swapaxes(0, 1))
+        pygame.display.flip()
+        self._clock.tick(rate)
+
+    def vertical(self) -> int:
+        """1 while the up key is down, -1 while the down key is, else 0."""
+        keys = self._pygame.key.get_pressed()
+        return int(keys[self._pygame.K_UP]) - int(keys[self._pygame.K_DOWN])
+
+    def close(self) -> None:
+        """Take the window off the screen; doing so twice is harmless."""
+        self._pygame.display.quit()

@@ -1,0 +1,153 @@
+"""Films and windows of policies."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from policies.play import Film, own_policy, portrait, watch
+from policies.play.watch import Keyboard
+from slipgym.config import load
+from slipgym.registration import ENVIRONMENTS
+from slipgym.rendering import Window
+from slipgym.tasks import TASKS
+
+SHORT = {"duration": 0.4, "settle": 0.1, "hold": 0.1, "distance": 0.005}
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_a_gif_of_two_episodes(tmp_path):
+    path = tmp_path / "new" / "film.gif"
+    outcomes = watch("LinearSlip", video=path, episodes=2, seed=4, options=SHORT, progress=False)
+    assert [outcome.seed for outcome in outcomes] == [4, 5]
+    assert all(outcome.time == pytest.approx(0.6) for outcome in outcomes)
+    with Image.open(path) as film:
+        assert film.size == (720, 480)
+        # still frames of a GIF are merged into longer ones
+        total = 0
+        for frame in range(film.n_frames):
+            film.seek(frame)
+            total += film.info["duration"]
+        assert total == pytest.approx(2 * (0.6 / 0.04 + 2) * 40, abs=80)
+    assert [file.name for file in path.parent.iterdir()] == ["film.gif"]
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # imageio_ffmpeg's own pipes
+@pytest.mark.parametrize(("speed", "frames"), [(1.0, 19), (0.5, 37)])
+def test_an_mp4_at_its_speed(tmp_path, speed, frames):
+    reader = pytest.importorskip("imageio_ffmpeg")
+    path = tmp_path / "film.mp4"
+    watch("LinearSlip", "constant_force", path, speed=speed, options=SHORT, progress=False)
+    film = reader.read_frames(str(path))
+    meta = next(film)
+    pictures = [np.frombuffer(frame, np.uint8) for frame in film]
+    assert meta["size"] == (720, 480)
+    assert meta["fps"] == 30
+    assert len(pictures) == pytest.approx(frames, abs=1)
+    assert np.abs(pictures[0].astype(int) - pictures[-1]).max() > 50
+
+
+def test_an_error_leaves_no_film(tmp_path):
+    def break_off() -> None:
+        with Film(tmp_path / "film.gif") as film:
+            film.add(np.zeros((480, 720, 3), np.uint8))
+            raise RuntimeError("midway")
+
+    with pytest.raises(RuntimeError, match="midway"):
+        break_off()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"task": "Slide"}, "unknown task 'Slide'"),
+        ({"policy": "hodl"}, "unknown policy 'hodl'.*hold"),
+        ({"policy": "keyboard"}, "needs a window"),
+        ({"video": "film.avi"}, r"unknown type of film '.avi'.*\.gif, \.mp4"),
+        ({"speed": 0.0}, "speed = 0.0"),
+        ({"episodes": 0}, "episodes = 0"),
+        ({"options": {"distanse": 1}}, "unknown option 'distanse'"),
+        ({"material": "glass"}, "unknown material 'glass'"),
+    ],
+)
+def test_what_is_wrong_is_named(tmp_path, changes, words):
+    arguments = {"task": "LinearSlip", "video": "film.gif", "progress": False, **changes}
+    arguments["video"] = tmp_path / arguments["video"]
+    with pytest.raises(ValueError, match=words):
+        watch(**arguments)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def keys(monkeypatch):
+    """A hidden window in which the up key is held down, at no one's pace."""
+    pytest.importorskip("pygame")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setattr(Window, "vertical", lambda self: 1)
+    shown = []
+    monkeypatch.setattr(Window, "show", lambda self, picture, rate: shown.append(picture))
+    return shown
+
+
+def test_a_key_held_down_grips_harder(keys):
+    config = load(None)
+    window = Window("test", (720, 480))
+    hand, state, actions = Keyboard(window, config, 10.0), None, []
+    for _ in range(config.physics.control_rate):
+        action, state = hand.predict(np.zeros(1), state)
+        actions.append(float(action[0]))
+    assert np.all(np.diff(actions) > 0.0)
+    assert state == pytest.approx(18.0)
+    window.close()
+
+
+def test_playing_by_hand(keys):
+    (outcome,) = watch("LinearSlip", "keyboard", options=SHORT)
+    assert outcome.slip[1] > -1e-4  # it was held
+    assert len(keys) == pytest.approx(0.6 * 30 + 2, abs=1)
+
+
+def test_closing_the_window_ends_it(keys, monkeypatch):
+    def close(self, picture, rate):
+        self.closed = True
+
+    monkeypatch.setattr(Window, "show", close)
+    assert watch("LinearSlip", options=SHORT) == []
+
+
+def test_every_task_has_a_policy_to_show():
+    assert own_policy("LinearSlip") == "linear_slip"
+    picture = portrait("slipgym/LinearSlip-v0", "wood")
+    assert picture.shape == (480, 720, 3)
+
+
+def test_the_command_line(tmp_path):
+    def call(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, str(ROOT / "scripts" / "play.py"), *arguments],
+            cwd=tmp_path,
+            env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    options = [word for name, value in SHORT.items() for word in ("--option", f"{name}={value}")]
+    done = call("LinearSlip", "--video", "film.gif", "--material", "wood", *options)
+    assert done.returncode == 0, done.stderr
+    assert "seed 0:" in done.stdout
+    assert (tmp_path / "film.gif").stat().st_size > 1000
+    done = call("LinearSlip")
+    assert done.returncode == 2
+    assert "--video" in done.stderr
+
+
+@pytest.mark.parametrize("env_id", ENVIRONMENTS)
+def test_every_environment_has_its_picture_in_the_docs(env_id):
+    key = TASKS[env_id.removeprefix("slipgym/").rpartition("-")[0]].key
+    with Image.open(ROOT / "docs" / "images" / f"{key}.png") as picture:
+        assert picture.size == (720, 480), "run scripts/make_docs.py"
