@@ -13,7 +13,7 @@ import numpy as np
 
 from slipgym.config import load
 from slipgym.envs import observation
-from slipgym.envs.choices import check_action, one_of, refuse_unknown
+from slipgym.envs.choices import DEFAULT_ESTIMATOR, check_action, one_of, refuse_unknown
 from slipgym.envs.loop import SlipLoop
 from slipgym.envs.state import EnvState, checked, restored_generator
 from slipgym.screen import obstacle
@@ -55,7 +55,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
     def __init__(
         self,
         friction_source: str = "estimated",
-        estimator: str | Mapping[str, Any] = "rls",
+        estimator: str | Mapping[str, Any] = DEFAULT_ESTIMATOR,
         contact: str = "ellipsoid",
         sensors: str = "realistic",
         material: str = "random",
