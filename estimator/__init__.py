@@ -11,9 +11,21 @@ simulator as well as on a real gripper.
     e.mu_s, e.mu_c, e.r
 """
 
+from estimator.disc.parameters import DiscParameters
 from estimator.estimate import ESTIMATE, Estimate
 from estimator.joint.parameters import JointParameters
 from estimator.registry import make, make_batch, names
 from estimator.rls.parameters import RlsParameters
+from estimator.ukf.parameters import UkfParameters
 
-__all__ = ["ESTIMATE", "Estimate", "JointParameters", "RlsParameters", "make", "make_batch", "names"]
+__all__ = [
+    "ESTIMATE",
+    "DiscParameters",
+    "Estimate",
+    "JointParameters",
+    "RlsParameters",
+    "UkfParameters",
+    "make",
+    "make_batch",
+    "names",
+]

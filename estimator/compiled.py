@@ -10,7 +10,9 @@ from numba import from_dtype, types
 from estimator.caching import compiler
 from estimator.estimate import ESTIMATE
 
-_compiled = compiler(Path(__file__).parent)
+_compiled = compiler(
+    Path(__file__).parent, error_model="numpy", forceinline=True
+)  # inf and NaN are refused where they matter
 
 
 def _array(dtype: Any, ndim: int) -> Any:

@@ -13,9 +13,20 @@ from estimator.parameters import Parameters
 
 WRENCH = ("f_x", "f_y", "f_n", "tau")
 TWIST = ("v_x", "v_y", "omega")
+_NUMBERS = (float, int, np.floating, np.integer)
 
 
-def _fill(row: NDArray[np.float64], values: ArrayLike, what: str, components: Sequence[str]) -> None:
+def _fill(row: NDArray[np.float64], values: Any, what: str, components: Sequence[str]) -> None:
+    """Copies finite numbers into a row; the usual case, a flat sequence, is tried first: that is quick."""
+    try:
+        listed = values.tolist() if isinstance(values, np.ndarray) else values
+        plain = len(listed) == len(components) and math.isfinite(sum(listed))
+        if plain:
+            row[:] = listed
+    except (TypeError, ValueError, OverflowError):
+        plain = False
+    if plain:
+        return
     try:
         array = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
@@ -38,9 +49,16 @@ class OnlineEstimator:
 
     def __init__(self, name: str, **parameters: Any) -> None:
         """See `estimator.make`."""
-        self.batch = BatchEstimator(name, 1, **parameters)
-        self._wrenches = np.zeros((1, 4))
-        self._twists = np.zeros((1, 3))
+        self.__setstate__(BatchEstimator(name, 1, **parameters))
+
+    def __getstate__(self) -> Any:
+        return self.batch
+
+    def __setstate__(self, batch: BatchEstimator) -> None:
+        self.batch = batch
+        self._samples, self._t = batch.states["samples"], batch.states["t"]  # views, as long as the states
+        self._wrenches, self._twists = np.zeros((1, 4)), np.zeros((1, 3))
+        self._wrench, self._twist = self._wrenches[0], self._twists[0]
 
     @property
     def parameters(self) -> Parameters:
@@ -50,7 +68,7 @@ class OnlineEstimator:
     @property
     def estimate(self) -> Estimate:
         """The newest estimate; the start values before the first sample."""
-        return Estimate(*self.batch.estimates[0].item())
+        return Estimate._make(self.batch.estimates.item())
 
     def update(self, t: float, wrench: ArrayLike, twist: ArrayLike) -> Estimate:
         """Takes one sample.
@@ -66,13 +84,12 @@ class OnlineEstimator:
         Raises:
             ValueError: t does not increase, or an input is not finite or of the wrong shape; nothing changes.
         """
-        state = self.batch.states[0]
-        if not isinstance(t, float | int | np.floating | np.integer) or not math.isfinite(t):
+        if not isinstance(t, _NUMBERS) or not math.isfinite(t):
             raise ValueError(f"t = {t!r}: expected a finite number [s]")
-        if state["samples"] and t <= state["t"]:
-            raise ValueError(f"t = {t!r}: expected later than the last sample's {state['t']} s")
-        _fill(self._wrenches[0], wrench, "wrench", WRENCH)
-        _fill(self._twists[0], twist, "twist", TWIST)
+        if self._samples[0] and t <= self._t[0]:
+            raise ValueError(f"t = {t!r}: expected later than the last sample's {self._t[0]} s")
+        _fill(self._wrench, wrench, "wrench", WRENCH)
+        _fill(self._twist, twist, "twist", TWIST)
         self.batch.update(float(t), self._wrenches, self._twists)
         return self.estimate
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from estimator.batch import BatchEstimator
     from estimator.online import OnlineEstimator
 
-_MODULES = {"joint": "estimator.joint.specification", "rls": "estimator.rls.specification"}
+_MODULES = {name: f"estimator.{name}.specification" for name in ("disc", "joint", "rls", "ukf")}
 """Name -> module that holds its SPECIFICATION; imported on first use, because numba is slow to import."""
 
 

@@ -13,8 +13,15 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     quick: Annotated[bool, typer.Option(help="A few coarse records, to see that it works.")] = False,
     seed: Annotated[int, typer.Option(min=0, help="Of the sensors' noise.")] = 0,
+    costs: Annotated[bool, typer.Option("--costs", help="Only print what an update costs.")] = False,
 ) -> None:
     """Runs all estimators on all scenarios; writes a folder with tables and a picture."""
+    if costs:
+        from policies.leaderboard import cost
+        from policies.leaderboard.tables import markdown
+
+        typer.echo(markdown(cost.costs(), 1))
+        return
     from policies.leaderboard import run_leaderboard
 
     folder = run_leaderboard(output, quick, seed)

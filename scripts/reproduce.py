@@ -1,5 +1,6 @@
 """Reproduces the analyses of the paper (arXiv 2507.06824)."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -7,6 +8,10 @@ import typer
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 Output = Annotated[Path, typer.Option(help="Folder for the run's own folder.")]
+Trials = Annotated[int, typer.Option(min=1, help="Trials per cell.")]
+Jobs = Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of the experiment.")]
+Contact = Annotated[str, typer.Option(help="Friction model of the pads: distributed or ellipsoid.")]
 
 
 @app.callback()
@@ -38,6 +43,48 @@ def profile(
     for name in ("phases.md", "events.md"):
         typer.echo(f"\n{name}\n{(folder / name).read_text(encoding='utf-8').rstrip()}")
     typer.echo(f"\nLook at:\n  {folder / 'ideal.png'}\n  {folder / 'realistic.png'}")
+
+
+@app.command()
+def linear(
+    trials: Trials = 10,
+    jobs: Jobs = -1,
+    seed: Seed = 0,
+    friction_source: Annotated[
+        str, typer.Option(help="What the controller acts on: true, estimated or nominal.")
+    ] = "true",
+    contact: Contact = "distributed",
+    output: Output = Path("runs"),
+) -> None:
+    """Linear slip, 160 trials: every estimator on the same records, beside the paper's table."""
+    from policies.reproduction import reproduce_linear
+
+    _report(reproduce_linear, output, trials, jobs, seed, friction_source, contact)
+
+
+@app.command()
+def planar(
+    trials: Trials = 10,
+    jobs: Jobs = -1,
+    seed: Seed = 0,
+    contact: Contact = "distributed",
+    output: Output = Path("runs"),
+) -> None:
+    """Planar motion, 40 trials: the gripper turns round a hanging object; beside the paper's table."""
+    from policies.reproduction import reproduce_planar
+
+    _report(reproduce_planar, output, trials, jobs, seed, contact)
+
+
+def _report(reproduce: Callable[..., Path], *arguments: object) -> None:
+    """Runs an experiment, prints its tables and where its figures are."""
+    try:
+        folder = reproduce(*arguments)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error
+    typer.echo("\n" + (folder / "table.md").read_text(encoding="utf-8") + "\nLook at:")
+    for path in sorted(folder.glob("*.png")):
+        typer.echo(f"  {path}")
 
 
 if __name__ == "__main__":

@@ -1,13 +1,13 @@
-"""The compiled update of the "joint" estimator.
+"""The compiled update of "joint" and "disc": mu_c and r from each sample of sliding, at once.
 
-The ellipsoid of Waltersson & Karayiannidis (ISER 2025), eqs. (1) f_t = gamma_t f_n mu_c and
-(2) tau = gamma_tau mu_c f_n r, solved for both unknowns in closed form. Their ratio is
-tau / f_t = r^2 omega / v_t, so
+The limit surface gives two equations, f_t and tau, for both unknowns. Their ratio with the twist,
+q = tau omega / (f_t v_t), tells where on the surface the slip is, whatever mu_c and r; on the ellipsoid of
+Waltersson & Karayiannidis (ISER 2025), eqs. (1) and (2), in closed form
 
-    r = sqrt(tau v_t / (f_t omega)),
-    mu_c = sqrt(f_t^2 + (tau / r)^2) / f_n = sqrt(f_t (f_t + tau omega / v_t)) / f_n.
+    r = sqrt(q) v_t / omega = sqrt(tau v_t / (f_t omega)),    mu_c = sqrt(1 + q) f_t / f_n,
 
-No estimate enters, neither in the equations nor in their gates: nothing can be locked out.
+on a uniform disc with tabulated factors (`estimator.limit_surface.inverse`). No estimate enters, neither in
+the equations nor in their gates: nothing can be locked out.
 """
 
 import math
@@ -15,22 +15,13 @@ import math
 from numba import njit
 
 from estimator.compiled import entry_point
-from estimator.joint.memory import learn_mu_c, learn_r, sd_mu_c
+from estimator.joint.memory import learn_mu_c, learn_r, priors
 from estimator.joint.parameters import JointParameters
 from estimator.joint.state import STATE
-from estimator.joint.timing import boundary, reference_speed
-from estimator.stick_slip.kernel import (
-    append,
-    clear_buffer,
-    halts,
-    learn_mu_s,
-    lose_contact,
-    publish,
-    readable,
-    sd_mu_s,
-    shares,
-    transition,
-)
+from estimator.limit_surface.inverse import slip_factors, spin_radius
+from estimator.sliding.gates import slides, spins
+from estimator.sliding.update import close_sample, open_sample
+from estimator.stick_slip.kernel import norm
 
 
 @njit
@@ -38,122 +29,71 @@ def _square(x):
     return x * x
 
 
-@njit(error_model="numpy")  # what overflows is refused where it would be learnt
-def _friction(state, p, f_t, f_n, tau, v_t, omega):
-    """mu_c from the power that friction takes; the centre of rotation may be anywhere."""
-    total = f_t + tau * omega / v_t
-    share = f_t / total  # gamma_t squared
-    y = math.sqrt(f_t * total) / f_n
-    variance = (
-        _square(y * p.law_error)
-        + _square(0.5 * y * (1.0 + share) * p.sd_force / f_t)
-        + _square(y * p.sd_normal / f_n)
-        + _square(0.5 * y * omega * p.sd_torque / (v_t * total))
-        + _square(0.5 * y * tau * p.sd_spin / (v_t * total))
-        + _square(0.5 * y * (1.0 - share) * p.sd_speed / v_t)
+@njit
+def _slide(state, p, prior, instant, near):
+    """mu_c where a slide is seen, and r where a spin is seen with it and `near`.
+
+    With c = d ln mu_c / d ln(1 + q) and a = c q / (1 + q), ln mu_c has the derivatives 1 - a by ln f_t, a by
+    ln tau and ln omega, -a by ln v_t, -1 by ln f_n; with b = d ln r / d ln q, ln r has b by ln tau, -b by
+    ln f_t, 1 - b by ln v_t, b - 1 by ln omega.
+    """
+    f_t, f_n, tau, v_t, omega, of_speed, of_spin = instant
+    per_f, per_v, per_n = 1.0 / f_t, 1.0 / v_t, 1.0 / f_n
+    per_power = per_f * per_v
+    q = tau * omega * per_power
+    if not q < math.inf:
+        return False, False
+    s = 1.0 / (1.0 + q)
+    friction, c, radius, b = slip_factors(p.disc, s)
+    a, size = c * (1.0 - s), friction * math.sqrt(1.0 + q)
+    of_force, of_speed = _square(p.sd_force * per_f), of_speed * _square(per_v)
+    noise = (
+        _square(1.0 - a) * of_force
+        + _square(a) * of_speed
+        + _square(p.sd_normal * per_n)
+        + _square(c * s * per_power) * (_square(omega * p.sd_torque) + _square(tau) * of_spin)
     )
-    return learn_mu_c(state, p, y, variance, v_t / math.sqrt(share))
-
-
-@njit(error_model="numpy")  # what overflows is refused where it would be learnt
-def _radius(state, p, f_t, tau, v_t, omega):
-    """Radius where slide and spin are both seen."""
-    y = math.sqrt(tau * v_t / (f_t * omega))
-    relative = (
-        _square(p.sd_torque / tau)
-        + _square(p.sd_speed / v_t)
-        + _square(p.sd_force / f_t)
-        + _square(p.sd_spin / omega)
+    saw_mu_c = learn_mu_c(state, p, prior, f_t * per_n * size, noise, v_t * size)
+    if not near:
+        return saw_mu_c, False
+    per_omega = 1.0 / omega
+    noise = _square(b) * (of_force + _square(p.sd_torque / tau)) + _square(1.0 - b) * (
+        of_speed + of_spin * _square(per_omega)
     )
-    return learn_r(state, p, y, _square(y) * (0.25 * relative + _square(p.law_error)))
-
-
-@njit(error_model="numpy")  # what overflows is refused where it would be learnt
-def _radius_of_spin(state, p, f_n, tau, v_t, omega):
-    """Radius where only the spin is seen: eq. (2) with its gamma_tau(r), solved for r with the mu_c known."""
-    friction = max(state.mu_c + state.viscosity * math.hypot(v_t, state.r * omega), p.mu_min)
-    arm, pivot = tau / (friction * f_n), v_t / omega
-    y = math.sqrt(0.5 * arm * (arm + math.hypot(arm, 2.0 * pivot)))
-    relative = _square(p.sd_torque / tau) + _square(p.sd_normal / f_n) + _square(sd_mu_c(state, p) / friction)
-    return learn_r(state, p, y, _square(y) * (relative + _square(p.law_error)))
+    return saw_mu_c, learn_r(state, p, prior, radius * math.sqrt(q) * v_t * per_omega, noise)
 
 
 @njit
-def _motion(state, p, f_t, f_n, tau, v_t, omega):
+def _spin(state, p, prior, instant):
+    """R where only the spin is seen: from tau, with the mu_c known."""
+    _, f_n, tau, v_t, omega, _, _ = instant
+    friction = max(state.mu_c + state.viscosity * norm(v_t, state.r * omega), p.mu_min)
+    y = spin_radius(p.disc, tau / (friction * f_n), v_t / omega)
+    noise = _square(p.sd_torque / tau) + _square(p.sd_normal / f_n) + _square(state.sd_mu_c / friction)
+    return learn_r(state, p, prior, y, noise)
+
+
+@njit
+def _motion(state, p, prior, instant):
     """Learns from one instant of sliding what stands above its noise.
 
     Returns:
         Whether mu_c, and whether r, was learnt.
     """
-    gate = p.noise_gate
-    slide = f_t > gate * p.sd_force and v_t > gate * p.sd_speed
-    spin = tau > gate * p.sd_torque and omega > gate * p.sd_spin
-    saw_mu_c = slide and _friction(state, p, f_t, f_n, tau, v_t, omega)
-    if slide and spin and v_t < p.pivot_limit * p.r_max * omega:
-        return saw_mu_c, _radius(state, p, f_t, tau, v_t, omega)
-    if spin and not slide and state.updates_mu_c > 0:
-        return saw_mu_c, _radius_of_spin(state, p, f_n, tau, v_t, omega)
-    return saw_mu_c, False
+    f_t, _, tau, v_t, omega, _, _ = instant
+    spin = spins(p, tau, omega)
+    if slides(p, f_t, v_t):
+        return _slide(state, p, prior, instant, spin and v_t < p.pivot_limit * p.r_max * omega)
+    return False, spin and state.updates_mu_c > 0 and _spin(state, p, prior, instant)
 
 
 @njit
-def _stick_slip(state, p, f_t, f_n, tau, speed, halted):
-    """mu_s at each start of a slip: the largest sqrt(f_t^2 + (tau / r)^2) / f_n of the stick before it."""
-    gamma_t, _ = shares(f_t, tau / state.r)
-    if gamma_t > p.eps_t and not halted and not state.slipping:
-        append(state, p, f_t / (gamma_t * f_n))
-    starts, stops = transition(state, p, speed)
-    if starts and not halted:
-        learn_mu_s(state, p, max(1.0 / (state.events_mu_s + 1.0), p.gain_mu_s))
-    if starts or stops:
-        clear_buffer(state)
-
-
-@njit
-def _update(state, p, t, wrench, twist, estimate):
-    """One finger, one sample.
-
-    Args:
-        state: STATE record, changed in place.
-        p: JointParameters record.
-        t: Time [s].
-        wrench: (4,) f_x, f_y, f_n, tau [N, N, N, N m].
-        twist: (3,) v_x, v_y, omega [m/s, m/s, rad/s].
-        estimate: ESTIMATE record, written.
-    """
-    f_t = math.hypot(wrench[0], wrench[1])
-    f_n = wrench[2]
-    tau = abs(wrench[3])
-    v_t = math.hypot(twist[0], twist[1])
-    speed = reference_speed(p, twist[0], twist[1], twist[2])
-    if not readable(state, t, f_t, f_n, tau, speed):
-        return
-
-    halted, saw_mu_c, saw_r = False, False, False
-    gamma_t, gamma_tau = 0.0, 0.0
-    elapsed = t - state.t
-    if f_n >= p.eps_fn:
-        halted = halts(state, p, f_n, elapsed)
-        slid, f_t_then, f_n_then, tau_then, v_t_then, omega_then = boundary(
-            state, p, f_t, f_n, tau, twist, elapsed
-        )
-        if slid and not halted:
-            saw_mu_c, saw_r = _motion(state, p, f_t_then, f_n_then, tau_then, v_t_then, omega_then)
-        _stick_slip(state, p, f_t, f_n, tau, speed, halted)
-        if speed > p.eps_v:
-            gamma_t, gamma_tau = shares(v_t, state.r * abs(twist[2]))
-        else:
-            gamma_t, gamma_tau = shares(f_t, tau / state.r)
-    else:
-        lose_contact(state)
-        state.in_a_row = 0
-    state.elapsed = elapsed
-    publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate)
-    estimate.sd_mu_s = sd_mu_s(state, max(1.0 / max(state.events_mu_s, 1), p.gain_mu_s))
-    estimate.sd_mu_c = sd_mu_c(state, p) if state.updates_mu_c > 0 else state.mu_c
-    estimate.sd_r = math.sqrt(state.noise_r) / state.information_r if state.updates_r > 0 else state.r
-    estimate.observable_mu_c = saw_mu_c
-    estimate.observable_r = saw_r
+def _update(state, p, prior, t, wrench, twist, estimate):
+    """One finger, one sample."""
+    taken, halted, slid, instant, seen = open_sample(state, p, t, wrench, twist)
+    if taken:
+        saw_mu_c, saw_r = _motion(state, p, prior, instant) if slid else (False, False)
+        close_sample(state, p, t, seen, halted, saw_mu_c, saw_r, estimate)
 
 
 @entry_point(STATE, JointParameters.dtype())
@@ -170,5 +110,12 @@ def update_batch(states, parameters, t, wrenches, twists, estimates):
         twists: (n, 3) v_x, v_y, omega [m/s, m/s, rad/s] at the CoP.
         estimates: (n,) of dtype ESTIMATE, written.
     """
+    p = parameters[0]
+    prior = priors(p)
     for i in range(len(states)):
-        _update(states[i], parameters[i % len(parameters)], t, wrenches[i], twists[i], estimates[i])
+        if 0 < i < len(parameters):
+            p = parameters[i]
+            prior = priors(p)
+        wrench = wrenches[i, 0], wrenches[i, 1], wrenches[i, 2], wrenches[i, 3]
+        twist = twists[i, 0], twists[i, 1], twists[i, 2]
+        _update(states[i], p, prior, t, wrench, twist, estimates[i])

@@ -3,33 +3,24 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.stick_slip.state import STICK_SLIP_STATE
-
-DELAY_MAX = 6
-"""Largest velocity_delay: the forces of that time travel inside the state, whose size is fixed."""
-
-FORCES = DELAY_MAX + 2
-"""Rows of the ring of forces."""
+from estimator.sliding.state import SLIDING_STATE
+from estimator.stick_slip.state import EVENT_STATE, start
 
 STATE = np.dtype(
     [
-        *STICK_SLIP_STATE,
+        *SLIDING_STATE,
         ("viscosity", np.float64),
         ("information", np.float64, (3,)),
         ("noise", np.float64, (3,)),
         ("vector", np.float64, (2,)),
         ("information_r", np.float64),
         ("noise_r", np.float64),
-        ("elapsed", np.float64),
-        ("in_a_row", np.int64),
-        ("forces", np.float64, (FORCES, 3)),
-        ("twist", np.float64, (3,)),
+        *EVENT_STATE,
     ],
     align=True,
 )
 """Weighted sums over samples (1, v) for (mu_c, viscosity): `information` (11, 12, 22), `noise` the same with
-squared fading, `vector` the right-hand side; for r alike. Last samples: `forces` a ring of (f_t, f_n, |tau|)
-[N, N, N m], `twist` the previous one, `elapsed` its interval [s], `in_a_row` how many came without a gap."""
+squared fading, `vector` the right-hand side; for r alike."""
 
 
 def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
@@ -41,10 +32,7 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
     Returns:
         Structured array (m,) of dtype STATE.
     """
-    states = np.zeros(len(parameters), STATE)
-    states["mu_s"] = parameters["mu_s0"]
-    states["mu_c"] = parameters["mu_c0"]
-    states["r"] = parameters["r0"]
+    states = start(parameters, STATE)
     weight = 1.0 / parameters["sd_mu_c0"] ** 2
     states["information"][:, 0] = states["noise"][:, 0] = weight
     states["vector"][:, 0] = weight * parameters["mu_c0"]

@@ -17,13 +17,16 @@ from estimator.stick_slip.kernel import (
     append,
     clamped,
     clear_buffer,
+    count_mu_c,
+    count_r,
     halts,
     learn_mu_s,
     lose_contact,
+    norm,
     publish,
     readable,
-    sd_mu_s,
     shares,
+    take_event,
     transition,
 )
 
@@ -56,12 +59,6 @@ def _residual(mean_square, theta, covariance, y, phi, p, updates):
 
 
 @njit
-def _spread(theta, mean_square, covariance, updates):
-    """Standard deviation of an estimate, root of residual variance times P; untouched: the value itself."""
-    return math.sqrt(mean_square * covariance) if updates > 0 else theta
-
-
-@njit
 def _stick_slip(state, p, f_t, f_n, gamma_t, speed, halted):
     """Algorithm 1: at each start and stop of slip, mu_s is the mean of the largest f_t / (gamma_t f_n).
 
@@ -73,16 +70,19 @@ def _stick_slip(state, p, f_t, f_n, gamma_t, speed, halted):
         append(state, p, f_t / (gamma_t * f_n))
     if p.machine_gated and not gate:
         return
-    starts, stops = transition(state, p, speed)
+    starts, stops = transition(state, p, speed <= p.stick_band, speed > p.eps_v)
     if starts or stops:
-        if not halted:
-            learn_mu_s(state, p, 1.0)
+        if not halted and state.buffer_size >= p.n_a:
+            learn_mu_s(state, take_event(state, p), 1.0, False)
         clear_buffer(state)
 
 
 @njit
 def _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau):
-    """Motion regime: mu_c from (1), then r from (2) with the new mu_c; both gammas from the previous r."""
+    """Motion regime: mu_c from (1), then r from (2) with the new mu_c; both gammas from the previous r.
+
+    The standard deviation of either is the root of its residual variance times P.
+    """
     if gamma_t > p.eps_t:
         phi = gamma_t * f_n
         state.residual_mu_c = _residual(
@@ -91,14 +91,16 @@ def _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau):
         state.mu_c, state.covariance_mu_c = _rls(
             state.mu_c, state.covariance_mu_c, f_t, phi, p, p.mu_min, p.mu_max
         )
-        state.updates_mu_c += 1
+        state.sd_mu_c = math.sqrt(state.residual_mu_c * state.covariance_mu_c)
+        count_mu_c(state, p)
     if gamma_tau > p.eps_tau:
         phi = gamma_tau * state.mu_c * f_n
         state.residual_r = _residual(
             state.residual_r, state.r, state.covariance_r, tau, phi, p, state.updates_r
         )
         state.r, state.covariance_r = _rls(state.r, state.covariance_r, tau, phi, p, p.r_min, p.r_max)
-        state.updates_r += 1
+        state.sd_r = math.sqrt(state.residual_r * state.covariance_r)
+        count_r(state, p)
 
 
 @njit
@@ -113,12 +115,12 @@ def _update(state, p, t, wrench, twist, estimate):
         twist: (3,) v_x, v_y, omega [m/s, m/s, rad/s].
         estimate: ESTIMATE record, written.
     """
-    f_t = math.hypot(wrench[0], wrench[1])
+    f_t = norm(wrench[0], wrench[1])
     f_n = wrench[2]
     tau = abs(wrench[3])
-    v_t = math.hypot(twist[0], twist[1])
+    v_t = norm(twist[0], twist[1])
     v_r = state.r * abs(twist[2])
-    v = math.hypot(v_t, v_r)
+    v = norm(v_t, v_r)
     if not readable(state, t, f_t, f_n, tau, v):
         return
 
@@ -136,12 +138,8 @@ def _update(state, p, t, wrench, twist, estimate):
             _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau)
     else:
         lose_contact(state)
-    publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate)
-    estimate.sd_mu_s = sd_mu_s(state, 1.0)
-    estimate.sd_mu_c = _spread(state.mu_c, state.residual_mu_c, state.covariance_mu_c, state.updates_mu_c)
-    estimate.sd_r = _spread(state.r, state.residual_r, state.covariance_r, state.updates_r)
-    estimate.observable_mu_c = state.updates_mu_c > updates_mu_c
-    estimate.observable_r = state.updates_r > updates_r
+    saw_mu_c, saw_r = state.updates_mu_c > updates_mu_c, state.updates_r > updates_r
+    publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate)
 
 
 @entry_point(STATE, RlsParameters.dtype())
@@ -159,4 +157,7 @@ def update_batch(states, parameters, t, wrenches, twists, estimates):
         estimates: (n,) of dtype ESTIMATE, written.
     """
     for i in range(len(states)):
-        _update(states[i], parameters[i % len(parameters)], t, wrenches[i], twists[i], estimates[i])
+        p = parameters[min(i, len(parameters) - 1)]
+        wrench = wrenches[i, 0], wrenches[i, 1], wrenches[i, 2], wrenches[i, 3]
+        twist = twists[i, 0], twists[i, 1], twists[i, 2]
+        _update(states[i], p, t, wrench, twist, estimates[i])

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.stick_slip.state import STICK_SLIP_STATE
+from estimator.stick_slip.state import EVENT_STATE, STICK_SLIP_STATE, start
 
 STATE = np.dtype(
     [
@@ -12,6 +12,7 @@ STATE = np.dtype(
         ("covariance_r", np.float64),
         ("residual_mu_c", np.float64),
         ("residual_r", np.float64),
+        *EVENT_STATE,
     ],
     align=True,
 )
@@ -27,10 +28,7 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
     Returns:
         Structured array (m,) of dtype STATE.
     """
-    states = np.zeros(len(parameters), STATE)
-    states["mu_s"] = parameters["mu_s0"]
-    states["mu_c"] = parameters["mu_c0"]
-    states["r"] = parameters["r0"]
+    states = start(parameters, STATE)
     states["covariance_mu_c"] = parameters["p0"]
     states["covariance_r"] = parameters["p0"]
     return states

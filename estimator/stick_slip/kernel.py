@@ -14,11 +14,17 @@ SCATTER_GAIN = 0.2
 
 
 @njit
+def norm(x, y):
+    """Length of (x, y); quicker than hypot, whose care for overflow is not needed here."""
+    return math.sqrt(x * x + y * y)
+
+
+@njit(error_model="numpy")
 def shares(translation, rotation):
     """Direction cosines of (translation, rotation); zeros where there is none."""
-    norm = math.hypot(translation, rotation)
-    if norm > 0.0 and math.isfinite(norm):
-        return translation / norm, rotation / norm
+    scale = 1.0 / norm(translation, rotation)
+    if 0.0 < scale < math.inf:
+        return min(translation * scale, 1.0), min(rotation * scale, 1.0)
     return 0.0, 0.0
 
 
@@ -54,13 +60,13 @@ def clear_buffer(state):
 def append(state, p, ratio):
     """Buffers a force ratio in place of the oldest of n_b."""
     state.buffer[state.buffer_next] = ratio
-    state.buffer_next = (state.buffer_next + 1) % p.n_b
+    state.buffer_next = state.buffer_next + 1 if state.buffer_next + 1 < p.n_b else 0
     state.buffer_size = min(state.buffer_size + 1, p.n_b)
 
 
 @njit
-def take_mean_of_largest(state, p):
-    """Mean of the n_a largest buffered ratios; takes each out by writing -1 over it, below every ratio."""
+def take_event(state, p):
+    """Mean of the n_a largest buffered ratios, within bounds; takes each out by writing -1 over it."""
     total = 0.0
     for _ in range(p.n_a):
         largest = 0
@@ -68,19 +74,25 @@ def take_mean_of_largest(state, p):
             if state.buffer[i] > state.buffer[largest]:
                 largest = i
         total += state.buffer[largest]
-        state.buffer[largest] = -1.0
-    return total / p.n_a
+        state.buffer[largest] = -1.0  # below every ratio
+    return clamped(total / p.n_a, p.mu_min, p.mu_max)
 
 
 @njit
-def transition(state, p, speed):
+def transition(state, p, still, moves):
     """Runs the stick-slip machine by one sample.
+
+    Args:
+        state: Changed in place.
+        p: Parameters.
+        still: Whether the speed is within stick_band.
+        moves: Whether it is above eps_v.
 
     Returns:
         Whether a slip starts, and whether one stops, at this sample.
     """
-    state.still_samples = state.still_samples + 1 if speed <= p.stick_band else 0
-    starts = not state.slipping and speed > p.eps_v
+    state.still_samples = state.still_samples + 1 if still else 0
+    starts = moves and not state.slipping
     stops = state.slipping and state.still_samples >= p.stick_samples
     if starts or stops:
         state.slipping = starts
@@ -88,28 +100,37 @@ def transition(state, p, speed):
 
 
 @njit
-def learn_mu_s(state, p, gain):
-    """mu_s goes by `gain` towards the mean of the n_a largest buffered force ratios; too few leave it."""
-    if state.buffer_size < p.n_a:
-        return
-    value = clamped(take_mean_of_largest(state, p), p.mu_min, p.mu_max)
-    if state.events_mu_s > 0:
-        share = max(1.0 / state.events_mu_s, SCATTER_GAIN)
-        state.scatter_mu_s = (1.0 - share) * state.scatter_mu_s + share * (value - state.mu_s) ** 2
+def learn_mu_s(state, value, gain, jumps):
+    """mu_s goes by `gain` towards an event's value.
+
+    Its standard deviation comes from the scatter of independent events, averaged with the gain: a change has
+    the variance of one event and of the average before it. One that `jumps` says nothing of it. Up to the
+    first change mu_s stands for itself: nothing is known.
+    """
+    if state.events_mu_s > 0 and not jumps:
+        state.changes_mu_s += 1
+        share = max(1.0 / state.changes_mu_s, SCATTER_GAIN)
+        square = (value - state.mu_s) ** 2 / (1.0 + state.gain_mu_s)
+        state.scatter_mu_s = (1.0 - share) * state.scatter_mu_s + share * square
     state.mu_s = (1.0 - gain) * state.mu_s + gain * value
+    state.gain_mu_s = gain
     state.events_mu_s += 1
+    state.support_mu_s = state.events_mu_s / (state.events_mu_s + 1.0)
+    state.sd_mu_s = math.sqrt(gain * state.scatter_mu_s) if state.changes_mu_s > 0 else state.mu_s
 
 
 @njit
-def sd_mu_s(state, gain):
-    """Standard deviation of mu_s from the scatter of independent events, averaged with `gain`, [-].
+def count_mu_c(state, p):
+    """Notes an update of mu_c: the share of its memory that data fill grows to 1 - forgetting**updates."""
+    state.updates_mu_c += 1
+    state.support_mu_c += (1.0 - p.forgetting) * (1.0 - state.support_mu_c)
 
-    The newest change has the variance of one event and of the average before it. Up to the second event mu_s
-    stands for itself: nothing is known.
-    """
-    if state.events_mu_s < 2:
-        return state.mu_s
-    return math.sqrt(state.scatter_mu_s * gain / (1.0 + gain))
+
+@njit
+def count_r(state, p):
+    """Notes an update of r, like `count_mu_c`."""
+    state.updates_r += 1
+    state.support_r += (1.0 - p.forgetting) * (1.0 - state.support_r)
 
 
 @njit
@@ -129,7 +150,7 @@ def readable(state, t, f_t, f_n, tau, speed):
 
 
 @njit
-def publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate):
+def publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate):
     """Closes a sample: remembers t [s] and f_n [N], writes the ESTIMATE record."""
     state.t = t
     state.f_n = f_n
@@ -139,11 +160,16 @@ def publish(state, p, t, f_n, gamma_t, gamma_tau, halted, estimate):
     estimate.r = state.r
     estimate.gamma_t = gamma_t
     estimate.gamma_tau = gamma_tau
-    estimate.support_mu_s = state.events_mu_s / (state.events_mu_s + 1.0)
-    estimate.support_mu_c = 1.0 - p.forgetting**state.updates_mu_c
-    estimate.support_r = 1.0 - p.forgetting**state.updates_r
+    estimate.support_mu_s = state.support_mu_s
+    estimate.support_mu_c = state.support_mu_c
+    estimate.support_r = state.support_r
     estimate.events_mu_s = state.events_mu_s
     estimate.updates_mu_c = state.updates_mu_c
     estimate.updates_r = state.updates_r
     estimate.slipping = state.slipping
     estimate.halted = halted
+    estimate.sd_mu_s = state.sd_mu_s
+    estimate.sd_mu_c = state.sd_mu_c
+    estimate.sd_r = state.sd_r
+    estimate.observable_mu_c = saw_mu_c
+    estimate.observable_r = saw_r

@@ -6,6 +6,7 @@ import numpy as np
 from tqdm import tqdm
 
 import estimator
+from estimator.limit_surface.forward import slip_friction
 from policies.reproduction.fixed_point import Slip
 
 RATE = 120.0
@@ -13,7 +14,7 @@ SAMPLES = 360  # 3 s of slip
 
 
 def errors(name: str, gammas: np.ndarray, radii: np.ndarray, f_n: float, progress: bool = True) -> np.ndarray:
-    """Worse of the relative errors of mu_c and r after 3 s of exact steady slip.
+    """Worse of the relative errors of mu_c and r after 3 s of exact slip on the estimator's own surface.
 
     Args:
         name: Estimator; its parameters but r0 are the defaults.
@@ -26,10 +27,17 @@ def errors(name: str, gammas: np.ndarray, radii: np.ndarray, f_n: float, progres
         (k, m) [-]; the truth is that of `Slip`.
     """
     slips = [Slip(gamma_t=float(c), f_n=f_n) for c in gammas]
-    wrench = np.array([[s.f_t, 0.0, f_n, s.tau] for s in slips])
     twist = np.array([[s.v_t, 0.0, s.omega] for s in slips])
     n = len(radii) * len(gammas)
     batch = estimator.make_batch(name, n)
+    on_disc = getattr(batch.parameters, "disc", False)
+    shares = [slip_friction(on_disc, s.v_t, s.r * s.omega) for s in slips]
+    wrench = np.array(
+        [
+            [a * s.mu_c * f_n, 0.0, f_n, b * s.mu_c * f_n * s.r]
+            for s, (a, b) in zip(slips, shares, strict=True)
+        ]
+    )
     batch.parameters_array = np.repeat(batch.parameters_array, n)
     batch.parameters_array["r0"] = np.repeat(radii, len(gammas))
     batch.reset()

@@ -46,7 +46,7 @@ def plot_lock_out(
         tolerance: Error above which an estimate counts as off.
     """
     names, forces = (sorted({key[i] for key in maps}) for i in (0, 1))
-    figure = Figure(figsize=(3.1 * len(forces) + 0.4, 2.9 * len(names) + 0.3))
+    figure = Figure(figsize=(3.1 * len(forces) + 0.4, 2.3 * len(names) + 0.3))
     axes = figure.subplots(len(names), len(forces), squeeze=False, sharex=True, sharey=True)
     for (name, f_n), error in maps.items():
         ax = axes[names.index(name)][forces.index(f_n)]
@@ -67,6 +67,6 @@ def plot_lock_out(
         ax.set_xlabel("true γ$_t$ [–]")
     for row in axes:
         row[0].set_ylabel("start value r$_0$ [mm]")
-    axes[0][0].annotate("Table 1: 20 mm", (gammas[0], 21.5), size=7.5, color=STYLE.ink)
-    axes[0][0].annotate("true: 10 mm", (gammas[0], 10.6), size=7.5, color=STYLE.muted)
+    axes[0][-1].annotate("Table 1: 20 mm", (gammas[0], 21.5), size=7.5, color=STYLE.ink)
+    axes[0][-1].annotate("true: 10 mm", (gammas[0], 10.6), size=7.5, color=STYLE.muted)
     return figure

@@ -1,4 +1,4 @@
-"""Exact contact data, written independently of the estimator.
+"""Exact contact data, written independently of what the estimators do with it.
 
 Records are lists of samples (t, wrench, twist) at 120 Hz.
 """
@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 import estimator
+from estimator.limit_surface import disc_friction
 from estimator.online import OnlineEstimator
 
 RATE = 120.0
@@ -53,6 +54,28 @@ def ellipsoid(
     f_x, f_y, rim_force = -mu_c * f_n * scaled / np.linalg.norm(scaled)
     wrench = (f_x, f_y, f_n, r * rim_force)
     twist = (scaled[0], scaled[1], omega)
+    return [((start + k) / RATE, wrench, twist) for k in range(n)]
+
+
+def disc(
+    n: int,
+    v_t: float,
+    omega: float,
+    mu_c: float,
+    r: float,
+    f_n: float = 5.0,
+    start: int = 1,
+    angle: float = 0.3,
+) -> list[Sample]:
+    """Steady slip of a uniform disc of radius 3 r / 2; arguments as `ellipsoid`.
+
+    Its friction is `disc_friction`, which a test holds to the integral over the area.
+    """
+    force, torque = disc_friction(v_t / (1.5 * r * abs(omega)) if omega else np.inf)
+    direction = np.array([np.cos(angle), np.sin(angle)])
+    f_x, f_y = -mu_c * f_n * force * direction
+    wrench = (f_x, f_y, f_n, -np.sign(omega) * mu_c * f_n * 1.5 * r * torque)
+    twist = (*(v_t * direction), omega)
     return [((start + k) / RATE, wrench, twist) for k in range(n)]
 
 

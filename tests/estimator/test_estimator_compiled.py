@@ -32,6 +32,8 @@ def test_an_edited_shared_function_is_compiled_again(tmp_path):
     assert before == gamma_t() == 1.0
     kernel = copy / "stick_slip" / "kernel.py"  # called from rls/kernel.py
     law = kernel.read_text()
-    assert "return translation / norm," in law
-    kernel.write_text(law.replace("return translation / norm,", "return 0.5 * translation / norm,"))
+    assert "return min(translation * scale, 1.0)," in law
+    kernel.write_text(
+        law.replace("return min(translation * scale, 1.0),", "return 0.5 * translation * scale,")
+    )
     assert gamma_t() == pytest.approx(0.5 * before)

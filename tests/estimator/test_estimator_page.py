@@ -12,7 +12,12 @@ from slipgym.validation.records import ellipsoid
 PAGE = (Path(__file__).parents[2] / "docs" / "estimator.md").read_text(encoding="utf-8")
 FIELDS = [
     pytest.param(field, id=f"{kind.__name__}.{field.name}")
-    for kind in (estimator.RlsParameters, estimator.JointParameters)
+    for kind in (
+        estimator.RlsParameters,
+        estimator.JointParameters,
+        estimator.DiscParameters,
+        estimator.UkfParameters,
+    )
     for field in dataclasses.fields(kind)
 ]
 

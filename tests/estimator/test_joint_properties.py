@@ -1,6 +1,7 @@
-"""Properties of "joint" that hold for any input."""
+"""Properties of the estimators that learn from true sliding, "joint" first, that hold for any input."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -27,16 +28,17 @@ extreme = st.lists(
 )
 
 
-def feed(rows, **parameters):
-    est = estimator.make("joint", **parameters)
+def feed(rows, name="joint", **parameters):
+    est = estimator.make(name, **parameters)
     return [est.update((k + 1) / RATE, row[:4], row[4:]) for k, row in enumerate(rows)]
 
 
+@pytest.mark.parametrize("name", ["disc", "joint", "ukf"])
 @unhurried
 @given(st.one_of(extreme, gripping))
-def test_estimates_stay_finite_positive_and_in_bounds(rows):
+def test_estimates_stay_finite_positive_and_in_bounds(name, rows):
     limits = estimator.JointParameters()
-    for e in feed(rows):
+    for e in feed(rows, name):
         assert limits.mu_min <= e.mu_s <= limits.mu_max
         assert limits.mu_min <= e.mu_c <= limits.mu_max
         assert limits.r_min <= e.r <= limits.r_max
@@ -46,10 +48,11 @@ def test_estimates_stay_finite_positive_and_in_bounds(rows):
             assert 0.0 <= sd < np.inf
 
 
+@pytest.mark.parametrize("name", ["disc", "joint", "ukf"])
 @unhurried
 @given(st.lists(st.tuples(*[st.floats()] * 7), min_size=1, max_size=40))
-def test_nan_never_travels_into_the_state(rows):
-    batch = estimator.make_batch("joint", 1)
+def test_nan_never_travels_into_the_state(name, rows):
+    batch = estimator.make_batch(name, 1)
     for k, row in enumerate(rows):
         batch.update(k / RATE, np.array([row[:4]]), np.array([row[4:]]))
     for name in set(batch.states.dtype.names or ()) - {"buffer", "forces", "twist"}:

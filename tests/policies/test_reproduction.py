@@ -48,9 +48,16 @@ def test_lock_out_is_what_one_estimator_does():
     for k in range(1, 361):
         alone.update(k / 120, (slip.f_t, 0.0, slip.f_n, slip.tau), (slip.v_t, 0.0, slip.omega))
     last = alone.estimate
-    assert error[1, 1] == max(abs(last.mu_c / slip.mu_c - 1.0), abs(last.r / slip.r - 1.0))
+    alone_off = max(abs(last.mu_c / slip.mu_c - 1.0), abs(last.r / slip.r - 1.0))
+    assert error[1, 1] == pytest.approx(alone_off, rel=1e-9)
     assert error[1, 1] > 0.2  # Table 1's start value locks out at 20 N and gamma_t 0.9
     assert error[1, 0] < 0.005
+
+
+@pytest.mark.parametrize("name", ["disc", "joint", "ukf"])
+def test_each_finds_the_truth_of_its_own_surface(name):
+    gammas, radii = np.array([0.4, 0.7, 0.9]), np.array([0.003, 0.01, 0.05])
+    assert (errors(name, gammas, radii, 5.0, progress=False) < 0.01).all()
 
 
 def test_the_command_writes_what_it_names(tmp_path, monkeypatch):

@@ -1,0 +1,1 @@
+"""The "joint" estimator on the exact limit surface of a uniform disc."""

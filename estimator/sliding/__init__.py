@@ -1,0 +1,1 @@
+"""Estimators that learn from each instant of true sliding: what they share."""
