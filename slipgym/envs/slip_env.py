@@ -13,7 +13,7 @@ import numpy as np
 
 from slipgym.config import load
 from slipgym.envs.actions import ACTION_MODES, COMMANDS, Actions, interpret
-from slipgym.envs.choices import one_of, refuse_unknown, whole
+from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, refuse_unknown, whole
 from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observer import Observer
 from slipgym.envs.state import EnvState, checked, restored_generator
@@ -59,7 +59,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
     def __init__(
         self,
         friction_source: str = "estimated",
-        estimator: str | Mapping[str, Any] = "rls",
+        estimator: str | Mapping[str, Any] = DEFAULT_ESTIMATOR,
         contact: str = "ellipsoid",
         sensors: str = "realistic",
         material: str = "random",
