@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from typing import ClassVar, TypeAlias
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from slipgym.config import Config, Overrides, load
 from slipgym.config.errors import unknown
 from slipgym.envs import observation as layout
+from slipgym.envs.actions import COMMANDS, Actions
 from slipgym.tasks import TASKS
 
 State: TypeAlias = np.ndarray | tuple[np.ndarray, ...]
@@ -22,19 +24,20 @@ class ObservationIndex:
     Args:
         task_name: One of `slipgym.tasks.TASKS`; None for the sensor part that all tasks share.
         config: The environment's configuration.
+        action_mode: The environment's; those that command the wrist observe it.
 
     Raises:
         ValueError: There is no such task.
     """
 
-    def __init__(self, task_name: str | None, config: Config) -> None:
+    def __init__(self, task_name: str | None, config: Config, action_mode: str = "grip_force") -> None:
         if task_name is not None and task_name not in TASKS:
             raise ValueError(unknown("task", task_name, TASKS))
-        self.task_name = task_name
+        self.task_name, self.action_mode = task_name, action_mode
         if task_name is None:
             columns = layout.sensor_columns(config)
         else:
-            columns = layout.columns(config, TASKS[task_name], "true")
+            columns = layout.columns(config, TASKS[task_name], "true", action_mode)
         self._at = {column.name: k for k, column in enumerate(columns)}
 
     def __getitem__(self, name: str) -> int:
@@ -47,7 +50,7 @@ class ObservationIndex:
         return self._at.get(name)
 
     def check(self, width: int) -> None:
-        """Refuse observations of another task.
+        """Refuse observations of another task or mode.
 
         Args:
             width: Length of one observation.
@@ -61,7 +64,8 @@ class ObservationIndex:
         bare = full - len(layout.FRICTION_COLUMNS)
         if self.task_name is not None and width not in (full, bare):
             raise ValueError(
-                f"observation has {width} columns; {self.task_name} has {full}, or {bare} without friction"
+                f"observation has {width} columns; {self.task_name} has {full}, or {bare} without friction, "
+                f"with action_mode={self.action_mode!r} and history=0"
             )
 
 
@@ -92,8 +96,9 @@ class Columns:
         at = self._index[name]
         if at >= self._observations.shape[1]:
             raise ValueError(
-                f"the policy needs the column {name!r}, which friction_source='none' leaves out; "
-                "choose friction_source 'estimated', 'true' or 'nominal'"
+                f"the policy needs the column {name!r}, which friction_source='none' and "
+                "observation_mode='sensor' leave out; "
+                "choose friction_source 'estimated', 'true' or 'nominal' and observation_mode 'flat'"
             )
         return self._observations[:, at].astype(np.float64)
 
@@ -101,7 +106,8 @@ class Columns:
 class ForcePolicy(ABC):
     """A controller that computes a grip force from the present observation and its memory.
 
-    Subclasses name their task and implement `control`, and `initial_state` if they have a memory. The
+    Subclasses name their task and implement `control`, and `initial_state` if they have a memory. One that
+    commands the wrist as well, or steps of force, names the action mode of the environments it acts in. The
     object itself never changes: all memory travels in the state, so one policy serves many episodes.
 
     Args:
@@ -113,21 +119,25 @@ class ForcePolicy(ABC):
 
     task: ClassVar[str | None] = None
     """Task whose observations it reads; None for one that runs in every task."""
+    action_mode: ClassVar[str] = "grip_force"
+    """Action mode of the environments it acts in, one of `slipgym.envs.actions.ACTION_MODES`."""
 
     def __init__(self, config: Overrides | None = None) -> None:
         self.config = load(config)
-        self.index = ObservationIndex(self.task, self.config)
+        self.index = ObservationIndex(self.task, self.config, self.action_mode)
+        self._components = Actions(self.action_mode, self.config).table
 
     @abstractmethod
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
-        """Grip force per finger for each row.
+        """Grip force per finger for each row, and the wrist's velocity where the policy commands it.
 
         Args:
             columns: n observations.
             state: Memory of n rows; must not be changed in place.
 
         Returns:
-            Force (n,) [N], clipped to the gripper's range by the caller, and the new memory.
+            Force (n,) [N], or force and wrist velocity along x, along z and in pitch (n, 4) [N, m/s, m/s,
+            rad/s], clipped to the action's range by the caller; and the new memory.
         """
 
     def initial_state(self, n: int) -> State:
@@ -150,18 +160,23 @@ class ForcePolicy(ABC):
             deterministic: Without effect: controllers do not explore.
 
         Returns:
-            Action (1,) or (n, 1), float32 within [-1, 1], and the memory, whose arrays always have a
-            leading axis of n (of 1 for a single observation).
+            Action (m,) or (n, m), float32 within [-1, 1], m = 1 unless the policy commands the wrist, and
+            the memory, whose arrays always have a leading axis of n (of 1 for a single observation).
 
         Raises:
             ValueError: The observation, the memory or `episode_start` does not fit.
         """
+        if isinstance(observation, Mapping):
+            raise ValueError(
+                f"observation has the groups {', '.join(observation)}; the policy reads one array: pass the "
+                "group 'policy', or make the environment with observation_mode='flat'"
+            )
         observations = np.asarray(observation)
         if observations.ndim not in (1, 2):
             raise ValueError(f"observation must have shape (m,) or (n, m), got {observations.shape}")
         columns = Columns(np.atleast_2d(observations), self.index)
-        force, state = self.control(columns, self._memory(state, episode_start, len(columns)))
-        actions = self._action(force)[:, np.newaxis]
+        commands, state = self.control(columns, self._memory(state, episode_start, len(columns)))
+        actions = self._action(commands, columns)
         return (actions if observations.ndim == 2 else actions[0]), state
 
     def _memory(self, state: State | None, episode_start: np.ndarray | None, n: int) -> State:
@@ -184,10 +199,16 @@ class ForcePolicy(ABC):
         )
         return merged if isinstance(state, tuple) else merged[0]
 
-    def _action(self, force: np.ndarray) -> np.ndarray:
-        """Force [N] to action, clipped to [-1, 1]."""
-        low, high = self.config.gripper.force_min, self.config.gripper.force_max
-        return np.clip(2.0 * (force - low) / (high - low) - 1.0, -1.0, 1.0).astype(np.float32)
+    def _action(self, commands: np.ndarray, columns: Columns) -> np.ndarray:
+        """What `control` returned to actions (n, m), clipped to [-1, 1]."""
+        n, table = len(columns), self._components
+        given = commands.reshape(n, -1)
+        wanted = np.zeros((n, len(COMMANDS) + 1))
+        wanted[:, : given.shape[1]] = given
+        wanted[:, -1] = given[:, 0] - columns["command"]
+        low, high = table["low"], table["high"]
+        scaled = 2.0 * (wanted[:, table["command"]] - low) / (high - low) - 1.0
+        return np.clip(scaled, -1.0, 1.0).astype(np.float32)
 
 
 def _arrays(state: State) -> tuple[np.ndarray, ...]:

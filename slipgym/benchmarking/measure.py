@@ -100,7 +100,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
         watches.watch("sensors", loops, "measure")
         watches.watch("estimator", loop.estimator, "update")
         watches.watch("estimator", loops, "combine")
-        watches.watch("observation", env, "_observation")
+        watches.watch("observation", env._observer, "next")
         watches.watch("info", env, "_info")
         task = loop.task
         timed = {name: watches.timed("task", getattr(task, name)) for name in ("plan", "judge")}

@@ -24,6 +24,9 @@ class GripperConfig(Frozen):
     )
     lag: NonNegative = Field(description="Time constant of the closed force loop, first order [s]")
     dead_time: NonNegative = Field(description="Dead time of the force loop, before its lag [s]")
+    force_step: Positive = Field(
+        description="Largest change of the commanded force per sample in action mode force_increment [N]"
+    )
     finger_mass: Positive = Field(description="Mass of one finger with its pad [kg]")
     wrist_speed_max: Positive = Field(description="Largest speed of the wrist in the contact plane [m/s]")
     wrist_pitch_rate_max: Positive = Field(

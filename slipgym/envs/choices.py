@@ -1,11 +1,8 @@
-"""Checks of an environment's keyword arguments and actions."""
+"""Checks of an environment's keyword arguments."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
-
-import numpy as np
 
 from slipgym.config.errors import unknown
 
@@ -26,19 +23,8 @@ def refuse_unknown(given: Iterable[str], known: Iterable[str]) -> None:
         raise TypeError(unknown("keyword argument", name, known))
 
 
-def check_action(action: Any) -> float:
-    """Return the single component of an action, clipped to [-1, 1].
-
-    Raises:
-        ValueError: The action is not numeric, has the wrong shape or is not finite.
-    """
-    try:
-        array = np.asarray(action, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"action = {action!r} must be an array of numbers, within [-1, 1]") from error
-    if array.shape != (1,):
-        raise ValueError(f"action must have shape (1,), got {array.shape}: {action!r}")
-    value = array.item()
-    if not -np.inf < value < np.inf:
-        raise ValueError(f"action = {value!r} must be finite, within [-1, 1]")
-    return min(max(value, -1.0), 1.0)
+def whole(name: str, value: object, least: int) -> int:
+    """Return `value` if it is a whole number of at least `least`, or raise ValueError."""
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise ValueError(f"{name} = {value!r} must be a whole number >= {least}")
+    return value

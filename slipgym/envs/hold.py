@@ -26,6 +26,10 @@ class HoldEnv(SlipEnv):
     and +1 is `gripper.force_max` (25 N). Values beyond are clipped; NaN and infinity are errors. The force
     follows with a dead time (4 ms) and a first-order lag (12 ms).
 
+    Other values of `action_mode` add components or change their meaning (see docs/modes.md):
+    "grip_force_pitch" adds the wrist's pitch rate, "grip_force_wrist" its velocity along world x and z and
+    its pitch rate, "force_increment" takes the change of the grip force per sample instead.
+
     ## Observation Space
 
     `Box(low, high, (28,), float32)`. Forces, torques and velocities are measured, at the centre of pressure;
@@ -67,6 +71,11 @@ class HoldEnv(SlipEnv):
     the support (0 to 1) says how much data stands behind each: do not trust a value before it has grown. With
     "true" and "nominal" every support is 1.
 
+    With an `action_mode` that moves the wrist, what the agent commands of it and its pitch precede
+    the friction part, unless the table has them. `observation_mode="sensor"` leaves the friction part out;
+    "dict" gives the groups "policy" (the above) and "privileged" (the truth); `history=k` puts the last k
+    observations in front of each (see docs/modes.md).
+
     ## Rewards
 
     The sum of these terms, each times its scale (`tasks.hold.reward` in the configuration), per sample:
@@ -84,7 +93,8 @@ class HoldEnv(SlipEnv):
     mass is drawn from 0.1 to 0.4 kg, the wrist's frequencies (1 to 3 Hz) and phases and the pokes (impulse,
     direction, lever and time) from the ranges in `tasks.hold`; so are the material, if `material` is
     "random", the sensors' biases and the fractions of a count that the slip sensors begin with. Grip and
-    sensors run for six samples before time 0; the shaking builds up over 0.5 s.
+    sensors run for six samples before time 0; the shaking builds up over 0.5 s. A wrist velocity that the
+    agent commands adds to it; the sum stays within the gripper's limits.
 
     ## Episode End
 
@@ -104,8 +114,9 @@ class HoldEnv(SlipEnv):
     | `contact` | `"ellipsoid"` | friction model of the pads: or `"distributed"` (see `contact.pressure`) |
     | `sensors` | `"realistic"` | sensor preset: `"realistic"` or `"ideal"` |
     | `material` | `"random"` | name of a material, or `"random"` for another in every episode |
-    | `action_mode` | `"grip_force"` | what an action means |
-    | `observation_mode` | `"flat"` | how an observation is laid out |
+    | `action_mode` | `"grip_force"` | what an action means; see Action Space |
+    | `observation_mode` | `"flat"` | how an observation is laid out: or `"sensor"`, `"dict"` |
+    | `history` | `0` | how many earlier observations come along with each |
     | `randomization` | `"none"` | preset of what else is drawn per episode |
     | `frame_skip` | `1` | slip-velocity samples per step; the action is repeated, the rewards are summed |
     | `render_mode` | `None` | `None`, `"rgb_array"`: 720 by 480 pictures, `"depth_array"`, `"human"` |

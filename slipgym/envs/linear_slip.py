@@ -27,6 +27,10 @@ class LinearSlipEnv(SlipEnv):
     and +1 is `gripper.force_max` (25 N). Values beyond are clipped; NaN and infinity are errors. The force
     follows with a dead time (4 ms) and a first-order lag (12 ms).
 
+    Other values of `action_mode` add components or change their meaning (see docs/modes.md):
+    "grip_force_pitch" adds the wrist's pitch rate, "grip_force_wrist" its velocity along world x and z and
+    its pitch rate, "force_increment" takes the change of the grip force per sample instead.
+
     ## Observation Space
 
     `Box(low, high, (29,), float32)`. Forces, torques and velocities are measured, at the centre of pressure;
@@ -69,6 +73,11 @@ class LinearSlipEnv(SlipEnv):
     the support (0 to 1) says how much data stands behind each: do not trust a value before it has grown. With
     "true" and "nominal" every support is 1.
 
+    With an `action_mode` that moves the wrist, what the agent commands of it and its pitch precede
+    the friction part, unless the table has them. `observation_mode="sensor"` leaves the friction part out;
+    "dict" gives the groups "policy" (the above) and "privileged" (the truth); `history=k` puts the last k
+    observations in front of each (see docs/modes.md).
+
     ## Rewards
 
     The sum of these terms, each times its scale (`tasks.linear_slip.reward` in the configuration), per
@@ -106,8 +115,9 @@ class LinearSlipEnv(SlipEnv):
     | `contact` | `"ellipsoid"` | friction model of the pads: or `"distributed"` (see `contact.pressure`) |
     | `sensors` | `"realistic"` | sensor preset: `"realistic"` or `"ideal"` |
     | `material` | `"random"` | name of a material, or `"random"` for another in every episode |
-    | `action_mode` | `"grip_force"` | what an action means |
-    | `observation_mode` | `"flat"` | how an observation is laid out |
+    | `action_mode` | `"grip_force"` | what an action means; see Action Space |
+    | `observation_mode` | `"flat"` | how an observation is laid out: or `"sensor"`, `"dict"` |
+    | `history` | `0` | how many earlier observations come along with each |
     | `randomization` | `"none"` | preset of what else is drawn per episode |
     | `frame_skip` | `1` | slip-velocity samples per step; the action is repeated, the rewards are summed |
     | `render_mode` | `None` | `None`, `"rgb_array"`: 720 by 480 pictures, `"depth_array"`, `"human"` |

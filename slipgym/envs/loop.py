@@ -66,7 +66,12 @@ class SlipLoop:
         estimator_choice: Name and all parameters of the estimators.
     """
 
-    def __init__(self, config: Config, task: Task, estimator: str | Mapping[str, Any]) -> None:
+    def __init__(
+        self,
+        config: Config,
+        task: Task,
+        estimator: str | Mapping[str, Any],
+    ) -> None:
         self.config, self.task = config, task
         self.plant = build(config)
         self.estimator_choice = _choose_estimator(estimator, config)
@@ -126,12 +131,14 @@ class SlipLoop:
         self.episode["command"] = self.episode["last_command"] = force
         self.task.judge(self.episode, self.plant.world, self.plant.fingers, self.task_part)
 
-    def sample(self, force: float, rng: np.random.Generator) -> None:
+    def sample(self, force: float, rng: np.random.Generator, wrist: np.ndarray | None = None) -> None:
         """One slip-velocity sample: act, move, measure, estimate, judge.
 
         Args:
             force: Grip force per finger [N].
             rng: Source of the sensors' noise.
+            wrist: Velocity (x, z, pitch) on top of what the task scripts, (3,) [m/s, m/s, rad/s]; None: the
+                last one.
 
         Raises:
             FloatingPointError: Something is no longer a finite number; only a reset helps.
@@ -139,6 +146,8 @@ class SlipLoop:
         plant, episode = self.plant, self.episode
         episode["last_command"] = episode["command"]
         episode["command"] = force
+        if wrist is not None:
+            episode["wrist_command"] = wrist
         self.task.plan(episode, plant.world)
         self._advance(force, rng)
         episode["step"] += 1
@@ -209,7 +218,8 @@ class SlipLoop:
         episode = self.episode
         episode[:] = 0
         episode["step_time"] = self._step_time
-        episode["force_max"] = self.config.gripper.force_max
+        for field in ("force_min", "force_max", "wrist_speed_max", "wrist_pitch_rate_max"):
+            episode[field] = getattr(self.config.gripper, field)
         pad = self.config.gripper.pad_radius
         episode["pad_radius"] = pad
         episode["reach"] = box.size[0] / 2 - pad, box.size[2] / 2 - pad

@@ -1,11 +1,13 @@
-"""The observation: sensor part, task part, friction part."""
+"""The observation: sensor part, task part, wrist part, friction part."""
 
 from __future__ import annotations
 
 from slipgym.compiled import compiled
 from slipgym.config import Config
+from slipgym.envs.actions import ACTION_MODES
 from slipgym.tasks.task import Column, Task
 
+OBSERVATION_MODES = ("flat", "sensor", "dict")
 FRICTION_SOURCES = ("estimated", "true", "nominal", "none")
 FRICTION_COLUMNS = (
     Column("mu_s", 0.0, 10.0, "-", "static friction"),
@@ -14,6 +16,12 @@ FRICTION_COLUMNS = (
     Column("support_mu_s", 0.0, 1.0, "-", "how much data stands behind mu_s"),
     Column("support_mu_c", 0.0, 1.0, "-", "how much data stands behind mu_c"),
     Column("support_r", 0.0, 1.0, "-", "how much data stands behind r"),
+)
+WRIST_COLUMNS = (
+    Column("wrist_velocity_x", -2.0, 2.0, "m/s", "commanded wrist velocity along world x"),
+    Column("wrist_velocity_z", -2.0, 2.0, "m/s", "commanded wrist velocity along world z"),
+    Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "commanded wrist pitch rate"),
+    Column("wrist_pitch", -10.0, 10.0, "rad", "pitch of the wrist against level"),
 )
 
 
@@ -41,10 +49,26 @@ def sensor_columns(config: Config) -> tuple[Column, ...]:
     )
 
 
-def columns(config: Config, task: Task, friction_source: str) -> tuple[Column, ...]:
-    """All columns of the observation, in order."""
-    friction = () if friction_source == "none" else FRICTION_COLUMNS
-    return (*sensor_columns(config), *task.columns, *friction)
+def wrist_columns(task: Task, action_mode: str) -> tuple[Column, ...]:
+    """Wrist part: what an agent that commands the wrist needs and the task's part does not hold."""
+    commanded = set(ACTION_MODES[action_mode])
+    if commanded & {column.name for column in WRIST_COLUMNS}:
+        commanded.add("wrist_pitch")
+    needed = commanded - {column.name for column in task.columns}
+    return tuple(column for column in WRIST_COLUMNS if column.name in needed)
+
+
+def columns(
+    config: Config,
+    task: Task,
+    friction_source: str,
+    action_mode: str = "grip_force",
+    observation_mode: str = "flat",
+) -> tuple[Column, ...]:
+    """All columns of an observation, or of its group "policy", in order."""
+    bare = friction_source == "none" or observation_mode == "sensor"
+    friction = () if bare else FRICTION_COLUMNS
+    return (*sensor_columns(config), *task.columns, *wrist_columns(task, action_mode), *friction)
 
 
 @compiled
@@ -77,7 +101,7 @@ def weigh(a, b, support_a, support_b):
 
 
 @compiled
-def observe(wrenches, twists, chips, episodes, task_part, friction, low, high, out):
+def observe(wrenches, twists, chips, episodes, task_part, worlds, wrist, friction, low, high, out):
     """Write the observation, clipped to its bounds.
 
     Args:
@@ -86,6 +110,8 @@ def observe(wrenches, twists, chips, episodes, task_part, friction, low, high, o
         chips: SLIP_SENSOR (n, 2), for the travel.
         episodes: EPISODE (n,), for the command.
         task_part: (n, k).
+        worlds: WORLD (n,), for the wrist.
+        wrist: Which of `WRIST_COLUMNS` (w,) make the wrist part.
         friction: (n, 6); used as far as `out` has room for it.
         low: Lower bounds (m,).
         high: Upper bounds (m,).
@@ -106,6 +132,10 @@ def observe(wrenches, twists, chips, episodes, task_part, friction, low, high, o
         for k in range(task_part.shape[1]):
             out[i, at + k] = task_part[i, k]
         at += task_part.shape[1]
+        for k in range(wrist.shape[0]):
+            which = wrist[k]
+            out[i, at + k] = worlds[i].wrist_velocity[which] if which < 3 else worlds[i].wrist[2]
+        at += wrist.shape[0]
         for k in range(out.shape[1] - at):
             out[i, at + k] = friction[i, k]
         for k in range(out.shape[1]):

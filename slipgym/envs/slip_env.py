@@ -12,15 +12,16 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.config import load
-from slipgym.envs import observation
-from slipgym.envs.choices import DEFAULT_ESTIMATOR, check_action, one_of, refuse_unknown
+from slipgym.envs.actions import ACTION_MODES, COMMANDS, Actions, interpret
+from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, refuse_unknown, whole
 from slipgym.envs.loop import SlipLoop
+from slipgym.envs.observer import Observer
 from slipgym.envs.state import EnvState, checked, restored_generator
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
 
 
-class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
+class SlipEnv(gym.Env[Any, np.ndarray]):
     """A box between the two pads of a gripper; one step is `frame_skip` slip-velocity samples.
 
     The tasks are subclasses that name a `Task`; their docstrings describe spaces and rewards.
@@ -33,8 +34,11 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         contact: Friction model of the pads, "ellipsoid" or "distributed".
         sensors: Sensor preset, "realistic" or "ideal".
         material: Name of a material, or "random" for another in every episode.
-        action_mode: "grip_force".
-        observation_mode: "flat".
+        action_mode: What an action means: "grip_force", "grip_force_pitch", "grip_force_wrist" or
+            "force_increment" (see docs/modes.md).
+        observation_mode: "flat", "sensor" (without the friction part) or "dict" (groups "policy" and
+            "privileged").
+        history: How many earlier observations come along with each.
         randomization: "none".
         frame_skip: Slip-velocity samples per step.
         render_mode: None, "rgb_array", "depth_array" or "human".
@@ -61,6 +65,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         material: str = "random",
         action_mode: str = "grip_force",
         observation_mode: str = "flat",
+        history: int = 0,
         randomization: str = "none",
         frame_skip: int = 1,
         render_mode: str | None = None,
@@ -68,30 +73,27 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         **unknown: Any,
     ) -> None:
         refuse_unknown(unknown, _KEYWORDS)
-        self.friction_source = one_of("friction_source", friction_source, observation.FRICTION_SOURCES)
         one_of("contact", contact, ("ellipsoid", "distributed"))
-        one_of("action_mode", action_mode, ("grip_force",))
-        one_of("observation_mode", observation_mode, ("flat",))
+        one_of("action_mode", action_mode, ACTION_MODES)
         one_of("randomization", randomization, ("none",))
         if render_mode is not None:
             one_of("render_mode", render_mode, self.metadata["render_modes"])
-        if isinstance(frame_skip, bool) or not isinstance(frame_skip, int) or frame_skip < 1:
-            raise ValueError(f"frame_skip = {frame_skip!r} must be a whole number >= 1")
         self.config = load(config, sensors, contact)
         self.material = one_of("material", material, ("random", *self.config.materials))
         self.render_mode = render_mode
         modes = [mode for mode in self.metadata["render_modes"] if mode != "human" or not obstacle()]
+        self._frame_skip = whole("frame_skip", frame_skip, 1)
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_modes": modes, "render_fps": rate}
-        self.columns = observation.columns(self.config, self.task, self.friction_source)
-        self._low = np.array([c.low for c in self.columns], dtype=np.float32)
-        self._high = np.array([c.high for c in self.columns], dtype=np.float32)
-        self.observation_space = gym.spaces.Box(self._low, self._high, dtype=np.float32)
-        self.action_space = gym.spaces.Box(-1.0, 1.0, (1,), dtype=np.float32)
-        self._out = np.zeros((1, len(self.columns)), dtype=np.float32)
-        self._terms = np.zeros(len(self.task.terms))
-        self._frame_skip = frame_skip
+        self._actions = Actions(action_mode, self.config)
         self._loop = SlipLoop(self.config, self.task, estimator)
+        self._commands = np.zeros((1, len(COMMANDS)))
+        self._wrist = self._commands[0, 1:] if self._actions.moves_wrist else None
+        self._observer = Observer(self._loop, friction_source, action_mode, observation_mode, history)
+        self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
+        self.action_columns = self._actions.columns
+        self.action_space, self.observation_space = self._actions.space, self._observer.space
+        self._terms = np.zeros(len(self.task.terms))
         self._arguments = {
             "friction_source": friction_source,
             "estimator": self._loop.estimator_choice,
@@ -100,12 +102,11 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             "material": material,
             "action_mode": action_mode,
             "observation_mode": observation_mode,
+            "history": history,
             "randomization": randomization,
             "frame_skip": frame_skip,
             "config": self.config.model_dump(mode="json"),
         }
-        # the friction part: the merged estimates, or values that stand for the episode
-        self._friction = self._loop.estimated if friction_source == "estimated" else np.ones((1, 6))
         self._views = self._info_views()
         self._renderer: Any = None
         if render_mode is not None:
@@ -116,7 +117,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[np.ndarray, dict[str, Any]]:
+    ) -> tuple[Any, dict[str, Any]]:
         """Start an episode.
 
         Args:
@@ -130,40 +131,33 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         super().reset(seed=seed)
         self._ready = False
         self._loop.reset(self.task.options.parse(options), self.material, self.np_random)
-        nominal = self.config.nominal
-        if self.friction_source == "true":
-            self._friction[0, :3] = self._loop.true_friction
-        elif self.friction_source == "nominal":
-            radius = getattr(self.config.tasks, self.task.key).radius or nominal.r
-            self._friction[0, :3] = nominal.mu_s, nominal.mu_c, radius
         self._terms[:] = 0.0
         if self._renderer is not None:
             self._renderer.begin()
         self._ready = True
-        return self._observation(), self._info()
+        return self._observer.begin(), self._info()
 
-    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Command a grip force for `frame_skip` slip-velocity samples.
+    def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Act for `frame_skip` slip-velocity samples.
 
         Args:
-            action: Grip force per finger, -1 for `gripper.force_min` to +1 for `force_max`, shape (1,).
+            action: Within [-1, 1], shape (m,); `action_columns` says what its components mean.
 
         Raises:
             ValueError: The action has the wrong shape or is not finite.
             RuntimeError: The environment is closed or needs a reset.
             FloatingPointError: The simulation left the finite numbers; the message names the first.
         """
-        share = 0.5 * (1.0 + check_action(action))
+        actions = self._actions.checked(action)
         if not self._ready:
             _ = self._loop.world.client
             raise RuntimeError("call reset() before step()")
-        gripper = self.config.gripper
-        force = gripper.force_min + share * (gripper.force_max - gripper.force_min)
         loop, episode, rng = self._loop, self._loop.episode, self.np_random
         self._terms[:] = 0.0
         dropped = finished = self._ready = False
         for _ in range(self._frame_skip):
-            loop.sample(force, rng)
+            interpret(actions, self._actions.table, episode, self._commands)
+            loop.sample(self._commands.item(0), rng, self._wrist)
             self._terms += episode["terms"][0, : len(self._terms)]
             dropped = episode["dropped"].item()
             finished = episode["step"].item() >= episode["steps"].item()
@@ -173,7 +167,7 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
                 break
         self._ready = True
         reward = math.fsum(self._terms.tolist())
-        return self._observation(), reward, dropped, finished and not dropped, self._info()
+        return self._observer.next(), reward, dropped, finished and not dropped, self._info()
 
     def render(self) -> np.ndarray | None:
         """What the render mode asks for; None without one.
@@ -204,7 +198,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             generator=self.np_random.bit_generator.state,
             seed=self._np_random_seed,
             loop=self._loop.get_state() if self._ready else None,
-            friction=self._friction.copy(),
+            friction=self._observer.friction.copy(),
+            frames=self._observer.frames.copy(),
         )
 
     def set_state(self, state: EnvState) -> None:
@@ -226,7 +221,8 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
             self._loop.set_state(state.loop)
             if self._renderer is not None:
                 self._renderer.begin()
-        self._friction[:] = state.friction
+        self._observer.friction[:] = state.friction
+        self._observer.frames[:] = state.frames
         self._ready = state.loop is not None
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -241,21 +237,6 @@ class SlipEnv(gym.Env[np.ndarray, np.ndarray]):
         if self._renderer is not None:
             self._renderer.close()
         self._ready = False
-
-    def _observation(self) -> np.ndarray:
-        loop = self._loop
-        observation.observe(
-            loop.wrenches,
-            loop.twists,
-            loop.plant.chips,
-            loop.episode,
-            loop.task_part,
-            self._friction,
-            self._low,
-            self._high,
-            self._out,
-        )
-        return self._out[0].copy()
 
     def _info_views(self) -> dict[str, np.ndarray]:
         """Arrays that every info carries a copy of."""

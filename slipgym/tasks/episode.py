@@ -9,6 +9,7 @@ import numpy as np
 
 from slipgym.compiled import compiled
 from slipgym.tasks.options import EpisodeOptions
+from slipgym.world.wrist import ramp_wrist
 
 TERMS_MAX = 8
 POKES_MAX = 64
@@ -25,9 +26,13 @@ EPISODE = np.dtype(
         ("reach", "f8", 2),  # pad centre may lie this far from the object's centre, (x, z) [m]
         ("object_centre", "f8", 2),  # geometric centre from the grasp point, body frame [m]
         ("pad_radius", "f8"),  # [m]
+        ("force_min", "f8"),  # lower end of the force action [N]
         ("force_max", "f8"),  # upper end of the force action [N]
+        ("wrist_speed_max", "f8"),  # of the gripper [m/s]
+        ("wrist_pitch_rate_max", "f8"),  # of the gripper [rad/s]
         ("command", "f8"),  # grip force commanded now [N]
         ("last_command", "f8"),  # grip force commanded before [N]
+        ("wrist_command", "f8", 3),  # wrist velocity that the agent commands now [m/s, m/s, rad/s]
         ("reference", "f8", 3),  # position, velocity, acceleration along the task's coordinate
         ("terms", "f8", TERMS_MAX),  # scaled reward terms of the last step
         ("scales", "f8", TERMS_MAX),
@@ -39,6 +44,8 @@ EPISODE = np.dtype(
         ("goal", "f8"),  # where it ends [m or rad]
         ("duration", "f8"),  # [s]
         ("settle", "f8"),  # [s]
+        # hinge
+        ("scripted_pitch", "f8"),  # of the wrist, as the script alone turns it [rad]
         # hold
         ("shake", "f8", (3, 3)),  # amplitude [m, m, rad], angular frequency [rad/s], phase [rad]
         ("pokes", "i8"),  # how many
@@ -56,6 +63,24 @@ def schedule(options: EpisodeOptions, task: Any, episode: np.void) -> None:
         episode[field] = options.choose(field, task)
     total = episode["settle"] + episode["duration"] + options.choose("hold", task)
     episode["steps"] = max(1, round(total / episode["step_time"]))
+
+
+@compiled
+def drive_wrist(episode, world, x, z, pitch):
+    """Over the coming step, bring the wrist to the scripted velocity plus what the agent commands.
+
+    The gripper's limits hold for the sum.
+
+    Args:
+        episode: EPISODE record.
+        world: WORLD record.
+        x: Scripted velocity along world x at the end of the step [m/s].
+        z: Scripted velocity along world z [m/s].
+        pitch: Scripted pitch rate [rad/s].
+    """
+    extra = episode.wrist_command
+    limits = episode.wrist_speed_max, episode.wrist_pitch_rate_max
+    ramp_wrist(world, x + extra[0], z + extra[1], pitch + extra[2], limits[0], limits[1], episode.step_time)
 
 
 @compiled

@@ -11,7 +11,7 @@ from pydantic import Field
 from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.base import NonNegative, Positive
-from slipgym.tasks.episode import detect_drop, effort, note_slip, roughness, schedule, trapezoid
+from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness, schedule, trapezoid
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task
 
@@ -60,12 +60,14 @@ def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, epi
 
 @compiled
 def plan(episodes, worlds):
-    """Before a control step: the wrist's pitch acceleration over the coming step."""
+    """Before a control step: the wrist's motion over the coming step."""
     for i in range(episodes.shape[0]):
         episode, world = episodes[i], worlds[i]
         time = (episode.step + 1) * episode.step_time - episode.settle
-        goal = trapezoid(time, episode.goal, episode.duration)[1]
-        world.wrist_acceleration[2] = (goal - world.wrist_velocity[2]) / episode.step_time
+        last = trapezoid(time - episode.step_time, episode.goal, episode.duration)[1]
+        rate = trapezoid(time, episode.goal, episode.duration)[1]
+        episode.scripted_pitch += 0.5 * (last + rate) * episode.step_time
+        drive_wrist(episode, world, 0.0, 0.0, rate)
 
 
 @compiled
@@ -84,7 +86,8 @@ def judge(episodes, worlds, fingers, columns):
         episode.reference[1] = world.wrist_velocity[2]
         episode.reference[2] = world.wrist_acceleration[2]
         slip = note_slip(episode, world)
-        tilt = abs(world.angle)
+        # an agent that moves the wrist cannot just undo the turn: straying from it counts as tilt
+        tilt = max(abs(world.angle), abs(world.wrist_plan[2] - episode.scripted_pitch))
         episode.largest_tilt = max(episode.largest_tilt, tilt)
         episode.dropped = detect_drop(episode, world, fingers[i])
         episode.success = (

@@ -10,7 +10,7 @@ from pydantic import Field
 from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval
-from slipgym.tasks.episode import POKES_MAX, detect_drop, effort, note_slip, roughness
+from slipgym.tasks.episode import POKES_MAX, detect_drop, drive_wrist, effort, note_slip, roughness
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task
 
@@ -83,9 +83,12 @@ def plan(episodes, worlds):
     for i in range(episodes.shape[0]):
         episode, world = episodes[i], worlds[i]
         time = (episode.step + 1) * episode.step_time
-        for axis in range(3):
-            goal = shake_velocity(episode, axis, time)
-            world.wrist_acceleration[axis] = (goal - world.wrist_velocity[axis]) / episode.step_time
+        x, z, pitch = (
+            shake_velocity(episode, 0, time),
+            shake_velocity(episode, 1, time),
+            shake_velocity(episode, 2, time),
+        )
+        drive_wrist(episode, world, x, z, pitch)
         world.external[:] = 0.0
         for k in range(episode.pokes):
             if 0 <= episode.step - episode.poke_start[k] < episode.poke_steps:

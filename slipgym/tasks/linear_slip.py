@@ -10,7 +10,7 @@ from pydantic import Field
 from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.base import NonNegative, Positive
-from slipgym.tasks.episode import detect_drop, effort, roughness, schedule, trapezoid
+from slipgym.tasks.episode import detect_drop, drive_wrist, effort, roughness, schedule, trapezoid
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task
 
@@ -44,7 +44,9 @@ def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, epi
 
 @compiled
 def plan(episodes, worlds):
-    """Before a control step: the wrist stays where it is and nothing disturbs."""
+    """Before a control step: the wrist stays where it is, but for what the agent commands."""
+    for i in range(episodes.shape[0]):
+        drive_wrist(episodes[i], worlds[i], 0.0, 0.0, 0.0)
 
 
 @compiled

@@ -16,6 +16,7 @@ from slipgym.world.planar import locate
 from slipgym.world.plant import Plant
 from slipgym.world.scene import FINGER_LINKS, WRIST_FORCE, WRIST_JOINTS, Box
 from slipgym.world.snapshot import EngineState, load_engine, save_engine
+from slipgym.world.wrist import ramp_wrist
 
 _LINK_B, _NORMAL_FORCE = 4, 9  # fields of PyBullet's contact points
 
@@ -162,12 +163,9 @@ class BulletWorld:
                 gripper's `wrist_speed_max`, direction kept, and `wrist_pitch_rate_max`.
             duration: Length of the ramp [s].
         """
-        world, gripper = self._plant.world, self._config.gripper
-        x, z, pitch = velocity
-        share = min(1.0, gripper.wrist_speed_max / max(math.hypot(x, z), 1e-12))
-        rate = min(max(pitch, -gripper.wrist_pitch_rate_max), gripper.wrist_pitch_rate_max)
-        goal = np.array([share * x, share * z, rate])
-        world["wrist_acceleration"] = (goal - world["wrist_velocity"]) / duration
+        gripper = self._config.gripper
+        limits = gripper.wrist_speed_max, gripper.wrist_pitch_rate_max
+        ramp_wrist(self._plant.world[0], *velocity, *limits, duration)
 
     def disturb(self, wrench: np.ndarray) -> None:
         """Apply a load (f_x, f_z, torque) to the object's centre of mass until told otherwise."""

@@ -24,6 +24,7 @@ class Hand:
         self.episode, self.world = self.episodes[0], self.worlds[0]
         self.episode["step_time"], self.episode["force_max"] = 1.0 / 120.0, 25.0
         self.episode["reach"] = 0.1, 0.1
+        self.episode["wrist_speed_max"], self.episode["wrist_pitch_rate_max"] = 0.5, 3.0
         self.episode["scales"] = 1.0
         parsed = self.task.options.parse(options)
         self.task.start(config, parsed, np.random.default_rng(0), self.episode)

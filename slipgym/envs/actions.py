@@ -1,0 +1,125 @@
+"""What the components of an action mean, and the commands they become."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from slipgym.compiled import compiled
+from slipgym.config import Config
+from slipgym.tasks.task import Column
+
+ACTION_MODES = {
+    "grip_force": ("grip_force",),
+    "grip_force_pitch": ("grip_force", "wrist_pitch_rate"),
+    "grip_force_wrist": ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate"),
+    "force_increment": ("force_increment",),
+}
+"""Mode -> names of an action's components, in order."""
+
+COMMANDS = ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate")
+"""What the plant is told every sample."""
+_INCREMENT = len(COMMANDS)
+
+COMPONENT = np.dtype(
+    [
+        ("command", "i8"),  # place in COMMANDS; after the last one, the increment of the force
+        ("low", "f8"),  # what -1 stands for [N, m/s or rad/s]
+        ("high", "f8"),  # what +1 stands for
+    ]
+)
+"""One component of an action."""
+
+
+def components(mode: str, config: Config) -> tuple[Column, ...]:
+    """Components of an action: their names and what -1 and +1 stand for.
+
+    Args:
+        mode: One of `ACTION_MODES`.
+        config: The environment's configuration.
+    """
+    gripper = config.gripper
+    speed, rate, step = gripper.wrist_speed_max, gripper.wrist_pitch_rate_max, gripper.force_step
+    table = (
+        Column("grip_force", gripper.force_min, gripper.force_max, "N", "grip force of either finger"),
+        Column("wrist_velocity_x", -speed, speed, "m/s", "wrist velocity along world x"),
+        Column("wrist_velocity_z", -speed, speed, "m/s", "wrist velocity along world z"),
+        Column("wrist_pitch_rate", -rate, rate, "rad/s", "pitch rate of the wrist"),
+        Column("force_increment", -step, step, "N", "change of the commanded grip force per sample"),
+    )
+    rows = {column.name: column for column in table}
+    return tuple(rows[name] for name in ACTION_MODES[mode])
+
+
+class Actions:
+    """The action space of a mode, and how an action becomes commands.
+
+    Args:
+        mode: One of `ACTION_MODES`.
+        config: The environment's configuration.
+
+    Attributes:
+        columns: Components of an action, with the range that [-1, 1] stands for.
+        table: The same as COMPONENT (m,), for `interpret`.
+        moves_wrist: Whether an action commands the wrist.
+        space: Box(-1, 1, (m,), float32).
+    """
+
+    def __init__(self, mode: str, config: Config) -> None:
+        self.mode = mode
+        self.columns = components(mode, config)
+        places = (*COMMANDS, "force_increment")
+        rows = [(places.index(column.name), column.low, column.high) for column in self.columns]
+        self.table = np.array(rows, COMPONENT)
+        self.moves_wrist = any(0 < place < _INCREMENT for place, *_ in rows)
+        self._shape = (len(rows),)
+        self.space = gym.spaces.Box(-1.0, 1.0, self._shape, dtype=np.float32)
+
+    def checked(self, action: Any) -> np.ndarray:
+        """An action as a batch of one, (1, m) float64.
+
+        Raises:
+            ValueError: It is not numeric, has the wrong shape or is not finite; the message names the
+                component.
+        """
+        try:
+            array = np.asarray(action, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"action = {action!r} must be an array of numbers, within [-1, 1]") from error
+        if array.shape != self._shape:
+            meaning = ", ".join(column.name for column in self.columns)
+            raise ValueError(
+                f"action must have shape {self._shape} in action_mode {self.mode!r} ({meaning}), "
+                f"got {array.shape}: {action!r}"
+            )
+        for k, value in enumerate(array.tolist()):
+            if not -np.inf < value < np.inf:
+                raise ValueError(
+                    f"action[{k}] ({self.columns[k].name}) = {value!r} must be finite, within [-1, 1]"
+                )
+        return array.reshape(1, -1)
+
+
+@compiled
+def interpret(actions, components, episodes, commands):
+    """Turn actions into the commands of the coming sample.
+
+    Args:
+        actions: (n, m); what lies outside [-1, 1] acts like its ends.
+        components: COMPONENT (m,).
+        episodes: EPISODE (n,), for the force commanded last and the gripper's range.
+        commands: Output (n, 4), see `COMMANDS` [N, m/s, m/s, rad/s]; columns without a component stay.
+    """
+    for i in range(actions.shape[0]):
+        episode = episodes[i]
+        for k in range(actions.shape[1]):
+            component = components[k]
+            share = 0.5 * (1.0 + min(max(actions[i, k], -1.0), 1.0))
+            value = component.low + share * (component.high - component.low)
+            if component.command == _INCREMENT:
+                force = episode.command + value
+                commands[i, 0] = min(max(force, episode.force_min), episode.force_max)
+            else:
+                commands[i, component.command] = value
