@@ -46,6 +46,17 @@ def profile(
 
 
 @app.command()
+def surface(output: Output = Path("runs")) -> None:
+    """Limit surfaces of a disc by its pressure, the cells against them, and what the ellipsoid gets wrong."""
+    from policies.reproduction import reproduce_surface
+
+    folder = reproduce_surface(output)
+    for name in ("cells.md", "bias.md"):
+        typer.echo(f"\n{name}\n{(folder / name).read_text(encoding='utf-8').rstrip()}")
+    typer.echo(f"\nLook at:\n  {folder / 'surface.png'}")
+
+
+@app.command()
 def linear(
     trials: Trials = 10,
     jobs: Jobs = -1,

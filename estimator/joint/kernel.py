@@ -37,7 +37,7 @@ def _slide(state, p, prior, instant, near):
     ln tau and ln omega, -a by ln v_t, -1 by ln f_n; with b = d ln r / d ln q, ln r has b by ln tau, -b by
     ln f_t, 1 - b by ln v_t, b - 1 by ln omega.
     """
-    f_t, f_n, tau, v_t, omega = instant
+    f_t, f_n, tau, v_t, omega, of_speed, of_spin = instant
     per_f, per_v, per_n = 1.0 / f_t, 1.0 / v_t, 1.0 / f_n
     per_power = per_f * per_v
     q = tau * omega * per_power
@@ -46,19 +46,19 @@ def _slide(state, p, prior, instant, near):
     s = 1.0 / (1.0 + q)
     friction, c, radius, b = slip_factors(p.disc, s)
     a, size = c * (1.0 - s), friction * math.sqrt(1.0 + q)
-    of_force, of_speed = _square(p.sd_force * per_f), _square(p.sd_speed * per_v)
+    of_force, of_speed = _square(p.sd_force * per_f), of_speed * _square(per_v)
     noise = (
         _square(1.0 - a) * of_force
         + _square(a) * of_speed
         + _square(p.sd_normal * per_n)
-        + _square(c * s * per_power) * (_square(omega * p.sd_torque) + _square(tau * p.sd_spin))
+        + _square(c * s * per_power) * (_square(omega * p.sd_torque) + _square(tau) * of_spin)
     )
     saw_mu_c = learn_mu_c(state, p, prior, f_t * per_n * size, noise, v_t * size)
     if not near:
         return saw_mu_c, False
     per_omega = 1.0 / omega
     noise = _square(b) * (of_force + _square(p.sd_torque / tau)) + _square(1.0 - b) * (
-        of_speed + _square(p.sd_spin * per_omega)
+        of_speed + of_spin * _square(per_omega)
     )
     return saw_mu_c, learn_r(state, p, prior, radius * math.sqrt(q) * v_t * per_omega, noise)
 
@@ -66,7 +66,7 @@ def _slide(state, p, prior, instant, near):
 @njit
 def _spin(state, p, prior, instant):
     """R where only the spin is seen: from tau, with the mu_c known."""
-    _, f_n, tau, v_t, omega = instant
+    _, f_n, tau, v_t, omega, _, _ = instant
     friction = max(state.mu_c + state.viscosity * norm(v_t, state.r * omega), p.mu_min)
     y = spin_radius(p.disc, tau / (friction * f_n), v_t / omega)
     noise = _square(p.sd_torque / tau) + _square(p.sd_normal / f_n) + _square(state.sd_mu_c / friction)
@@ -80,7 +80,7 @@ def _motion(state, p, prior, instant):
     Returns:
         Whether mu_c, and whether r, was learnt.
     """
-    f_t, _, tau, v_t, omega = instant
+    f_t, _, tau, v_t, omega, _, _ = instant
     spin = spins(p, tau, omega)
     if slides(p, f_t, v_t):
         return _slide(state, p, prior, instant, spin and v_t < p.pivot_limit * p.r_max * omega)

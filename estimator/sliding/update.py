@@ -36,9 +36,15 @@ def _learn_mu_s(state, p, value):
 
 @njit
 def _stick_slip(state, p, f_t, f_n, tau, still, moves, halted):
-    """mu_s at each start of a slip: the largest mu of the stick before it, in units of the limit surface."""
-    if not state.slipping and not halted and shares(f_t, tau / state.r)[0] > p.eps_t:
-        append(state, p, load_size(p.disc, f_t, tau / state.r) / f_n)
+    """mu_s at each start of a slip: the largest mu of the stick before it, in units of the limit surface.
+
+    A torque beyond the gate empties the buffer: of the spin that it may start, the loads before tell nothing.
+    """
+    if not state.slipping and not halted:
+        if shares(f_t, tau / state.r)[0] > p.eps_t:
+            append(state, p, load_size(p.disc, f_t, tau / state.r) / f_n)
+        else:
+            clear_buffer(state)
     starts, stops = transition(state, p, still, moves)
     if starts and not halted and state.buffer_size >= p.n_a:
         _learn_mu_s(state, p, take_event(state, p))
@@ -61,13 +67,13 @@ def open_sample(state, p, t, wrench, twist):
         taken: Whether the sample is finite and later than the last; if not, nothing has changed.
         halted: Whether the heuristic holds all updates back.
         slid: Whether to learn from the instant.
-        instant: f_t, f_n, |tau|, v_t, |omega| of it [N, N, N m, m/s, rad/s].
+        instant: f_t, f_n, |tau|, v_t, |omega| of it [N, N, N m, m/s, rad/s], variances of v_t and omega.
         seen: f_t, f_n, |tau|, v_t, |omega| and squared scaled speed of the sample itself.
     """
     f_t, f_n, tau = norm(wrench[0], wrench[1]), wrench[2], abs(wrench[3])
     speed_2 = squared_speed(p, twist[0], twist[1], twist[2])
     seen = (f_t, f_n, tau, norm(twist[0], twist[1]), abs(twist[2]), speed_2)
-    nothing = (0.0, 0.0, 0.0, 0.0, 0.0)
+    nothing = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     if not readable(state, t, f_t, f_n, tau, speed_2):
         return False, False, False, nothing, seen
     if f_n < p.eps_fn:

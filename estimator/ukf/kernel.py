@@ -112,7 +112,7 @@ def _update(state, p, t, wrench, twist, estimate):
     """One finger, one sample."""
     taken, halted, slid, instant, seen = open_sample(state, p, t, wrench, twist)
     if taken:
-        saw_mu_c, saw_r = _learn(state, p, *instant) if slid else (False, False)
+        saw_mu_c, saw_r = _learn(state, p, *instant[:5]) if slid else (False, False)
         close_sample(state, p, t, seen, halted, saw_mu_c, saw_r, estimate)
 
 

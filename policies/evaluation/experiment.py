@@ -13,6 +13,7 @@ import policies
 from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen
 from slipgym.config.errors import unknown
+from slipgym.envs.choices import DEFAULT_ESTIMATOR
 from slipgym.envs.observation import FRICTION_SOURCES
 from slipgym.tasks import TASKS
 
@@ -57,7 +58,7 @@ class FrictionChoice(_Spelled):
 
     source: str = Field(description="friction_source of the environment [-]")
     estimator: Mapping[str, Any] = Field(
-        default={"name": "rls"}, description="Name and parameters of the estimator [-]"
+        default={"name": DEFAULT_ESTIMATOR}, description="Name and parameters of the estimator [-]"
     )
     label: str = Field(default="", description="How tables and figures call it; empty: by its source [-]")
 

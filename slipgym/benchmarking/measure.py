@@ -14,6 +14,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.benchmarking.bare import BareLoop
+from slipgym.benchmarking.numpy_patch import NumpyPatch
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import Stopwatches, compare, per_call
 from slipgym.contact import DistributedContact, EllipsoidContact
@@ -168,6 +169,28 @@ def contact(calls: int = 2000) -> list[Figure]:
         seconds = per_call(partial(pad.step, twist, 10.0, 1e-3), calls)
         figures.append(Figure(f"{type(pad).__name__}.step", 1e6 * seconds, "us", required))
     return figures
+
+
+def patch(pairs: int, steps: int = 500) -> list[Figure]:
+    """The distributed contact's cells, and the same in plain numpy, in the same run."""
+    twist = (0.003, -0.02, 0.5)
+    whole, single = DistributedContact(), DistributedContact(cells=1)
+    plain = NumpyPatch(whole.positions, whole.shares)
+
+    def block(pad: DistributedContact | NumpyPatch) -> tuple[float, int]:
+        start = perf_counter()
+        for _ in range(steps):
+            pad.step(twist, 10.0, 1e-3)
+        return perf_counter() - start, steps
+
+    compare(partial(block, single), partial(block, plain), 3)  # warm up
+    cells = compare(partial(block, single), partial(block, whole), pairs)
+    against = compare(partial(block, whole), partial(block, plain), pairs)
+    return [
+        Figure("DistributedContact.step, its cells alone", 1e6 * (cells.second - cells.first), "us"),
+        Figure("patch in numpy, per step", 1e6 * against.second, "us"),
+        Figure("patch in numpy / DistributedContact.step", against.quartiles[1], "-", ">= 20"),
+    ]
 
 
 def _in_new_process(statement: str) -> float:

@@ -118,19 +118,22 @@ def respond(pad, cells, delta, h):
 @compiled
 def commit(pad, cells, delta, h):
     """Store bristle states, slip twist and wrench after a scaled slip displacement."""
-    force, _ = respond(pad, cells, delta, h)
-    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
     for a in range(3):
         pad.twist_rate[a] = (delta[a] / h - pad.twist[a]) / h
         pad.twist[a] = delta[a] / h
     twist = (pad.twist[0], pad.twist[1], pad.twist[2])
+    fx, fy, ft = 0.0, 0.0, 0.0
     for i in range(cells.shape[0]):
         cell = cells[i]
-        move = at_cell(cell, delta)
-        trial = (cell.z_x + move[0], cell.z_y + move[1], 0.0)
-        cell.z_x, cell.z_y, _ = kernel.brought_in(trial, cell.reach)
-        slips = math.sqrt(trial[0] * trial[0] + trial[1] * trial[1]) > cell.reach
-        cell.cap = math.inf if slips else speed_at(cell, twist)
+        z = (cell.z_x, cell.z_y, 0.0)
+        force, _, _, trial, shortening = kernel.respond(
+            pad, z, pad.normal, at_cell(cell, delta), h, cell.reach
+        )
+        f_x, f_y = cell.share * force[0], cell.share * force[1]
+        fx, fy, ft = fx + f_x, fy + f_y, ft + cell.x * f_y - cell.y * f_x
+        cell.z_x, cell.z_y = shortening * trial[0], shortening * trial[1]
+        cell.cap = math.inf if shortening < 1.0 else speed_at(cell, twist)
+    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -fx, -fy, -pad.r * ft
 
 
 @compiled

@@ -5,6 +5,11 @@ SECTORS points each. A cell's share is that of the points in it, its position th
 the pressure's centre, total and outline are those of the disc, not of a mask of square cells;
 a cell cut by the rim counts with what lies inside, where that lies. Counting points leaves
 a cell's share uncertain by 0.5 % of a whole cell's (against exact areas).
+
+The mean of the points lies nearer to the centre than they do on average, which makes the torque
+in spin too small, at 21 x 21 cells by 0.1 to 0.2 %. So all positions are stretched by one factor
+that makes it exact. What is left of the error of the limit surface is mostly that of the cell in
+which the centre of rotation lies.
 """
 
 from __future__ import annotations
@@ -54,7 +59,10 @@ def patch_cells(pressure: str | ArrayLike, cells: int) -> tuple[np.ndarray, np.n
     loaded = loads > 0.0
     shares = loads[loaded] / loads.sum()
     positions = moments[loaded] / loads[loaded, None]
-    return positions - shares @ positions, shares
+    positions -= shares @ positions
+    if isinstance(pressure, str) and len(shares) > 1:
+        positions /= OUTER_RADII[pressure] * (shares @ np.hypot(*positions.T))
+    return positions, shares
 
 
 def _sampled(name: str, cells: int) -> tuple[np.ndarray, np.ndarray]:

@@ -21,7 +21,6 @@ ACTION_MODES = {
 
 COMMANDS = ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate")
 """What the plant is told every sample."""
-_FORCE, _WRIST = 0, 1  # where force and wrist velocity begin in COMMANDS
 _INCREMENT = len(COMMANDS)
 
 COMPONENT = np.dtype(
@@ -64,6 +63,7 @@ class Actions:
     Attributes:
         columns: Components of an action, with the range that [-1, 1] stands for.
         table: The same as COMPONENT (m,), for `interpret`.
+        moves_wrist: Whether an action commands the wrist.
         space: Box(-1, 1, (m,), float32).
     """
 
@@ -73,6 +73,7 @@ class Actions:
         places = (*COMMANDS, "force_increment")
         rows = [(places.index(column.name), column.low, column.high) for column in self.columns]
         self.table = np.array(rows, COMPONENT)
+        self.moves_wrist = any(0 < place < _INCREMENT for place, *_ in rows)
         self._shape = (len(rows),)
         self.space = gym.spaces.Box(-1.0, 1.0, self._shape, dtype=np.float32)
 
@@ -102,25 +103,23 @@ class Actions:
 
 
 @compiled
-def interpret(actions, components, episodes):
+def interpret(actions, components, episodes, commands):
     """Turn actions into the commands of the coming sample.
 
     Args:
         actions: (n, m); what lies outside [-1, 1] acts like its ends.
         components: COMPONENT (m,).
-        episodes: EPISODE (n,); takes the grip force, kept within the gripper's range, and the wrist velocity.
+        episodes: EPISODE (n,), for the force commanded last and the gripper's range.
+        commands: Output (n, 4), see `COMMANDS` [N, m/s, m/s, rad/s]; columns without a component stay.
     """
     for i in range(actions.shape[0]):
         episode = episodes[i]
-        episode.last_command = episode.command
         for k in range(actions.shape[1]):
             component = components[k]
             share = 0.5 * (1.0 + min(max(actions[i, k], -1.0), 1.0))
             value = component.low + share * (component.high - component.low)
-            if component.command == _FORCE:
-                episode.command = value
-            elif component.command == _INCREMENT:
+            if component.command == _INCREMENT:
                 force = episode.command + value
-                episode.command = min(max(force, episode.force_min), episode.force_max)
+                commands[i, 0] = min(max(force, episode.force_min), episode.force_max)
             else:
-                episode.wrist_command[component.command - _WRIST] = value
+                commands[i, component.command] = value

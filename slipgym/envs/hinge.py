@@ -125,7 +125,7 @@ class HingeEnv(SlipEnv):
     | Argument | Default | Meaning |
     |---|---|---|
     | `friction_source` | `"estimated"` | friction in the observation: or `"true"`, `"nominal"`, `"none"` |
-    | `estimator` | `"rls"` | a name of `estimator.names()`, or a mapping with its `name` and parameters |
+    | `estimator` | `"disc"` | a name of `estimator.names()`, or a mapping with its `name` and parameters |
     | `contact` | `"ellipsoid"` | friction model of the pads: or `"distributed"` (see `contact.pressure`) |
     | `sensors` | `"realistic"` | sensor preset: `"realistic"` or `"ideal"` |
     | `material` | `"random"` | name of a material, or `"random"` for another in every episode |

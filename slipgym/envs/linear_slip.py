@@ -111,7 +111,7 @@ class LinearSlipEnv(SlipEnv):
     | Argument | Default | Meaning |
     |---|---|---|
     | `friction_source` | `"estimated"` | friction in the observation: or `"true"`, `"nominal"`, `"none"` |
-    | `estimator` | `"rls"` | a name of `estimator.names()`, or a mapping with its `name` and parameters |
+    | `estimator` | `"disc"` | a name of `estimator.names()`, or a mapping with its `name` and parameters |
     | `contact` | `"ellipsoid"` | friction model of the pads: or `"distributed"` (see `contact.pressure`) |
     | `sensors` | `"realistic"` | sensor preset: `"realistic"` or `"ideal"` |
     | `material` | `"random"` | name of a material, or `"random"` for another in every episode |

@@ -12,7 +12,6 @@ import numpy as np
 import estimator as estimators
 from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
-from slipgym.envs.actions import Actions, interpret
 from slipgym.envs.draw import Draw, Randomizer
 from slipgym.envs.episode import Friction, choose_force, draw_friction, make_box
 from slipgym.envs.equipment import Equipment
@@ -57,8 +56,7 @@ class SlipLoop:
         config: Configuration.
         task: The task.
         estimator: Name of an estimator, or a mapping with its `name` and parameters.
-        actions: What actions mean.
-        randomization: What is drawn per episode.
+        randomization: What is drawn per episode; None: nothing.
 
     Attributes:
         plant: State of world, pads, fingers and sensors.
@@ -80,13 +78,11 @@ class SlipLoop:
         config: Config,
         task: Task,
         estimator: str | Mapping[str, Any],
-        actions: Actions,
-        randomization: Randomization,
+        randomization: Randomization | None = None,
     ) -> None:
         self.config, self.task = config, task
-        self._components = actions.table
         self.plant = build(config)
-        self._randomizer = Randomizer(config, task.key, randomization)
+        self._randomizer = Randomizer(config, task.key, randomization or Randomization())
         self._equipment = Equipment(config, self.plant, self._randomizer.pressures)
         self._equipment.check(self._randomizer.most)
         self.estimator_choice = _choose_estimator(estimator)
@@ -156,22 +152,27 @@ class SlipLoop:
         self.episode["command"] = self.episode["last_command"] = force
         self.task.judge(self.episode, self.plant.world, self.plant.fingers, self.task_part)
 
-    def sample(self, actions: np.ndarray, rng: np.random.Generator) -> None:
+    def sample(self, force: float, rng: np.random.Generator, wrist: np.ndarray | None = None) -> None:
         """One slip-velocity sample: act, move, measure, estimate, judge.
 
         Args:
-            actions: (1, m), finite.
+            force: Grip force per finger [N].
             rng: Source of the sensors' noise.
+            wrist: Velocity (x, z, pitch) on top of what the task scripts, (3,) [m/s, m/s, rad/s]; None: the
+                last one.
 
         Raises:
             FloatingPointError: Something is no longer a finite number; only a reset helps.
         """
         plant, episode = self.plant, self.episode
-        interpret(actions, self._components, episode)
+        episode["last_command"] = episode["command"]
+        episode["command"] = force
+        if wrist is not None:
+            episode["wrist_command"] = wrist
         disturb(episode, plant.world, plant.pads, self._true_rows)
         self.world.weigh()
         self.task.plan(episode, plant.world)
-        self._advance(episode["command"].item(), rng)
+        self._advance(force, rng)
         episode["step"] += 1
         self.estimator.update(self.time, self._wrench_rows, self._twist_rows)
         combine(self.estimator.estimates, self.per_finger, self.estimated)

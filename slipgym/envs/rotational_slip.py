@@ -25,7 +25,7 @@ class RotationalSlipEnv(SlipEnv):
     gripped 140 mm from its centre, which asks for 15 N at mu_c 0.36.
 
     In turns of short leaps and almost without translation the estimator "rls" learns little;
-    `estimator="joint"` learns enough.
+    the default, like "joint", learns enough.
 
     One step is one sample of the slip-velocity sensors, 1/120 s. The pad frame moves with the wrist: x and y
     span the contact plane (x horizontal and y up while the wrist is level), angles and torques count about
@@ -125,7 +125,7 @@ class RotationalSlipEnv(SlipEnv):
     | Argument | Default | Meaning |
     |---|---|---|
     | `friction_source` | `"estimated"` | friction in the observation: or `"true"`, `"nominal"`, `"none"` |
-    | `estimator` | `"rls"` | a name of `estimator.names()`, or a mapping with its `name` and parameters |
+    | `estimator` | `"disc"` | a name of `estimator.names()`, or a mapping with its `name` and parameters |
     | `contact` | `"ellipsoid"` | friction model of the pads: or `"distributed"` (see `contact.pressure`) |
     | `sensors` | `"realistic"` | sensor preset: `"realistic"` or `"ideal"` |
     | `material` | `"random"` | name of a material, or `"random"` for another in every episode |

@@ -12,16 +12,16 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.config import load, load_randomization
-from slipgym.envs.actions import ACTION_MODES, Actions
-from slipgym.envs.choices import one_of, refuse_unknown, whole
+from slipgym.envs.actions import ACTION_MODES, COMMANDS, Actions, interpret
+from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, refuse_unknown, whole
 from slipgym.envs.loop import SlipLoop
-from slipgym.envs.observer import Observation, Observer
+from slipgym.envs.observer import Observer
 from slipgym.envs.state import EnvState, checked, restored_generator
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
 
 
-class SlipEnv(gym.Env[Observation, np.ndarray]):
+class SlipEnv(gym.Env[Any, np.ndarray]):
     """A box between the two pads of a gripper; one step is `frame_skip` slip-velocity samples.
 
     The tasks are subclasses that name a `Task`; their docstrings describe spaces and rewards.
@@ -60,7 +60,7 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
     def __init__(
         self,
         friction_source: str = "estimated",
-        estimator: str | Mapping[str, Any] = "rls",
+        estimator: str | Mapping[str, Any] = DEFAULT_ESTIMATOR,
         contact: str = "ellipsoid",
         sensors: str = "realistic",
         material: str = "random",
@@ -87,7 +87,9 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_modes": modes, "render_fps": rate}
         self._actions = Actions(action_mode, self.config)
-        self._loop = SlipLoop(self.config, self.task, estimator, self._actions, self.randomization)
+        self._loop = SlipLoop(self.config, self.task, estimator, self.randomization)
+        self._commands = np.zeros((1, len(COMMANDS)))
+        self._wrist = self._commands[0, 1:] if self._actions.moves_wrist else None
         self._observer = Observer(self._loop, friction_source, action_mode, observation_mode, history)
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns
@@ -116,7 +118,7 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Observation, dict[str, Any]]:
+    ) -> tuple[Any, dict[str, Any]]:
         """Start an episode.
 
         Args:
@@ -137,7 +139,7 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
         drawn = {"drawn": dict(self._loop.drawn)} if self._loop.drawn else {}
         return self._observer.begin(), {**self._info(), **drawn}
 
-    def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+    def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Act for `frame_skip` slip-velocity samples.
 
         Args:
@@ -156,7 +158,8 @@ class SlipEnv(gym.Env[Observation, np.ndarray]):
         self._terms[:] = 0.0
         dropped = finished = self._ready = False
         for _ in range(self._frame_skip):
-            loop.sample(actions, rng)
+            interpret(actions, self._actions.table, episode, self._commands)
+            loop.sample(self._commands.item(0), rng, self._wrist)
             self._terms += episode["terms"][0, : len(self._terms)]
             dropped = episode["dropped"].item()
             finished = episode["step"].item() >= episode["steps"].item()

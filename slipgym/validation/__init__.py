@@ -13,6 +13,10 @@ from slipgym.validation.estimation import estimation
 from slipgym.validation.fall import fall
 from slipgym.validation.figure import Figure
 from slipgym.validation.halving import halving
+from slipgym.validation.patch_rate import patch_rate
+from slipgym.validation.patch_steps import patch_steps
+from slipgym.validation.patch_stick import patch_stick
+from slipgym.validation.patch_surface import patch_surface
 from slipgym.validation.steady import steady
 
 EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
@@ -24,8 +28,12 @@ EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     fall,
     agreement,
     distributed,
+    patch_surface,
+    patch_stick,
+    patch_steps,
+    patch_rate,
     estimation,
 )
-"""Each yields its figures; together about forty seconds."""
+"""Each yields its figures; together about eighty seconds."""
 
 __all__ = ["EXPERIMENTS", "Figure"]

@@ -20,8 +20,14 @@ def test_steady_translation_and_spin_of_named_pressures(pressure, ratio):
     contact = DistributedContact(radius=0.015, cells=21, pressure=pressure, **FRICTION)
     assert steady(contact, (0.03, 0.04, 0.0)) == pytest.approx((-1.5, -2.0, 0.0), abs=1e-9)
     torque = -steady(contact, (0.0, 0.0, 20.0))[2]
-    assert torque == pytest.approx(0.5 * 5.0 * ratio * 0.015, rel=2e-3)
-    assert contact.effective_radius == pytest.approx(ratio * 0.015, rel=2e-3)
+    assert contact.effective_radius == pytest.approx(ratio * 0.015, rel=1e-12)
+    assert torque == pytest.approx(0.5 * 5.0 * ratio * 0.015, rel=1e-9)
+
+
+def test_a_patch_may_be_a_single_cell():
+    contact = DistributedContact(cells=1, **FRICTION)
+    assert contact.effective_radius == 0.0
+    assert steady(contact, (0.03, 0.04, 5.0)) == pytest.approx((-1.5, -2.0, 0.0), abs=1e-9)
 
 
 def test_sticks_without_drift_below_break_away():

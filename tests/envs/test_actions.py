@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from slipgym.config import load
-from slipgym.envs.actions import ACTION_MODES, Actions, interpret
+from slipgym.envs.actions import ACTION_MODES, COMMANDS, Actions, interpret
 from slipgym.tasks.episode import EPISODE, trapezoid
 
 LINEAR, HOLD, HINGE = "slipgym/LinearSlip-v0", "slipgym/Hold-v0", "slipgym/Hinge-v0"
@@ -27,9 +27,9 @@ def commanded(mode: str, *actions: list[float], force: float = 10.0) -> np.ndarr
     episodes = np.zeros(len(actions), EPISODE)
     episodes["command"] = force
     episodes["force_min"], episodes["force_max"] = GRIPPER.force_min, GRIPPER.force_max
-    interpret(np.array(actions), Actions(mode, CONFIG).table, episodes)
-    np.testing.assert_array_equal(episodes["last_command"], force)
-    return np.column_stack((episodes["command"], episodes["wrist_command"]))
+    commands = np.zeros((len(actions), len(COMMANDS)))
+    interpret(np.array(actions), Actions(mode, CONFIG).table, episodes, commands)
+    return commands
 
 
 @pytest.mark.parametrize("mode", ACTION_MODES)

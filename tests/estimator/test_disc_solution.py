@@ -105,3 +105,15 @@ def test_mu_s_follows_a_change_in_one_event():
     assert seen[9] == pytest.approx(0.505, abs=0.003)
     assert seen[10:] == pytest.approx([0.8, 0.805], abs=1e-9)
     assert 0.0 < e.sd_mu_s < 0.02
+
+
+@pytest.mark.parametrize("name", ["disc", "joint", "ukf"])
+def test_a_spin_from_rest_tells_nothing_of_mu_s(name):
+    """An unloaded contact shows ratios of noise; the torque that starts the spin comes a sample before it."""
+    est, rng = estimator.make(name), np.random.default_rng(0)
+    ((_, torque, spin),) = disc(1, 0.0, 2.0, MU_C, R)
+    sd = np.array([0.02, 0.02, 0.04, 5e-4])
+    for k in range(200):
+        wrench = np.array(torque if k % 50 >= 40 else (0.0, 0.0, 5.0, 0.0)) + sd * rng.standard_normal(4)
+        e = est.update(k / RATE, wrench, spin if k % 50 > 40 else (0.0, 0.0, 0.0))
+    assert (e.mu_s, e.events_mu_s) == (1.5, 0)

@@ -90,3 +90,24 @@ def test_the_heuristic_can_halt_it_too():
     ]
     assert [k for k, e in enumerate(states) if e.halted] == [8, 9, 10, 11, 12, 13]
     assert not any(e.observable_mu_c for e in states if e.halted)
+
+
+def test_a_translation_that_breaks_off_counts_for_little():
+    """The object spins on while its translation stops within a window: no instant has the mean velocity.
+
+    The wrench is the ellipsoid's of the instant; the normal force is largest at the end of each slide. Taken
+    at face value the mean puts gamma_t far above what it is, and mu_c ends at half its value.
+    """
+    r, omega, fine = 0.01, 0.8, 64
+    slide = np.concatenate([np.linspace(0.005, 0.065, 4 * fine), np.full(fine // 2, 0.065)])
+    speed = np.tile(np.concatenate([slide, np.full(5 * fine + fine // 2, 0.0012)]), 20)
+    normal = np.tile(np.concatenate([np.linspace(2.0, 9.0, len(slide)), np.linspace(9.0, 2.0, 352)]), 20)
+    position = np.concatenate([np.zeros(fine), np.cumsum(speed) / (fine * RATE)])
+    record = []
+    for k in range(1, len(speed) // fine):
+        v, f_n = (position[fine * k] - position[fine * (k - 1)]) * RATE, normal[fine * k]
+        scaled = np.array([speed[fine * k], r * omega])
+        f_t, rim = MU_C * f_n * scaled / np.linalg.norm(scaled)
+        record.append((k / RATE, (f_t, 0.0, f_n, r * rim), (v, 0.0, omega)))
+    e = final("joint", record)
+    assert e.mu_c == pytest.approx(MU_C, rel=0.05)

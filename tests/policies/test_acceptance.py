@@ -35,9 +35,9 @@ def test_the_heuristic_makes_the_difference_of_the_papers_table(linear_slip):
     for _, trials in linear_slip.groupby("material"):
         ratio = trials["final_mu_c"] / trials["true_mu_c"]
         assert ratio[trials["friction"] == "no heuristic"].mean() <= 0.75
-        assert ratio[trials["friction"] == "estimated"].mean() == pytest.approx(1.0, abs=0.12)
+        assert ratio[trials["friction"] == "rls"].mean() == pytest.approx(1.0, abs=0.12)
         mu_s = trials.groupby("friction")["final_mu_s"].mean()
-        assert mu_s["estimated"] > mu_s["no heuristic"]
+        assert mu_s["rls"] > mu_s["no heuristic"]
 
 
 @pytest.mark.parametrize("friction", ["estimated", "true", "nominal"])

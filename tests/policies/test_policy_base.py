@@ -7,6 +7,7 @@ import slipgym  # noqa: F401
 from policies.base import Columns, ForcePolicy, ObservationIndex
 from slipgym.config import load
 from slipgym.envs import observation
+from slipgym.envs.actions import ACTION_MODES
 from slipgym.tasks import TASKS
 
 CONFIG = load()
@@ -110,4 +111,85 @@ def test_constant_force_holds_the_object_in_every_task(task, friction_source):
         obs, _, _, _, info = env.step(action)
     assert not info["dropped"]
     np.testing.assert_allclose(info["grip_force"], 20.0, atol=0.1)
+    env.close()
+
+
+class Steer(ForcePolicy):
+    """Ten newtons, and a wrist velocity."""
+
+    task = "LinearSlip"
+    action_mode = "grip_force_wrist"
+
+    def control(self, columns, state):
+        return np.tile([10.0, 0.25, -0.1, 1.5], (len(columns), 1)), state
+
+
+class Nudge(ForcePolicy):
+    """Towards ten newtons by increments."""
+
+    action_mode = "force_increment"
+
+    def control(self, columns, state):
+        return np.full(len(columns), 10.0), state
+
+
+@pytest.mark.parametrize("mode", ACTION_MODES)
+@pytest.mark.parametrize("task", TASKS)
+def test_index_matches_the_columns_of_every_action_mode(task, mode):
+    index = ObservationIndex(task, CONFIG, mode)
+    for k, column in enumerate(observation.columns(CONFIG, TASKS[task], "estimated", mode)):
+        assert index[column.name] == k
+
+
+def test_a_policy_can_command_the_wrist():
+    env = gym.make("slipgym/LinearSlip-v0", action_mode="grip_force_wrist")
+    obs, _ = env.reset(seed=0)
+    action, _ = Steer().predict(obs)
+    assert action.dtype == np.float32
+    np.testing.assert_allclose(newton(action[0]), 10.0, rtol=1e-6)
+    np.testing.assert_allclose(action[1:], [0.5, -0.2, 0.5], rtol=1e-6)
+    batch, _ = Steer().predict(np.tile(obs, (3, 1)))
+    np.testing.assert_array_equal(batch, np.tile(action, (3, 1)))
+    index = ObservationIndex("LinearSlip", CONFIG, "grip_force_wrist")
+    obs = env.step(action)[0]
+    assert obs[index["command"]] == pytest.approx(10.0)
+    assert obs[index["wrist_velocity_x"]] == pytest.approx(0.25)
+    env.close()
+
+
+def test_a_force_alone_leaves_the_wrist_to_the_script():
+    class Still(Steer):
+        def control(self, columns, state):
+            return np.full(len(columns), 10.0), state
+
+    narrow = np.zeros((2, len(observation.columns(CONFIG, TASKS["LinearSlip"], "none", "grip_force_wrist"))))
+    np.testing.assert_array_equal(Still().predict(narrow)[0][:, 1:], 0.0)
+
+
+def test_a_policy_can_command_by_increments():
+    env = gym.make("slipgym/Hold-v0", action_mode="force_increment")
+    obs, _ = env.reset(seed=0)  # at 15 N
+    commanded = []
+    for _ in range(7):
+        obs = env.step(Nudge().predict(obs)[0])[0]
+        commanded.append(obs[Nudge().index["command"]])
+    np.testing.assert_allclose(commanded, [14.0, 13.0, 12.0, 11.0, 10.0, 10.0, 10.0], rtol=1e-6)
+    env.close()
+
+
+def test_the_wrong_mode_is_a_clear_error():
+    policy = policies.make("linear_slip")
+    wrist, _ = gym.make("slipgym/LinearSlip-v0", action_mode="grip_force_wrist").reset(seed=0)
+    with pytest.raises(ValueError, match=r"33 columns; LinearSlip has 29.*action_mode='grip_force'"):
+        policy.predict(wrist)
+    grouped, _ = gym.make("slipgym/LinearSlip-v0", observation_mode="dict").reset(seed=0)
+    with pytest.raises(ValueError, match=r"groups policy, privileged.*observation_mode='flat'"):
+        policy.predict(grouped)
+    sensor, _ = gym.make("slipgym/LinearSlip-v0", observation_mode="sensor").reset(seed=0)
+    with pytest.raises(ValueError, match="observation_mode='sensor' leave out"):
+        policy.predict(sensor)
+    env = gym.make("slipgym/Hinge-v0", action_mode="grip_force_pitch", disable_env_checker=True)
+    action, _ = policies.make("hinge").predict(env.reset(seed=0)[0])  # observes all of it already
+    with pytest.raises(ValueError, match=r"shape \(2,\).*grip_force, wrist_pitch_rate\), got \(1,\)"):
+        env.step(action)
     env.close()

@@ -4,7 +4,7 @@ import pytest
 
 from slipgym.validation import EXPERIMENTS, Figure
 
-SLOW = {"distributed"}
+SLOW = {"distributed", "patch_steps"}
 CASES = [
     pytest.param(experiment, id=experiment.__name__, marks=[pytest.mark.slow] * (experiment.__name__ in SLOW))
     for experiment in EXPERIMENTS
