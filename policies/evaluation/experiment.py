@@ -97,6 +97,9 @@ class Experiment(_Spelled):
         default={}, description="Options of reset to try: every combination is a cell [-]"
     )
     sensors: str = Field(default="realistic", description="Sensor preset [-]")
+    randomization: str | Mapping[str, Any] = Field(
+        default="none", description="What is drawn per episode: a preset, a file or a mapping [-]"
+    )
     config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
 
     @field_validator("task")
@@ -112,6 +115,7 @@ class Experiment(_Spelled):
             titles = [choice.title for choice in getattr(self, kind)]
             if len(set(titles)) < len(titles):
                 raise ValueError(f"{kind} needs distinct labels, got {', '.join(titles)}")
+        configuration.load_randomization(self.randomization)
         known = self.environment_config().materials
         for material in self.materials:
             if material not in ("random", *known):

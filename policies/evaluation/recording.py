@@ -29,7 +29,7 @@ class Recording:
     estimated: np.ndarray
     """Estimated mu_s, mu_c, r of each finger, (T, 2, 3) [-, -, m]."""
     true: np.ndarray
-    """True mu_s, mu_c, r, (3,) [-, -, m]."""
+    """True mu_s, mu_c, r at the end, (3,) [-, -, m]."""
     reward: np.ndarray
     """Reward of each step, (T,)."""
     goal: float
@@ -38,6 +38,8 @@ class Recording:
     """Whether the task succeeded."""
     dropped: bool
     """Whether the object was lost."""
+    drawn: Mapping[str, Any]
+    """What the randomization drew; empty without one."""
 
     def series(self) -> dict[str, np.ndarray]:
         """The steps as columns, float32: a table with a row per step."""
@@ -61,7 +63,12 @@ class Recorder:
     def __init__(self, index: ObservationIndex) -> None:
         goals = (index.get(name) for name in ("distance", "angle"))
         self._goal = next((goal for goal in goals if goal is not None), None)
+        self._drawn: Mapping[str, Any] = {}
         self._steps: list[tuple[np.ndarray, float, Mapping[str, Any]]] = []
+
+    def begin(self, info: Mapping[str, Any]) -> None:
+        """Keeps what `reset` said."""
+        self._drawn = info.get("drawn", {})
 
     def add(self, observation: np.ndarray, reward: float, info: Mapping[str, Any]) -> None:
         """Keeps what `step` returned."""
@@ -72,22 +79,24 @@ class Recorder:
         observations, rewards, infos = zip(*self._steps, strict=True)
         last = infos[-1]
         wrenches = np.array([info["contact_wrench"] for info in infos])
+        true = np.array([info["true"] for info in infos])
         return Recording(
             time=np.array([info["time"] for info in infos]),
             slip=np.array([info["slip"] for info in infos]),
             reference=np.array([info["reference"] for info in infos]),
             grip_force=np.array([info["grip_force"] for info in infos]),
-            needed_force=needed_force(wrenches, last["true"][0], last["true"][2]),
+            needed_force=needed_force(wrenches, true),
             estimated=np.array([info["estimated_per_finger"] for info in infos]),
             true=last["true"],
             reward=np.array(rewards),
             goal=0.0 if self._goal is None else float(observations[-1][self._goal]),
             success=last["is_success"],
             dropped=last["dropped"],
+            drawn=self._drawn,
         )
 
 
-def needed_force(wrenches: np.ndarray, mu_s: float, r: float) -> np.ndarray:
+def needed_force(wrenches: np.ndarray, true: np.ndarray) -> np.ndarray:
     """Least normal force per finger that keeps both pads stuck under a load (ellipsoid limit surface).
 
     While the pads slip, friction carries no more than mu_c f_n: then this is below the force that
@@ -95,11 +104,11 @@ def needed_force(wrenches: np.ndarray, mu_s: float, r: float) -> np.ndarray:
 
     Args:
         wrenches: True friction (f_x, f_y, tau) of both fingers, (T, 2, 3) [N, N, N m].
-        mu_s: True static friction [-].
-        r: True radius of the equivalent rim contact [m].
+        true: True mu_s, mu_c, r, (T, 3) [-, -, m].
 
     Returns:
         sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s of the fingers' mean load, (T,) [N].
     """
-    load = wrenches.mean(axis=1) / np.array([1.0, 1.0, r])
-    return np.linalg.norm(load, axis=1) / mu_s
+    load = wrenches.mean(axis=1)
+    load[:, 2] /= true[:, 2]
+    return np.linalg.norm(load, axis=1) / true[:, 0]

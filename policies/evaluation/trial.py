@@ -65,7 +65,8 @@ def run_trial(experiment: Experiment, trial: Trial) -> Result:
         limit.column: limit.scale * options.choose(limit.option, task)
         for limit in MEASURES[experiment.task].tolerances
     }
-    row = {**trial.keys, **limits, **measure(recording, experiment.task)}
+    drawn = {f"drawn_{name}": value for name, value in recording.drawn.items()}
+    row = {**trial.keys, **limits, **measure(recording, experiment.task), **drawn}
     return Result(row, recording.series() if trial.number == 0 else None)
 
 
@@ -81,12 +82,14 @@ def record(experiment: Experiment, trial: Trial) -> Recording:
         estimator=dict(trial.friction.estimator),
         sensors=experiment.sensors,
         material=trial.material,
+        randomization=experiment.randomization,
         config=dict(experiment.config),
         disable_env_checker=True,
     )
     recorder = Recorder(ObservationIndex(experiment.task, experiment.environment_config()))
     try:
-        observation, _ = env.reset(seed=trial.seed, options=dict(trial.options))
+        observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
+        recorder.begin(info)
         state, over = None, False
         while not over:
             action, state = policy.predict(observation, state=state)

@@ -132,7 +132,7 @@ class HingeEnv(SlipEnv):
     | `action_mode` | `"grip_force"` | what an action means; see Action Space |
     | `observation_mode` | `"flat"` | how an observation is laid out: or `"sensor"`, `"dict"` |
     | `history` | `0` | how many earlier observations come along with each |
-    | `randomization` | `"none"` | preset of what else is drawn per episode |
+    | `randomization` | `"none"` | what else is drawn: `"train"`, `"eval_ood"`, a file or a mapping |
     | `frame_skip` | `1` | slip-velocity samples per step; the action is repeated, the rewards are summed |
     | `render_mode` | `None` | `None`, `"rgb_array"`: 720 by 480 pictures, `"depth_array"`, `"human"` |
     | `config` | `None` | file or mapping of overrides, merged over the defaults in `configs/` |
@@ -151,6 +151,7 @@ class HingeEnv(SlipEnv):
     | `object_size` | Extent along x, the grip axis and z [m] |
     | `com_offset` | Centre of mass (x, z) from the geometric centre [m] |
     | `initial_force` | Force per finger at reset [N] |
+    | `randomization_scale` | Share of the randomization's ranges: 0 none, 1 all [-] |
     | `turn` | Angle by which the wrist pitches [rad] |
     | `direction` | Its sign, 1 or -1 [-] |
     | `duration` | Time for the turn [s] |
@@ -163,7 +164,7 @@ class HingeEnv(SlipEnv):
 
     | Key | Content |
     |---|---|
-    | `true` | (mu_s, mu_c, r) of this episode, (3,) [-, -, m] |
+    | `true` | true (mu_s, mu_c, r) now, (3,) [-, -, m] |
     | `estimated` | the estimators' (mu_s, mu_c, r), mean of both fingers, (3,) |
     | `estimated_per_finger` | the same, finger by finger, (2, 3) |
     | `slip` | true slip displacement (x, y, theta) in the pad frame since the grasp, (3,) [m, m, rad] |
@@ -175,6 +176,9 @@ class HingeEnv(SlipEnv):
     | `time` | time since reset [s] |
     | `is_success` | whether the task is solved; see Episode End |
     | `dropped` | whether the box is dropped |
+
+    With a randomization, the info of a reset also holds `drawn`: what was drawn for the episode, by name (see
+    docs/randomization.md).
 
     ## Version History
 

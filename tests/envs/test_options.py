@@ -14,6 +14,7 @@ CHANGES = {
     "object_size": (0.4, 0.02, 0.26),
     "com_offset": (0.01, 0.02),
     "initial_force": 10.0,
+    "randomization_scale": 0.5,
     "distance": 0.02,
     "angle": 0.3,
     "turn": 0.3,
@@ -40,7 +41,7 @@ def test_every_option_is_tried_and_explained(make, env_id):
 
 @pytest.mark.parametrize("name", CHANGES)
 def test_an_option_changes_its_episode_and_no_other(make, env_id, play, name):
-    env = make(env_id)
+    env = make(env_id, randomization="train" if name == "randomization_scale" else "none")
     if name not in env.task.options.model_fields:
         pytest.skip("not an option of this task")
     steps = 200 if name.startswith("poke") else 20

@@ -32,6 +32,7 @@ def recording(**changes):
         "goal": 0.012,
         "success": True,
         "dropped": False,
+        "drawn": {},
     }
     return Recording(**{**values, **changes})
 
@@ -108,7 +109,7 @@ def test_hold_measures():
 def test_needed_force_lies_on_the_ellipsoid():
     mu_s, r = 0.6, 0.010
     wrench = np.array([[[1.0, -2.0, 0.012], [3.0, -4.0, 0.004]]])
-    (force,) = needed_force(wrench, mu_s, r)
+    (force,) = needed_force(wrench, np.array([[mu_s, 0.5, r]]))
     f_x, f_y, tau = 2.0, -3.0, 0.008
     limit = mu_s * force
     assert (f_x / limit) ** 2 + (f_y / limit) ** 2 + (tau / (limit * r)) ** 2 == pytest.approx(1.0)
