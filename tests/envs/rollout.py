@@ -16,12 +16,14 @@ def main() -> None:
     parser.add_argument("env_id")
     parser.add_argument("--disturbed", action="store_true", help="earlier episodes and other environments")
     parser.add_argument("--contact", default="ellipsoid")
+    parser.add_argument("--randomization", default="none")
     arguments = parser.parse_args()
+    made = {"contact": arguments.contact, "randomization": arguments.randomization}
     if arguments.disturbed:
-        others = [gym.make(arguments.env_id, contact=arguments.contact) for _ in range(3)]
+        others = [gym.make(arguments.env_id, **made) for _ in range(3)]
         others[0].close()
         episode(others[1], 7, steps=50)
-    env = gym.make(arguments.env_id, contact=arguments.contact)
+    env = gym.make(arguments.env_id, **made)
     if arguments.disturbed:
         episode(env, 5, options={"object_mass": 0.37, "mu_c": 0.2, "mu_s": 0.3}, scale=-1.0)
         episode(env, 6, options={"com_offset": (0.0, 0.01), "object_size": (0.4, 0.02, 0.3)}, steps=100)
