@@ -164,7 +164,7 @@ def test_frame_skip_stops_at_a_drop(make, env_id):
 def test_the_friction_source_fills_the_last_columns(make, env_id):
     observed = {}
     for source in ("estimated", "true", "nominal", "none"):
-        env = make(env_id, friction_source=source)
+        env = make(env_id, friction_source=source, estimator="rls")
         observed[source], info = env.reset(seed=0)
         if source == "true":
             np.testing.assert_allclose(observed[source][-6:-3], info["true"], rtol=1e-6)
