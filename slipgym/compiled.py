@@ -6,4 +6,8 @@ from pathlib import Path
 
 from estimator.caching import compiler
 
-compiled = compiler(Path(__file__).parent)
+_HERE = Path(__file__).parent
+
+compiled = compiler(_HERE)
+unlocked = compiler(_HERE, nogil=True)
+"""The same for what threads run side by side."""

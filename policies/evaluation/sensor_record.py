@@ -12,7 +12,7 @@ import pandas as pd
 import policies
 from slipgym.config.errors import unknown
 from slipgym.envs.loop import SlipLoop
-from slipgym.sensors.force_torque import HISTORY
+from slipgym.sensors.force_torque import HISTORY, sensed
 from slipgym.sensors.slip_velocity import read_slip
 from slipgym.tasks import TASKS
 
@@ -77,7 +77,9 @@ class _Tap:
     def __init__(self, loop: SlipLoop, finger: int) -> None:
         self._loop, self._finger = loop, finger
         self._start = int(loop.plant.world["tick"][0])
-        self._taken = int(loop.plant.force_torque["taken"][0, finger])
+        force = loop.plant.force_torque[0, finger]
+        force["kept"] = HISTORY
+        self._taken = self._start // int(force["period"])
         self._forces: list[tuple[float, ...]] = []
         self._twists: list[tuple[float, ...]] = []
 
@@ -86,11 +88,12 @@ class _Tap:
         plant, finger = self._loop.plant, self._finger
         force = plant.force_torque[0, finger]
         tick_length = float(plant.world["tick_length"][0])
-        for number in range(self._taken + 1, int(force["taken"]) + 1):
+        taken, load = int(plant.world["tick"][0]) // int(force["period"]), np.empty(6)
+        for number in range(self._taken + 1, taken + 1):
             ticks = number * int(force["period"]) + int(force["delay"]) - self._start
-            load = force["history"][(number - 1) % HISTORY]
+            sensed(force, number, load)
             self._forces.append((ticks * tick_length, *load[:5], force["mirror"] * load[5]))
-        self._taken = int(force["taken"])
+        self._taken = taken
         twist, chips = np.empty(3), plant.chips.copy()  # reading moves the chips' travel
         read_slip(chips[0, finger], twist)
         self._twists.append((self._loop.time, *twist))
@@ -103,4 +106,4 @@ class _Tap:
             stream["t"] = stream["t"].round(6)
         last = twists["t"].iloc[-1]
         frame = forces.loc[forces["t"] <= last].merge(twists, how="outer", on="t", sort=True)
-        return frame.assign(**dict(zip(TRUTH, self._loop.true_friction, strict=True)))
+        return frame.assign(**dict(zip(TRUTH, self._loop.true_friction[0], strict=True)))

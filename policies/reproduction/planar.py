@@ -16,7 +16,7 @@ from policies.reproduction.hanging import TASK, Options
 from policies.reproduction.published import TABLES
 from policies.reproduction.records import Record, RecordKeeper
 from slipgym.config import load
-from slipgym.envs.loop import SlipLoop
+from slipgym.envs.bullet_loop import BulletLoop
 
 MASS, LEVER, ASIDE = (0.15, 0.25), (0.03, 0.05), (-0.003, 0.003)  # [kg], [m], [m]
 DURATION = (2.0, 5.0)  # [s] for the turn
@@ -71,16 +71,16 @@ def record_planar(scenario: Mapping[str, Any], contact: str) -> Record:
     options = Options(
         object_mass=mass, com_offset=(aside, -lever), duration=duration, initial_force=INITIAL_FORCE
     )
-    loop = SlipLoop(load(contact=contact), TASK, "rls")
+    loop = BulletLoop(load(contact=contact), TASK, "rls")
     try:
         loop.reset(options, scenario["material"], rng)
-        keeper, mu_c, episode = RecordKeeper(loop), loop.true_friction[1], loop.episode[0]
+        keeper, mu_c, episode = RecordKeeper(loop), loop.true_friction[0, 1], loop.episode[0]
         while episode["step"] < episode["steps"] and not episode["dropped"]:
-            loop.sample(hinge_force(loop.wrenches[0], loop.twists[0], mu_c), rng)
+            loop.sample(hinge_force(loop.wrenches[0], loop.twists[0], mu_c))
             keeper.take()
         return keeper.finish({**scenario, **drawn})
     finally:
-        loop.world.close()
+        loop.close()
 
 
 def hinge_force(wrenches: np.ndarray, twists: np.ndarray, mu_c: float) -> float:

@@ -58,4 +58,4 @@ class RecordKeeper:
         """
         columns = (np.array(column) for column in zip(*self._samples, strict=True))
         dropped = bool(self._loop.episode["dropped"][0])
-        return Record(keys, self._loop.true_friction.copy(), *columns, dropped=dropped)
+        return Record(keys, self._loop.true_friction[0].copy(), *columns, dropped=dropped)

@@ -18,7 +18,7 @@ from slipgym.benchmarking.numpy_patch import NumpyPatch
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import Stopwatches, compare, per_call
 from slipgym.contact import DistributedContact, EllipsoidContact
-from slipgym.envs import loop as loops
+from slipgym.envs import bullet_loop as loops
 from slipgym.envs.slip_env import SlipEnv
 from slipgym.world import bullet
 
@@ -100,7 +100,8 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
         watches.watch("sensors", loops, "measure")
         watches.watch("estimator", loop.estimator, "update")
         watches.watch("estimator", loops, "combine")
-        watches.watch("observation", env._observer, "next")
+        watches.watch("observation", loops, "observe")
+        watches.watch("observation", env._observer, "read")
         watches.watch("info", env, "_info")
         task = loop.task
         timed = {name: watches.timed("task", getattr(task, name)) for name in ("plan", "judge")}

@@ -8,6 +8,7 @@ import numpy as np
 
 from slipgym.config import Config
 from slipgym.contact.records import CELL
+from slipgym.sensors.starting import start_sensors
 from slipgym.world.plant import Plant, check_slip_latency, dead_ticks, patch_of
 
 
@@ -27,8 +28,8 @@ class Equipment:
 
     def __init__(self, config: Config, plant: Plant, pressures: Sequence[str]) -> None:
         self._config, self._plant = config, plant
-        self._force_noise = plant.force_torque["noise"].copy()
-        self._slip_noise = plant.chips["noise"].copy()
+        self._force_noise = plant.force_torque["noise"][0, 0].copy()
+        self._slip_noise = plant.chips["noise"][0, 0].copy()
         self._cells: dict[str, np.ndarray] = {}
         if plant.cells is not None:
             patches = {pressure: patch_of(with_pressure(config, pressure)) for pressure in pressures}
@@ -43,38 +44,37 @@ class Equipment:
         dead_ticks(self._config, most["dead_time"], "randomization.dead_time")
         check_slip_latency(self._config, round(most["slip_latency"]), "randomization.slip_latency")
 
-    def fit(self, values: Mapping[str, float], pressure: str) -> None:
-        """Set the parameters of an episode.
+    def fit(self, i: int, values: Mapping[str, float], pressure: str) -> None:
+        """Set the parameters of a world's episode.
 
         Args:
+            i: Which of the worlds.
             values: Fields of `slipgym.config.Ranges`, every one that is used here.
             pressure: Over the patch.
         """
         plant = self._plant
         for field in ("stribeck_velocity", "sigma_0"):
-            plant.pads[field] = values[field]
+            plant.pads[field][i] = values[field]
         if plant.cells is not None:
-            plant.cells[:] = self._cells[pressure]
-        plant.fingers["lag"] = values["lag"]
-        plant.fingers["dead_ticks"] = dead_ticks(self._config, values["dead_time"])
-        plant.force_torque["noise"] = values["noise_scale"] * self._force_noise
-        plant.chips["noise"] = values["noise_scale"] * self._slip_noise
-        plant.chips["delay"] = values["slip_latency"]
+            plant.cells[i] = self._cells[pressure]
+        plant.fingers["lag"][i] = values["lag"]
+        plant.fingers["dead_ticks"][i] = dead_ticks(self._config, values["dead_time"])
+        plant.force_torque["noise"][i] = values["noise_scale"] * self._force_noise
+        plant.chips["noise"][i] = values["noise_scale"] * self._slip_noise
+        plant.chips["delay"][i] = values["slip_latency"]
 
-    def start_sensors(self, bias_scale: float, rng: np.random.Generator) -> None:
-        """Start the sensors afresh, with this episode's bias and sub-count phases.
+    def start_sensors(self, i: int, bias_scale: float, rng: np.random.Generator) -> None:
+        """Start a world's sensors afresh, with this episode's bias and noise.
 
         Args:
+            i: Which of the worlds.
             bias_scale: Spread of the biases beyond the configured one, over the configured noise [-].
             rng: Source of both.
         """
-        ft, chips = self._plant.force_torque, self._plant.chips
+        force_torque = self._plant.force_torque[i]
         sensor = self._config.sensors.force_torque
         tangential, normal, torque = sensor.bias_tangential, sensor.bias_normal, sensor.bias_torque
         spread = np.array([tangential, tangential, normal, torque, torque, torque])
-        ft["bias"] = (spread + bias_scale * self._force_noise) * rng.standard_normal(ft["bias"].shape)
-        ft["history"] = chips["counted"] = chips["moved"] = 0.0
-        for field in ("taken", "drawn"):
-            ft[field] = 0
-        chips["taken"] = 0
-        chips["carry"] = rng.uniform(-1.0, 1.0, chips["carry"].shape) * chips["count"][..., None]
+        spread = spread + bias_scale * self._force_noise
+        force_torque["bias"] = spread * rng.standard_normal(force_torque["bias"].shape)
+        start_sensors(force_torque, self._plant.chips[i], rng)

@@ -74,6 +74,20 @@ def note(row, i, worlds, pads, fingers, wrenches, twists, per_finger, episodes):
     return -1
 
 
+@compiled
+def sound(i, worlds, pads, fingers, per_finger, episodes):
+    """Whether what `note` writes of world i is finite but for the measurements, which only pass it on."""
+    world = worlds[i]
+    total = world.com[0] + world.com[1] + world.angle + episodes[i].terms.sum()
+    for a in range(3):
+        total += world.velocity[a] + world.wrist[a] + world.external[a]
+        for f in range(2):
+            total += pads[i, f].wrench[a] + per_finger[i, f, a]
+    for f in range(2):
+        total += pads[i, f].normal + fingers[i, f].force
+    return math.isfinite(total)
+
+
 class Guard:
     """Keeps the last samples' quantities; stops a simulation in which one is not finite."""
 
@@ -86,12 +100,13 @@ class Guard:
         """Forget the last episode."""
         self._count = 0
 
-    def watch(self, time: float, *arrays: np.ndarray) -> None:
+    def watch(self, time: float, i: int, *arrays: np.ndarray) -> None:
         """Take a sample's quantities.
 
         Args:
             time: [s].
-            *arrays: Of one world, in the order of `note`.
+            i: Which of the worlds.
+            *arrays: Of the worlds, in the order of `note`.
 
         Raises:
             FloatingPointError: One is not finite. The message names the first and the file that the kept
@@ -100,7 +115,7 @@ class Guard:
         at = self._count % KEPT
         self._count += 1
         self._times[at] = time
-        bad = note(self._rows[at], 0, *arrays)
+        bad = note(self._rows[at], i, *arrays)
         if bad >= 0:
             self._stop(QUANTITIES[bad], self._rows[at, bad], time)
 

@@ -1,7 +1,8 @@
-"""Box, gripper, sensors and estimator of one environment, closed by a grip force."""
+"""Boxes, grippers, sensors and estimators of n environments, closed by a grip force."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import asdict, dataclass
@@ -12,19 +13,15 @@ import numpy as np
 import estimator as estimators
 from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
+from slipgym.envs.actions import COMMANDS
 from slipgym.envs.draw import Draw, Randomizer
 from slipgym.envs.episode import Friction, choose_force, draw_friction, make_box
 from slipgym.envs.equipment import Equipment
-from slipgym.envs.guard import Guard
 from slipgym.envs.happenings import enter
-from slipgym.envs.observation import FRICTION_COLUMNS, combine
-from slipgym.sensors.measure import measure
-from slipgym.sensors.slip_velocity import AXES
+from slipgym.envs.observation import FRICTION_COLUMNS, Sight, combine
 from slipgym.tasks import Task
-from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.world.bullet import BulletWorld
 from slipgym.world.plant import Plant, build
 from slipgym.world.scene import Box
 from slipgym.world.snapshot import EngineState
@@ -37,40 +34,46 @@ WARM_UP_STEPS = 6  # control steps before time 0 in which grip and sensors come 
 class LoopState:
     """State of a `SlipLoop` between two samples, as plain data."""
 
-    engine: EngineState
-    """Bodies in the engine."""
+    engine: EngineState | None
+    """Bodies in the engine, if there is one."""
     plant: Plant
-    """World, pads, fingers and sensors."""
+    """Worlds, pads, fingers and sensors."""
     arrays: Mapping[str, np.ndarray]
-    """Estimators, episode and what they said last."""
-    material: str
-    """Name of the episode's material."""
+    """Estimators, episodes and what they said last."""
+    materials: list[str]
+    """Name of every episode's material."""
+    boxes: list[Box]
+    """Its object."""
 
 
-class SlipLoop:
-    """Advances by one slip-velocity sample at a time; knows nothing of Gymnasium.
+class SlipLoop(ABC):
+    """n environments that advance by slip-velocity samples; knows nothing of Gymnasium.
 
-    Arrays have a leading batch axis of one, for the compiled functions that serve many worlds.
+    Arrays have a leading batch axis, for the compiled functions that serve many worlds. What moves the
+    bodies is left to the subclasses.
 
     Args:
         config: Configuration.
         task: The task.
         estimator: Name of an estimator, or a mapping with its `name` and parameters.
         randomization: What is drawn per episode; None: nothing.
+        n: Environments.
 
     Attributes:
-        plant: State of world, pads, fingers and sensors.
-        world: PyBullet around it.
-        episode: EPISODE (1,).
-        wrenches: Measured wrench per finger at the centre of pressure, (1, 2, 4) [N, N, N, N m].
-        twists: Measured slip twist per finger there, (1, 2, 3) [m/s, m/s, rad/s].
-        task_part: The task's part of the observation, (1, k).
-        material: Name of the episode's material.
-        true_friction: (mu_s, mu_c, r) now, (3,).
-        per_finger: Estimates (mu_s, mu_c, r) per finger, (1, 2, 3).
-        estimated: Estimates of both fingers merged, with their support, (1, 6).
+        plant: State of worlds, pads, fingers and sensors.
+        episode: EPISODE (n,).
+        commands: Grip force and wrist velocity, (n, 4), see `slipgym.envs.actions.COMMANDS`.
+        terms: Reward terms of the last step, summed over its samples, (n, k).
+        wrenches: Measured wrench per finger at the centre of pressure, (n, 2, 4) [N, N, N, N m].
+        twists: Measured slip twist per finger there, (n, 2, 3) [m/s, m/s, rad/s].
+        task_part: The task's part of the observation, (n, k).
+        materials: Name of every episode's material.
+        boxes: Its object.
+        drawn: What the randomization drew for it, JSON-like; empty without one.
+        truth: (mu_s, mu_c, r) now and full support, (n, 6); columns as `estimated`.
+        per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
+        estimated: Estimates of both fingers merged, with their support, (n, 6).
         estimator_choice: Name and parameters of the estimators; `velocity_delay` only if it was given.
-        drawn: What the randomization drew for the episode, JSON-like; empty without one.
     """
 
     def __init__(
@@ -79,110 +82,121 @@ class SlipLoop:
         task: Task,
         estimator: str | Mapping[str, Any],
         randomization: Randomization | None = None,
+        n: int = 1,
     ) -> None:
-        self.config, self.task = config, task
-        self.plant = build(config)
+        self.config, self.task, self.n = config, task, n
+        self.plant = build(config, n)
         self._randomizer = Randomizer(config, task.key, randomization or Randomization())
         self._equipment = Equipment(config, self.plant, self._randomizer.pressures)
         self._equipment.check(self._randomizer.most)
         self.estimator_choice = _choose_estimator(estimator)
-        self.estimator = estimators.make_batch(n=2, **self.estimator_choice)
+        self.estimator = estimators.make_batch(n=2 * n, **self.estimator_choice)
         asked = self.estimator.parameters_array.dtype.names or ()
         self._tells_latency = _LATENCY in asked and _LATENCY not in self.estimator_choice
-        self.episode = np.zeros(1, EPISODE)
-        self.wrenches, self.twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
-        self.task_part = np.zeros((1, len(task.columns)))
-        self.true_friction, self.per_finger = np.zeros(3), np.zeros((1, 2, 3))
-        self.estimated = np.zeros((1, len(FRICTION_COLUMNS)))
-        self.material, self.drawn = "", {}
-        self._true_rows = self.true_friction.reshape(1, 3)
+        if self._tells_latency and n > 1:
+            self.estimator.parameters_array = np.repeat(self.estimator.parameters_array, 2 * n)
+        self.episode = np.zeros(n, EPISODE)
+        self.commands, self.terms = np.zeros((n, len(COMMANDS))), np.zeros((n, len(task.terms)))
+        self.wrenches, self.twists = np.zeros((n, 2, 4)), np.zeros((n, 2, 3))
+        self.task_part = np.zeros((n, len(task.columns)))
+        self.truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
+        self.per_finger = np.zeros((n, 2, 3))
+        self.materials: list[str] = [""] * n
+        self.boxes: list[Any] = [None] * n
+        self.drawn: list[dict[str, Any]] = [{} for _ in range(n)]
         self._step_time = 1.0 / config.physics.control_rate
-        self._wrench_rows, self._twist_rows = self.wrenches.reshape(2, 4), self.twists.reshape(2, 3)
-        samples = -(-config.sensors.force_torque.rate // config.physics.control_rate) + 1
-        sizes = 2 * samples * 6, 2 * AXES, 2 * 6
-        self._noise = np.zeros(sum(sizes))
-        force, slip, drift = np.split(self._noise, np.cumsum(sizes)[:-1])  # views
-        self._force_noise = force.reshape(1, 2, samples, 6)
-        self._slip_noise, self._drift_noise = slip.reshape(1, 2, AXES), drift.reshape(1, 2, 6)
-        self.world = BulletWorld(config, self.plant)
-        self._guard = Guard()
+
+    @property
+    def true_friction(self) -> np.ndarray:
+        """(mu_s, mu_c, r) now, (n, 3)."""
+        return self.truth[:, :3]
 
     @property
     def time(self) -> float:
-        """Time since the episode's start [s]."""
-        return self.episode["step"].item() * self._step_time
+        """Time since the start of the first environment's episode [s]."""
+        return self.episode["step"].item(0) * self._step_time
 
-    def reset(self, options: EpisodeOptions, material: str, rng: np.random.Generator) -> None:
+    def reset(self, options: EpisodeOptions, material: str, rng: np.random.Generator, i: int = 0) -> None:
         """Start an episode: draw it, grip, and let grip and sensors come to rest.
 
         Args:
             options: What is fixed.
             material: Name of a material, or "random".
             rng: Source of every draw.
+            i: Which of the environments.
 
         Raises:
             ValueError: The options contradict each other or the configuration.
             RuntimeError: The world is closed.
         """
-        _ = self.world.client
+        self.check_open()
         task_config: TaskConfig = getattr(self.config.tasks, self.task.key)
         scale = 1.0 if options.randomization_scale is None else options.randomization_scale
         draw = self._randomizer.draw(rng, scale)
         friction = draw_friction(self.config, options, task_config, material, draw, rng)
         box = make_box(self.config, options, task_config, draw, rng)
         force = choose_force(self.config, options, task_config)
-        self._start_episode(box, friction, options, task_config, draw, rng)
-        self.world.reset(box, force, tuple(self.episode["wrist_start"][0].tolist()))
-        self._guard.reset()
-        self.material = friction.material
+        self._start_episode(self.episode[i : i + 1], box, friction, options, task_config, draw, rng)
+        self._place(i, box, force, tuple(self.episode["wrist_start"][i].tolist()))
+        self.materials[i], self.boxes[i] = friction.material, box
         start = {"mu_s": friction.mu_s, "mu_c": friction.mu_c, "mass": box.mass}
-        self.drawn = {**start, **draw.report(options)} if self._randomizer.active else {}
-        self.true_friction[:] = friction.mu_s, friction.mu_c, friction.r
-        for field, value in zip(("mu_s", "mu_c", "r"), self.true_friction, strict=True):
-            self.plant.pads[field] = value
-        self._equipment.fit(draw.values, draw.config.contact.pressure)
-        self._equipment.start_sensors(draw.values["bias_scale"], rng)
+        self.drawn[i] = {**start, **draw.report(options)} if self._randomizer.active else {}
+        for k, field in enumerate(("mu_s", "mu_c", "r")):
+            self.truth[i, k] = self.plant.pads[field][i] = getattr(friction, field)
+        self._equipment.fit(i, draw.values, draw.config.contact.pressure)
+        self._equipment.start_sensors(i, draw.values["bias_scale"], rng)
+        fingers = slice(2 * i, 2 * i + 2)
         if self._tells_latency:
-            self.estimator.parameters_array[_LATENCY] = draw.values["slip_latency"]
-        for _ in range(WARM_UP_STEPS):
-            self._advance(force, rng)
-        self.plant.chips["travel"] = 0.0
-        self.estimator.reset()
-        combine(self.estimator.estimates, self.per_finger, self.estimated)
-        self.episode["command"] = self.episode["last_command"] = force
-        self.task.judge(self.episode, self.plant.world, self.plant.fingers, self.task_part)
+            own = self.estimator.parameters_array[fingers if self.n > 1 else slice(1)]
+            own[_LATENCY] = draw.values["slip_latency"]
+        self._settle(i, force)
+        self.plant.chips["travel"][i] = 0.0
+        self.estimator.reset(fingers)
+        row = slice(i, i + 1)
+        combine(self.estimator.estimates[fingers], self.per_finger[row], self.estimated[row])
+        self.terms[i] = self.commands[i] = 0.0
+        self.episode["command"][i] = self.episode["last_command"][i] = force
+        self.task.judge(self.episode[row], self.plant.world[row], self.plant.fingers[row], self.task_part[row])
 
-    def sample(self, force: float, rng: np.random.Generator, wrist: np.ndarray | None = None) -> None:
-        """One slip-velocity sample: act, move, measure, estimate, judge.
+    @abstractmethod
+    def step(
+        self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
+    ) -> None:
+        """Some samples with the same action, and what is observed then; an episode that ends does not go on.
 
         Args:
-            force: Grip force per finger [N].
-            rng: Source of the sensors' noise.
-            wrist: Velocity (x, z, pitch) on top of what the task scripts, (3,) [m/s, m/s, rad/s]; None: the
-                last one.
+            actions: (n, m).
+            components: COMPONENT (m,), what they mean.
+            skip: Samples.
+            active: Which environments take part, (n,).
+            sight: Where to write what they observe.
 
         Raises:
             FloatingPointError: Something is no longer a finite number; only a reset helps.
+            RuntimeError: The world is closed.
         """
-        plant, episode = self.plant, self.episode
-        episode["last_command"] = episode["command"]
-        episode["command"] = force
-        if wrist is not None:
-            episode["wrist_command"] = wrist
-        disturb(episode, plant.world, plant.pads, self._true_rows)
-        self.world.weigh()
-        self.task.plan(episode, plant.world)
-        self._advance(force, rng)
-        episode["step"] += 1
-        self.estimator.update(self.time, self._wrench_rows, self._twist_rows)
-        combine(self.estimator.estimates, self.per_finger, self.estimated)
-        self.task.judge(episode, plant.world, plant.fingers, self.task_part)
-        arrays = plant.world, plant.pads, plant.fingers, self.wrenches, self.twists, self.per_finger, episode
-        try:
-            self._guard.watch(self.time, *arrays)
-        except FloatingPointError:
-            self.world.discard()
-            raise
+
+    @abstractmethod
+    def close(self) -> None:
+        """Release what the worlds hold; closing twice is harmless."""
+
+    @property
+    @abstractmethod
+    def closed(self) -> bool:
+        """Whether it was closed."""
+
+    def check_open(self) -> None:
+        """Raise RuntimeError if it was closed."""
+        if self.closed:
+            raise RuntimeError("this environment is closed; make a new one")
+
+    @abstractmethod
+    def _place(self, i: int, box: Box, force: float, wrist: tuple[float, ...]) -> None:
+        """Put a box between the pads of a world, held with a force [N], the wrist at rest."""
+
+    @abstractmethod
+    def _settle(self, i: int, force: float) -> None:
+        """Hold it for `WARM_UP_STEPS`."""
 
     def get_state(self) -> LoopState:
         """Copy everything that the next sample depends on.
@@ -190,8 +204,9 @@ class SlipLoop:
         Raises:
             RuntimeError: The world is closed, or there was no reset yet.
         """
+        self.check_open()
         arrays = {name: array.copy() for name, array in self._arrays().items()}
-        return LoopState(self.world.get_state(), deepcopy(self.plant), arrays, self.material)
+        return LoopState(None, deepcopy(self.plant), arrays, list(self.materials), list(self.boxes))
 
     def set_state(self, state: LoopState) -> None:
         """Go on from a state.
@@ -199,11 +214,11 @@ class SlipLoop:
         Raises:
             RuntimeError: The world is closed.
         """
-        self.world.set_state(state.engine)
+        self.check_open()
         self.plant.restore(state.plant)
         for name, array in self._arrays().items():
             array[:] = state.arrays[name]
-        self.material = state.material
+        self.materials[:], self.boxes[:] = state.materials, state.boxes
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that last from sample to sample."""
@@ -212,32 +227,19 @@ class SlipLoop:
             "estimator_states": self.estimator.states,
             "estimates": self.estimator.estimates,
             "episode": self.episode,
+            "commands": self.commands,
+            "terms": self.terms,
             "wrenches": self.wrenches,
             "twists": self.twists,
             "task_part": self.task_part,
-            "true_friction": self.true_friction,
+            "truth": self.truth,
             "per_finger": self.per_finger,
             "estimated": self.estimated,
         }
 
-    def _advance(self, force: float, rng: np.random.Generator) -> None:
-        """One control step of the world and its sensors."""
-        plant = self.plant
-        rng.standard_normal(out=self._noise)
-        self.world.command(force)
-        self.world.step(self._force_noise)
-        measure(
-            plant.world,
-            plant.force_torque,
-            plant.chips,
-            self._slip_noise,
-            self._drift_noise,
-            self.wrenches,
-            self.twists,
-        )
-
     def _start_episode(
         self,
+        episode: np.ndarray,
         box: Box,
         friction: Friction,
         options: EpisodeOptions,
@@ -245,7 +247,6 @@ class SlipLoop:
         draw: Draw,
         rng: np.random.Generator,
     ) -> None:
-        episode = self.episode
         episode[:] = 0
         episode["step_time"] = self._step_time
         for field in ("force_min", "force_max", "wrist_speed_max", "wrist_pitch_rate_max"):

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
 from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.envs.actions import ACTION_MODES
@@ -23,6 +27,21 @@ WRIST_COLUMNS = (
     Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "commanded wrist pitch rate"),
     Column("wrist_pitch", -10.0, 10.0, "rad", "pitch of the wrist against level"),
 )
+
+
+class Sight(NamedTuple):
+    """Of an observation, what does not come from the loop, and where it goes: arguments of `observe`."""
+
+    wrist: np.ndarray
+    """Which of `WRIST_COLUMNS` make the wrist part, (w,)."""
+    friction: np.ndarray
+    """What the friction part holds, (n, 6)."""
+    low: np.ndarray
+    """Lower bounds, (m,) float32."""
+    high: np.ndarray
+    """Upper bounds, (m,) float32."""
+    out: np.ndarray
+    """The observations, (n, m) float32."""
 
 
 def sensor_columns(config: Config) -> tuple[Column, ...]:

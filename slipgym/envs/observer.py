@@ -14,6 +14,7 @@ from slipgym.envs.observation import (
     FRICTION_SOURCES,
     OBSERVATION_MODES,
     WRIST_COLUMNS,
+    Sight,
     columns,
     observe,
     wrist_columns,
@@ -25,7 +26,7 @@ Observation: TypeAlias = np.ndarray | dict[str, np.ndarray]
 
 
 class Observer:
-    """Reads the observation out of a loop.
+    """Reads the observations out of a loop.
 
     Args:
         loop: What is observed.
@@ -37,9 +38,9 @@ class Observer:
     Attributes:
         columns: Of one observation, or of its group "policy".
         privileged: Columns of the group "privileged"; empty without one.
-        space: The observation space.
-        friction: Friction part, (1, 6).
-        frames: The last observations (history + 1, m) float32, the present one last.
+        space: The observation space of one environment.
+        sight: Where the loop writes what is observed.
+        frames: The last observations (n, history + 1, m) float32, the present one last.
 
     Raises:
         ValueError: The value of an argument is unknown or not allowed.
@@ -50,66 +51,73 @@ class Observer:
     ) -> None:
         one_of("friction_source", friction_source, FRICTION_SOURCES)
         one_of("observation_mode", mode, OBSERVATION_MODES)
-        self._loop, self._source = loop, friction_source
+        self._loop = loop
         self._history = whole("history", history, 0)
         self.columns = columns(loop.config, loop.task, friction_source, action_mode, mode)
         wrist = wrist_columns(loop.task, action_mode)
-        self.frames = np.zeros((history + 1, len(self.columns)), dtype=np.float32)
-        # the friction part: the merged estimates, or values that stand for the episode
-        self.friction = loop.estimated if friction_source == "estimated" else np.ones((1, 6))
-        self._sources = (
-            loop.wrenches,
-            loop.twists,
-            loop.plant.chips,
-            loop.episode,
-            loop.task_part,
-            loop.plant.world,
+        low, high = _bounds(self.columns)
+        self.sight = Sight(
             np.array([WRIST_COLUMNS.index(column) for column in wrist], dtype=np.int64),
-            self.friction,
-            *_bounds(self.columns),
-            self.frames[-1:],
+            _friction_part(loop, friction_source),
+            low,
+            high,
+            np.zeros((loop.n, len(self.columns)), dtype=np.float32),
         )
-        low, high = self._sources[-3:-1]
+        self.frames = self.sight.out[:, np.newaxis]
+        if history:
+            self.frames = np.zeros((loop.n, history + 1, len(self.columns)), dtype=np.float32)
         policy = gym.spaces.Box(np.tile(low, history + 1), np.tile(high, history + 1))
         self.privileged: tuple[Column, ...] = ()
         self.space: gym.Space = policy
         if mode == "dict":
             self.privileged = privileged.columns(loop.config)
             self._truth_bounds = _bounds(self.privileged)
-            self._truth = np.zeros((1, len(self.privileged)), dtype=np.float32)
+            self._truth = np.zeros((loop.n, len(self.privileged)), dtype=np.float32)
             truth = gym.spaces.Box(*self._truth_bounds)
             self.space = gym.spaces.Dict({"policy": policy, "privileged": truth})
 
-    def begin(self) -> Observation:
-        """The first observation of an episode; it stands for those before it, too."""
-        loop = self._loop
-        if self._source == "true":
-            self.friction[0, :3] = loop.true_friction
-        elif self._source == "nominal":
-            nominal = loop.config.nominal
-            radius = getattr(loop.config.tasks, loop.task.key).radius or nominal.r
-            self.friction[0, :3] = nominal.mu_s, nominal.mu_c, radius
-        observe(*self._sources)
-        self.frames[:-1] = self.frames[-1]
-        return self._read()
+    def begin(self, i: int = 0) -> None:
+        """Take the first observation of an episode; it stands for those before it, too."""
+        loop, (wrist, friction, low, high, out) = self._loop, self.sight
+        row = slice(i, i + 1)
+        arrays = loop.wrenches, loop.twists, loop.plant.chips, loop.episode, loop.task_part, loop.plant.world
+        observe(*(array[row] for array in arrays), wrist, friction[row], low, high, out[row])
+        self.frames[i] = out[i]
 
-    def next(self) -> Observation:
-        """The observation after a step."""
-        if self._source == "true":  # it may have changed
-            self.friction[0, :3] = self._loop.true_friction
+    def next(self, active: np.ndarray) -> None:
+        """Take what the loop observed after a step.
+
+        Args:
+            active: Which environments took part, (n,).
+        """
         if self._history:
-            self.frames[:-1] = self.frames[1:]
-        observe(*self._sources)
-        return self._read()
+            self.frames[active, :-1] = self.frames[active, 1:]
+            self.frames[active, -1] = self.sight.out[active]
 
-    def _read(self) -> Observation:
-        policy = self.frames.flatten()
+    def read(self) -> Observation:
+        """Observations of all environments, (n, k) each; the caller's own."""
+        policy = self.frames.reshape(self._loop.n, -1).copy()
         if not self.privileged:
             return policy
         plant, (low, high) = self._loop.plant, self._truth_bounds
-        truth = self._loop.true_friction[np.newaxis]
-        privileged.reveal(plant.world, plant.pads, plant.fingers, truth, low, high, self._truth)
-        return {"policy": policy, "privileged": self._truth[0].copy()}
+        privileged.reveal(plant.world, plant.pads, plant.fingers, self._loop.truth, low, high, self._truth)
+        return {"policy": policy, "privileged": self._truth.copy()}
+
+
+def first(observations: Observation) -> Observation:
+    """That of the first environment."""
+    if isinstance(observations, dict):
+        return {group: values[0] for group, values in observations.items()}
+    return observations[0]
+
+
+def _friction_part(loop: SlipLoop, source: str) -> np.ndarray:
+    """What the friction part holds, (n, 6): an array of the loop's, or values that never change."""
+    if source in ("estimated", "true"):
+        return loop.estimated if source == "estimated" else loop.truth
+    nominal = loop.config.nominal
+    radius = getattr(loop.config.tasks, loop.task.key).radius or nominal.r
+    return np.tile([nominal.mu_s, nominal.mu_c, radius, 1.0, 1.0, 1.0], (loop.n, 1))
 
 
 def _bounds(named: tuple[Column, ...]) -> tuple[np.ndarray, np.ndarray]:

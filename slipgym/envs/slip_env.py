@@ -12,10 +12,10 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.config import load, load_randomization
-from slipgym.envs.actions import ACTION_MODES, COMMANDS, Actions, interpret
+from slipgym.envs.actions import ACTION_MODES, Actions
 from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, refuse_unknown, whole
-from slipgym.envs.loop import SlipLoop
-from slipgym.envs.observer import Observer
+from slipgym.envs.engines import make_loop
+from slipgym.envs.observer import Observer, first
 from slipgym.envs.state import EnvState, checked, restored_generator
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
@@ -41,6 +41,8 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         history: How many earlier observations come along with each.
         randomization: What is drawn per episode: "none", "train", "eval_ood", a file or a mapping
             (see docs/randomization.md).
+        engine: What moves the bodies: "bullet", or "planar" for friction and the planar equations of motion
+            alone (see docs/batch.md).
         frame_skip: Slip-velocity samples per step.
         render_mode: None, "rgb_array", "depth_array" or "human".
         config: File or mapping of overrides of the default configuration.
@@ -68,6 +70,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         observation_mode: str = "flat",
         history: int = 0,
         randomization: str | os.PathLike[str] | Mapping[str, Any] = "none",
+        engine: str = "bullet",
         frame_skip: int = 1,
         render_mode: str | None = None,
         config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
@@ -87,9 +90,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_modes": modes, "render_fps": rate}
         self._actions = Actions(action_mode, self.config)
-        self._loop = SlipLoop(self.config, self.task, estimator, self.randomization)
-        self._commands = np.zeros((1, len(COMMANDS)))
-        self._wrist = self._commands[0, 1:] if self._actions.moves_wrist else None
+        self._loop = make_loop(engine, self.config, self.task, estimator, self.randomization)
         self._observer = Observer(self._loop, friction_source, action_mode, observation_mode, history)
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns
@@ -105,6 +106,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             "observation_mode": observation_mode,
             "history": history,
             "randomization": self.randomization.model_dump(mode="json", exclude_unset=True),
+            "engine": engine,
             "frame_skip": frame_skip,
             "config": self.config.model_dump(mode="json"),
         }
@@ -136,8 +138,9 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         if self._renderer is not None:
             self._renderer.begin()
         self._ready = True
-        drawn = {"drawn": dict(self._loop.drawn)} if self._loop.drawn else {}
-        return self._observer.begin(), {**self._info(), **drawn}
+        drawn = self._loop.drawn[0]
+        self._observer.begin()
+        return first(self._observer.read()), {**self._info(), **({"drawn": dict(drawn)} if drawn else {})}
 
     def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Act for `frame_skip` slip-velocity samples.
@@ -152,24 +155,26 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         """
         actions = self._actions.checked(action)
         if not self._ready:
-            _ = self._loop.world.client
+            self._loop.check_open()
             raise RuntimeError("call reset() before step()")
-        loop, episode, rng = self._loop, self._loop.episode, self.np_random
+        loop, episode, observer = self._loop, self._loop.episode, self._observer
         self._terms[:] = 0.0
         dropped = finished = self._ready = False
-        for _ in range(self._frame_skip):
-            interpret(actions, self._actions.table, episode, self._commands)
-            loop.sample(self._commands.item(0), rng, self._wrist)
-            self._terms += episode["terms"][0, : len(self._terms)]
+        # a picture's strip shows every sample
+        at_once = self._frame_skip if self._renderer is None else 1
+        for _ in range(0, self._frame_skip, at_once):
+            loop.step(actions, self._actions.table, at_once, _ONE, observer.sight)
+            self._terms += loop.terms[0]
             dropped = episode["dropped"].item()
             finished = episode["step"].item() >= episode["steps"].item()
             if self._renderer is not None:
                 self._renderer.keep()
             if dropped or finished:
                 break
+        observer.next(_ONE)
         self._ready = True
         reward = math.fsum(self._terms.tolist())
-        return self._observer.next(), reward, dropped, finished and not dropped, self._info()
+        return first(observer.read()), reward, dropped, finished and not dropped, self._info()
 
     def render(self) -> np.ndarray | None:
         """What the render mode asks for; None without one.
@@ -181,11 +186,11 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         Raises:
             RuntimeError: The environment is closed or was never reset.
         """
-        world = self._loop.world
-        _ = world.client
+        self._loop.check_open()
         if self._renderer is None:
             return None
-        _ = world.box
+        if self._loop.boxes[0] is None:
+            raise RuntimeError("call reset() first: there is no object yet")
         return self._renderer.render()
 
     def get_state(self) -> EnvState:
@@ -194,13 +199,12 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         Raises:
             RuntimeError: The environment is closed.
         """
-        _ = self._loop.world.client
+        self._loop.check_open()
         return EnvState(
             made_of={"task": self.task.name, **self._arguments},
             generator=self.np_random.bit_generator.state,
             seed=self._np_random_seed,
             loop=self._loop.get_state() if self._ready else None,
-            friction=self._observer.friction.copy(),
             frames=self._observer.frames.copy(),
         )
 
@@ -216,26 +220,26 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             RuntimeError: This environment is closed.
         """
         checked(state).check({"task": self.task.name, **self._arguments})
-        _ = self._loop.world.client
+        self._loop.check_open()
         self._np_random = restored_generator(state.generator)
         self._np_random_seed = state.seed
         if state.loop is not None:
             self._loop.set_state(state.loop)
             if self._renderer is not None:
                 self._renderer.begin()
-        self._observer.friction[:] = state.friction
+        self._observer.sight.out[:] = state.frames[:, -1]
         self._observer.frames[:] = state.frames
         self._ready = state.loop is not None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make a new environment with a world of its own, in the same state."""
-        state = None if self._loop.world.closed else self.get_state()
+        state = None if self._loop.closed else self.get_state()
         arguments = {**self._arguments, "render_mode": self.render_mode}
         return _rebuild, (type(self), arguments, state, self.spec)
 
     def close(self) -> None:
         """Release the physics client; closing twice is harmless."""
-        self._loop.world.close()
+        self._loop.close()
         if self._renderer is not None:
             self._renderer.close()
         self._ready = False
@@ -244,7 +248,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         """Arrays that every info carries a copy of."""
         loop = self._loop
         return {
-            "true": loop.true_friction,
+            "true": loop.true_friction[0],
             "estimated": loop.estimated[0, :3],
             "estimated_per_finger": loop.per_finger[0],
             "slip": loop.plant.world["slip"][0],
@@ -274,6 +278,7 @@ def _rebuild(kind: type[SlipEnv], arguments: Mapping[str, Any], state: EnvState 
     return env
 
 
+_ONE = np.ones(1, dtype=bool)
 _KEYWORDS = [
     name
     for name, parameter in inspect.signature(SlipEnv.__init__).parameters.items()

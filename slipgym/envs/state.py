@@ -28,10 +28,8 @@ class EnvState:
     """Seed that the generator was last given."""
     loop: LoopState | None
     """Bodies, contacts, sensors, estimators and task; None before the first reset."""
-    friction: np.ndarray
-    """Friction part of the observation, (1, 6)."""
     frames: np.ndarray
-    """The last observations, the present one last, (history + 1, m)."""
+    """The last observations, the present one last, (1, history + 1, m)."""
 
     def check(self, made_of: Mapping[str, Any]) -> None:
         """Refuse a state of another kind of environment.

@@ -63,8 +63,7 @@ def above(view: View, contact: Contact, camera: Camera) -> Marks:
 
 def _push(view: View, force: float, camera: Camera, side: float, opacity: float, cased: bool) -> Marks:
     """The normal force of the finger on one side of the object, its tip at the finger's back."""
-    closing = view.closing[0] if side > 0.0 else view.closing[1]
-    back = view.box.size[1] / 2 + PAD_THICKNESS + _BAR - closing
+    back = view.box.size[1] / 2 + PAD_THICKNESS + _BAR
     length = camera.span * min(GRIP_LENGTH * force, _LONGEST)
     path = view.place(np.array([(0.0, side * (back + length), 0.0), (0.0, side * back, 0.0)]))
     return arrow(camera, path, GRIP, _WIDTH, opacity, cased)

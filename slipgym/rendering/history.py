@@ -17,19 +17,25 @@ class History:
 
     Args:
         loop: The environment's loop, just reset.
+        row: Which of its environments.
         motion: What path and reference are.
     """
 
-    def __init__(self, loop: SlipLoop, motion: Motion) -> None:
-        self._loop, self._motion = loop, motion
-        self.rows = np.full((int(loop.episode["steps"][0]) + 1, len(COLUMNS)), math.nan)
-        self.step_time = float(loop.episode["step_time"][0])
+    def __init__(self, loop: SlipLoop, row: int, motion: Motion) -> None:
+        self._loop, self._row, self._motion = loop, row, motion
+        self.rows = np.full((int(loop.episode["steps"][row]) + 1, len(COLUMNS)), math.nan)
+        self.step_time = float(loop.episode["step_time"][row])
         self.keep()
 
     @property
     def step(self) -> int:
         """Samples since the start."""
-        return int(self._loop.episode["step"][0])
+        return int(self._loop.episode["step"][self._row])
+
+    @property
+    def time(self) -> float:
+        """Time since the start [s]."""
+        return self.step * self.step_time
 
     @property
     def times(self) -> np.ndarray:
@@ -42,11 +48,11 @@ class History:
 
     def keep(self) -> None:
         """Keep the present."""
-        loop = self._loop
-        mu_s, mu_c, _, support_s, support_c, _ = loop.estimated[0]
-        slip, reference = loop.plant.world["slip"][0], loop.episode["reference"][0, 0]
+        loop, i = self._loop, self._row
+        mu_s, mu_c, _, support_s, support_c, _ = loop.estimated[i]
+        slip, reference = loop.plant.world["slip"][i], loop.episode["reference"][i, 0]
         row = self.rows[self.step]
-        row[:2] = loop.plant.fingers["force"][0]
+        row[:2] = loop.plant.fingers["force"][i]
         row[2], row[3] = self._motion.path(slip), self._motion.target(reference)
         row[4] = mu_c if support_c > 0.0 else math.nan
         row[5] = mu_s if support_s > 0.0 else math.nan

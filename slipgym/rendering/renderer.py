@@ -6,7 +6,7 @@ import numpy as np
 
 from slipgym.envs.loop import SlipLoop
 from slipgym.rendering import camera, strip
-from slipgym.rendering.bullet import look
+from slipgym.rendering.look import look
 from slipgym.rendering.caption import caption
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.history import History
@@ -28,18 +28,19 @@ class Renderer:
     Args:
         mode: "rgb_array", "depth_array" or "human".
         loop: The environment's loop.
+        row: Which of its environments.
     """
 
-    def __init__(self, mode: str, loop: SlipLoop) -> None:
-        self._mode, self._loop = mode, loop
+    def __init__(self, mode: str, loop: SlipLoop, row: int = 0) -> None:
+        self._mode, self._loop, self._row = mode, loop, row
         self._motion = motion_of(loop.task)
         self._window = Window(f"slipgym {loop.task.name}", (WIDTH, HEIGHT)) if mode == "human" else None
 
     def begin(self) -> None:
         """Start an episode, or go on from a restored state: the strip begins anew."""
-        self._history = History(self._loop, self._motion)
+        self._history = History(self._loop, self._row, self._motion)
         names = [column.name for column in self._loop.task.columns]
-        told = dict(zip(names, self._loop.task_part[0].tolist(), strict=True))
+        told = dict(zip(names, self._loop.task_part[self._row].tolist(), strict=True))
         self._goal = self._motion.target(told.get(self._motion.goal, 0.0))
         self._camera = camera.framing(footprint(self._view(), told.get("wrist_pitch_goal", 0.0)))
         self._show()
@@ -68,10 +69,11 @@ class Renderer:
         view, beside = picture[:, : camera.WIDTH], picture[:, camera.WIDTH :]
         contact = self._contact()
         draw_scene(view, self._view(), contact, self._camera)
-        about = f"{loop.material}, {1e3 * loop.world.box.mass:.0f} g"
-        slip = loop.plant.world["slip"][0]
-        caption(view, loop.task.name, about, loop.time, self._state(), contact, slip)
-        true = float(loop.true_friction[0]), float(loop.true_friction[1])
+        row, world = self._row, loop.plant.world[self._row]
+        about = f"{loop.materials[row]}, {1e3 * world['mass']:.0f} g"
+        slip = world["slip"]
+        caption(view, loop.task.name, about, self._history.time, self._state(), contact, slip)
+        true = float(loop.truth[row, 0]), float(loop.truth[row, 1])
         strip.draw_strip(beside, self._history, self._motion, self._goal, true)
         return picture
 
@@ -85,19 +87,19 @@ class Renderer:
             self._window.show(self.picture(), WINDOW_RATE)
 
     def _view(self) -> View:
-        return look(self._loop.world, self._loop.material, self._loop.config.gripper.pad_radius)
+        return look(self._loop, self._row)
 
     def _contact(self) -> Contact:
-        x, y, torque = self._loop.plant.pads["wrench"][0].sum(axis=0).tolist()
-        first, second = self._loop.plant.fingers["contact_force"][0].tolist()
+        x, y, torque = self._loop.plant.pads["wrench"][self._row].sum(axis=0).tolist()
+        first, second = self._loop.plant.fingers["contact_force"][self._row].tolist()
         return Contact((x, y), torque, (first, second))
 
     def _state(self) -> str:
-        loop = self._loop
-        if loop.episode["dropped"][0]:
+        loop, row = self._loop, self._row
+        if loop.episode["dropped"][row]:
             return "dropped"
-        if loop.episode["success"][0]:
+        if loop.episode["success"][row]:
             return "success"
-        x, y, rate = loop.plant.world["slip_twist"][0]
+        x, y, rate = loop.plant.world["slip_twist"][row]
         slips = np.hypot(x, y) > _SLIPPING[0] or abs(rate) > _SLIPPING[1]
         return "slips" if slips else "sticks"

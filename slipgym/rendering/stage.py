@@ -33,8 +33,6 @@ class View:
     """From its frame to the world's, (3, 3)."""
     wrist: tuple[float, float, float]
     """Pad centre (x, z) and pitch [m, m, rad]."""
-    closing: tuple[float, float]
-    """Travel of finger 1 and 2 towards the object since they touched it [m]."""
     pad_radius: float
     """[m]."""
 
@@ -60,8 +58,8 @@ def assemble(view: View) -> tuple[np.ndarray, np.ndarray]:
     body, body_colours = _object(view.box, view.material)
     palm, finger = _gripper(view.pad_radius, view.side)
     offset = view.box.size[1] / 2 + PAD_THICKNESS / 2
-    far = finger[0] + [0.0, offset - view.closing[0], 0.0]
-    near = _mirrored(finger[0], 1) - [0.0, offset - view.closing[1], 0.0]
+    far = finger[0] + [0.0, offset, 0.0]
+    near = _mirrored(finger[0], 1) - [0.0, offset, 0.0]
     glass = finger[1] * [1.0, 1.0, 1.0, _SEE_THROUGH]
     held = view.place(np.concatenate([palm[0], far, near]))
     corners = np.concatenate([view.carry(body), held])

@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from slipgym.compiled import compiled
+from slipgym.sensors.noise import standard_normal
 
 HISTORY = 128
 
@@ -25,51 +26,70 @@ FORCE_TORQUE = np.dtype(
         ("bias", "f8", 6),
         ("resolution", "f8", 6),  # one count, 0 = continuous
         ("range", "f8", 6),  # saturation
-        ("history", "f8", (HISTORY, 6)),
-        ("taken", "i8"),  # samples since reset
-        ("drawn", "i8"),  # samples since the noise was drawn
+        ("key", "u8"),  # of the noise
+        ("drift_key", "u8"),  # of the bias's random walk
+        ("read", "i8"),  # readings since reset
+        ("kept", "i8"),  # loads that `history` keeps, at most HISTORY
+        ("history", "f8", (HISTORY, 6)),  # loads at the newest samples, in turn
     ]
 )
 
 
 @compiled
-def sample_force_torque(sensor, pad, noise):
-    """Take one sample of the load on a finger.
+def sample_force_torque(sensor, pad, tick):
+    """Keep the load on a finger at a sampling instant; what the sensor makes of it is left to who reads it.
 
     Args:
         sensor: FORCE_TORQUE record.
         pad: PAD record with the present wrench and normal force.
-        noise: Standard normal draws, shape (samples, 6); row `drawn` is used.
+        tick: Time, a multiple of the sensor's period.
     """
     fx, fy, tau = -pad.wrench[0], -pad.wrench[1], -pad.wrench[2]
     cx, cy = pad.cop
-    load = (fx, fy, pad.normal, cy * pad.normal, -cx * pad.normal, sensor.mirror * (tau + cx * fy - cy * fx))
-    row = sensor.taken % HISTORY
-    for a in range(6):
-        value = load[a] + sensor.bias[a] + sensor.noise[a] * noise[sensor.drawn, a]
-        if sensor.resolution[a] > 0.0:
-            value = sensor.resolution[a] * math.floor(value / sensor.resolution[a] + 0.5)
-        sensor.history[row, a] = min(max(value, -sensor.range[a]), sensor.range[a])
-    sensor.taken += 1
-    sensor.drawn += 1
+    load = sensor.history[(tick // sensor.period) % sensor.kept]
+    load[0], load[1], load[2] = fx, fy, pad.normal
+    load[3], load[4] = cy * pad.normal, -cx * pad.normal
+    load[5] = sensor.mirror * (tau + cx * fy - cy * fx)
 
 
 @compiled
-def drift_force_torque(sensor, noise):
-    """Move the bias by one control step of its random walk; `noise` holds six standard normal draws."""
+def sample_read_next(sensor, tick, control_ticks):
+    """Time of the first sample after `tick` that a reading needs, if it reads every `control_ticks`."""
+    period = sensor.period
+    number = tick // period + 1
+    readings = -(-(number * period + sensor.delay) // control_ticks)
+    return (readings * control_ticks - sensor.delay) // period * period
+
+
+@compiled
+def sensed(sensor, number, reading):
+    """What the sensor makes of the load at a sampling instant: bias, noise, quantisation, saturation.
+
+    Args:
+        sensor: FORCE_TORQUE record; it keeps the load still.
+        number: Of the sample, 1 the first after reset; 0 before reads as zero.
+        reading: Output (6,) [N, N m].
+    """
+    load = sensor.history[number % sensor.kept]
     for a in range(6):
-        sensor.bias[a] += sensor.drift[a] * noise[a]
-    sensor.drawn = 0
+        value = 0.0
+        if number >= 1:
+            value = load[a] + sensor.bias[a]
+            if sensor.noise[a] > 0.0:
+                value += sensor.noise[a] * standard_normal(sensor.key, 6 * number + a)
+            if sensor.resolution[a] > 0.0:
+                value = sensor.resolution[a] * math.floor(value / sensor.resolution[a] + 0.5)
+        reading[a] = min(max(value, -sensor.range[a]), sensor.range[a])
 
 
 @compiled
 def read_force_torque(sensor, tick, reading):
-    """Copy the newest sample that has arrived by `tick` into `reading` (6,)."""
-    number = (tick - sensor.delay) // sensor.period
-    if number < 1:
-        reading[:] = 0.0
-    else:
-        reading[:] = sensor.history[(number - 1) % HISTORY]
+    """Read the newest sample that has arrived by `tick` into `reading` (6,); the bias then drifts on."""
+    sensed(sensor, max((tick - sensor.delay) // sensor.period, 0), reading)
+    for a in range(6):
+        if sensor.drift[a] > 0.0:
+            sensor.bias[a] += sensor.drift[a] * standard_normal(sensor.drift_key, 6 * sensor.read + a)
+    sensor.read += 1
 
 
 @compiled

@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from slipgym.compiled import compiled
+from slipgym.sensors.noise import standard_normal
 
 HISTORY = 32
 CHIPS_MAX = 4
@@ -29,6 +30,7 @@ SLIP_SENSOR = np.dtype(
         ("delay", "i8"),  # latency in samples
         ("lever", "f8", (AXES, 3)),  # slip displacement -> displacement along the axes
         ("solve", "f8", (3, AXES)),  # its least-squares inverse
+        ("key", "u8"),  # of the noise
         ("moved", "f8", 3),  # slip displacement since the last sample, pad frame [m, m, rad]
         ("carry", "f8", AXES),  # displacement not yet counted [m]
         ("counted", "f8", (HISTORY, AXES)),  # counted displacement per sample [m]
@@ -64,7 +66,7 @@ def accumulate_slip(sensor, motion):
 
 
 @compiled
-def sample_slip(sensor, noise):
+def sample_slip(sensor):
     """Close one sample: count what has been seen since the last.
 
     Counting truncates towards zero and keeps the rest, so a surface that trembles by less
@@ -75,7 +77,9 @@ def sample_slip(sensor, noise):
     sensor.moved[:] = 0.0
     for a in range(AXES):
         lever = sensor.lever[a]
-        seen = sensor.carry[a] + lever[0] * x + lever[1] * y + lever[2] * theta + sensor.noise * noise[a]
+        seen = sensor.carry[a] + lever[0] * x + lever[1] * y + lever[2] * theta
+        if sensor.noise > 0.0:
+            seen += sensor.noise * standard_normal(sensor.key, AXES * sensor.taken + a)
         seen = min(max(seen, -sensor.range), sensor.range)
         counted = sensor.count * math.trunc(seen / sensor.count) if sensor.count > 0.0 else seen
         sensor.carry[a] = seen - counted

@@ -11,7 +11,8 @@ from slipgym.config import Overrides, load
 from slipgym.contact.records import pads
 from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.measure import measure
-from slipgym.sensors.slip_velocity import AXES, accumulate_slip
+from slipgym.sensors.starting import start_sensors
+from slipgym.sensors.slip_velocity import accumulate_slip
 from slipgym.synthetic.integration import Trace
 from slipgym.world.plant import build
 
@@ -73,7 +74,7 @@ def sense(
     rng = np.random.default_rng(seed)
     force_torque, chips = plant.force_torque, plant.chips
     force_torque["delay"] = 0
-    chips["carry"] = rng.uniform(-1.0, 1.0, chips["carry"].shape) * chips["count"][..., None]
+    start_sensors(force_torque, chips, rng)
     fingers, n = chips.shape, len(trace.t)
     pad = pads(1)
     wrenches, twists = np.zeros((*fingers, 4)), np.zeros((*fingers, 3))
@@ -81,21 +82,20 @@ def sense(
     for k in range(n):
         plant.world["tick"] += force_torque["period"][:, 0]
         pad["wrench"], pad["normal"] = trace.wrench[k], trace.normal[k]
-        force, slip, drift = (rng.standard_normal((*fingers, *axes)) for axes in ((1, 6), (AXES,), (6,)))
-        _expose(force_torque, chips, pad, trace.motion[k], force)
-        measure(plant.world, force_torque, chips, slip, drift, wrenches, twists)
+        _expose(plant.world, force_torque, chips, pad, trace.motion[k])
+        measure(plant.world, force_torque, chips, wrenches, twists)
         every_wrench[:, k] = wrenches.reshape(-1, 4)[:m]
         every_twist[:, k] = twists.reshape(-1, 3)[:m]
     return _record(trace, every_wrench, every_twist)
 
 
 @compiled
-def _expose(force_torque, chips, pad, motion, noise):
+def _expose(worlds, force_torque, chips, pad, motion):
     """Lets all fingers feel the pad's load and see its slip since the last sample."""
     for i in range(chips.shape[0]):
         for f in range(2):
             accumulate_slip(chips[i, f], motion)
-            sample_force_torque(force_torque[i, f], pad[0], noise[i, f])
+            sample_force_torque(force_torque[i, f], pad[0], worlds[i].tick)
 
 
 def _record(trace: Trace, wrenches: np.ndarray, twists: np.ndarray) -> Record:

@@ -52,6 +52,8 @@ def shake_velocity(episode, axis, time):
     total = 0.0
     for k in range(episode.shakes.shape[0]):
         amplitude, omega, phase = episode.shakes[k, axis]
+        if amplitude == 0.0:
+            continue
         speed = amplitude * omega * math.cos(omega * time + phase)
         if time < _SHAKE_RISE:
             speed *= 0.5 - 0.5 * math.cos(math.pi * time / _SHAKE_RISE)

@@ -61,6 +61,22 @@ def schedule(options: EpisodeOptions, task: Any, episode: np.void) -> None:
 
 
 @compiled
+def begin_step(episodes, commands):
+    """Take the commands of the coming control step.
+
+    Args:
+        episodes: EPISODE (n,).
+        commands: Grip force and wrist velocity (x, z, pitch), (n, 4) [N, m/s, m/s, rad/s].
+    """
+    for i in range(episodes.shape[0]):
+        episode = episodes[i]
+        episode.last_command = episode.command
+        episode.command = commands[i, 0]
+        for a in range(3):
+            episode.wrist_command[a] = commands[i, 1 + a]
+
+
+@compiled
 def drive_wrist(episode, world, x, z, pitch):
     """Over the coming step, bring the wrist to the scripted velocity, shaken, plus what the agent commands.
 

@@ -88,8 +88,6 @@ class Bench:
         self.time = 0.0
         self._force: float = force
         self._steps = 0
-        samples = self.config.sensors.force_torque.rate // self.config.physics.control_rate + 2
-        self._noise = np.zeros((1, 2, samples, 6))
 
     def __enter__(self) -> Self:
         return self
@@ -147,8 +145,7 @@ class Bench:
             if wrist is not None:
                 velocity = np.asarray(wrist(t + self.step_time), dtype=float)
                 self.world.command_wrist(velocity, self.step_time)
-            self.plant.force_torque["drawn"] = 0
-            self.world.step(self._noise)
+            self.world.step()
             self._steps += 1
             self.time = self._steps * self.step_time
             rows.append(self._row(wrench))

@@ -13,6 +13,7 @@ from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.world import coupling, scene
 from slipgym.world.actuator import command
+from slipgym.world.placing import place
 from slipgym.world.planar import locate
 from slipgym.world.plant import Plant
 from slipgym.world.scene import FINGER_LINKS, WRIST_FORCE, WRIST_JOINTS, Box
@@ -23,14 +24,13 @@ _LINK_B, _NORMAL_FORCE = 4, 9  # fields of PyBullet's contact points
 
 
 @compiled
-def _loads(worlds, pads, cells, fingers, force_torque, noise, chips, pose, velocity, wrist, normals):
+def _loads(worlds, pads, cells, fingers, force_torque, chips, pose, velocity, wrist, normals):
     return coupling.step_loads(
         worlds[0],
         pads[0],
         None if cells is None else cells[0],
         fingers[0],
         force_torque[0],
-        noise[0],
         chips[0],
         pose[0],
         pose[1],
@@ -128,25 +128,7 @@ class BulletWorld:
         p.restoreState(stateId=self._saved, physicsClientId=client)
         scene.weigh(client, self._body, box)
         self._box = box
-        world, fingers = self._plant.world, self._plant.fingers
-        cos, sin = math.cos(wrist[2]), math.sin(wrist[2])
-        x, z = box.grasp_from_com
-        for field in ("tick", "velocity", "external", "wrist_velocity", "wrist_acceleration"):
-            world[field] = 0
-        for field in ("relative_velocity", "slip", "slip_twist"):
-            world[field] = 0.0
-        world["mass"], world["inertia"] = box.mass, box.inertia
-        world["half_thickness"] = box.size[1] / 2
-        world["wrist"] = world["wrist_plan"] = wrist
-        world["relative"] = -x, -z, 0.0
-        world["grasp_point"] = x, z
-        world["com"] = wrist[0] - cos * x + sin * z, wrist[1] - sin * x - cos * z
-        world["angle"] = wrist[2]
-        for field in ("queued", "served"):
-            fingers[field] = 0
-        for field in ("command", "force", "mean_force", "contact_mean_force", "contact_force"):
-            fingers[field] = force
-        self._plant.relax()
+        place(self._plant, 0, box, force, wrist)
         if any(wrist):
             self._place(wrist)
         pose, velocity, joints, _ = self._read()
@@ -179,12 +161,8 @@ class BulletWorld:
         """Apply a load (f_x, f_z, torque) to the object's centre of mass until told otherwise."""
         self._plant.world["external"] = wrench
 
-    def step(self, noise: np.ndarray) -> None:
-        """Advance by one control step.
-
-        Args:
-            noise: Standard normal draws for the force/torque sensors, shape (1, 2, samples, 6).
-        """
+    def step(self) -> None:
+        """Advance by one control step."""
         client, body, gripper, plant = self.client, self._body, self._gripper, self._plant
         push, twist, drive = p.applyExternalForce, p.applyExternalTorque, p.setJointMotorControlArray
         (first, second), world = FINGER_LINKS, p.WORLD_FRAME
@@ -196,7 +174,6 @@ class BulletWorld:
                 plant.cells,
                 plant.fingers,
                 plant.force_torque,
-                noise,
                 plant.chips,
                 pose,
                 velocity,

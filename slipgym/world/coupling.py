@@ -52,7 +52,6 @@ def step_loads(
     cells,
     fingers,
     force_torque,
-    noise,
     chips,
     position,
     orientation,
@@ -69,7 +68,6 @@ def step_loads(
         cells: CELL records (2, m); None for ellipsoids.
         fingers: FINGER records (2,).
         force_torque: FORCE_TORQUE records (2,).
-        noise: As in `advance`.
         chips: SLIP_SENSOR records (2,).
         position: As in `observe`, like the next one.
         orientation: Quaternion of the object.
@@ -85,7 +83,7 @@ def step_loads(
     observe(world, fingers, position, orientation, wrist, normals)
     dt = world.engine_ticks * world.tick_length
     x, z, angle = world.com[0], world.com[1], world.angle
-    advance(world, pads, cells, fingers, force_torque, noise, chips)
+    advance(world, pads, cells, fingers, force_torque, chips)
     # total in-plane load that gives the engine this step's mean velocity
     fx = world.mass * ((world.com[0] - x) / dt - linear[0]) / dt
     fz = world.mass * ((world.com[1] - z) / dt - linear[2]) / dt + world.mass * world.gravity

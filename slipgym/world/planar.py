@@ -23,7 +23,7 @@ HOLDING = 1e-2  # [N]; pads with less, a fiftieth of the smallest grip, do not h
 
 
 @compiled
-def advance(world, pads, cells, fingers, force_torque, noise, chips):
+def advance(world, pads, cells, fingers, force_torque, chips):
     """Advance one world by one engine step.
 
     Args:
@@ -32,8 +32,6 @@ def advance(world, pads, cells, fingers, force_torque, noise, chips):
         cells: CELL records (2, m); None for ellipsoids.
         fingers: FINGER records (2,).
         force_torque: FORCE_TORQUE records (2,).
-        noise: Standard normal draws for the force/torque samples of this control step,
-            shape (2, samples, 6).
         chips: SLIP_SENSOR records (2,).
     """
     start = world.tick
@@ -52,7 +50,7 @@ def advance(world, pads, cells, fingers, force_torque, noise, chips):
         world.tick += ticks
         for f in range(2):
             if world.tick % force_torque[f].period == 0:
-                sample_force_torque(force_torque[f], pads[f], noise[f])
+                sample_force_torque(force_torque[f], pads[f], world.tick)
 
 
 @compiled

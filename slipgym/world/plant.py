@@ -39,11 +39,11 @@ class Plant:
     chips: np.ndarray
     """SLIP_SENSOR (n, 2)."""
 
-    def relax(self) -> None:
-        """Bring the contact of all pads to rest."""
-        rest(self.pads)
+    def relax(self, i: int) -> None:
+        """Bring the contact of one world's pads to rest."""
+        rest(self.pads[i])
         if self.cells is not None:
-            rest(self.cells)
+            rest(self.cells[i])
 
     def restore(self, other: Plant) -> None:
         """Copy every array of another plant of the same size into this one."""
@@ -102,6 +102,7 @@ def patch_of(config: Config) -> np.ndarray:
 def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
     world = np.zeros(n, WORLD)
     world["tick_length"] = 1.0 / tick_rate
+    world["control_ticks"] = tick_rate // config.physics.control_rate
     world["engine_ticks"] = tick_rate // config.physics.engine_rate
     world["substep_ticks"] = max(1, math.floor(config.physics.substep_max * tick_rate * (1 + 1e-9)))
     world["gravity"] = config.physics.gravity
@@ -136,10 +137,11 @@ def _fingers(config: Config, n: int) -> np.ndarray:
 def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     sensor = config.sensors.force_torque
     delay = round(sensor.latency * tick_rate)
-    if delay * sensor.rate >= FORCE_HISTORY * tick_rate:
+    kept = delay * sensor.rate // tick_rate + 2
+    if kept > FORCE_HISTORY:
         raise ValueError(
-            f"sensors.force_torque.latency = {sensor.latency:g} s must be below {FORCE_HISTORY} samples "
-            f"({FORCE_HISTORY / sensor.rate:g} s)"
+            f"sensors.force_torque.latency = {sensor.latency:g} s must be below {FORCE_HISTORY - 1} samples "
+            f"({(FORCE_HISTORY - 1) / sensor.rate:g} s)"
         )
 
     def six(tangential: float, normal: float, torque: float) -> tuple[float, ...]:
@@ -148,6 +150,7 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     array = np.zeros((n, 2), FORCE_TORQUE)
     array["period"] = tick_rate // sensor.rate
     array["delay"] = delay
+    array["kept"] = kept
     array["mirror"] = MIRROR
     array["noise"] = six(sensor.noise_tangential, sensor.noise_normal, sensor.noise_torque)
     array["drift"] = six(sensor.drift_tangential, sensor.drift_normal, sensor.drift_torque)

@@ -10,6 +10,7 @@ WORLD = np.dtype(
     [
         ("tick", "i8"),  # time in ticks since reset
         ("tick_length", "f8"),  # [s]
+        ("control_ticks", "i8"),  # ticks per control step
         ("engine_ticks", "i8"),  # ticks per engine step
         ("substep_ticks", "i8"),  # longest friction sub-step in ticks
         ("gravity", "f8"),  # [m/s^2], along -z

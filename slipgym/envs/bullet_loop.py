@@ -1,0 +1,126 @@
+"""One environment whose bodies PyBullet moves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from slipgym.config import Config, Randomization
+from slipgym.envs.actions import interpret
+from slipgym.envs.guard import Guard
+from slipgym.envs.loop import WARM_UP_STEPS, LoopState, SlipLoop
+from slipgym.envs.observation import Sight, combine, observe
+from slipgym.sensors.measure import measure
+from slipgym.tasks import Task
+from slipgym.tasks.disturbance import disturb
+from slipgym.tasks.episode import begin_step
+from slipgym.world.bullet import BulletWorld
+from slipgym.world.scene import Box
+
+
+class BulletLoop(SlipLoop):
+    """A loop around a PyBullet world.
+
+    Args:
+        config: As of `SlipLoop`, like the others.
+        task: The task.
+        estimator: The estimator.
+        randomization: What is drawn.
+
+    Attributes:
+        world: PyBullet around the plant.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        task: Task,
+        estimator: str | Mapping[str, Any],
+        randomization: Randomization | None = None,
+    ) -> None:
+        super().__init__(config, task, estimator, randomization)
+        self.world = BulletWorld(config, self.plant)
+        self._guard = Guard()
+        self._wrench_rows, self._twist_rows = self.wrenches.reshape(2, 4), self.twists.reshape(2, 3)
+
+    def step(
+        self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
+    ) -> None:
+        """See `SlipLoop.step`."""
+        self.terms[:] = 0.0
+        episode = self.episode
+        for _ in range(skip if active[0] else 0):
+            interpret(actions, components, episode, self.commands)
+            self._sample()
+            self.terms += episode["terms"][:, : self.terms.shape[1]]
+            if episode["dropped"].item() or episode["step"].item() >= episode["steps"].item():
+                break
+        plant = self.plant
+        observe(self.wrenches, self.twists, plant.chips, episode, self.task_part, plant.world, *sight)
+
+    def sample(self, force: float) -> None:
+        """One slip-velocity sample with a grip force per finger [N], the wrist as the task scripts it.
+
+        Raises:
+            FloatingPointError: Something is no longer a finite number; only a reset helps.
+        """
+        self.commands[0] = force, 0.0, 0.0, 0.0
+        self._sample()
+
+    def get_state(self) -> LoopState:
+        """See `SlipLoop.get_state`."""
+        return replace(super().get_state(), engine=self.world.get_state())
+
+    def set_state(self, state: LoopState) -> None:
+        """See `SlipLoop.set_state`."""
+        self.check_open()
+        if state.engine is None:
+            raise ValueError("the state is of a loop without PyBullet")
+        self.world.set_state(state.engine)
+        super().set_state(state)
+
+    @property
+    def closed(self) -> bool:
+        """Whether it was closed."""
+        return self.world.closed
+
+    def close(self) -> None:
+        """Release the physics client; closing twice is harmless."""
+        self.world.close()
+
+    def _place(self, i: int, box: Box, force: float, wrist: tuple[float, ...]) -> None:
+        self.world.reset(box, force, (wrist[0], wrist[1], wrist[2]))
+        self._guard.reset()
+
+    def _settle(self, i: int, force: float) -> None:
+        for _ in range(WARM_UP_STEPS):
+            self._advance(force)
+
+    def _sample(self) -> None:
+        """Act, move, measure, estimate, judge."""
+        plant, episode = self.plant, self.episode
+        begin_step(episode, self.commands)
+        disturb(episode, plant.world, plant.pads, self.truth)
+        self.world.weigh()
+        self.task.plan(episode, plant.world)
+        self._advance(self.commands.item(0))
+        episode["step"] += 1
+        self.estimator.update(self.time, self._wrench_rows, self._twist_rows)
+        combine(self.estimator.estimates, self.per_finger, self.estimated)
+        self.task.judge(episode, plant.world, plant.fingers, self.task_part)
+        arrays = plant.world, plant.pads, plant.fingers, self.wrenches, self.twists, self.per_finger, episode
+        try:
+            self._guard.watch(self.time, 0, *arrays)
+        except FloatingPointError:
+            self.world.discard()
+            raise
+
+    def _advance(self, force: float) -> None:
+        """One control step of the world and its sensors."""
+        plant = self.plant
+        self.world.command(force)
+        self.world.step()
+        measure(plant.world, plant.force_torque, plant.chips, self.wrenches, self.twists)

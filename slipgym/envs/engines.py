@@ -1,0 +1,31 @@
+"""What can move the bodies of an environment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from slipgym.config import Config, Randomization
+from slipgym.envs.choices import one_of
+from slipgym.envs.loop import SlipLoop
+from slipgym.tasks import Task
+
+ENGINES = ("bullet", "planar")
+
+
+def make_loop(
+    engine: str, config: Config, task: Task, estimator: str | Mapping[str, Any], randomization: Randomization
+) -> SlipLoop:
+    """The loop of one environment.
+
+    Raises:
+        ValueError: The engine is unknown.
+    """
+    arguments = config, task, estimator, randomization
+    if one_of("engine", engine, ENGINES) == "planar":
+        from slipgym.envs.planar_loop import PlanarLoop
+
+        return PlanarLoop(*arguments)
+    from slipgym.envs.bullet_loop import BulletLoop
+
+    return BulletLoop(*arguments)

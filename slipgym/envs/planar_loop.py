@@ -1,0 +1,96 @@
+"""n environments without an engine, many of them in one compiled call."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from estimator.registry import specification
+from slipgym.config import Config, Randomization
+from slipgym.envs.guard import Guard
+from slipgym.envs.loop import WARM_UP_STEPS, SlipLoop
+from slipgym.envs.observation import Sight
+from slipgym.envs.rows import driver, settle
+from slipgym.envs.threads import Threads
+from slipgym.tasks import Task
+from slipgym.world.placing import place
+from slipgym.world.scene import Box
+
+
+class PlanarLoop(SlipLoop):
+    """A loop around planar worlds that the pads' friction alone moves.
+
+    Args:
+        config: As of `SlipLoop`, like the others.
+        task: The task.
+        estimator: The estimator.
+        randomization: What is drawn.
+        n: Environments.
+        threads: Threads that share them; None: as many as there are processors, if there is work for them.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        task: Task,
+        estimator: str | Mapping[str, Any],
+        randomization: Randomization | None = None,
+        n: int = 1,
+        threads: int | None = None,
+    ) -> None:
+        super().__init__(config, task, estimator, randomization, n)
+        longest = config.physics.planar_substep_max
+        self.plant.world["substep_ticks"] = max(1, int(longest / self.plant.world["tick_length"][0] * (1 + 1e-9)))
+        self._threads = Threads(n, threads)
+        self._closed = False
+        kind, plant = specification(self.estimator_choice["name"]), self.plant
+        batch = self.estimator
+        patches = plant.cells is not None
+        self._drive = driver(task, kind.update_batch, batch.states.dtype, batch.parameters_array.dtype, patches)
+        self._arguments = (
+            task.plan, task.judge, kind.update_batch,
+            plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips,
+            batch.parameters_array, batch.states, batch.estimates,
+            self.episode, self.commands, self.wrenches, self.twists,
+            self.per_finger, self.estimated, self.task_part, self.truth,
+        )  # fmt: skip
+
+    def step(
+        self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
+    ) -> None:
+        """See `SlipLoop.step`."""
+        self.check_open()
+        rest = *sight, actions, components, active, self.terms, skip
+
+        def part(lo: int, hi: int) -> int:
+            return self._drive(*self._arguments, *rest, lo, hi)
+
+        for bad in self._threads.run(part):
+            if bad >= 0:
+                self._explain(bad)
+
+    @property
+    def closed(self) -> bool:
+        """Whether it was closed."""
+        return self._closed
+
+    def close(self) -> None:
+        """Give the threads back; closing twice is harmless."""
+        self._threads.close()
+        self._closed = True
+
+    def _place(self, i: int, box: Box, force: float, wrist: tuple[float, ...]) -> None:
+        place(self.plant, i, box, force, (wrist[0], wrist[1], wrist[2]))
+
+    def _settle(self, i: int, force: float) -> None:
+        plant = self.plant
+        arrays = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips
+        settle(*arrays, self.wrenches, self.twists, force, WARM_UP_STEPS, i)
+
+    def _explain(self, bad: int) -> None:
+        """Raise FloatingPointError, naming what of an environment is not finite."""
+        plant, time = self.plant, self.episode["step"].item(bad) * self._step_time
+        arrays = plant.world, plant.pads, plant.fingers, self.wrenches, self.twists, self.per_finger, self.episode
+        Guard().watch(time, bad, *arrays)

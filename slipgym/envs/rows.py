@@ -1,0 +1,169 @@
+"""A control step of many environments in one compiled call, without an engine.
+
+What differs between tasks and estimators is called through function pointers, so that one source serves
+all; what each does is the same function that the environment with PyBullet calls.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numba import from_dtype, types
+
+from estimator.estimate import ESTIMATE
+from slipgym.compiled import unlocked
+from slipgym.contact.records import CELL, PAD
+from slipgym.envs.actions import COMPONENT, interpret
+from slipgym.envs.guard import sound
+from slipgym.envs.observation import combine, observe
+from slipgym.sensors.force_torque import FORCE_TORQUE
+from slipgym.sensors.measure import measure
+from slipgym.sensors.slip_velocity import SLIP_SENSOR
+from slipgym.tasks.disturbance import disturb
+from slipgym.tasks.episode import EPISODE, begin_step
+from slipgym.world.actuator import command
+from slipgym.world.alone import advance_alone
+from slipgym.world.records import FINGER, WORLD
+
+BLOCK = 16
+"""Rows that go through a control step together: few enough to stay in the processor's nearest caches."""
+
+
+@unlocked
+def settle(worlds, pads, cells, fingers, force_torque, chips, wrenches, twists, force, steps, i):
+    """Let world i come to rest in a grip of a constant force, for a number of control steps."""
+    for _ in range(steps):
+        _move(worlds, pads, cells, fingers, force_torque, chips, force, i)
+        here = slice(i, i + 1)
+        measure(worlds[here], force_torque[here], chips[here], wrenches[here], twists[here])
+
+
+@unlocked
+def _move(worlds, pads, cells, fingers, force_torque, chips, force, i):
+    for f in range(2):
+        command(fingers[i, f], worlds[i].tick, force)
+    patch = None if cells is None else cells[i]
+    advance_alone(worlds[i], pads[i], patch, fingers[i], force_torque[i], chips[i])
+
+
+@unlocked
+def _sample(
+    plan, judge, update,
+    worlds, pads, cells, fingers, force_torque, chips,
+    parameters, states, estimates,
+    episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth,
+    lo, hi,
+):  # fmt: skip
+    """One slip-velocity sample of rows lo to hi: act, move, measure, estimate, judge."""
+    rows, fingers_of = slice(lo, hi), slice(2 * lo, 2 * hi)
+    begin_step(episodes[rows], commands[rows])
+    disturb(episodes[rows], worlds[rows], pads[rows], truth[rows])
+    plan(episodes[rows], worlds[rows])
+    for i in range(lo, hi):
+        _move(worlds, pads, cells, fingers, force_torque, chips, commands[i, 0], i)
+    measure(worlds[rows], force_torque[rows], chips[rows], wrenches[rows], twists[rows])
+    for i in range(lo, hi):
+        episodes[i].step += 1
+        pair = slice(2 * i, 2 * i + 2)
+        own = parameters[pair] if parameters.shape[0] > 1 else parameters
+        time = episodes[i].step * episodes[i].step_time
+        update(states[pair], own, time, wrenches[i], twists[i], estimates[pair])
+    combine(estimates[fingers_of], per_finger[rows], estimated[rows])
+    judge(episodes[rows], worlds[rows], fingers[rows], task_part[rows])
+
+
+@unlocked
+def _drive(
+    plan, judge, update,
+    worlds, pads, cells, fingers, force_torque, chips,
+    parameters, states, estimates,
+    episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth,
+    wrist, friction, low, high, out,
+    actions, components, active, terms, skip, lo, hi,
+):  # fmt: skip
+    """A step, that is `skip` samples, of the active rows among lo to hi; an episode that ends stops its row.
+
+    Returns:
+        The first row with a number that is not finite; -1 without one.
+    """
+    bad = -1
+    size = BLOCK if skip == 1 else 1
+    start = lo
+    while start < hi:
+        stop = start
+        while stop < hi and active[stop] and stop - start < size:
+            terms[stop] = 0.0
+            stop += 1
+        if stop == start:
+            start += 1
+            continue
+        rows = slice(start, stop)
+        for _ in range(skip):
+            interpret(actions[rows], components, episodes[rows], commands[rows])
+            _sample(
+                plan, judge, update,
+                worlds, pads, cells, fingers, force_torque, chips,
+                parameters, states, estimates,
+                episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth,
+                start, stop,
+            )  # fmt: skip
+            over = False
+            for i in range(start, stop):
+                for k in range(terms.shape[1]):
+                    terms[i, k] += episodes[i].terms[k]
+                if bad < 0 and not sound(i, worlds, pads, fingers, per_finger, episodes):
+                    bad = i
+                over = episodes[i].dropped or episodes[i].step >= episodes[i].steps
+            if over:  # a block of several rows has a single sample anyway
+                break
+        observe(
+            wrenches[rows], twists[rows], chips[rows], episodes[rows], task_part[rows], worlds[rows],
+            wrist, friction[rows], low, high, out[rows],
+        )  # fmt: skip
+        start = stop
+    return bad
+
+
+def _row(dtype: Any, ndim: int = 1) -> Any:
+    return types.Array(from_dtype(dtype) if isinstance(dtype, np.dtype) else dtype, ndim, "C")
+
+
+@cache
+def driver(task: Any, update: Any, states: np.dtype, parameters: np.dtype, patches: bool) -> Any:
+    """The compiled step for a task, an estimator and a kind of contact.
+
+    The first call on a machine compiles it, which takes about half a minute; the result is kept beside the
+    sources.
+
+    Args:
+        task: The task.
+        update: The estimator's compiled `update_batch`.
+        states: Dtype of its state.
+        parameters: Dtype of its parameters.
+        patches: Whether pads have cells.
+
+    Returns:
+        Function of all arguments of `_drive`.
+    """
+    state, parameter, estimate = _row(states), _row(parameters), _row(ESTIMATE)
+    episode, world, finger = _row(EPISODE), _row(WORLD), _row(FINGER, 2)
+    f2, f3 = (types.Array(types.float64, k, "C") for k in (2, 3))
+    f1 = types.Array(types.float32, 1, "C")
+    plan = types.void(episode, world)
+    judge = types.void(episode, world, finger, f2)
+    learn = types.void(state, parameter, types.float64, f2, f2, estimate)
+    for function, signature in ((task.plan, plan), (task.judge, judge)):
+        function.compile(signature)
+    cells = _row(CELL, 3) if patches else types.none
+    signature = types.int64(
+        *(types.FunctionType(kind) for kind in (plan, judge, learn)),
+        world, _row(PAD, 2), cells, finger, _row(FORCE_TORQUE, 2), _row(SLIP_SENSOR, 2),
+        parameter, state, estimate,
+        episode, f2, f3, f3, f3, f2, f2, f2,
+        types.Array(types.int64, 1, "C"), f2, f1, f1, types.Array(types.float32, 2, "C"),
+        f2, _row(COMPONENT), types.Array(types.boolean, 1, "C"), f2, types.int64, types.int64, types.int64,
+    )  # fmt: skip
+    _drive.compile(signature)
+    return _drive.overloads[signature.args].entry_point
