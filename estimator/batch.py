@@ -58,8 +58,8 @@ class BatchEstimator:
             indices: Any numpy index of rows; None for all.
         """
         rows = slice(None) if indices is None else indices
-        initial = self._specification.initial_states(self.parameters_array)
-        self.states[rows] = np.broadcast_to(initial, self.states.shape)[rows]
+        own = self.parameters_array[rows] if len(self.parameters_array) > 1 else self.parameters_array
+        self.states[rows] = self._specification.initial_states(own)
         self.estimates[rows] = np.zeros((), ESTIMATE)
         for name in ("mu_s", "mu_c", "r"):
             self.estimates[name][rows] = self.states[name][rows]

@@ -20,4 +20,5 @@ def register() -> None:
     """
     for name, entry_point in ENVIRONMENTS.items():
         if name not in gym.registry:
-            gym.register(id=name, entry_point=entry_point)
+            batch = entry_point.replace("envs:", "envs.vector:").replace("Env", "VectorEnv")
+            gym.register(id=name, entry_point=entry_point, vector_entry_point=batch)

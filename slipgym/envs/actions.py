@@ -101,6 +101,29 @@ class Actions:
                 )
         return array.reshape(1, -1)
 
+    def checked_batch(self, actions: Any, n: int) -> np.ndarray:
+        """Actions of n environments, (n, m) float64.
+
+        Raises:
+            ValueError: They are not numeric, have the wrong shape or are not finite; the message names the
+                first.
+        """
+        try:
+            array = np.ascontiguousarray(actions, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise ValueError("actions must be an array of numbers, within [-1, 1]") from error
+        if array.shape != (n, *self._shape):
+            meaning = ", ".join(column.name for column in self.columns)
+            raise ValueError(
+                f"actions must have shape {(n, *self._shape)} in action_mode {self.mode!r} ({meaning}), "
+                f"got {array.shape}"
+            )
+        if not np.isfinite(array).all():
+            i, k = np.argwhere(~np.isfinite(array))[0].tolist()
+            name, value = self.columns[k].name, array[i, k]
+            raise ValueError(f"actions[{i}, {k}] ({name}) = {value} must be finite, within [-1, 1]")
+        return array
+
 
 @compiled
 def interpret(actions, components, episodes, commands):

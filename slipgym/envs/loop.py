@@ -74,6 +74,7 @@ class SlipLoop(ABC):
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
         estimated: Estimates of both fingers merged, with their support, (n, 6).
         estimator_choice: Name and parameters of the estimators; `velocity_delay` only if it was given.
+        step_time: Length of a sample [s].
     """
 
     def __init__(
@@ -104,7 +105,7 @@ class SlipLoop(ABC):
         self.materials: list[str] = [""] * n
         self.boxes: list[Any] = [None] * n
         self.drawn: list[dict[str, Any]] = [{} for _ in range(n)]
-        self._step_time = 1.0 / config.physics.control_rate
+        self.step_time = 1.0 / config.physics.control_rate
 
     @property
     def true_friction(self) -> np.ndarray:
@@ -114,7 +115,7 @@ class SlipLoop(ABC):
     @property
     def time(self) -> float:
         """Time since the start of the first environment's episode [s]."""
-        return self.episode["step"].item(0) * self._step_time
+        return self.episode["step"].item(0) * self.step_time
 
     def reset(self, options: EpisodeOptions, material: str, rng: np.random.Generator, i: int = 0) -> None:
         """Start an episode: draw it, grip, and let grip and sensors come to rest.
@@ -248,7 +249,7 @@ class SlipLoop(ABC):
         rng: np.random.Generator,
     ) -> None:
         episode[:] = 0
-        episode["step_time"] = self._step_time
+        episode["step_time"] = self.step_time
         for field in ("force_min", "force_max", "wrist_speed_max", "wrist_pitch_rate_max"):
             episode[field] = getattr(self.config.gripper, field)
         pad = self.config.gripper.pad_radius

@@ -91,6 +91,6 @@ class PlanarLoop(SlipLoop):
 
     def _explain(self, bad: int) -> None:
         """Raise FloatingPointError, naming what of an environment is not finite."""
-        plant, time = self.plant, self.episode["step"].item(bad) * self._step_time
+        plant, time = self.plant, self.episode["step"].item(bad) * self.step_time
         arrays = plant.world, plant.pads, plant.fingers, self.wrenches, self.twists, self.per_finger, self.episode
         Guard().watch(time, bad, *arrays)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import inspect
-import math
 import os
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 import gymnasium as gym
 import numpy as np
 
-from slipgym.config import load, load_randomization
-from slipgym.envs.actions import ACTION_MODES, Actions
-from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, refuse_unknown, whole
+from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, refuse_unknown
 from slipgym.envs.engines import make_loop
-from slipgym.envs.observer import Observer, first
+from slipgym.envs.information import Information
+from slipgym.envs.observer import first
+from slipgym.envs.setup import Setup
 from slipgym.envs.state import EnvState, checked, restored_generator
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
@@ -77,40 +77,34 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         **unknown: Any,
     ) -> None:
         refuse_unknown(unknown, _KEYWORDS)
-        one_of("contact", contact, ("ellipsoid", "distributed"))
-        one_of("action_mode", action_mode, ACTION_MODES)
         if render_mode is not None:
             one_of("render_mode", render_mode, self.metadata["render_modes"])
-        self.config = load(config, sensors, contact)
-        self.randomization = load_randomization(randomization)
-        self.material = one_of("material", material, ("random", *self.config.materials))
-        self.render_mode = render_mode
+        setup = Setup(
+            self.task,
+            partial(make_loop, engine),
+            friction_source,
+            estimator,
+            contact,
+            sensors,
+            material,
+            action_mode,
+            observation_mode,
+            history,
+            randomization,
+            frame_skip,
+            config,
+        )
+        self.config, self.randomization, self.material = setup.config, setup.randomization, setup.material
+        self.render_mode, self._frame_skip = render_mode, setup.frame_skip
         modes = [mode for mode in self.metadata["render_modes"] if mode != "human" or not obstacle()]
-        self._frame_skip = whole("frame_skip", frame_skip, 1)
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_modes": modes, "render_fps": rate}
-        self._actions = Actions(action_mode, self.config)
-        self._loop = make_loop(engine, self.config, self.task, estimator, self.randomization)
-        self._observer = Observer(self._loop, friction_source, action_mode, observation_mode, history)
+        self._loop, self._actions, self._observer = setup.loop, setup.actions, setup.observer
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns
         self.action_space, self.observation_space = self._actions.space, self._observer.space
-        self._terms = np.zeros(len(self.task.terms))
-        self._arguments = {
-            "friction_source": friction_source,
-            "estimator": self._loop.estimator_choice,
-            "contact": contact,
-            "sensors": sensors,
-            "material": material,
-            "action_mode": action_mode,
-            "observation_mode": observation_mode,
-            "history": history,
-            "randomization": self.randomization.model_dump(mode="json", exclude_unset=True),
-            "engine": engine,
-            "frame_skip": frame_skip,
-            "config": self.config.model_dump(mode="json"),
-        }
-        self._views = self._info_views()
+        self._information = Information(self._loop)
+        self._arguments = {**setup.arguments, "engine": engine}
         self._renderer: Any = None
         if render_mode is not None:
             from slipgym.rendering import Renderer
@@ -134,13 +128,12 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         super().reset(seed=seed)
         self._ready = False
         self._loop.reset(self.task.options.parse(options), self.material, self.np_random)
-        self._terms[:] = 0.0
         if self._renderer is not None:
             self._renderer.begin()
         self._ready = True
         drawn = self._loop.drawn[0]
         self._observer.begin()
-        return first(self._observer.read()), {**self._info(), **({"drawn": dict(drawn)} if drawn else {})}
+        return first(self._observer.read()), {**self._information.one(0), **({"drawn": dict(drawn)} if drawn else {})}
 
     def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Act for `frame_skip` slip-velocity samples.
@@ -158,23 +151,24 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             self._loop.check_open()
             raise RuntimeError("call reset() before step()")
         loop, episode, observer = self._loop, self._loop.episode, self._observer
-        self._terms[:] = 0.0
+        total = np.zeros_like(loop.terms[0])
         dropped = finished = self._ready = False
         # a picture's strip shows every sample
         at_once = self._frame_skip if self._renderer is None else 1
         for _ in range(0, self._frame_skip, at_once):
             loop.step(actions, self._actions.table, at_once, _ONE, observer.sight)
-            self._terms += loop.terms[0]
+            total += loop.terms[0]
             dropped = episode["dropped"].item()
             finished = episode["step"].item() >= episode["steps"].item()
             if self._renderer is not None:
                 self._renderer.keep()
             if dropped or finished:
                 break
+        loop.terms[0] = total
         observer.next(_ONE)
         self._ready = True
-        reward = math.fsum(self._terms.tolist())
-        return first(observer.read()), reward, dropped, finished and not dropped, self._info()
+        reward, info = sum(total.tolist()), self._information.one(0)
+        return first(observer.read()), reward, dropped, finished and not dropped, info
 
     def render(self) -> np.ndarray | None:
         """What the render mode asks for; None without one.
@@ -243,29 +237,6 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         if self._renderer is not None:
             self._renderer.close()
         self._ready = False
-
-    def _info_views(self) -> dict[str, np.ndarray]:
-        """Arrays that every info carries a copy of."""
-        loop = self._loop
-        return {
-            "true": loop.true_friction[0],
-            "estimated": loop.estimated[0, :3],
-            "estimated_per_finger": loop.per_finger[0],
-            "slip": loop.plant.world["slip"][0],
-            "slip_twist": loop.plant.world["slip_twist"][0],
-            "contact_wrench": loop.plant.pads["wrench"][0],
-            "grip_force": loop.plant.fingers["force"][0],
-            "reference": loop.episode["reference"][0],
-        }
-
-    def _info(self) -> dict[str, Any]:
-        episode = self._loop.episode
-        info: dict[str, Any] = {name: view.copy() for name, view in self._views.items()}
-        info["reward_terms"] = dict(zip(self.task.terms, self._terms.tolist(), strict=True))
-        info["time"] = self._loop.time
-        info["is_success"] = episode["success"].item()
-        info["dropped"] = episode["dropped"].item()
-        return info
 
 
 def _rebuild(kind: type[SlipEnv], arguments: Mapping[str, Any], state: EnvState | None, spec: Any) -> SlipEnv:

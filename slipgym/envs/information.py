@@ -1,0 +1,54 @@
+"""The info of a step: the truth beside what is estimated."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from slipgym.envs.loop import SlipLoop
+
+
+class Information:
+    """Reads the infos of all environments out of a loop.
+
+    Args:
+        loop: What is reported.
+    """
+
+    def __init__(self, loop: SlipLoop) -> None:
+        self._loop = loop
+        plant, episode = loop.plant, loop.episode
+        self._views: dict[str, np.ndarray] = {
+            "true": loop.true_friction,
+            "estimated": loop.estimated[:, :3],
+            "estimated_per_finger": loop.per_finger,
+            "slip": plant.world["slip"],
+            "slip_twist": plant.world["slip_twist"],
+            "contact_wrench": plant.pads["wrench"],
+            "grip_force": plant.fingers["force"],
+            "reference": episode["reference"],
+            "is_success": episode["success"],
+            "dropped": episode["dropped"],
+        }
+
+    def one(self, i: int) -> dict[str, Any]:
+        """That of one environment, as `gymnasium.Env` gives it: the caller's own arrays, plain numbers."""
+        loop = self._loop
+        info: dict[str, Any] = {name: view[i].copy() for name, view in self._views.items()}
+        for name in ("is_success", "dropped"):
+            info[name] = info[name].item()
+        info["reward_terms"] = dict(zip(loop.task.terms, loop.terms[i].tolist(), strict=True))
+        info["time"] = self._times().item(i)
+        return info
+
+    def all(self) -> dict[str, Any]:
+        """Those of all environments, as `gymnasium.vector.VectorEnv` gives them: arrays (n, ...)."""
+        loop = self._loop
+        infos: dict[str, Any] = {name: view.copy() for name, view in self._views.items()}
+        terms = {name: loop.terms[:, k].copy() for k, name in enumerate(loop.task.terms)}
+        infos["reward_terms"], infos["time"] = terms, self._times()
+        return infos
+
+    def _times(self) -> np.ndarray:
+        return self._loop.episode["step"] * self._loop.step_time

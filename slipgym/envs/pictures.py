@@ -1,0 +1,61 @@
+"""Pictures of some environments of a batch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from slipgym.envs.choices import one_of
+from slipgym.envs.loop import SlipLoop
+
+
+class Pictures:
+    """Renderers of the chosen environments.
+
+    Args:
+        loop: The environments' loop.
+        mode: None, "rgb_array" or "depth_array".
+        rows: Which environments.
+
+    Raises:
+        ValueError: The mode is unknown, or there is no such environment.
+    """
+
+    def __init__(self, loop: SlipLoop, mode: str | None, rows: Sequence[int]) -> None:
+        self._renderers: dict[int, Any] = {}
+        self._mode, self._begun = mode, False
+        if mode is None:
+            return
+        one_of("render_mode", mode, ("rgb_array", "depth_array"))
+        from slipgym.rendering import Renderer
+
+        for row in rows:
+            if isinstance(row, bool) or not isinstance(row, int) or not 0 <= row < loop.n:
+                raise ValueError(f"render_rows: {row!r} must be a whole number from 0 to {loop.n - 1}")
+            self._renderers[row] = Renderer(mode, loop, row)
+
+    def begin(self, i: int) -> None:
+        """Environment i has begun an episode."""
+        if i in self._renderers:
+            self._renderers[i].begin()
+            self._begun = True
+
+    def keep(self, active: np.ndarray) -> None:
+        """Environments of a mask (n,) have made a step."""
+        for i, renderer in self._renderers.items():
+            if active[i]:
+                renderer.keep()
+
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """A picture of each; None without a mode.
+
+        Raises:
+            RuntimeError: There was no reset yet.
+        """
+        if self._mode is None:
+            return None
+        if not self._begun:
+            raise RuntimeError("call reset() first: there is no object yet")
+        return tuple(renderer.render() for renderer in self._renderers.values())

@@ -1,0 +1,267 @@
+"""Thousands of environments in one process: the planar engine behind Gymnasium's vector interface."""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
+
+from slipgym.config import Config, Randomization
+from slipgym.config.errors import unknown
+from slipgym.envs.choices import DEFAULT_ESTIMATOR, refuse_unknown, whole
+from slipgym.envs.information import Information
+from slipgym.envs.pictures import Pictures
+from slipgym.envs.planar_loop import PlanarLoop
+from slipgym.envs.seeds import Generators
+from slipgym.envs.setup import Setup
+from slipgym.envs.vector_options import RowOptions
+from slipgym.tasks import TASKS, Task
+
+
+class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
+    """n environments of a task without PyBullet, stepped by one compiled call.
+
+    Environment i is, bit for bit, the scalar environment with `engine="planar"` seeded with seed + i,
+    whatever the number of environments and threads.
+
+    Args:
+        task: Name of the task, "LinearSlip" for example.
+        num_envs: Environments.
+        friction_source: As of the scalar environment, like all up to `frame_skip` and `config`.
+        estimator: See there.
+        contact: See there.
+        sensors: See there.
+        material: See there.
+        action_mode: See there.
+        observation_mode: See there.
+        history: See there.
+        randomization: See there.
+        frame_skip: See there.
+        autoreset_mode: What happens when an episode ends: "NextStep", "SameStep" or "Disabled" (then
+            `reset(options={"reset_mask": ...})` is up to the caller).
+        threads: Threads that share the environments; None: as many as processors, if there is work for them.
+        render_mode: None, "rgb_array" or "depth_array".
+        render_rows: Environments that `render` shows.
+        config: See the scalar environment.
+
+    Raises:
+        ValueError: The value of an argument is unknown or not allowed.
+        TypeError: An argument is unknown.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array", "depth_array"], "render_fps": 120}  # noqa: RUF012
+
+    def __init__(
+        self,
+        task: str,
+        num_envs: int = 1,
+        friction_source: str = "estimated",
+        estimator: str | Mapping[str, Any] = DEFAULT_ESTIMATOR,
+        contact: str = "ellipsoid",
+        sensors: str = "realistic",
+        material: str = "random",
+        action_mode: str = "grip_force",
+        observation_mode: str = "flat",
+        history: int = 0,
+        randomization: str | os.PathLike[str] | Mapping[str, Any] = "none",
+        frame_skip: int = 1,
+        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        threads: int | None = None,
+        render_mode: str | None = None,
+        render_rows: Sequence[int] = (0,),
+        config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+        **others: Any,
+    ) -> None:
+        _refuse(others)
+        self.task: Task = TASKS[task]
+        self.num_envs = whole("num_envs", num_envs, 1)
+
+        def make_loop(config: Config, task: Task, estimator: Any, randomization: Randomization) -> PlanarLoop:
+            return PlanarLoop(config, task, estimator, randomization, num_envs, threads)
+
+        setup = Setup(
+            self.task,
+            make_loop,
+            friction_source,
+            estimator,
+            contact,
+            sensors,
+            material,
+            action_mode,
+            observation_mode,
+            history,
+            randomization,
+            frame_skip,
+            config,
+        )
+        self.config, self._frame_skip, self._material = setup.config, setup.frame_skip, setup.material
+        self._loop, self._actions, self._observer = setup.loop, setup.actions, setup.observer
+        self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
+        self.action_columns = self._actions.columns
+        self.single_action_space, self.single_observation_space = self._actions.space, self._observer.space
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self._mode = _autoreset(autoreset_mode)
+        rate = self.config.physics.control_rate / frame_skip
+        self.metadata = {**self.metadata, "render_fps": rate, "autoreset_mode": self._mode}
+        self._information = Information(self._loop)
+        self._generators = Generators(num_envs)
+        self.render_mode = render_mode
+        self._pictures = Pictures(self._loop, render_mode, render_rows)
+        self._options = self.task.options.parse(None)
+        self._ready = np.zeros(num_envs, dtype=bool)
+        self._over = np.zeros(num_envs, dtype=bool)
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Start episodes, of all environments or of those of `options["reset_mask"]`.
+
+        Args:
+            seed: Of the first environment, the others count up from it; or one for each.
+            options: Episode parameters to fix in all, "rows": a list with more for each environment (None or
+                a mapping), "reset_mask": which to reset, (n,) bool.
+
+        Raises:
+            ValueError: An option or a seed is not allowed.
+            TypeError: The mask is no array of booleans.
+            RuntimeError: The environment is closed.
+        """
+        self._loop.check_open()
+        asked = RowOptions(options, self.num_envs, self.task.options)
+        self._generators.seed(seed, asked.mask)
+        rows = np.flatnonzero(asked.mask)
+        for i in rows.tolist():
+            self._begin(i, asked.of(i))
+        infos = {**self._information.all(), **self._drawn(rows)}
+        return self._observer.read(), _masked(infos, asked.mask)
+
+    def step(
+        self, actions: np.ndarray
+    ) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        """Act for `frame_skip` slip-velocity samples in every environment.
+
+        Args:
+            actions: Within [-1, 1], (n, m).
+
+        Returns:
+            Observations, rewards, whether episodes terminated (dropped), whether they were truncated, infos.
+
+        Raises:
+            ValueError: The actions have the wrong shape or are not finite.
+            RuntimeError: The environment is closed, or one of its environments needs a reset.
+            FloatingPointError: A simulation left the finite numbers; the message names the first.
+        """
+        checked = self._actions.checked_batch(actions, self.num_envs)
+        self._loop.check_open()
+        begins = self._over if self._mode is AutoresetMode.NEXT_STEP else np.zeros_like(self._over)
+        active = self._ready & ~self._over
+        if not (active | begins).all():
+            waiting = np.flatnonzero(~(active | begins)).tolist()
+            raise RuntimeError(f"call reset() before step(): environments {waiting[:8]} have no episode")
+        loop, episode = self._loop, self._loop.episode
+        loop.terms[begins] = 0.0
+        loop.step(checked, self._actions.table, self._frame_skip, active, self._observer.sight)
+        self._observer.next(active)
+        rewards = sum(loop.terms.T, start=np.zeros(self.num_envs))  # in the scalar environment's order
+        terminated = episode["dropped"] & active
+        truncated = (episode["step"] >= episode["steps"]) & active & ~terminated
+        self._pictures.keep(active)
+        self._over = terminated | truncated
+        ended: dict[str, Any] = {}
+        if self._mode is AutoresetMode.SAME_STEP:
+            begins, self._over = self._over, np.zeros_like(self._over)
+            ended = self._final(begins)
+        rows = np.flatnonzero(begins)
+        for i in rows.tolist():
+            self._begin(i, self._options)
+        infos = {**self._information.all(), **self._drawn(rows)}
+        everyone = np.ones(self.num_envs, dtype=bool)
+        return self._observer.read(), rewards, terminated, truncated, {**_masked(infos, everyone), **ended}
+
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """Pictures of `render_rows`; None without a render mode.
+
+        Raises:
+            RuntimeError: The environment is closed or was never reset.
+        """
+        self._loop.check_open()
+        return self._pictures.render()
+
+    def close_extras(self, **_: Any) -> None:
+        """End the threads."""
+        self._loop.close()
+
+    def _begin(self, i: int, options: Any) -> None:
+        self._loop.reset(options, self._material, self._generators[i], i)
+        self._observer.begin(i)
+        self._pictures.begin(i)
+        self._ready[i], self._over[i] = True, False
+
+    def _final(self, over: np.ndarray) -> dict[str, Any]:
+        """The last observations and infos of the episodes that are over."""
+        if not over.any():
+            return {}
+        observations = self._observer.read()
+        final = np.full(self.num_envs, None, dtype=object)
+        for i in np.flatnonzero(over).tolist():
+            if isinstance(observations, dict):
+                final[i] = {group: values[i] for group, values in observations.items()}
+            else:
+                final[i] = observations[i]
+        info = _masked(self._information.all(), over)
+        return {"final_obs": final, "_final_obs": over.copy(), "final_info": info, "_final_info": over.copy()}
+
+    def _drawn(self, rows: np.ndarray) -> dict[str, Any]:
+        """What the randomization drew for episodes that begin."""
+        if not len(rows) or not self._loop.drawn[rows[0]]:
+            return {}
+        drawn = np.full(self.num_envs, None, dtype=object)
+        began = np.zeros(self.num_envs, dtype=bool)
+        for i in rows.tolist():
+            drawn[i], began[i] = dict(self._loop.drawn[i]), True
+        return {"drawn": drawn, "_drawn": began}
+
+
+def _autoreset(mode: str | AutoresetMode) -> AutoresetMode:
+    try:
+        return AutoresetMode(mode)
+    except ValueError:
+        raise ValueError(unknown("autoreset_mode", mode, [each.value for each in AutoresetMode])) from None
+
+
+def _masked(infos: dict[str, Any], mask: np.ndarray) -> dict[str, Any]:
+    """Each info with a mask beside it that says which environments have it, as Gymnasium asks for."""
+    masked: dict[str, Any] = {}
+    for name, value in infos.items():
+        if name.startswith("_"):
+            masked[name] = value
+            continue
+        masked[name] = _masked(value, mask) if isinstance(value, dict) else value
+        masked.setdefault(f"_{name}", mask.copy())
+    return masked
+
+
+def _refuse(others: Mapping[str, Any]) -> None:
+    """Raise for arguments that only the scalar environment has, and for unknown ones."""
+    if "engine" in others and others["engine"] != "planar":
+        raise ValueError(
+            f"engine = {others['engine']!r}: the batch runs on the planar engine alone; for PyBullet use "
+            'gym.make_vec(..., vectorization_mode="async")'
+        )
+    refuse_unknown(set(others) - {"engine"}, _KEYWORDS)
+
+
+_KEYWORDS = [name for name in inspect.signature(SlipVectorEnv.__init__).parameters if name not in ("self", "task", "others")]
+
+LinearSlipVectorEnv = partial(SlipVectorEnv, "LinearSlip")
+RotationalSlipVectorEnv = partial(SlipVectorEnv, "RotationalSlip")
+HingeVectorEnv = partial(SlipVectorEnv, "Hinge")
+HoldVectorEnv = partial(SlipVectorEnv, "Hold")

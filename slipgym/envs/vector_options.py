@@ -1,0 +1,54 @@
+"""What `reset(options=...)` of a batch can fix, for all environments and for each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from slipgym.tasks.options import EpisodeOptions
+
+
+class RowOptions:
+    """Checked options of a reset.
+
+    Args:
+        options: Episode parameters for all; "rows": None or a mapping for each; "reset_mask": (n,) bool.
+        n: Environments.
+        kind: The task's options.
+
+    Attributes:
+        mask: Which environments to reset, (n,).
+
+    Raises:
+        ValueError: An option is unknown, its value not allowed, or there are not n rows or masks.
+        TypeError: The mask is no array of booleans.
+    """
+
+    def __init__(self, options: Mapping[str, Any] | None, n: int, kind: type[EpisodeOptions]) -> None:
+        given = dict(options) if isinstance(options, Mapping) else options
+        rows, mask = None, None
+        if isinstance(given, dict):
+            rows, mask = given.pop("rows", None), given.pop("reset_mask", None)
+        self.mask = np.ones(n, dtype=bool) if mask is None else _checked_mask(mask, n)
+        self._common = kind.parse(given)
+        self._rows: list[EpisodeOptions] | None = None
+        if rows is not None:
+            if not isinstance(rows, Sequence) or len(rows) != n:
+                raise ValueError(f"options['rows'] must be a list of {n} mappings or None, got {rows!r:.80}")
+            self._rows = [kind.parse({**(given or {}), **(row or {})}) for row in rows]
+
+    def of(self, i: int) -> EpisodeOptions:
+        """Options of environment i."""
+        return self._common if self._rows is None else self._rows[i]
+
+
+def _checked_mask(mask: Any, n: int) -> np.ndarray:
+    if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
+        raise TypeError(f"options['reset_mask'] must be a numpy array of booleans, got {mask!r:.80}")
+    if mask.shape != (n,):
+        raise ValueError(f"options['reset_mask'] must have shape ({n},), got {mask.shape}")
+    if not mask.any():
+        raise ValueError("options['reset_mask'] must hold at least one True")
+    return mask.copy()
