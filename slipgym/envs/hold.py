@@ -118,6 +118,7 @@ class HoldEnv(SlipEnv):
     | `observation_mode` | `"flat"` | how an observation is laid out: or `"sensor"`, `"dict"` |
     | `history` | `0` | how many earlier observations come along with each |
     | `randomization` | `"none"` | what else is drawn: `"train"`, `"eval_ood"`, a file or a mapping |
+    | `engine` | `"bullet"` | what moves the bodies: PyBullet, or `"planar"` (see docs/batch.md) |
     | `frame_skip` | `1` | slip-velocity samples per step; the action is repeated, the rewards are summed |
     | `render_mode` | `None` | `None`, `"rgb_array"`: 720 by 480 pictures, `"depth_array"`, `"human"` |
     | `config` | `None` | file or mapping of overrides, merged over the defaults in `configs/` |

@@ -157,7 +157,9 @@ class SlipLoop(ABC):
         combine(self.estimator.estimates[fingers], self.per_finger[row], self.estimated[row])
         self.terms[i] = self.commands[i] = 0.0
         self.episode["command"][i] = self.episode["last_command"][i] = force
-        self.task.judge(self.episode[row], self.plant.world[row], self.plant.fingers[row], self.task_part[row])
+        self.task.judge(
+            self.episode[row], self.plant.world[row], self.plant.fingers[row], self.task_part[row]
+        )
 
     @abstractmethod
     def step(

@@ -16,6 +16,7 @@ from slipgym.envs.rows import driver, settle
 from slipgym.envs.threads import Threads
 from slipgym.tasks import Task
 from slipgym.world.placing import place
+from slipgym.world.plant import ticks_per_second
 from slipgym.world.scene import Box
 
 
@@ -42,13 +43,17 @@ class PlanarLoop(SlipLoop):
     ) -> None:
         super().__init__(config, task, estimator, randomization, n)
         longest = config.physics.planar_substep_max
-        self.plant.world["substep_ticks"] = max(1, int(longest / self.plant.world["tick_length"][0] * (1 + 1e-9)))
+        self.plant.world["substep_ticks"] = max(
+            1, int(longest / self.plant.world["tick_length"][0] * (1 + 1e-9))
+        )
         self._threads = Threads(n, threads)
         self._closed = False
         kind, plant = specification(self.estimator_choice["name"]), self.plant
         batch = self.estimator
         patches = plant.cells is not None
-        self._drive = driver(task, kind.update_batch, batch.states.dtype, batch.parameters_array.dtype, patches)
+        self._drive = driver(
+            task, kind.update_batch, batch.states.dtype, batch.parameters_array.dtype, patches
+        )
         self._arguments = (
             task.plan, task.judge, kind.update_batch,
             plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips,
@@ -92,5 +97,13 @@ class PlanarLoop(SlipLoop):
     def _explain(self, bad: int) -> None:
         """Raise FloatingPointError, naming what of an environment is not finite."""
         plant, time = self.plant, self.episode["step"].item(bad) * self.step_time
-        arrays = plant.world, plant.pads, plant.fingers, self.wrenches, self.twists, self.per_finger, self.episode
+        arrays = (
+            plant.world,
+            plant.pads,
+            plant.fingers,
+            self.wrenches,
+            self.twists,
+            self.per_finger,
+            self.episode,
+        )
         Guard().watch(time, bad, *arrays)

@@ -133,7 +133,10 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self._ready = True
         drawn = self._loop.drawn[0]
         self._observer.begin()
-        return first(self._observer.read()), {**self._information.one(0), **({"drawn": dict(drawn)} if drawn else {})}
+        return first(self._observer.read()), {
+            **self._information.one(0),
+            **({"drawn": dict(drawn)} if drawn else {}),
+        }
 
     def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Act for `frame_skip` slip-velocity samples.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 
 LEAST = 32
 """Rows from which another thread is worth waking."""
@@ -31,7 +32,7 @@ class Threads:
             raise ValueError(f"threads = {threads!r} must be None or a whole number >= 1")
         self.count = min(threads, n)
         ends = [n * k // self.count for k in range(self.count + 1)]
-        self._parts = list(zip(ends[:-1], ends[1:], strict=True))
+        self._parts = list(pairwise(ends))
         self._pool: ThreadPoolExecutor | None = None
         self._process = -1
 

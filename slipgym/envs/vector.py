@@ -143,9 +143,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         infos = {**self._information.all(), **self._drawn(rows)}
         return self._observer.read(), _masked(infos, asked.mask)
 
-    def step(
-        self, actions: np.ndarray
-    ) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+    def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Act for `frame_skip` slip-velocity samples in every environment.
 
         Args:
@@ -259,7 +257,11 @@ def _refuse(others: Mapping[str, Any]) -> None:
     refuse_unknown(set(others) - {"engine"}, _KEYWORDS)
 
 
-_KEYWORDS = [name for name in inspect.signature(SlipVectorEnv.__init__).parameters if name not in ("self", "task", "others")]
+_KEYWORDS = [
+    name
+    for name in inspect.signature(SlipVectorEnv.__init__).parameters
+    if name not in ("self", "task", "others")
+]
 
 LinearSlipVectorEnv = partial(SlipVectorEnv, "LinearSlip")
 RotationalSlipVectorEnv = partial(SlipVectorEnv, "RotationalSlip")

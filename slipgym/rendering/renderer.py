@@ -6,10 +6,10 @@ import numpy as np
 
 from slipgym.envs.loop import SlipLoop
 from slipgym.rendering import camera, strip
-from slipgym.rendering.look import look
 from slipgym.rendering.caption import caption
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.history import History
+from slipgym.rendering.look import look
 from slipgym.rendering.motion import motion_of
 from slipgym.rendering.scene import draw_scene, measure_depth
 from slipgym.rendering.stage import View, footprint

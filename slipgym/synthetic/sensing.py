@@ -11,8 +11,8 @@ from slipgym.config import Overrides, load
 from slipgym.contact.records import pads
 from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.measure import measure
-from slipgym.sensors.starting import start_sensors
 from slipgym.sensors.slip_velocity import accumulate_slip
+from slipgym.sensors.starting import start_sensors
 from slipgym.synthetic.integration import Trace
 from slipgym.world.plant import build
 

@@ -16,7 +16,7 @@ from policies.reproduction.records import Record, RecordKeeper
 from policies.reproduction.rerun import Variant, estimates, rows, variants
 from policies.reproduction.tables import nine_columns
 from slipgym.config import load
-from slipgym.envs.loop import SlipLoop
+from slipgym.envs.bullet_loop import BulletLoop
 
 SCENARIO = {"material": "plastic", "distance": 0.02, "duration": 2.0, "trial": 0, "seed": 3}
 
@@ -56,11 +56,11 @@ def test_the_same_seed_gives_the_same_record(record):
 
 
 def test_the_estimator_on_a_record_ends_where_it_ended_in_the_loop():
-    loop, rng = SlipLoop(load(), TASK, "rls"), np.random.default_rng(1)
+    loop, rng = BulletLoop(load(), TASK, "rls"), np.random.default_rng(1)
     loop.reset(Options(duration=1.0, initial_force=10.0), "wood", rng)
     keeper = RecordKeeper(loop)
     for _ in range(150):
-        loop.sample(3.2, rng)
+        loop.sample(3.2)
         keeper.take()
     loop.world.close()
     found = estimates(keeper.finish({}), Variant("rls", "rls"))

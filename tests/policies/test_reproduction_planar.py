@@ -11,7 +11,7 @@ from policies.reproduction.hanging import TASK, Options
 from policies.reproduction.planar import hinge_force, record_planar
 from policies.reproduction.rerun import Variant, rows
 from slipgym.config import load
-from slipgym.envs.loop import SlipLoop
+from slipgym.envs.bullet_loop import BulletLoop
 
 SCENARIO = {"material": "wood", "trial": 0, "seed": 5}
 
@@ -22,10 +22,10 @@ def record():
 
 
 def test_the_wrist_turns_by_the_angle_and_a_firmly_held_object_with_it():
-    loop, rng = SlipLoop(load(sensors="ideal"), TASK, "rls"), np.random.default_rng(0)
+    loop, rng = BulletLoop(load(sensors="ideal"), TASK, "rls"), np.random.default_rng(0)
     loop.reset(Options(turn=0.3, duration=1.0, initial_force=20.0), "wood", rng)
     for _ in range(int(loop.episode["steps"][0])):
-        loop.sample(20.0, rng)
+        loop.sample(20.0)
     assert loop.time == pytest.approx(2.0)
     assert loop.plant.world["wrist"][0] == pytest.approx([0.0, 0.0, 0.3], abs=1e-6)
     assert loop.plant.world["angle"][0] == pytest.approx(0.3, abs=1e-4)

@@ -6,16 +6,14 @@ import pytest
 from slipgym.config import load
 from slipgym.contact.records import pads
 from slipgym.sensors.force_torque import (
-    drift_force_torque,
     read_force_torque,
     resolve_at_cop,
     sample_force_torque,
+    sample_read_next,
+    sensed,
 )
 from slipgym.sensors.measure import measure
-from slipgym.sensors.slip_velocity import AXES
 from slipgym.world.plant import build
-
-QUIET = np.zeros((5000, 6))
 
 
 def sensors(preset: str = "ideal", **force_torque):
@@ -30,12 +28,12 @@ def loaded_pad(wrench=(1.5, -0.7, 0.012), normal=4.0, cop=(0.0, 0.0)):
     return pad
 
 
-def samples(sensor, pad, count: int, noise: np.ndarray = QUIET) -> np.ndarray:
+def samples(sensor, pad, count: int) -> np.ndarray:
     """Values (count, 6) of as many samples of a constant load."""
     values = np.zeros((count, 6))
-    for row in values:
-        sample_force_torque(sensor, pad, noise)
-        row[:] = sensor["history"][(sensor["taken"] - 1) % len(sensor["history"])]
+    for number, row in enumerate(values, 1):
+        sample_force_torque(sensor, pad, number * sensor["period"])
+        sensed(sensor, number, row)
     return values
 
 
@@ -80,15 +78,13 @@ def test_the_twist_is_moved_to_the_centre_of_pressure():
     plant.world["tick"] = 12
     motion = np.array([1e-4, -2e-4, 5e-3])
     for f in range(2):
-        sample_force_torque(plant.force_torque[0, f], plant.pads[0, f], QUIET)
+        sample_force_torque(plant.force_torque[0, f], plant.pads[0, f], 12)
         plant.chips["carry"][0, f] = plant.chips["lever"][0, f] @ (motion * (1.0, 1.0, (1.0, -1.0)[f]))
     wrenches, twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
-    slip_noise, drift_noise = np.zeros((1, 2, AXES)), np.zeros((1, 2, 6))
-    measure(plant.world, plant.force_torque, plant.chips, slip_noise, drift_noise, wrenches, twists)
+    measure(plant.world, plant.force_torque, plant.chips, wrenches, twists)
     v_x, v_y, omega = 120 * motion
     expected = [v_x - omega * 0.001, v_y + omega * 0.002, omega]
     np.testing.assert_allclose(twists[0], [expected, expected], rtol=1e-9)
-    np.testing.assert_array_equal(plant.force_torque["drawn"], 0)
 
 
 @pytest.mark.parametrize("latency", [0.0, 0.0015, 0.0021, 0.05])
@@ -97,10 +93,24 @@ def test_latency(latency):
     reading, ticks = np.zeros(6), 12  # a sample per 12 ticks of 1/12000 s
     for tick in range(1, 1201):
         if tick % ticks == 0:
-            sample_force_torque(sensor, loaded_pad(normal=tick / 12000), QUIET)
+            sample_force_torque(sensor, loaded_pad(normal=tick / 12000), tick)
         read_force_torque(sensor, tick, reading)
         newest = math.floor((tick - round(latency * 12000)) / ticks) * ticks
         assert reading[2] == (max(newest, 0) / 12000)
+
+
+@pytest.mark.parametrize("latency", [0.0, 0.0015, 0.0021, 0.05])
+@pytest.mark.parametrize("rate", [120, 500, 1000])
+def test_only_the_samples_that_a_reading_needs(latency, rate):
+    sensor = sensors(latency=latency, rate=rate)[0]
+    control, period, delay = 100, int(sensor["period"]), int(sensor["delay"])
+    readings = range(control, 60 * control, control)
+    needed = sorted({(tick - delay) // period * period for tick in readings if tick - delay >= period})
+    tick, found = 0, []
+    while len(found) < len(needed):
+        tick = sample_read_next(sensor, tick, control)
+        found.append(tick)
+    assert found == needed
 
 
 def test_resolution_and_range():
@@ -110,9 +120,9 @@ def test_resolution_and_range():
 
 
 def test_noise_has_the_configured_deviation():
-    n = 4000
-    noise = np.random.default_rng(5).standard_normal((n, 6))
-    values = samples(sensors("realistic")[0], loaded_pad(), n, noise)
+    n, sensor = 4000, sensors("realistic")[0]
+    sensor["key"] = 5
+    values = samples(sensor, loaded_pad(), n)
     expected = [0.02, 0.02, 0.04, 5e-4, 5e-4, 5e-4]
     # the sd of n normal samples is known to 1 / sqrt(2 n), their mean to sd / sqrt(n): four sigma
     np.testing.assert_allclose(values.std(axis=0), expected, rtol=4.0 / math.sqrt(2 * n))
@@ -122,9 +132,9 @@ def test_noise_has_the_configured_deviation():
 
 def test_drift_is_a_random_walk_per_root_second():
     n, sensor = 2000, sensors(drift_normal=0.1)[0]
-    rng, bias = np.random.default_rng(6), [sensor["bias"].copy()]
-    for _ in range(n):
-        drift_force_torque(sensor, rng.standard_normal(6))
+    sensor["drift_key"], reading, bias = 6, np.zeros(6), [sensor["bias"].copy()]
+    for tick in range(n):
+        read_force_torque(sensor, tick, reading)
         bias.append(sensor["bias"].copy())
     steps = np.diff(np.array(bias), axis=0)
     # one step of the walk per control step of 1/120 s; the sd of n samples is known to 1 / sqrt(2 n)
