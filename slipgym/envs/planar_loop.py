@@ -16,7 +16,6 @@ from slipgym.envs.rows import driver, settle
 from slipgym.envs.threads import Threads
 from slipgym.tasks import Task
 from slipgym.world.placing import place
-from slipgym.world.plant import ticks_per_second
 from slipgym.world.scene import Box
 
 
