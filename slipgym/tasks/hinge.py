@@ -9,14 +9,51 @@ import numpy as np
 from pydantic import Field
 
 from slipgym.compiled import compiled
-from slipgym.config import Config
+from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.disturbance import shake_velocity
 from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness, schedule, trapezoid
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import Column, Task
+from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
 
-TERMS = ("still", "upright", "effort", "smoothness", "drop")
+
+class Settings(TaskConfig):
+    """The object hangs upright between the pads while the wrist pitches."""
+
+    turn: Positive = Field(description="Angle by which the wrist pitches [rad]")
+    duration: Positive = Field(description="Time for it [s]")
+    settle: NonNegative = Field(description="Time before the wrist moves [s]")
+    hold: NonNegative = Field(description="Time after it has moved [s]")
+    slide_tolerance: Positive = Field(description="Largest slip at the pad centre for success [m]")
+    tilt_tolerance: Positive = Field(description="Largest tilt of the object for success [rad]")
+
+
+DEFAULTS = {
+    "turn": 1.0472,  # 60 degrees
+    "duration": 5.0,
+    "settle": 0.5,
+    "hold": 1.0,
+    "slide_tolerance": 0.002,
+    "tilt_tolerance": 0.0873,  # 5 degrees
+    "initial_force": 5.0,
+    "object": {
+        "mass": 0.2,
+        "size": [0.05, 0.03, 0.25],
+        "com_offset": [0.0, 0.0],
+        "inertia": None,
+        "grasp_offset": [0.0, 0.1],
+    },
+    "radius": 0.003,  # a rounded fingertip: see docs/environments/hinge.md
+}
+REWARD = (
+    Term("still", 1.0, "exp(-(s / slide_tolerance)^2), s = slip at the pad centre"),
+    Term(
+        "upright", 1.0, "exp(-(tilt / tilt_tolerance)^2), tilt = turn of the box since reset or, if larger, e"
+    ),
+    Term("effort", 0.1, EFFORT),
+    Term("smoothness", 0.1, SMOOTHNESS),
+    Term("drop", 100.0, DROP),
+)
 COLUMNS = (
     Column("wrist_pitch", -10.0, 10.0, "rad", "pitch of the wrist since the start"),
     Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "its rate"),
@@ -115,10 +152,12 @@ def judge(episodes, worlds, fingers, columns):
 
 
 TASK = Task(
-    name="Hinge",
+    id="slipgym/Hinge-v0",
     key="hinge",
+    settings=Settings,
+    defaults=DEFAULTS,
     options=Options,
-    terms=TERMS,
+    reward=REWARD,
     columns=COLUMNS,
     start=start,
     plan=plan,

@@ -8,13 +8,38 @@ import numpy as np
 from pydantic import Field
 
 from slipgym.compiled import compiled
-from slipgym.config import Config
+from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.episode import detect_drop, drive_wrist, effort, roughness, schedule, trapezoid
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import Column, Task
+from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
 
-TERMS = ("tracking", "sideways", "effort", "smoothness", "drop")
+
+class Settings(TaskConfig):
+    """The object slides down between the pads by a given distance in a given time, then stays."""
+
+    distance: Positive = Field(description="Distance to slide [m]")
+    duration: Positive = Field(description="Time for the slide [s]")
+    settle: NonNegative = Field(description="Time before the slide, during which the object is held [s]")
+    hold: NonNegative = Field(description="Time after the slide, during which the object is held [s]")
+    tolerance: Positive = Field(description="Largest error of the final position for success [m]")
+
+
+DEFAULTS = {
+    "distance": 0.04,
+    "duration": 5.0,
+    "settle": 0.5,
+    "hold": 1.0,
+    "tolerance": 0.002,
+    "initial_force": 15.0,
+}
+REWARD = (
+    Term("tracking", 1.0, "exp(-(e / tolerance)^2), e = distance slid less the reference's"),
+    Term("sideways", 0.1, "-(abs(x) + gripper.pad_radius abs(theta)) / tolerance, at least -10"),
+    Term("effort", 0.1, EFFORT),
+    Term("smoothness", 0.1, SMOOTHNESS),
+    Term("drop", 100.0, DROP),
+)
 COLUMNS = (
     Column("reference_position", 0.0, 1.0, "m", "distance the object should have slid"),
     Column("reference_velocity", 0.0, 1.0, "m/s", "its rate"),
@@ -88,10 +113,12 @@ def judge(episodes, worlds, fingers, columns):
 
 
 TASK = Task(
-    name="LinearSlip",
+    id="slipgym/LinearSlip-v0",
     key="linear_slip",
+    settings=Settings,
+    defaults=DEFAULTS,
     options=Options,
-    terms=TERMS,
+    reward=REWARD,
     columns=COLUMNS,
     start=start,
     plan=plan,

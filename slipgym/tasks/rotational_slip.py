@@ -8,13 +8,47 @@ import numpy as np
 from pydantic import Field
 
 from slipgym.compiled import compiled
-from slipgym.config import Config
+from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness, schedule, trapezoid
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import Column, Task
+from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
 
-TERMS = ("tracking", "sliding", "effort", "smoothness", "drop")
+
+class Settings(TaskConfig):
+    """The object turns between the pads by a given angle in a given time, then stays."""
+
+    angle: Positive = Field(description="Angle to turn [rad]")
+    duration: Positive = Field(description="Time for the turn [s]")
+    settle: NonNegative = Field(description="Time before the turn, during which the object is held [s]")
+    hold: NonNegative = Field(description="Time after the turn, during which the object is held [s]")
+    tolerance: Positive = Field(description="Largest error of the final angle for success [rad]")
+    slide_tolerance: Positive = Field(description="Largest slip at the pad centre for success [m]")
+
+
+DEFAULTS = {
+    "angle": 1.0472,  # 60 degrees, symmetric about horizontal
+    "duration": 5.0,
+    "settle": 0.5,
+    "hold": 1.0,
+    "tolerance": 0.0349,  # 2 degrees
+    "slide_tolerance": 0.001,
+    "initial_force": 25.0,
+    "object": {  # light and long: see docs/environments/rotational_slip.md
+        "mass": 0.08,
+        "size": [0.34, 0.03, 0.04],
+        "com_offset": [0.0, 0.0],
+        "inertia": None,
+        "grasp_offset": [-0.14, 0.0],
+    },
+}
+REWARD = (
+    Term("tracking", 1.0, "exp(-(e / tolerance)^2), e = -theta - reference"),
+    Term("sliding", 0.1, "-min(slip at the pad centre / slide_tolerance, 10)"),
+    Term("effort", 0.1, EFFORT),
+    Term("smoothness", 0.1, SMOOTHNESS),
+    Term("drop", 100.0, DROP),
+)
 COLUMNS = (
     Column("reference_position", 0.0, 2.0, "rad", "angle the object should have turned, clockwise"),
     Column("reference_velocity", 0.0, 10.0, "rad/s", "its rate"),
@@ -97,10 +131,12 @@ def judge(episodes, worlds, fingers, columns):
 
 
 TASK = Task(
-    name="RotationalSlip",
+    id="slipgym/RotationalSlip-v0",
     key="rotational_slip",
+    settings=Settings,
+    defaults=DEFAULTS,
     options=Options,
-    terms=TERMS,
+    reward=REWARD,
     columns=COLUMNS,
     start=start,
     plan=plan,
