@@ -38,9 +38,7 @@ def load(
     defaults, sources = _files(sensors)
     own = {key: task.defaults_with_scales for key, task in tasks().items()}
     defaults = {**defaults, "tasks": _merge(own, defaults.get("tasks", {}))}
-    config = _validate(
-        defaults, lambda location: sources.get(location[0], "slipgym.tasks") if location else "configs"
-    )
+    config = _validate(defaults, lambda location: sources.get(location[0] if location else "", "defaults"))
     if contact is not None:
         defaults = _merge(defaults, {"contact": {"model": contact}})
         config = _validate(defaults, lambda _: "contact argument")

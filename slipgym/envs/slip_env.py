@@ -24,7 +24,8 @@ from slipgym.tasks import Task
 class SlipEnv(gym.Env[Any, np.ndarray]):
     """A box between the two pads of a gripper; one step is `frame_skip` slip-velocity samples.
 
-    The tasks are subclasses that name a `Task`; their docstrings describe spaces and rewards.
+    The tasks' environments are subclasses that name a `Task`, made by `slipgym.envs.environment`; their
+    docstrings describe spaces and rewards.
 
     Args:
         friction_source: What the observation's friction part holds: "estimated", "true",
@@ -106,7 +107,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             "history": history,
             "randomization": self.randomization.model_dump(mode="json", exclude_unset=True),
             "frame_skip": frame_skip,
-            "config": self.config.model_dump(mode="json"),
+            "config": self._own_config(),
         }
         self._views = self._info_views()
         self._renderer: Any = None
@@ -239,6 +240,11 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         if self._renderer is not None:
             self._renderer.close()
         self._ready = False
+
+    def _own_config(self) -> dict[str, Any]:
+        """The configuration as far as it matters here: without the other tasks' settings."""
+        values, key = self.config.model_dump(mode="json"), self.task.key
+        return {**values, "tasks": {key: values["tasks"][key]}}
 
     def _info_views(self) -> dict[str, np.ndarray]:
         """Arrays that every info carries a copy of."""

@@ -1,4 +1,38 @@
-"""Hold: keep an object of unknown mass and friction while the wrist shakes and pokes disturb it."""
+"""Hold an object of unknown mass and friction while the wrist shakes and pokes disturb it.
+
+## Description
+
+A parallel gripper holds a box from both sides. The wrist moves up and down, to and fro, and pitches; now
+and then something pokes the box. It must not slip, yet be gripped no harder than needed. Neither mass nor
+friction is known beforehand: an estimator works friction out from force, torque and slip velocity, as far
+as the box slips at all. After the holding task of Waltersson and Karayiannidis (arXiv 2410.19660).
+
+## Starting State
+
+The box hangs still in a grip of `tasks.hold.initial_force` (15 N), its grasp point between the pads. Its
+mass is drawn from 0.1 to 0.4 kg, the wrist's frequencies (1 to 3 Hz) and phases and the pokes (impulse,
+direction, lever and time) from the ranges in `tasks.hold`; so are the material, if `material` is
+"random", the sensors' biases and the fractions of a count that the slip sensors begin with. Grip and
+sensors run for six samples before time 0; the shaking builds up over 0.5 s. A wrist velocity that the
+agent commands adds to it; the sum stays within the gripper's limits.
+
+## Episode End
+
+- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
+- Truncated: `duration` has passed (8 s, 960 samples). The environment truncates by itself; no `TimeLimit`
+  is needed.
+
+Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped and never
+slipped further than `tolerance` (2 mm).
+
+## Info
+
+| `reference` | zeros, (3,) |
+
+## Version History
+
+- v0: first version.
+"""
 
 from __future__ import annotations
 
@@ -150,4 +184,5 @@ TASK = Task(
     start=start,
     plan=plan,
     judge=judge,
+    page=__doc__,
 )

@@ -1,4 +1,36 @@
-"""LinearSlip: the object slides a given distance along gravity in a given time, then stays."""
+"""Let the object slide a given distance along gravity in a given time, then hold it.
+
+## Description
+
+A parallel gripper on a wrist at rest holds a box from both sides. It must loosen its grip just so far
+that the box slides down between the pads along a trapezoidal reference, and then tighten it so that the
+box stays. Friction is not known beforehand: an estimator works it out from force, torque and slip
+velocity while the box slides. After the linear slip of Waltersson and Karayiannidis (arXiv 2507.06824 and
+arXiv 2410.19660).
+
+## Starting State
+
+The box hangs still in a grip of `tasks.linear_slip.initial_force` (15 N), its grasp point between the
+pads. The material is drawn if `material` is "random", and so are the sensors' biases and the fractions of
+a count that the slip sensors begin with. Grip and sensors run for six samples before time 0.
+
+## Episode End
+
+- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
+- Truncated: `settle` + `duration` + `hold` have passed (0.5 s + 5 s + 1 s, 780 samples). The environment
+  truncates by itself; no `TimeLimit` is needed.
+
+Success (`info["is_success"]`): at the end of the last sample the distance slid is within `tolerance` (2
+mm) of `distance`, and the box was not dropped.
+
+## Info
+
+| `reference` | distance to have slid, its rate and second rate, (3,) [m, m/s, m/s^2] |
+
+## Version History
+
+- v0: first version.
+"""
 
 from __future__ import annotations
 
@@ -123,4 +155,5 @@ TASK = Task(
     start=start,
     plan=plan,
     judge=judge,
+    page=__doc__,
 )

@@ -64,6 +64,8 @@ class Task:
     """Compiled, before a control step: (episodes, worlds) sets wrist motion and disturbance."""
     judge: Callable[..., None]
     """Compiled, after a control step: (episodes, worlds, fingers, columns)."""
+    page: str | None = None
+    """What is written by hand of its environment's documentation: see `slipgym.envs.docstring`."""
 
     @cached_property
     def name(self) -> str:
