@@ -4,6 +4,11 @@ import importlib
 from typing import Any
 
 
+def is_reference(name: object) -> bool:
+    """Whether a name says where something is, instead of what it is called."""
+    return isinstance(name, str) and ":" in name
+
+
 def referenced(name: str) -> Any:
     """What a reference stands for; its module is imported.
 

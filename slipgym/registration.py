@@ -51,8 +51,8 @@ def register_task(task: Task) -> type[SlipEnv]:
     from slipgym.envs.environment import environment
     from slipgym.tasks.table import add
 
+    made = environment(task)
     add(task)
     gym.registry.pop(task.id, None)
-    made = environment(task)
     gym.register(id=task.id, entry_point=f"{made.__module__}:{made.__name__}")
     return made

@@ -10,7 +10,6 @@ from slipgym.rendering.bullet import look
 from slipgym.rendering.caption import caption
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.history import History
-from slipgym.rendering.motion import motion_of
 from slipgym.rendering.scene import draw_scene, measure_depth
 from slipgym.rendering.stage import View, footprint
 from slipgym.rendering.window import Window
@@ -32,7 +31,7 @@ class Renderer:
 
     def __init__(self, mode: str, loop: SlipLoop) -> None:
         self._mode, self._loop = mode, loop
-        self._motion = motion_of(loop.task)
+        self._motion = loop.task.motion
         self._window = Window(f"slipgym {loop.task.name}", (WIDTH, HEIGHT)) if mode == "human" else None
 
     def begin(self) -> None:

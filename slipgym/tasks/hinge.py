@@ -62,6 +62,7 @@ from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.disturbance import shake_velocity
 from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness, schedule, trapezoid
+from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
 
@@ -213,5 +214,6 @@ TASK = Task(
     start=start,
     plan=plan,
     judge=judge,
+    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), sign=-1.0, goal="wrist_pitch_goal"),
     page=__doc__,
 )

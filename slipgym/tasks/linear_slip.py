@@ -43,6 +43,7 @@ from slipgym.compiled import compiled
 from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.episode import detect_drop, drive_wrist, effort, roughness, schedule, trapezoid
+from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
 
@@ -155,5 +156,6 @@ TASK = Task(
     start=start,
     plan=plan,
     judge=judge,
+    motion=Motion("slid down", axis=(0.0, -1.0, 0.0), goal="distance"),
     page=__doc__,
 )

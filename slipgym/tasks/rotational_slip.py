@@ -57,6 +57,7 @@ from slipgym.compiled import compiled
 from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness, schedule, trapezoid
+from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
 
@@ -187,5 +188,6 @@ TASK = Task(
     start=start,
     plan=plan,
     judge=judge,
+    motion=Motion("turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle"),
     page=__doc__,
 )

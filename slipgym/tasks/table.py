@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import importlib
 
-import gymnasium as gym
-
-from estimator.reference import referenced
+from estimator.reference import is_reference, referenced
 from slipgym.config import load
 from slipgym.config.errors import unknown
 from slipgym.registration import ENVIRONMENTS, TASK_MODULES
@@ -25,7 +23,7 @@ def find(name: str) -> Task:
     Raises:
         ValueError: There is no such task, or it is not registered.
     """
-    if ":" in name:
+    if is_reference(name):
         task = referenced(name)
         if not isinstance(task, Task) or TASKS.get(task.name) is not task:
             raise ValueError(f"{name!r} is no task that slipgym.register_task knows")
@@ -39,13 +37,10 @@ def add(task: Task) -> None:
     """Put a task into the table, in place of one of the same id.
 
     Raises:
-        ValueError: The id is one of slipgym's own or malformed, another task has the name or the key, there
+        ValueError: The id is one of slipgym's own, another task has the name or the key, there
             are too many reward terms, or the defaults do not fit the settings.
     """
-    try:
-        name = task.name
-    except gym.error.Error as error:
-        raise ValueError(f"id = {task.id!r}: {error}") from error
+    name = task.name
     if task.id in ENVIRONMENTS:
         raise ValueError(f"id = {task.id!r} is one of slipgym's own")
     for what, value in (("name", name), ("key", task.key)):

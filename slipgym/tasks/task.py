@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
 from gymnasium.envs.registration import parse_env_id
+from gymnasium.error import Error
 
 from slipgym.config.tasks import TaskConfig
+from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 
 EFFORT = "-(mean actuator force / gripper.force_max)"
@@ -42,7 +44,11 @@ class Term(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """A task as functions over a leading batch axis, so that every world can run it."""
+    """A task as functions over a leading batch axis, so that every world can run it.
+
+    Raises:
+        ValueError: The id is malformed.
+    """
 
     id: str
     """Id of its environment."""
@@ -64,8 +70,16 @@ class Task:
     """Compiled, before a control step: (episodes, worlds) sets wrist motion and disturbance."""
     judge: Callable[..., None]
     """Compiled, after a control step: (episodes, worlds, fingers, columns)."""
+    motion: Motion = field(default_factory=Motion)
+    """What pictures, tables and figures show of the object's slip."""
     page: str | None = None
     """What is written by hand of its environment's documentation: see `slipgym.envs.docstring`."""
+
+    def __post_init__(self) -> None:
+        try:
+            _ = self.name
+        except Error as error:
+            raise ValueError(f"id = {self.id!r}: {error}") from error
 
     @cached_property
     def name(self) -> str:
