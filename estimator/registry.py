@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.parameters import Parameters
+from estimator.reference import is_reference, referenced
 
 if TYPE_CHECKING:
     from estimator.batch import BatchEstimator
@@ -43,9 +44,17 @@ def names() -> list[str]:
 def specification(name: str) -> Specification:
     """Looks an estimator up.
 
+    Args:
+        name: One of `names()`, or "module:attribute" for a Specification of your own that has it as its name.
+
     Raises:
         ValueError: No estimator has this name.
     """
+    if is_reference(name):
+        found = referenced(name)
+        if not isinstance(found, Specification) or found.name != name:
+            raise ValueError(f"{name!r} is no Specification of this name")
+        return found
     if name not in names():
         raise ValueError(f"unknown estimator {name!r}; valid: {', '.join(names())}")
     return importlib.import_module(_MODULES[name]).SPECIFICATION
@@ -55,7 +64,7 @@ def make(name: str, **parameters: Any) -> "OnlineEstimator":
     """Makes the estimator of one finger.
 
     Args:
-        name: One of `names()`.
+        name: As for `specification`.
         **parameters: Fields of its parameter dataclass, for example `RlsParameters`.
 
     Raises:
@@ -70,7 +79,7 @@ def make_batch(name: str, n: int, **parameters: Any) -> "BatchEstimator":
     """Makes n independent estimators that one compiled call updates together.
 
     Args:
-        name: One of `names()`.
+        name: As for `specification`.
         n: How many fingers.
         **parameters: As for `make`; all n share them.
 

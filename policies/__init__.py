@@ -6,6 +6,6 @@ policy = policies.make("linear_slip")
 action, state = policy.predict(observation, state=None)
 """
 
-from policies.registry import Policy, load, make, names
+from policies.registry import Policy, find, load, make, names
 
-__all__ = ["Policy", "load", "make", "names"]
+__all__ = ["Policy", "find", "load", "make", "names"]

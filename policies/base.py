@@ -12,7 +12,7 @@ from slipgym.config import Config, Overrides, load
 from slipgym.config.errors import unknown
 from slipgym.envs import observation as layout
 from slipgym.envs.actions import COMMANDS, Actions
-from slipgym.tasks import TASKS
+from slipgym.tasks import find
 
 State: TypeAlias = np.ndarray | tuple[np.ndarray, ...]
 """A policy's memory: one or several arrays, each with a leading batch axis."""
@@ -22,7 +22,7 @@ class ObservationIndex:
     """Where each column of an observation is.
 
     Args:
-        task_name: One of `slipgym.tasks.TASKS`; None for the sensor part that all tasks share.
+        task_name: As `slipgym.tasks.find` takes it; None for the sensor part that all tasks share.
         config: The environment's configuration.
         action_mode: The environment's; those that command the wrist observe it.
 
@@ -31,13 +31,11 @@ class ObservationIndex:
     """
 
     def __init__(self, task_name: str | None, config: Config, action_mode: str = "grip_force") -> None:
-        if task_name is not None and task_name not in TASKS:
-            raise ValueError(unknown("task", task_name, TASKS))
         self.task_name, self.action_mode = task_name, action_mode
         if task_name is None:
             columns = layout.sensor_columns(config)
         else:
-            columns = layout.columns(config, TASKS[task_name], "true", action_mode)
+            columns = layout.columns(config, find(task_name), "true", action_mode)
         self._at = {column.name: k for k, column in enumerate(columns)}
 
     def __getitem__(self, name: str) -> int:

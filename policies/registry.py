@@ -1,12 +1,13 @@
 """The table of policies, and how to make one by name."""
 
-import importlib
 import inspect
 import os
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
+
+from estimator.reference import is_reference, referenced
 
 _CLASSES = {
     "rotational_slip": "policies.rotational_slip:RotationalSlipPolicy",
@@ -44,20 +45,36 @@ def names() -> list[str]:
     return sorted(_CLASSES)
 
 
+def find(name: str) -> type[Policy]:
+    """The class of a policy.
+
+    Args:
+        name: One of `names()`, or "module:class" for one of your own: any class with a `predict`.
+
+    Raises:
+        ValueError: There is none.
+    """
+    if is_reference(name):
+        policy = referenced(name)
+        if not isinstance(policy, type) or not callable(getattr(policy, "predict", None)):
+            raise ValueError(f"{name!r} is no policy: a class with a method predict")
+        return policy
+    if name not in _CLASSES:
+        raise ValueError(f"unknown policy {name!r}; valid: {', '.join(names())}")
+    return referenced(_CLASSES[name])
+
+
 def make(name: str, **parameters: Any) -> Policy:
     """Makes a policy.
 
     Args:
-        name: One of `names()`.
+        name: As for `find`.
         **parameters: Arguments of the policy's class.
 
     Raises:
         ValueError: The name or a parameter is unknown, or a value is not allowed.
     """
-    if name not in _CLASSES:
-        raise ValueError(f"unknown policy {name!r}; valid: {', '.join(names())}")
-    module, _, attribute = _CLASSES[name].partition(":")
-    policy = getattr(importlib.import_module(module), attribute)
+    policy = find(name)
     valid = list(inspect.signature(policy).parameters)
     for parameter in parameters:
         if parameter not in valid:

@@ -1,5 +1,7 @@
 """Gymnasium environments for slip-aware in-hand manipulation, with a friction estimator in the loop."""
 
-from slipgym.registration import register
+from slipgym.registration import register, register_task
+
+__all__ = ["register_task"]
 
 register()

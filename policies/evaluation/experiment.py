@@ -15,7 +15,7 @@ from slipgym.config.base import Count, Frozen
 from slipgym.config.errors import unknown
 from slipgym.envs.choices import DEFAULT_ESTIMATOR
 from slipgym.envs.observation import FRICTION_SOURCES
-from slipgym.tasks import TASKS
+from slipgym.tasks import find
 
 
 def _as_tuple(value: object) -> object:
@@ -37,14 +37,13 @@ class _Spelled(Frozen):
 class PolicyChoice(_Spelled):
     """A policy of `policies.make`."""
 
-    name: str = Field(description="Its name [-]")
+    name: str = Field(description="Its name; one of your own as module:class [-]")
     parameters: Mapping[str, Any] = Field(default={}, description="Its parameters [-]")
     label: str = Field(default="", description="How tables and figures call it; empty: by its name [-]")
 
     @model_validator(mode="after")
     def _exists(self) -> Self:
-        if self.name not in policies.names():
-            raise ValueError(unknown("policy", self.name, policies.names()))
+        policies.find(self.name)
         return self
 
     @property
@@ -80,7 +79,7 @@ class Experiment(_Spelled):
     """Policies × friction × materials × options, each cell with a number of trials."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", description="Names the run folder [-]")
-    task: str = Field(description="Task of the environment [-]")
+    task: str = Field(description="Task of the environment; one of your own as module:attribute [-]")
     seed: int = Field(default=0, ge=0, description="All randomness follows from it [-]")
     trials: Count = Field(description="Trials in each cell [-]")
     policies: Annotated[tuple[PolicyChoice, ...], BeforeValidator(_as_tuple), Field(min_length=1)] = Field(
@@ -105,8 +104,7 @@ class Experiment(_Spelled):
     @field_validator("task")
     @classmethod
     def _task_exists(cls, name: str) -> str:
-        if name not in TASKS:
-            raise ValueError(unknown("task", name, TASKS))
+        find(name)
         return name
 
     @model_validator(mode="after")
@@ -123,7 +121,7 @@ class Experiment(_Spelled):
         if "material" in {**self.options, **self.vary}:
             raise ValueError("materials are listed under materials, not among the options")
         for options in self.combinations():
-            TASKS[self.task].options.parse(options)
+            find(self.task).options.parse(options)
         return self
 
     def environment_config(self) -> configuration.Config:

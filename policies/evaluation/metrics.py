@@ -3,53 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from policies.evaluation.by_motion import largest_slip, measures_by_motion
+from policies.evaluation.columns import DROPPED, FORCE, ROTATION, SLIP, SUCCESS, Measures, Metric, Tolerance
 from policies.evaluation.recording import Recording
-
-
-@dataclass(frozen=True)
-class Metric:
-    """A column of the table of trials that the summary reports."""
-
-    column: str
-    """Its name in the table."""
-    heading: str
-    """Its heading in the summary, with the unit."""
-    share: bool = False
-    """Whether it is yes or no; else a quantity with a mean."""
-    brief: bool = False
-    """Whether the compact table on the terminal has it."""
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """A tolerance of the task in the unit of the table of trials."""
-
-    option: str
-    """Its name among the task's options."""
-    column: str
-    """Its name in the table."""
-    scale: float
-    """From the option's unit to the table's."""
-
-
-@dataclass(frozen=True)
-class Measures:
-    """What is measured in the trials of a task."""
-
-    measure: Callable[[Recording], dict[str, Any]]
-    """The task's own columns."""
-    tolerances: tuple[Tolerance, ...]
-    """What the trials' figures are held against."""
-    summary: tuple[Metric, ...]
-    """What the summary reports."""
-    compared: Metric
-    """What paired trials are compared by."""
+from slipgym.tasks import find
 
 
 def measure(recording: Recording, task: str) -> dict[str, Any]:
@@ -57,7 +18,7 @@ def measure(recording: Recording, task: str) -> dict[str, Any]:
 
     Args:
         recording: The episode.
-        task: One of `MEASURES`.
+        task: As `slipgym.tasks.find` takes it.
     """
     true, final = recording.true, recording.estimated[-1].mean(axis=0)
     common = {
@@ -74,7 +35,17 @@ def measure(recording: Recording, task: str) -> dict[str, Any]:
         "final_mu_c": final[1].item(),
         "final_r_mm": 1e3 * final[2].item(),
     }
-    return {**common, **MEASURES[task].measure(recording)}
+    return {**common, **measures(task).measure(recording)}
+
+
+def measures(task: str) -> Measures:
+    """What is measured in the trials of a task: its own, or what follows from its motion and its options.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+    """
+    found = find(task)
+    return MEASURES[found.name] if found.name in MEASURES else measures_by_motion(found)
 
 
 def measure_linear_slip(recording: Recording) -> dict[str, Any]:
@@ -114,11 +85,6 @@ def measure_hinge(recording: Recording) -> dict[str, Any]:
     }
 
 
-def largest_slip(recording: Recording) -> float:
-    """Largest distance from the grasp [mm]."""
-    return 1e3 * np.hypot(recording.slip[:, 0], recording.slip[:, 1]).max().item()
-
-
 def measure_hold(recording: Recording) -> dict[str, Any]:
     """How far the object slipped, and how the grip force compares with the least that could do."""
     needed = recording.needed_force
@@ -131,13 +97,8 @@ def measure_hold(recording: Recording) -> dict[str, Any]:
     }
 
 
-_SUCCESS = Metric("success", "success [%]", share=True, brief=True)
-_DROPPED = Metric("dropped", "dropped [%]", share=True)
-_FORCE = Metric("mean_force_N", "grip force [N]", brief=True)
-_ROTATION = Metric("max_rotation_deg", "largest rotation [°]")
 _FINAL = Metric("final_error_abs_mm", "final error, size [mm]", brief=True)
 _FINAL_ANGLE = Metric("final_error_abs_deg", "final error, size [°]", brief=True)
-_SLIP = Metric("largest_slip_mm", "largest slip [mm]", brief=True)
 _SLIDE = Tolerance("slide_tolerance", "tolerance_mm", 1e3)
 
 MEASURES: dict[str, Measures] = {
@@ -145,14 +106,14 @@ MEASURES: dict[str, Measures] = {
         measure_linear_slip,
         (Tolerance("tolerance", "tolerance_mm", 1e3),),
         (
-            _SUCCESS,
-            _DROPPED,
+            SUCCESS,
+            DROPPED,
             Metric("final_error_mm", "final error, signed [mm]", brief=True),
             _FINAL,
             Metric("rms_error_mm", "rms tracking error [mm]", brief=True),
             Metric("max_sideways_mm", "largest sideways slip [mm]"),
-            _ROTATION,
-            _FORCE,
+            ROTATION,
+            FORCE,
         ),
         _FINAL,
     ),
@@ -160,13 +121,13 @@ MEASURES: dict[str, Measures] = {
         measure_rotational_slip,
         (Tolerance("tolerance", "tolerance_deg", math.degrees(1.0)), _SLIDE),
         (
-            _SUCCESS,
-            _DROPPED,
+            SUCCESS,
+            DROPPED,
             Metric("final_error_deg", "final error, signed [°]", brief=True),
             _FINAL_ANGLE,
             Metric("rms_error_deg", "rms tracking error [°]", brief=True),
-            _SLIP,
-            _FORCE,
+            SLIP,
+            FORCE,
         ),
         _FINAL_ANGLE,
     ),
@@ -174,28 +135,28 @@ MEASURES: dict[str, Measures] = {
         measure_hinge,
         (_SLIDE, Tolerance("tilt_tolerance", "tolerance_deg", math.degrees(1.0))),
         (
-            _SUCCESS,
-            _DROPPED,
-            _SLIP,
+            SUCCESS,
+            DROPPED,
+            SLIP,
             Metric("largest_tilt_deg", "largest tilt [°]", brief=True),
-            _FORCE,
+            FORCE,
         ),
-        _SLIP,
+        SLIP,
     ),
     "Hold": Measures(
         measure_hold,
         (Tolerance("tolerance", "tolerance_mm", 1e3),),
         (
-            _SUCCESS,
-            _DROPPED,
-            _SLIP,
-            _ROTATION,
-            _FORCE,
+            SUCCESS,
+            DROPPED,
+            SLIP,
+            ROTATION,
+            FORCE,
             Metric("needed_force_mean_N", "least needed, mean [N]", brief=True),
             Metric("needed_force_peak_N", "least needed, peak [N]"),
             Metric("force_ratio", "grip / least needed"),
         ),
-        _FORCE,
+        FORCE,
     ),
 }
-"""Task -> its measures."""
+"""Task -> its measures, where they are more than `measures` finds by itself."""

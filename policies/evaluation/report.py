@@ -9,7 +9,7 @@ import pandas as pd
 import yaml
 
 from policies.evaluation.frames import by_metric, groups, where
-from policies.evaluation.metrics import MEASURES
+from policies.evaluation.metrics import measures
 from policies.evaluation.tables import KEYS, text
 
 
@@ -23,7 +23,7 @@ def report(folder: Path) -> str:
     # as text: a column of nothing but "true" would turn into booleans
     names: dict[Hashable, type[str]] = dict.fromkeys((*KEYS, "material", "metric"), str)
     summary = pd.read_csv(folder / "summary.csv", dtype=names, keep_default_na=False, na_values=[""])
-    metrics = [m for m in MEASURES[task].summary if m.brief]
+    metrics = [m for m in measures(task).summary if m.brief]
     rows = []
     for keys, group in groups(where(summary, material="all"), KEYS):
         found = by_metric(group)

@@ -10,11 +10,10 @@ import numpy as np
 import pandas as pd
 
 import policies
-from slipgym.config.errors import unknown
 from slipgym.envs.loop import SlipLoop
 from slipgym.sensors.force_torque import HISTORY, sensed
 from slipgym.sensors.slip_velocity import read_slip
-from slipgym.tasks import TASKS
+from slipgym.tasks import find
 
 FORCE = ("f_x", "f_y", "f_n", "tau_x", "tau_y", "tau")
 TWIST = ("v_x", "v_y", "omega")
@@ -32,7 +31,7 @@ def record_sensors(
     """Runs an episode and keeps every sample of one finger's sensors.
 
     Args:
-        task: "LinearSlip" or another of `slipgym.tasks.TASKS`.
+        task: "LinearSlip" or whatever else `slipgym.tasks.find` takes.
         policy: A name of `policies.names()`.
         finger: 1 or 2.
         seed: Of the environment.
@@ -46,12 +45,11 @@ def record_sensors(
     Raises:
         ValueError: The task, the policy, the finger or an option is unknown or not allowed.
     """
-    if task not in TASKS:
-        raise ValueError(unknown("task", task, TASKS))
+    env_id = find(task).id
     if finger not in (1, 2):
         raise ValueError(f"finger = {finger!r} must be 1 or 2")
     controller = policies.make(policy)
-    env = gym.make(f"slipgym:slipgym/{task}-v0", disable_env_checker=True, **keywords)
+    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **keywords)
     try:
         observation, _ = env.reset(seed=seed, options=dict(options or {}))
         tap = _Tap(env.unwrapped._loop, finger - 1)  # type: ignore[attr-defined]

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from policies.evaluation.columns import Metric
 from policies.evaluation.frames import by_metric, distinct, groups, values, where
-from policies.evaluation.metrics import MEASURES, Metric
+from policies.evaluation.metrics import measures
 from policies.evaluation.statistics import Interval, mean_interval, share_interval
 
 KEYS = ["policy", "friction"]
@@ -26,13 +27,13 @@ def summarise(trials: pd.DataFrame, task: str) -> pd.DataFrame:
         Columns `COLUMNS`: value with its interval low to high; material is "all" for all trials, metric
         "difference of ..." for the mean over pairs of what a friction choice has over the first one.
     """
-    metrics = [*MEASURES[task].summary, *(Metric(c, "") for c in FRICTION if c in trials)]
+    metrics = [*measures(task).summary, *(Metric(c, "") for c in FRICTION if c in trials)]
     rows = []
     for whole in (True, False):
         grouped = trials.assign(material="all") if whole else trials
         for keys, group in groups(grouped, [*KEYS, "material"]):
             rows += [(*keys, m.column, len(group), *interval(group, m)) for m in metrics]
-    rows += differences(trials, MEASURES[task].compared)
+    rows += differences(trials, measures(task).compared)
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
@@ -69,14 +70,14 @@ def markdown(summary: pd.DataFrame, task: str, n_trials: int) -> str:
         n_trials: How many trials stand behind it.
     """
     overall = where(summary, material="all")
-    headings = {m.column: m.heading for m in MEASURES[task].summary}
+    headings = {m.column: m.heading for m in measures(task).summary}
     estimated = [column for column in FRICTION if column in set(summary["metric"])]
     parts = [
         f"# {task}: {n_trials} trials",
         "Means with 95 % confidence intervals (BCa bootstrap; shares: Wilson).",
         grid(overall, headings),
     ]
-    compared = MEASURES[task].compared
+    compared = measures(task).compared
     paired = where(overall, metric=f"difference of {compared.column}")
     if len(paired):
         first = distinct(overall, "friction")[0]

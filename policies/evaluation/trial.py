@@ -14,10 +14,10 @@ from tqdm import tqdm
 import policies
 from policies.base import ObservationIndex
 from policies.evaluation.experiment import Experiment
-from policies.evaluation.metrics import MEASURES, measure
+from policies.evaluation.metrics import measure, measures
 from policies.evaluation.plan import Trial
 from policies.evaluation.recording import Recorder, Recording
-from slipgym.tasks import TASKS
+from slipgym.tasks import find
 
 
 @dataclass(frozen=True)
@@ -60,10 +60,10 @@ def run_trial(experiment: Experiment, trial: Trial) -> Result:
     except Exception as error:
         error.add_note(f"in trial {trial.keys}")
         raise
-    options, task = TASKS[experiment.task].options.parse(trial.options), _task(experiment)
+    options, task = find(experiment.task).options.parse(trial.options), _task(experiment)
     limits = {
         limit.column: limit.scale * options.choose(limit.option, task)
-        for limit in MEASURES[experiment.task].tolerances
+        for limit in measures(experiment.task).tolerances
     }
     drawn = {f"drawn_{name}": value for name, value in recording.drawn.items()}
     row = {**trial.keys, **limits, **measure(recording, experiment.task), **drawn}
@@ -72,12 +72,13 @@ def run_trial(experiment: Experiment, trial: Trial) -> Result:
 
 def record(experiment: Experiment, trial: Trial) -> Recording:
     """Runs an episode and keeps its steps."""
+    task = find(experiment.task)  # first of all: one of your own registers itself, in this process too
     parameters = dict(trial.policy.parameters)
     if experiment.config:
         parameters.setdefault("config", dict(experiment.config))
     policy = policies.make(trial.policy.name, **parameters)
     env = gym.make(
-        f"slipgym:slipgym/{experiment.task}-v0",
+        f"slipgym:{task.id}",
         friction_source=trial.friction.source,
         estimator=dict(trial.friction.estimator),
         sensors=experiment.sensors,
@@ -102,4 +103,4 @@ def record(experiment: Experiment, trial: Trial) -> Recording:
 
 
 def _task(experiment: Experiment) -> Any:
-    return getattr(experiment.environment_config().tasks, TASKS[experiment.task].key)
+    return getattr(experiment.environment_config().tasks, find(experiment.task).key)

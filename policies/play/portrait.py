@@ -12,7 +12,7 @@ from PIL import Image
 
 import policies
 from slipgym.registration import ENVIRONMENTS
-from slipgym.tasks import TASKS
+from slipgym.tasks import TASKS, find
 
 _SHARE = 0.62  # of the episode, after which the picture is taken
 
@@ -21,9 +21,9 @@ def own_policy(task: str) -> str:
     """The policy named like a task's group in the configuration; a constant force if there is none.
 
     Args:
-        task: One of `slipgym.tasks.TASKS`.
+        task: As `slipgym.tasks.find` takes it.
     """
-    key = TASKS[task].key
+    key = find(task).key
     return key if key in policies.names() else "constant_force"
 
 

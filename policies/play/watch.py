@@ -22,7 +22,7 @@ from slipgym.config import Config
 from slipgym.config.errors import unknown
 from slipgym.envs.slip_env import SlipEnv
 from slipgym.rendering import HEIGHT, WIDTH, WINDOW_RATE, Window
-from slipgym.tasks import TASKS
+from slipgym.tasks import find
 
 KEYBOARD = "keyboard"
 """Name of the policy that is whoever sits at the keyboard."""
@@ -95,7 +95,7 @@ def watch(
     """Plays a policy in a window, or into a film.
 
     Args:
-        task: "LinearSlip" or another of `slipgym.tasks.TASKS`.
+        task: "LinearSlip" or whatever else `slipgym.tasks.find` takes.
         policy: A name of `policies.names()`, the path of a trained policy, or `KEYBOARD` in a window;
             None for the task's own.
         video: MP4 or GIF to write; None opens a window.
@@ -114,8 +114,7 @@ def watch(
         FileNotFoundError: There is no policy at the path.
         RuntimeError: A window was asked for and cannot open.
     """
-    if task not in TASKS:
-        raise ValueError(unknown("task", task, TASKS))
+    env_id = find(task).id
     if not 0.01 <= speed <= 100.0:
         raise ValueError(f"speed = {speed!r} must lie in 0.01 to 100")
     if episodes < 1:
@@ -128,7 +127,7 @@ def watch(
     with ExitStack() as stack:
         player: Policy | None = None if policy == KEYBOARD else _policy(policy or own_policy(task))
         env: Any = gym.make(
-            f"slipgym:slipgym/{task}-v0", render_mode="rgb_array", disable_env_checker=True, **keywords
+            f"slipgym:{env_id}", render_mode="rgb_array", disable_env_checker=True, **keywords
         ).unwrapped
         stack.callback(env.close)
         if video is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from pydantic import Field
@@ -10,7 +11,7 @@ from pydantic import Field
 from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.base import Positive
-from slipgym.tasks import Task
+from slipgym.tasks import TASKS
 from slipgym.tasks.episode import detect_drop, trapezoid
 from slipgym.tasks.options import EpisodeOptions
 
@@ -47,11 +48,11 @@ def judge(episodes, worlds, fingers, columns):
         episodes[i].dropped = detect_drop(episodes[i], worlds[i], fingers[i])
 
 
-TASK = Task(
-    name="Hanging",
-    key="hold",  # the configuration's group for what the options leave open
+TASK = replace(
+    TASKS["Hold"],  # whose group of the configuration holds what the options leave open
+    id="policies/Hanging-v0",
     options=Options,
-    terms=(),
+    reward=(),
     columns=(),
     start=start,
     plan=plan,

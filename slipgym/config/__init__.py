@@ -1,28 +1,19 @@
 """The configuration of the environments: typed, frozen, validated, with its defaults in configs/."""
 
+from slipgym.config.assembly import config_model
 from slipgym.config.hardware import GripperConfig, ObjectConfig
 from slipgym.config.load import Overrides, load, load_randomization, names
 from slipgym.config.physics import ContactConfig, Material, NominalConfig, PhysicsConfig
 from slipgym.config.randomization import Randomization, Ranges
 from slipgym.config.root import Config
 from slipgym.config.sensors import ForceTorqueConfig, SensorsConfig, SlipConfig
-from slipgym.config.tasks import (
-    HingeConfig,
-    HoldConfig,
-    LinearSlipConfig,
-    RotationalSlipConfig,
-    TaskConfig,
-    TasksConfig,
-)
+from slipgym.config.tasks import TaskConfig, TasksConfig
 
 __all__ = [
     "Config",
     "ContactConfig",
     "ForceTorqueConfig",
     "GripperConfig",
-    "HingeConfig",
-    "HoldConfig",
-    "LinearSlipConfig",
     "Material",
     "NominalConfig",
     "ObjectConfig",
@@ -30,11 +21,11 @@ __all__ = [
     "PhysicsConfig",
     "Randomization",
     "Ranges",
-    "RotationalSlipConfig",
     "SensorsConfig",
     "SlipConfig",
     "TaskConfig",
     "TasksConfig",
+    "config_model",
     "load",
     "load_randomization",
     "names",

@@ -11,8 +11,6 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from slipgym.config.root import Config
-
 SourceOf = Callable[[tuple[int | str, ...]], str]
 """Names the file or argument that a location in the configuration came from."""
 
@@ -36,13 +34,13 @@ def unknown(what: str, name: object, valid: Iterable[str]) -> str:
     return f"unknown {what} {name!r}; {guess}valid: {', '.join(valid)}"
 
 
-def explain(error: ValidationError, source_of: SourceOf, model: type[BaseModel] = Config) -> ValueError:
+def explain(error: ValidationError, source_of: SourceOf, model: type[BaseModel]) -> ValueError:
     """Turns pydantic's report into a ValueError with one line per fault.
 
     Args:
         error: The report of a failed ``model_validate``.
         source_of: Names the file or argument that a location in the configuration came from.
-        model: What was validated.
+        model: What it was validated against.
     """
     return ValueError("\n".join(f"{source_of(e['loc'])}: {_describe(e, model)}" for e in error.errors()))
 

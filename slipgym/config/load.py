@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from slipgym.config import files
+from slipgym.config.assembly import config_model, tasks
 from slipgym.config.errors import SourceOf, explain, unknown
 from slipgym.config.randomization import Randomization
 from slipgym.config.root import Config
@@ -34,10 +35,10 @@ def load(
     """
     if sensors not in names("sensors"):
         raise ValueError(unknown("sensors", sensors, names("sensors")))
-    defaults, sources = _defaults(sensors)
-    config = _validate(
-        defaults, lambda location: sources.get(location[0], "configs") if location else "configs"
-    )
+    defaults, sources = _files(sensors)
+    own = {key: task.defaults_with_scales for key, task in tasks().items()}
+    defaults = {**defaults, "tasks": _merge(own, defaults.get("tasks", {}))}
+    config = _validate(defaults, lambda location: sources.get(location[0] if location else "", "defaults"))
     if contact is not None:
         defaults = _merge(defaults, {"contact": {"model": contact}})
         config = _validate(defaults, lambda _: "contact argument")
@@ -99,8 +100,8 @@ def names(kind: str) -> tuple[str, ...]:
 
 
 @cache
-def _defaults(sensors: str) -> tuple[dict[str, Any], dict[str | int, str]]:
-    """The default values, and for each top-level key the file that it came from."""
+def _files(sensors: str) -> tuple[dict[str, Any], dict[str | int, str]]:
+    """The values in the files, and for each top-level key the file that it came from."""
     preset = f"sensors/{sensors}.yaml"
     values = files.read(files.folder() / "default.yaml")
     sources: dict[str | int, str] = dict.fromkeys(values, "default.yaml")
@@ -121,7 +122,8 @@ def _merge(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, A
 
 
 def _validate(values: dict[str, Any], source_of: SourceOf) -> Config:
+    model = config_model()
     try:
-        return Config.model_validate(values)
+        return model.model_validate(values)
     except ValidationError as error:
-        raise explain(error, source_of) from error
+        raise explain(error, source_of, model) from error

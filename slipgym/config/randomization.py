@@ -8,11 +8,11 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from slipgym.config.assembly import tasks
 from slipgym.config.base import Frozen, as_tuple
 from slipgym.config.distribution import Distribution, within
 from slipgym.config.disturbances import AnyDisturbance
 from slipgym.config.errors import unknown
-from slipgym.config.tasks import TasksConfig
 
 PUSHES_MAX = 16
 
@@ -108,9 +108,10 @@ class Randomization(Ranges):
 
     @model_validator(mode="after")
     def _tasks_exist(self) -> Self:
+        known = tasks()
         for name in self.tasks:
-            if name not in TasksConfig.model_fields:
-                raise ValueError(unknown("task", name, TasksConfig.model_fields))
+            if name not in known:
+                raise ValueError(unknown("task", name, known))
             self.of(name)
         return self
 

@@ -1,7 +1,7 @@
 """The whole configuration of an environment."""
 
 from collections.abc import Mapping
-from typing import Self
+from typing import Any, Self
 
 from pydantic import Field, model_validator
 
@@ -14,7 +14,10 @@ from slipgym.contact.pressure import OUTER_RADII
 
 
 class Config(Frozen):
-    """Everything that an environment can be told; its defaults live in ``configs/``."""
+    """Everything that an environment can be told.
+
+    The defaults live in ``configs/``, those of a task in its file. `config_model` adds the tasks' settings.
+    """
 
     gripper: GripperConfig = Field(description="The gripper [-]")
     object: ObjectConfig = Field(description="The object in the grip [-]")
@@ -24,6 +27,11 @@ class Config(Frozen):
     physics: PhysicsConfig = Field(description="Gravity and rates [-]")
     sensors: SensorsConfig = Field(description="The sensors of each finger [-]")
     tasks: TasksConfig = Field(description="Parameters of the tasks [-]")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        from slipgym.config.assembly import restored  # which imports this file
+
+        return restored, (self.model_dump(mode="json"),)
 
     @model_validator(mode="after")
     def _rates_fit(self) -> Self:

@@ -1,4 +1,4 @@
-"""The documentation page of an environment, made from its docstring."""
+"""The documentation page of an environment: its docstring, with a picture."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import inspect
 from slipgym.envs.slip_env import SlipEnv
 from slipgym.registration import ENVIRONMENTS
 
-_NOTE = "<!-- Made from the docstring by scripts/make_docs.py; edit it there. -->"
+_NOTE = "<!-- Made by scripts/make_docs.py; what is written by hand stands in slipgym/tasks/. -->"
 
 
 def page(name: str, environment: type[SlipEnv]) -> str:

@@ -82,5 +82,11 @@ class Setup:
             "history": history,
             "randomization": self.randomization.model_dump(mode="json", exclude_unset=True),
             "frame_skip": frame_skip,
-            "config": self.config.model_dump(mode="json"),
+            "config": _own(self.config, task.key),
         }
+
+
+def _own(config: Config, key: str) -> dict[str, Any]:
+    """A configuration as far as it matters to a task: without the other tasks' settings."""
+    values = config.model_dump(mode="json")
+    return {**values, "tasks": {key: values["tasks"][key]}}

@@ -24,7 +24,8 @@ from slipgym.tasks import Task
 class SlipEnv(gym.Env[Any, np.ndarray]):
     """A box between the two pads of a gripper; one step is `frame_skip` slip-velocity samples.
 
-    The tasks are subclasses that name a `Task`; their docstrings describe spaces and rewards.
+    The tasks' environments are subclasses that name a `Task`, made by `slipgym.envs.environment`; their
+    docstrings describe spaces and rewards.
 
     Args:
         friction_source: What the observation's friction part holds: "estimated", "true",

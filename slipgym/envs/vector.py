@@ -263,7 +263,10 @@ _KEYWORDS = [
     if name not in ("self", "task", "others")
 ]
 
-LinearSlipVectorEnv = partial(SlipVectorEnv, "LinearSlip")
-RotationalSlipVectorEnv = partial(SlipVectorEnv, "RotationalSlip")
-HingeVectorEnv = partial(SlipVectorEnv, "Hinge")
-HoldVectorEnv = partial(SlipVectorEnv, "Hold")
+
+def __getattr__(name: str) -> partial[SlipVectorEnv]:
+    """<task>VectorEnv, for every task there is."""
+    task = name.removesuffix("VectorEnv")
+    if task not in TASKS or task == name:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return partial(SlipVectorEnv, task)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from slipgym.envs.loop import SlipLoop
-from slipgym.rendering.motion import Motion
+from slipgym.tasks.motion import Motion
 
 COLUMNS = ("grip_1", "grip_2", "path", "reference", "mu_c", "mu_s")
 

@@ -10,7 +10,6 @@ from slipgym.rendering.caption import caption
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.history import History
 from slipgym.rendering.look import look
-from slipgym.rendering.motion import motion_of
 from slipgym.rendering.scene import draw_scene, measure_depth
 from slipgym.rendering.stage import View, footprint
 from slipgym.rendering.window import Window
@@ -33,7 +32,7 @@ class Renderer:
 
     def __init__(self, mode: str, loop: SlipLoop, row: int = 0) -> None:
         self._mode, self._loop, self._row = mode, loop, row
-        self._motion = motion_of(loop.task)
+        self._motion = loop.task.motion
         self._window = Window(f"slipgym {loop.task.name}", (WIDTH, HEIGHT)) if mode == "human" else None
 
     def begin(self) -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from slipgym.rendering.history import History
-from slipgym.rendering.motion import Motion
 from slipgym.rendering.palette import GRIP, GRIP_2, INK, MU_C, MU_S, MUTED, PAPER, SLIP, Colour
 from slipgym.rendering.plot import Curve, Plot, heading, limits
 from slipgym.rendering.text import write
+from slipgym.tasks.motion import Motion
 
 WIDTH = 272
 _LEFT, _RIGHT = 44, 254  # frame of the plots [pixels]

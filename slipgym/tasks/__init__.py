@@ -1,10 +1,6 @@
 """The tasks, one file each."""
 
-from slipgym.tasks import hinge, hold, linear_slip, rotational_slip
-from slipgym.tasks.task import Task
+from slipgym.tasks.table import TASKS, find
+from slipgym.tasks.task import Column, Task, Term
 
-TASKS: dict[str, Task] = {
-    module.TASK.name: module.TASK for module in (linear_slip, rotational_slip, hinge, hold)
-}
-
-__all__ = ["TASKS", "Task"]
+__all__ = ["TASKS", "Column", "Task", "Term", "find"]

@@ -13,6 +13,9 @@ from slipgym.tasks.options import EpisodeOptions
 from slipgym.world.wrist import ramp_wrist
 
 TERMS_MAX = 8
+"""Reward terms that a task can have."""
+OWN_MAX = 8
+"""Numbers that a task can keep beside what all tasks have."""
 
 EPISODE = np.dtype(
     [
@@ -44,8 +47,7 @@ EPISODE = np.dtype(
         ("goal", "f8"),  # where it ends [m or rad]
         ("duration", "f8"),  # [s]
         ("settle", "f8"),  # [s]
-        # hinge
-        ("scripted_pitch", "f8"),  # of the wrist, as the script alone turns it [rad]
+        ("own", "f8", OWN_MAX),  # whatever else a task keeps, zero before its start
         *FIELDS,
     ]
 )

@@ -1,4 +1,36 @@
-"""LinearSlip: the object slides a given distance along gravity in a given time, then stays."""
+"""Let the object slide a given distance along gravity in a given time, then hold it.
+
+## Description
+
+A parallel gripper on a wrist at rest holds a box from both sides. It must loosen its grip just so far
+that the box slides down between the pads along a trapezoidal reference, and then tighten it so that the
+box stays. Friction is not known beforehand: an estimator works it out from force, torque and slip
+velocity while the box slides. After the linear slip of Waltersson and Karayiannidis (arXiv 2507.06824 and
+arXiv 2410.19660).
+
+## Starting State
+
+The box hangs still in a grip of `tasks.linear_slip.initial_force` (15 N), its grasp point between the
+pads. The material is drawn if `material` is "random", and so are the sensors' biases and the fractions of
+a count that the slip sensors begin with. Grip and sensors run for six samples before time 0.
+
+## Episode End
+
+- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
+- Truncated: `settle` + `duration` + `hold` have passed (0.5 s + 5 s + 1 s, 780 samples). The environment
+  truncates by itself; no `TimeLimit` is needed.
+
+Success (`info["is_success"]`): at the end of the last sample the distance slid is within `tolerance` (2
+mm) of `distance`, and the box was not dropped.
+
+## Info
+
+| `reference` | distance to have slid, its rate and second rate, (3,) [m, m/s, m/s^2] |
+
+## Version History
+
+- v0: first version.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +40,39 @@ import numpy as np
 from pydantic import Field
 
 from slipgym.compiled import compiled
-from slipgym.config import Config
+from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.episode import detect_drop, drive_wrist, effort, roughness, schedule, trapezoid
+from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import Column, Task
+from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
 
-TERMS = ("tracking", "sideways", "effort", "smoothness", "drop")
+
+class Settings(TaskConfig):
+    """The object slides down between the pads by a given distance in a given time, then stays."""
+
+    distance: Positive = Field(description="Distance to slide [m]")
+    duration: Positive = Field(description="Time for the slide [s]")
+    settle: NonNegative = Field(description="Time before the slide, during which the object is held [s]")
+    hold: NonNegative = Field(description="Time after the slide, during which the object is held [s]")
+    tolerance: Positive = Field(description="Largest error of the final position for success [m]")
+
+
+DEFAULTS = {
+    "distance": 0.04,
+    "duration": 5.0,
+    "settle": 0.5,
+    "hold": 1.0,
+    "tolerance": 0.002,
+    "initial_force": 15.0,
+}
+REWARD = (
+    Term("tracking", 1.0, "exp(-(e / tolerance)^2), e = distance slid less the reference's"),
+    Term("sideways", 0.1, "-(abs(x) + gripper.pad_radius abs(theta)) / tolerance, at least -10"),
+    Term("effort", 0.1, EFFORT),
+    Term("smoothness", 0.1, SMOOTHNESS),
+    Term("drop", 100.0, DROP),
+)
 COLUMNS = (
     Column("reference_position", 0.0, 1.0, "m", "distance the object should have slid"),
     Column("reference_velocity", 0.0, 1.0, "m/s", "its rate"),
@@ -88,12 +146,16 @@ def judge(episodes, worlds, fingers, columns):
 
 
 TASK = Task(
-    name="LinearSlip",
+    id="slipgym/LinearSlip-v0",
     key="linear_slip",
+    settings=Settings,
+    defaults=DEFAULTS,
     options=Options,
-    terms=TERMS,
+    reward=REWARD,
     columns=COLUMNS,
     start=start,
     plan=plan,
     judge=judge,
+    motion=Motion("slid down", axis=(0.0, -1.0, 0.0), goal="distance"),
+    page=__doc__,
 )

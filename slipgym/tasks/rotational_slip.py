@@ -1,4 +1,50 @@
-"""RotationalSlip: gravity turns the object clockwise by a given angle, without sliding."""
+"""Let gravity turn the object about the grip axis by a given angle in a given time, without sliding.
+
+## Description
+
+A parallel gripper on a wrist at rest holds a bar near one end. It must loosen its grip just so far that
+the bar's weight turns it between the pads along a trapezoidal reference, and then tighten it so that
+the bar stays. Friction is not known beforehand: an estimator works it out from force, torque and slip
+velocity while the bar turns. After the rotational slip of Waltersson and Karayiannidis (arXiv
+2410.19660).
+
+Some sliding is inherent. On the limit surface the slip twist is normal to the load, v_t / omega = r^2
+f_t / tau, and tau / f_t is the weight's lever d cos(tilt). A turn from -angle/2 to +angle/2 about
+horizontal therefore slides 2 (r^2 / d) ln tan(45 deg + angle/4): with r = 10 mm and d = 140 mm 0.78 mm
+at 60 deg, whatever the controller does. Holding the bar level takes m g d / (2 mu_c r) per finger.
+Hence the task's own object (`tasks.rotational_slip.object`), light and long: 0.08 kg, 340 mm by 40 mm,
+gripped 140 mm from its centre, which asks for 15 N at mu_c 0.36.
+
+In turns of short leaps and almost without translation the estimator "rls" learns little;
+the default, like "joint", learns enough.
+
+## Starting State
+
+The bar is held still in a grip of `tasks.rotational_slip.initial_force` (25 N), its grasp point between
+the pads and the bar aligned with them. The wrist is pitched by angle/2, the bar's heavy end up, so that
+the turn is symmetric about horizontal; the bar turns clockwise, so theta falls. The material is drawn
+if `material` is "random"; so are the sensors' biases and the fractions of a count that the slip sensors
+begin with. Grip and sensors run for six samples before time 0. The reference rests for `settle` (0.5
+s), turns by `angle` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
+
+## Episode End
+
+- Terminated: the bar is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
+- Truncated: settle + duration + hold have passed (6.5 s, 780 samples). The environment truncates by
+  itself; no `TimeLimit` is needed.
+
+Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, -theta is
+`angle` within `tolerance` (2 deg), and it never slid further than `slide_tolerance` (1 mm) at the pad
+centre.
+
+## Info
+
+| `reference` | angle, angular velocity and acceleration of the reference, (3,) [rad, rad/s, rad/s^2] |
+
+## Version History
+
+- v0: first version.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +54,48 @@ import numpy as np
 from pydantic import Field
 
 from slipgym.compiled import compiled
-from slipgym.config import Config
+from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness, schedule, trapezoid
+from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import Column, Task
+from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
 
-TERMS = ("tracking", "sliding", "effort", "smoothness", "drop")
+
+class Settings(TaskConfig):
+    """The object turns between the pads by a given angle in a given time, then stays."""
+
+    angle: Positive = Field(description="Angle to turn [rad]")
+    duration: Positive = Field(description="Time for the turn [s]")
+    settle: NonNegative = Field(description="Time before the turn, during which the object is held [s]")
+    hold: NonNegative = Field(description="Time after the turn, during which the object is held [s]")
+    tolerance: Positive = Field(description="Largest error of the final angle for success [rad]")
+    slide_tolerance: Positive = Field(description="Largest slip at the pad centre for success [m]")
+
+
+DEFAULTS = {
+    "angle": 1.0472,  # 60 degrees, symmetric about horizontal
+    "duration": 5.0,
+    "settle": 0.5,
+    "hold": 1.0,
+    "tolerance": 0.0349,  # 2 degrees
+    "slide_tolerance": 0.001,
+    "initial_force": 25.0,
+    "object": {  # light and long: see docs/environments/rotational_slip.md
+        "mass": 0.08,
+        "size": [0.34, 0.03, 0.04],
+        "com_offset": [0.0, 0.0],
+        "inertia": None,
+        "grasp_offset": [-0.14, 0.0],
+    },
+}
+REWARD = (
+    Term("tracking", 1.0, "exp(-(e / tolerance)^2), e = -theta - reference"),
+    Term("sliding", 0.1, "-min(slip at the pad centre / slide_tolerance, 10)"),
+    Term("effort", 0.1, EFFORT),
+    Term("smoothness", 0.1, SMOOTHNESS),
+    Term("drop", 100.0, DROP),
+)
 COLUMNS = (
     Column("reference_position", 0.0, 2.0, "rad", "angle the object should have turned, clockwise"),
     Column("reference_velocity", 0.0, 10.0, "rad/s", "its rate"),
@@ -97,12 +178,16 @@ def judge(episodes, worlds, fingers, columns):
 
 
 TASK = Task(
-    name="RotationalSlip",
+    id="slipgym/RotationalSlip-v0",
     key="rotational_slip",
+    settings=Settings,
+    defaults=DEFAULTS,
     options=Options,
-    terms=TERMS,
+    reward=REWARD,
     columns=COLUMNS,
     start=start,
     plan=plan,
     judge=judge,
+    motion=Motion("turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle"),
+    page=__doc__,
 )

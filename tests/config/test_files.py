@@ -7,7 +7,7 @@ import pytest
 
 from slipgym import config
 from slipgym.config import files
-from slipgym.config.load import _defaults
+from slipgym.config.load import _files
 
 
 @pytest.fixture
@@ -62,9 +62,9 @@ def test_a_fault_in_a_default_file_names_that_file(tmp_path, monkeypatch):
     shutil.copytree(files.folder(), tmp_path / "configs")
     (tmp_path / "configs" / "materials.yaml").write_text("wood: {mu_c: 0.5, mu_s: 0.4}")
     monkeypatch.setattr(files, "folder", lambda: tmp_path / "configs")
-    _defaults.cache_clear()
+    _files.cache_clear()
     try:
         with pytest.raises(ValueError, match=r"materials\.yaml: materials\.wood: needs mu_s >= mu_c"):
             config.load({"object": {"mass": 0.3}})
     finally:
-        _defaults.cache_clear()
+        _files.cache_clear()

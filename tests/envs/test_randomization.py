@@ -233,7 +233,7 @@ def test_a_drawn_shake_moves_the_wrist_as_far_as_it_says(make, env_id):
     np.testing.assert_allclose(swing[:2], 0.004, rtol=0.05)
     assert swing[2] == pytest.approx(0.02, rel=0.05 if "Hinge" not in env_id else 0.6)
     if "Hinge" in env_id:  # a drawn shake is not the agent straying from the script
-        assert env._loop.episode["scripted_pitch"][0] == pytest.approx(wrist[-1][2], abs=1e-3)
+        assert env._loop.episode["own"][0, 0] == pytest.approx(wrist[-1][2], abs=1e-3)
 
 
 def test_a_state_goes_on_through_what_happens(make, env_id, play):

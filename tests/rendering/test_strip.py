@@ -5,9 +5,7 @@ import pytest
 
 import policies
 from policies.play import own_policy
-from slipgym.rendering.motion import motion_of
-from slipgym.tasks import TASKS, Task
-from slipgym.tasks.task import Column
+from slipgym.tasks import TASKS
 
 
 @pytest.mark.parametrize("frame_skip", [1, 3])
@@ -58,25 +56,21 @@ def test_the_plotted_path_follows_the_reference(make):
         assert abs(reference) > 10.0
 
 
-def columns(*named: tuple[str, str]) -> Task:
-    task = TASKS["Hold"]
-    listed = tuple(Column(name, -1.0, 1.0, unit, "") for name, unit in named)
-    return Task("X", "x", task.options, (), listed, task.start, task.plan, task.judge)
-
-
 SLIP = np.array([0.003, -0.004, 0.5])
 
 
 @pytest.mark.parametrize(
-    ("task", "path", "target"),
+    ("task", "title", "path", "target"),
     [
-        (columns(("reference_position", "m")), 4.0, 500.0),
-        (columns(("reference_position", "rad")), -np.degrees(0.5), np.degrees(0.5)),
-        (columns(("wrist_pitch_goal", "rad")), np.degrees(0.5), -np.degrees(0.5)),
-        (columns(("time_left", "s")), 5.0, 500.0),
+        ("LinearSlip", "slid down [mm]", 4.0, 500.0),
+        ("RotationalSlip", "turned by gravity [°]", -np.degrees(0.5), np.degrees(0.5)),
+        ("Hinge", "turned in the grip [°]", np.degrees(0.5), -np.degrees(0.5)),
+        ("Hold", "slid [mm]", 5.0, 500.0),
     ],
 )
-def test_the_motion_follows_from_the_tasks_columns(task, path, target):
-    motion = motion_of(task)
+def test_the_motion_of_each_task(task, title, path, target):
+    motion = TASKS[task].motion
+    assert motion.title == title
     assert motion.path(SLIP) == pytest.approx(path)
     assert motion.target(0.5) == pytest.approx(target)
+    assert motion.goal in {"", *(column.name for column in TASKS[task].columns)}

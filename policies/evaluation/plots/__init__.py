@@ -15,6 +15,7 @@ from policies.evaluation.plots.grip import plot_grip
 from policies.evaluation.plots.hinge import plot_hinge
 from policies.evaluation.plots.style import STYLE, styled
 from policies.evaluation.plots.tracking import plot_tracking
+from slipgym.tasks import Task, find
 
 _OUTCOME: dict[str, tuple[str, Callable[[pd.DataFrame], Figure]]] = {
     "LinearSlip": (
@@ -28,7 +29,7 @@ _OUTCOME: dict[str, tuple[str, Callable[[pd.DataFrame], Figure]]] = {
     "Hinge": ("outcome", plot_hinge),
     "Hold": ("grip", plot_grip),
 }
-"""Task -> name and figure of how its trials ended."""
+"""Task -> name and figure of how its trials ended, where it is not the final error alone."""
 
 
 def draw(task: str, trials: pd.DataFrame, series: pd.DataFrame, folder: Path) -> list[Path]:
@@ -48,10 +49,20 @@ def draw(task: str, trials: pd.DataFrame, series: pd.DataFrame, folder: Path) ->
         slug = "".join(c if c.isalnum() else "_" for c in policy)
         with styled():
             figures = {f"tracking_{slug}": plot_tracking(task, group, series)}
-            name, plot = _OUTCOME[task]
-            figures[f"{name}_{slug}"] = plot(group)
+            for name, plot in _outcome(find(task), group):
+                figures[f"{name}_{slug}"] = plot(group)
             written += [_save(figure, folder / f"{name}.png") for name, figure in figures.items()]
     return written
+
+
+def _outcome(task: Task, trials: pd.DataFrame) -> list[tuple[str, Callable[[pd.DataFrame], Figure]]]:
+    """The task's own figure; else the final errors, if there are errors and a tolerance."""
+    if task.name in _OUTCOME:
+        return [_OUTCOME[task.name]]
+    unit = "mm" if task.motion.unit == "m" else "deg"
+    if not {f"final_error_{unit}", f"tolerance_{unit}"} <= set(trials):
+        return []
+    return [("errors", partial(plot_errors, unit=unit, label=f"final error: {task.motion.title}"))]
 
 
 def _save(figure: Figure, path: Path) -> Path:

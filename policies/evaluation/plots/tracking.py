@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,8 @@ from matplotlib.figure import Figure
 
 from policies.evaluation.frames import distinct, values, where
 from policies.evaluation.plots.style import STYLE, note
-from slipgym.tasks import TASKS
+from slipgym.tasks import find
+from slipgym.tasks.motion import Motion
 
 _SLIP, _MU_C, _MU_S = STYLE.palette[:3]
 _CORNER: dict[str, Any] = {"xycoords": "axes fraction", "ha": "right"}
@@ -31,7 +33,7 @@ def plot_tracking(task: str, trials: pd.DataFrame, series: pd.DataFrame) -> Figu
     choices = distinct(trials, "friction")
     figure = Figure(figsize=(max(7.0, 3.0 * len(choices)), 6.2))
     grid = figure.subplots(3, len(choices), sharex=True, sharey="row", squeeze=False)
-    panels: list[Callable[..., None]] = [_MOTION[task], _force, _friction]
+    panels: list[Callable[..., None]] = [_motion_panel(task), _force, _friction]
     for column, choice in enumerate(choices):
         trial = where(trials, friction=choice, trial=0).iloc[0]
         steps = where(series, row=trial.name)
@@ -70,6 +72,16 @@ def _follow(axes: Axes, steps: pd.DataFrame, path: np.ndarray, scale: float, fir
     if first:
         middle = len(time) // 2
         note(axes, time[middle], reference[middle], "reference  ", STYLE.ink, ha="right", va="bottom")
+
+
+def _path(motion: Motion, axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
+    slip = np.column_stack([values(steps, f"slip_{axis}") for axis in ("x", "y", "theta")])
+    if motion.axis is None:
+        axes.plot(values(steps, "time"), motion.path(slip), color=_SLIP)
+    else:
+        _follow(axes, steps, motion.path(slip), motion.target(1.0), first)
+    if first:
+        axes.set_ylabel(motion.title)
 
 
 def _largest_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
@@ -133,12 +145,17 @@ _MOTION = {
     "Hinge": _tilt,
     "Hold": _largest_slip,
 }
-"""Task -> its panel of the object's motion."""
+"""Task -> its panel of the object's motion, where it says more than the path."""
+
+
+def _motion_panel(task: str) -> Callable[..., None]:
+    found = find(task)
+    return _MOTION.get(found.name) or partial(_path, found.motion)
 
 
 def _scenario(task: str, trial: Any) -> str:
     """What was run, in words with units."""
-    fields = TASKS[task].options.model_fields
+    fields = find(task).options.model_fields
     words = []
     for name, value in json.loads(trial["options"]).items():
         unit = re.search(r"\[(?!-\])(.+)\]$", fields[name].description or "")

@@ -1,0 +1,64 @@
+"""What is measured in a task that says no more than which motion it is about."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from policies.evaluation.columns import DROPPED, FORCE, ROTATION, SLIP, SUCCESS, Measures, Metric, Tolerance
+from policies.evaluation.recording import Recording
+from slipgym.tasks import Task
+from slipgym.tasks.motion import Motion
+
+_UNITS = {"m": ("mm", "mm", 1e3), "rad": ("deg", "°", math.degrees(1.0))}  # in columns, in words, factor
+
+
+def measures_by_motion(task: Task) -> Measures:
+    """Final and rms error where the motion has a reference, and the largest slip.
+
+    The tolerances are the task's options that end in "tolerance" and are in [m] or [rad].
+    """
+    motion = task.motion
+    measure = partial(measure_motion, motion=motion)
+    if motion.axis is None:
+        return Measures(measure, _tolerances(task), (SUCCESS, DROPPED, SLIP, ROTATION, FORCE), FORCE)
+    unit, word, _ = _UNITS[motion.unit]
+    size = Metric(f"final_error_abs_{unit}", f"final error, size [{word}]", brief=True)
+    errors = (
+        Metric(f"final_error_{unit}", f"final error, signed [{word}]", brief=True),
+        size,
+        Metric(f"rms_error_{unit}", f"rms tracking error [{word}]", brief=True),
+    )
+    return Measures(measure, _tolerances(task), (SUCCESS, DROPPED, *errors, SLIP, FORCE), size)
+
+
+def measure_motion(recording: Recording, motion: Motion) -> dict[str, Any]:
+    """How far the object slipped, and how well its motion followed the reference where it has one."""
+    row = {"largest_slip_mm": largest_slip(recording)}
+    if motion.axis is None:
+        return row
+    error = motion.path(recording.slip) - motion.target(recording.reference[:, 0])
+    unit, final = _UNITS[motion.unit][0], error[-1].item()
+    return {
+        f"final_error_{unit}": final,
+        f"final_error_abs_{unit}": abs(final),
+        f"rms_error_{unit}": math.sqrt(np.mean(error**2)),
+        **row,
+    }
+
+
+def largest_slip(recording: Recording) -> float:
+    """Largest distance from the grasp [mm]."""
+    return 1e3 * np.hypot(recording.slip[:, 0], recording.slip[:, 1]).max().item()
+
+
+def _tolerances(task: Task) -> tuple[Tolerance, ...]:
+    found = []
+    for name, field in task.options.model_fields.items():
+        unit = _UNITS.get((field.description or "").rpartition("[")[2].rstrip("]"))
+        if name.endswith("tolerance") and unit is not None:
+            found.append(Tolerance(name, f"{name}_{unit[0]}", unit[2]))
+    return tuple(found)

@@ -1,0 +1,52 @@
+"""Which motion of the object a task is about."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One coordinate of the slip, and where it should be; for pictures, tables and figures."""
+
+    label: str = "slid"
+    """What it is."""
+    unit: Literal["m", "rad"] = "m"
+    """Its unit."""
+    axis: tuple[float, float, float] | None = None
+    """Its share of the slip displacement (x, y, theta); None: the distance from the grasp."""
+    sign: float = 1.0
+    """It should be this times the episode's reference position."""
+    goal: str = ""
+    """Column of the task's observation that says where the reference ends; none if it stays at 0."""
+
+    @property
+    def title(self) -> str:
+        """What it is, with the unit it is shown in."""
+        return f"{self.label} [{'mm' if self.unit == 'm' else '°'}]"
+
+    @property
+    def scale(self) -> float:
+        """From its unit to the one it is shown in, mm or degrees."""
+        return 1e3 if self.unit == "m" else math.degrees(1.0)
+
+    def path(self, slip: np.ndarray) -> np.ndarray:
+        """Where the object is.
+
+        Args:
+            slip: Slip displacement (x, y, theta), (..., 3) [m, m, rad].
+
+        Returns:
+            (...) [mm or degrees].
+        """
+        if self.axis is None:
+            return self.scale * np.hypot(slip[..., 0], slip[..., 1])
+        return self.scale * (slip @ np.array(self.axis))
+
+    def target(self, reference: Any) -> Any:
+        """Where it should be [mm or degrees], from the reference position [m or rad]."""
+        return self.sign * self.scale * reference

@@ -1,0 +1,62 @@
+"""The table of tasks: those that come with slipgym, and those that were registered."""
+
+from __future__ import annotations
+
+import importlib
+
+from estimator.reference import is_reference, referenced
+from slipgym.config import load
+from slipgym.config.errors import unknown
+from slipgym.registration import ENVIRONMENTS, TASK_MODULES
+from slipgym.tasks.episode import TERMS_MAX
+from slipgym.tasks.task import Task
+
+TASKS: dict[str, Task] = {
+    task.name: task for task in (importlib.import_module(name).TASK for name in TASK_MODULES.values())
+}
+"""Name -> task."""
+
+
+def find(name: str) -> Task:
+    """A task by its name, or one of your own by "module:attribute", which imports the module.
+
+    Raises:
+        ValueError: There is no such task, or it is not registered.
+    """
+    if is_reference(name):
+        task = referenced(name)
+        if not isinstance(task, Task) or TASKS.get(task.name) is not task:
+            raise ValueError(f"{name!r} is no task that slipgym.register_task knows")
+        return task
+    if name not in TASKS:
+        raise ValueError(unknown("task", name, TASKS))
+    return TASKS[name]
+
+
+def add(task: Task) -> None:
+    """Put a task into the table, in place of one of the same id.
+
+    Raises:
+        ValueError: The id is one of slipgym's own, another task has the name or the key, there
+            are too many reward terms, or the defaults do not fit the settings.
+    """
+    name = task.name
+    if task.id in ENVIRONMENTS:
+        raise ValueError(f"id = {task.id!r} is one of slipgym's own")
+    for what, value in (("name", name), ("key", task.key)):
+        if not value.isidentifier():
+            raise ValueError(f"{what} = {value!r} of {task.id} must be a word of letters, digits and _")
+        for other in TASKS.values():
+            if other.id != task.id and getattr(other, what) == value:
+                raise ValueError(f"{what} = {value!r} of {task.id} is taken by {other.id}")
+    if len(task.reward) > TERMS_MAX:
+        raise ValueError(f"{task.id} has {len(task.reward)} reward terms; at most {TERMS_MAX}")
+    before = TASKS.get(name)
+    TASKS[name] = task
+    try:
+        load()
+    except ValueError:
+        del TASKS[name]
+        if before is not None:
+            TASKS[name] = before
+        raise
