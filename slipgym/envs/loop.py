@@ -106,6 +106,9 @@ class SlipLoop(ABC):
         self.boxes: list[Any] = [None] * n
         self.drawn: list[dict[str, Any]] = [{} for _ in range(n)]
         self.step_time = 1.0 / config.physics.control_rate
+        self._blank = _blank_episode(config, task, self.step_time)
+        # start values are the same for all and do not depend on a latency
+        self._fresh = self.estimator.states[:2].copy(), self.estimator.estimates[:2].copy()
 
     @property
     def true_friction(self) -> np.ndarray:
@@ -137,7 +140,7 @@ class SlipLoop(ABC):
         friction = draw_friction(self.config, options, task_config, material, draw, rng)
         box = make_box(self.config, options, task_config, draw, rng)
         force = choose_force(self.config, options, task_config)
-        self._start_episode(self.episode[i : i + 1], box, friction, options, task_config, draw, rng)
+        self._start_episode(self.episode[i : i + 1], box, friction, options, draw, rng)
         self._place(i, box, force, tuple(self.episode["wrist_start"][i].tolist()))
         self.materials[i], self.boxes[i] = friction.material, box
         start = {"mu_s": friction.mu_s, "mu_c": friction.mu_c, "mass": box.mass}
@@ -152,7 +155,7 @@ class SlipLoop(ABC):
             own[_LATENCY] = draw.values["slip_latency"]
         self._settle(i, force)
         self.plant.chips["travel"][i] = 0.0
-        self.estimator.reset(fingers)
+        self.estimator.states[fingers], self.estimator.estimates[fingers] = self._fresh
         row = slice(i, i + 1)
         combine(self.estimator.estimates[fingers], self.per_finger[row], self.estimated[row])
         self.terms[i] = self.commands[i] = 0.0
@@ -246,27 +249,32 @@ class SlipLoop(ABC):
         box: Box,
         friction: Friction,
         options: EpisodeOptions,
-        task_config: TaskConfig,
         draw: Draw,
         rng: np.random.Generator,
     ) -> None:
-        episode[:] = 0
-        episode["step_time"] = self.step_time
-        for field in ("force_min", "force_max", "wrist_speed_max", "wrist_pitch_rate_max"):
-            episode[field] = getattr(self.config.gripper, field)
-        pad = self.config.gripper.pad_radius
-        episode["pad_radius"] = pad
-        episode["reach"] = box.size[0] / 2 - pad, box.size[2] / 2 - pad
-        episode["object_centre"] = -box.grasp_offset[0], -box.grasp_offset[1]
-        scales = [getattr(task_config.reward, term) for term in self.task.terms]
-        episode["scales"][0, : len(scales)] = scales
-        episode["mass"], episode["inertia"] = box.mass, box.inertia
-        episode["mu_s"], episode["mu_c"] = friction.mu_s, friction.mu_c
-        episode["mass_factor"] = episode["jump_factor"] = episode["patch_factor"] = 1.0
-        episode["drift"] = draw.values["friction_drift"]
+        episode[:] = self._blank
+        row, pad = episode[0], self.config.gripper.pad_radius
+        row["reach"] = box.size[0] / 2 - pad, box.size[2] / 2 - pad
+        row["object_centre"] = -box.grasp_offset[0], -box.grasp_offset[1]
+        row["mass"], row["inertia"] = box.mass, box.inertia
+        row["mu_s"], row["mu_c"] = friction.mu_s, friction.mu_c
+        row["drift"] = draw.values["friction_drift"]
         self.task.start(self.config, options, rng, episode[0])
         for disturbance, shares in draw.happenings:
             enter(disturbance, shares, episode[0])
+
+
+def _blank_episode(config: Config, task: Task, step_time: float) -> np.ndarray:
+    """What all episodes of a task begin with, EPISODE (1,)."""
+    episode = np.zeros(1, EPISODE)
+    episode["step_time"] = step_time
+    for field in ("force_min", "force_max", "wrist_speed_max", "wrist_pitch_rate_max", "pad_radius"):
+        episode[field] = getattr(config.gripper, field)
+    reward = getattr(config.tasks, task.key).reward
+    scales = [getattr(reward, term) for term in task.terms]
+    episode["scales"][0, : len(scales)] = scales
+    episode["mass_factor"] = episode["jump_factor"] = episode["patch_factor"] = 1.0
+    return episode
 
 
 def _choose_estimator(choice: str | Mapping[str, Any]) -> dict[str, Any]:
