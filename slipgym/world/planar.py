@@ -29,7 +29,7 @@ def advance(world, pads, cells, fingers, force_torque, noise, chips):
     Args:
         world: WORLD record.
         pads: PAD records (2,).
-        cells: CELL records (2, m); None for ellipsoids.
+        cells: Patches (2, CELL_FIELDS, m); None for ellipsoids.
         fingers: FINGER records (2,).
         force_torque: FORCE_TORQUE records (2,).
         noise: Standard normal draws for the force/torque samples of this control step,
