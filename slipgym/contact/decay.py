@@ -16,7 +16,7 @@ from slipgym.compiled import compiled
 
 LARGEST = 40.0  # exp(-40) is below the rounding of 1
 PER_LN_2 = 1.0 / math.log(2.0)
-LN_2_HIGH = float.fromhex("0x1.62e42fefa0000p-1")  # the upper 38 bits of ln 2
+LN_2_HIGH = float.fromhex("0x1.62e42fefa0000p-1")  # 36 bits of ln 2: n times it is exact
 LN_2_LOW = float.fromhex("0x1.cf79abc9e3b3ap-40")
 ROUNDER = 1.5 * 2.0**52  # a number of this size holds no fraction, and a whole number in its last bits
 EXPONENT_BIAS, MANTISSA_BITS = 1023, 52

@@ -22,6 +22,9 @@ it is prescribed, otherwise extrapolated from the last two sub-steps. With s_i s
 friction of all cells is the gradient of a convex function of the twist.
 
 Twists and displacements are scaled, (x, y, r theta), as the ellipsoid's; x_i is in units of r.
+
+The loops are written to run on several cells at once: a quantity of all cells is a row in
+memory, a branch is a choice between two values, and no loop calls the mathematical library.
 """
 
 from __future__ import annotations
