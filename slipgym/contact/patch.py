@@ -65,14 +65,15 @@ def set_powers(pad, cells, twist):
     """Write (s_i / v_s)^gamma of every cell into REACH; returns how many cells feel mu_s at all."""
     x, y, cap, power = cells[X], cells[Y], cells[CAP], cells[REACH]
     unit, slow = pad.stribeck_velocity, 0
-    for i in range(cells.shape[1]):
-        ratio = speed_at(x[i], y[i], cap[i], twist) / unit
-        power[i] = ratio * ratio
-    if pad.stribeck_exponent != 2.0:  # cell by cell, as the processor has no such operation
+    if pad.stribeck_exponent == 2.0:
         for i in range(cells.shape[1]):
-            power[i] = power[i] ** (0.5 * pad.stribeck_exponent)
-    for i in range(cells.shape[1]):
-        slow += power[i] < LARGEST
+            ratio = speed_at(x[i], y[i], cap[i], twist) / unit
+            power[i] = ratio * ratio
+            slow += ratio * ratio < LARGEST
+    else:  # cell by cell, as the processor has no such operation
+        for i in range(cells.shape[1]):
+            power[i] = (speed_at(x[i], y[i], cap[i], twist) / unit) ** pad.stribeck_exponent
+            slow += power[i] < LARGEST
     return slow
 
 
@@ -97,8 +98,7 @@ def prepare(pad, cells, twist):
         reach[:] = mu_c
     for i in range(cells.shape[1]):
         mean += share[i] * reach[i]
-    for i in range(cells.shape[1]):
-        reach[i] = reach[i] * compliance
+        reach[i] *= compliance
         z_x[i], z_y[i], _ = kernel.brought_in((z_x[i], z_y[i], 0.0), reach[i])
     return mean
 
