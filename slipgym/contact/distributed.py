@@ -109,19 +109,14 @@ class DistributedContact:
         Raises:
             ValueError: A value is not finite or outside its range.
         """
-        if not (
-            len(twist) == 3
-            and math.isfinite(twist[0] + twist[1] + twist[2])
-            and 0.0 <= normal_force < math.inf
-            and 0.0 < dt < math.inf
-        ):
+        v_x, v_y, omega = twist if len(twist) == 3 else finite_vector("twist", twist, 3)
+        if not (math.isfinite(v_x + v_y + omega) and 0.0 <= normal_force < math.inf and 0.0 < dt < math.inf):
             finite_vector("twist", twist, 3)
             positive(allow_zero=True, normal_force=normal_force)
             positive(dt=dt)
         if normal_force == 0.0:
             self.reset()
             return 0.0, 0.0, 0.0
-        v_x, v_y, omega = twist
         return prescribed_step(
             self._pads, self._cells, float(v_x), float(v_y), float(omega), float(normal_force), float(dt)
         )

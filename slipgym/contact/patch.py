@@ -64,15 +64,15 @@ def expected_twist(pad, h):
 def set_powers(pad, cells, twist):
     """Write (s_i / v_s)^gamma of every cell into REACH; returns how many cells feel mu_s at all."""
     x, y, cap, power = cells[X], cells[Y], cells[CAP], cells[REACH]
-    unit, slow = pad.stribeck_velocity, 0
+    per_unit, slow = 1.0 / pad.stribeck_velocity, 0
     if pad.stribeck_exponent == 2.0:
         for i in range(cells.shape[1]):
-            ratio = speed_at(x[i], y[i], cap[i], twist) / unit
+            ratio = speed_at(x[i], y[i], cap[i], twist) * per_unit
             power[i] = ratio * ratio
             slow += ratio * ratio < LARGEST
     else:  # cell by cell, as the processor has no such operation
         for i in range(cells.shape[1]):
-            power[i] = (speed_at(x[i], y[i], cap[i], twist) / unit) ** pad.stribeck_exponent
+            power[i] = (speed_at(x[i], y[i], cap[i], twist) * per_unit) ** pad.stribeck_exponent
             slow += power[i] < LARGEST
     return slow
 
