@@ -46,6 +46,11 @@ def names() -> list[str]:
     return sorted({*_CLASSES, *shipped()})
 
 
+def is_controller(name: str) -> bool:
+    """Whether a name of `names()` stands for a controller; the others are learned."""
+    return name in _CLASSES
+
+
 def make(name: str, **parameters: Any) -> Policy:
     """Makes a policy.
 

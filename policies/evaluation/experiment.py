@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
@@ -35,22 +36,25 @@ class _Spelled(Frozen):
 
 
 class PolicyChoice(_Spelled):
-    """A policy of `policies.make`."""
+    """A policy of `policies.load`."""
 
-    name: str = Field(description="Its name [-]")
+    name: str = Field(description="Its name, or the folder of a learned one [-]")
     parameters: Mapping[str, Any] = Field(default={}, description="Its parameters [-]")
     label: str = Field(default="", description="How tables and figures call it; empty: by its name [-]")
 
     @model_validator(mode="after")
     def _exists(self) -> Self:
         if self.name not in policies.names():
-            raise ValueError(unknown("policy", self.name, policies.names()))
+            if not Path(self.name).is_dir():
+                message = unknown("policy", self.name, policies.names())
+                raise ValueError(f"{message}; or the folder of a learned one")
+            policies.load(self.name, **self.parameters)
         return self
 
     @property
     def title(self) -> str:
         """How tables and figures call it."""
-        return self.label or self.name
+        return self.label or Path(self.name).name
 
 
 class FrictionChoice(_Spelled):

@@ -47,7 +47,7 @@ def save(
         FileExistsError: Something is there already.
         ValueError: The model is of a kind that the format does not hold, or not of this environment.
     """
-    algorithm, where = algorithm_of(model), described(environment, arguments)
+    algorithm, network, where = algorithm_of(model), network_of(model), described(environment, arguments)
     for what, space, width in (
         ("observation", model.observation_space, where["history"] + 1),
         ("action", model.action_space, 1),
@@ -66,7 +66,7 @@ def save(
             weights |= moments
     description = {
         "environment": where,
-        "network": network_of(model).model_dump(mode="json"),
+        "network": network.model_dump(mode="json"),
         "normalisation": normalised,
         "origin": {
             "algorithm": algorithm,

@@ -47,7 +47,7 @@ def drawn(description, seed=0):
     for name, (kind, shape) in expected(
         Description.model_validate({"format": 1, **description, "files": hashes})
     ).items():
-        values = rng.normal(size=shape) / np.sqrt(shape[-1])
+        values = rng.normal(size=shape) * (0.1 if len(shape) == 1 else shape[-1] ** -0.5)
         weights[name] = values.astype("f4" if kind == "F32" else "f8")
     if "observation.var" in weights:
         weights["observation.var"] = rng.uniform(0.1, 2.0, weights["observation.var"].shape)
