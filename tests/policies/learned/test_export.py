@@ -1,6 +1,7 @@
 """Models of Stable-Baselines3 and their files act alike."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -193,3 +194,14 @@ def test_acting_loads_no_torch(venv, tmp_path):
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.endswith("[]\n")
     assert TRAINING in {path.name for path in folder.iterdir()}
+
+
+def test_the_page_is_true(torch, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs" / "policy_files.md").read_text()
+    names = {}
+    for example in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
+        exec(compile(example, "policy_files.md", "exec"), names)
+    (printed,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
+    assert capsys.readouterr().out.endswith(printed)
+    names["env"].close()
