@@ -8,6 +8,7 @@ ENVIRONMENTS = {
     "slipgym/LinearSlip-v0": "slipgym.envs:LinearSlipEnv",
     "slipgym/RotationalSlip-v0": "slipgym.envs:RotationalSlipEnv",
     "slipgym/Hinge-v0": "slipgym.envs:HingeEnv",
+    "slipgym/PlanarSlip-v0": "slipgym.envs:PlanarSlipEnv",
     "slipgym/Hold-v0": "slipgym.envs:HoldEnv",
 }
 """Id -> entry point."""

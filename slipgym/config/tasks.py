@@ -59,6 +59,18 @@ class HingeReward(Frozen):
     drop: float = Field(description="Scale of -1 on a drop [-]")
 
 
+class PlanarSlipReward(Frozen):
+    """Scales of the reward terms of PlanarSlip."""
+
+    position: float = Field(description="Scale of exp(-(error in (x, y) / tolerance)^2) [-]")
+    angle: float = Field(description="Scale of exp(-(error in theta / angle_tolerance)^2) [-]")
+    distance: float = Field(description="Scale of -mean of both errors over their tolerances [-]")
+    effort: float = Field(description="Scale of -(mean grip force / force_max) [-]")
+    smoothness: float = Field(description="Scale of -(change of the command / force_max)^2 [-]")
+    wrist: float = Field(description="Scale of -(commanded wrist velocity over its limits)^2 [-]")
+    drop: float = Field(description="Scale of -1 on a drop [-]")
+
+
 class LinearSlipConfig(TaskConfig):
     """The object slides down between the pads by a given distance in a given time, then stays."""
 
@@ -111,6 +123,21 @@ class HingeConfig(TaskConfig):
     reward: HingeReward = Field(description="Scales of the reward terms [-]")
 
 
+class PlanarSlipConfig(TaskConfig):
+    """The object is moved in the grip to a given pose (x, y, theta)."""
+
+    slide: PositiveInterval = Field(description="The target's slide is drawn from this range [m]")
+    heading: NonNegative = Field(description="Largest pitch of the wrist during the target's slide [rad]")
+    turn: PositiveInterval = Field(
+        description="The target's turn, either way, is drawn from this range [rad]"
+    )
+    duration: Positive = Field(description="Length of an episode [s]")
+    tolerance: Positive = Field(description="Largest final error in (x, y) for success [m]")
+    angle_tolerance: Positive = Field(description="Largest final error in theta for success [rad]")
+    rest_speed: Positive = Field(description="Largest final slip speed at the pad's rim for success [m/s]")
+    reward: PlanarSlipReward = Field(description="Scales of the reward terms [-]")
+
+
 class TasksConfig(Frozen):
     """Parameters of the tasks, one group each."""
 
@@ -118,3 +145,4 @@ class TasksConfig(Frozen):
     hold: HoldConfig = Field(description="slipgym/Hold [-]")
     rotational_slip: RotationalSlipConfig = Field(description="slipgym/RotationalSlip [-]")
     hinge: HingeConfig = Field(description="slipgym/Hinge [-]")
+    planar_slip: PlanarSlipConfig = Field(description="slipgym/PlanarSlip [-]")

@@ -115,7 +115,7 @@ class LinearSlipEnv(SlipEnv):
     | `contact` | `"ellipsoid"` | friction model of the pads: or `"distributed"` (see `contact.pressure`) |
     | `sensors` | `"realistic"` | sensor preset: `"realistic"` or `"ideal"` |
     | `material` | `"random"` | name of a material, or `"random"` for another in every episode |
-    | `action_mode` | `"grip_force"` | what an action means; see Action Space |
+    | `action_mode` | `None` | what an action means, see Action Space; `None`: `"grip_force"` |
     | `observation_mode` | `"flat"` | how an observation is laid out: or `"sensor"`, `"dict"` |
     | `history` | `0` | how many earlier observations come along with each |
     | `randomization` | `"none"` | what else is drawn: `"train"`, `"eval_ood"`, a file or a mapping |

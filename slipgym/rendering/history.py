@@ -44,7 +44,7 @@ class History:
         """Keep the present."""
         loop = self._loop
         mu_s, mu_c, _, support_s, support_c, _ = loop.estimated[0]
-        slip, reference = loop.plant.world["slip"][0], loop.episode["reference"][0, 0]
+        slip, reference = loop.plant.world["slip"][0], loop.episode["reference"][0, self._motion.axis]
         row = self.rows[self.step]
         row[:2] = loop.plant.fingers["force"][0]
         row[2], row[3] = self._motion.path(slip), self._motion.target(reference)

@@ -23,6 +23,8 @@ class Motion:
     """From the episode's reference position."""
     goal: str = ""
     """Column of the task's observation that says where the reference ends; none if it stays at 0."""
+    axis: int = 0
+    """Which entry of the episode's reference is its position."""
 
 
 def motion_of(task: Task) -> Motion:
@@ -38,6 +40,10 @@ def motion_of(task: Task) -> Motion:
             lambda s: math.degrees(s[2]),
             lambda pitch: -math.degrees(pitch),
             "wrist_pitch_goal",
+        )
+    if "target_theta" in units:
+        return Motion(
+            "turned in the grip [°]", lambda s: math.degrees(s[2]), math.degrees, "target_theta", axis=2
         )
     return Motion("slid [mm]", lambda s: 1e3 * math.hypot(s[0], s[1]), _millimetres)
 

@@ -44,6 +44,10 @@ EPISODE = np.dtype(
         ("goal", "f8"),  # where it ends [m or rad]
         ("duration", "f8"),  # [s]
         ("settle", "f8"),  # [s]
+        # planar slip
+        ("target", "f8", 3),  # slip displacement to reach [m, m, rad]
+        ("angle_tolerance", "f8"),  # of success in its angle [rad]
+        ("rest_speed", "f8"),  # of success: slip speed at the pad's rim that counts as rest [m/s]
         # hinge
         ("scripted_pitch", "f8"),  # of the wrist, as the script alone turns it [rad]
         *FIELDS,
