@@ -12,6 +12,7 @@ _CLASSES = {
     "rotational_slip": "policies.rotational_slip:RotationalSlipPolicy",
     "hinge": "policies.hinge:HingePolicy",
     "constant_force": "policies.constant_force:ConstantForcePolicy",
+    "planar_slip": "policies.planar_slip:PlanarSlipPolicy",
     "hold": "policies.hold:HoldPolicy",
     "linear_slip": "policies.linear_slip:LinearSlipPolicy",
 }
