@@ -43,6 +43,8 @@ class Memory(NamedTuple):
     """The integral at the last break-away [m or rad]."""
     side: np.ndarray
     """Sign of the turn."""
+    leaps: np.ndarray
+    """Break-aways in this slip so far."""
 
 
 class PlanarSlipPolicy(ForcePolicy):
@@ -63,7 +65,8 @@ class PlanarSlipPolicy(ForcePolicy):
         moving:    e' = k_m (v_cmd - v),     f = f_slip (1 - k_e e + k_v (v - v_cmd))
 
     e begins at 0 at a break-away, and at a share of what broke the last one when the object sticks again.
-    A slip that static friction has held back leaps; what is less than half a leap is left as it is.
+    After `leaps` break-aways in a slip, which then must be small ones, e keeps more at each. A slip that
+    static friction has held back leaps; what is less than half a leap is left as it is.
 
     Args:
         speeds: Largest speed of a slide [m/s] and rate of a turn [rad/s].
@@ -72,6 +75,7 @@ class PlanarSlipPolicy(ForcePolicy):
         k_v: Gains on the speed of slide [s/m] and turn [s/rad].
         k_m: How much slower the integral grows while the object moves [-].
         keep: Share of the integral at the last break-away with which the next one is looked for [-].
+        leaps: Break-aways after which a slip is braked less [-].
         worth: Distances of slide [m] and turn [rad] from which they are worth a slip; one stops at half.
         short: How much the first slide ends before its goal [m].
         lean: Angle of the centre of mass from straight under the pads, in the middle of a turn [rad].
@@ -93,9 +97,10 @@ class PlanarSlipPolicy(ForcePolicy):
         speeds: tuple[float, float] = (0.006, 0.2),
         gain: float = 2.0,
         k_e: tuple[float, float] = (150.0, 10.0),
-        k_v: tuple[float, float] = (30.0, 0.5),
+        k_v: tuple[float, float] = (50.0, 0.5),
         k_m: float = 0.15,
         keep: float = 0.6,
+        leaps: int = 8,
         worth: tuple[float, float] = (0.0013, 0.03),
         short: float = 0.0015,
         lean: float = 1.5,
@@ -111,13 +116,13 @@ class PlanarSlipPolicy(ForcePolicy):
                 raise ValueError(f"{name} = {value!r} must be finite and > 0")
         self.speeds, self.gain, self.worth = speeds, gain, worth
         self.k_e, self.k_v, self.k_m, self.keep = k_e, k_v, k_m, keep
-        self.short, self.lean, self.hold_margin = short, lean, hold_margin
+        self.leaps, self.short, self.lean, self.hold_margin = leaps, short, lean, hold_margin
         self.wrist_rate, self.wrist_acceleration = wrist_rate, wrist_acceleration
         self.caution = caution or Caution(r=0.004)
         self._dt = 1.0 / self.config.physics.control_rate
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Columns of `Memory`, (n, 12)."""
+        """Columns of `Memory`, (n, 13)."""
         return np.zeros((n, len(Memory._fields)))
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
@@ -142,19 +147,17 @@ class PlanarSlipPolicy(ForcePolicy):
         off = np.where(fixed, 0.0, wrapped(wanted - attitude))
         speed = np.where(turning, side * both(columns, "omega"), _falling(columns))
         stage, slipping = self._decide(past, turning, distance, speed, off, columns["wrist_pitch_rate"])
-        error, broken, moving, share = self._let_slip(past, turning, distance, speed, slipping)
+        motion, share = self._let_slip(past, turning, distance, speed, slipping)
         lever = np.hypot(*place) + self.short
         firm = self.hold_margin * past.weight * np.hypot(1.0, lever / r) / mu_c
         loose = np.minimum(scaled_load(columns, r) / mu_c * share, firm)
         force = np.where(slipping, loose, firm)
         rate, still = self._pitch(off, columns["wrist_pitch_rate"]), np.zeros(len(columns))
-        memory = past._replace(
-            stage=stage, slipping=slipping, moving=moving, error=error, broken=broken, side=side
-        )
+        memory = past._replace(stage=stage, slipping=slipping, side=side, **motion)
         return np.column_stack((force, still, still, rate)), np.column_stack(memory)
 
     def _way(self, columns: Columns, place: Point, stage: np.ndarray, creep: np.ndarray) -> Point:
-        """From the pads' place to the next goal, on the box [m]; creep times 1 / |b| is the coming arc [m^2]."""
+        """From the pads' place to the next goal, on the box [m]; creep over |b| is the coming arc [m^2]."""
         goal = turned((-columns["target_x"], -columns["target_y"]), -columns["target_theta"])
         reach, bearing = np.hypot(*goal), np.arctan2(*goal)
         short = np.where(stage == APPROACH, self.short, 0.0)
@@ -187,15 +190,19 @@ class PlanarSlipPolicy(ForcePolicy):
         distance: np.ndarray,
         speed: np.ndarray,
         slipping: np.ndarray,
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Integral, integral at the last break-away, whether the object moves, grip over f_slip."""
+    ) -> tuple[dict[str, np.ndarray], np.ndarray]:
+        """What changes in the memory, and the grip over f_slip."""
         k_e, k_v, top = (np.where(turning, b, a) for a, b in (self.k_e, self.k_v, self.speeds))
         ahead = np.clip(self.gain * distance, 0.25 * top, top) - speed
         moving, moved = speed > 0.15 * top, past.moving > 0.0
-        broken = np.where(moving & ~moved, past.error, past.broken)
-        error = np.where(moving & ~moved, 0.0, np.where(moved & ~moving, self.keep * broken, past.error))
+        breaks, sticks = moving & ~moved, moved & ~moving
+        leaps = np.where(slipping, past.leaps + breaks, 0.0)
+        broken = np.where(breaks, past.error, past.broken)
+        left_over = np.clip(0.05 * (leaps - self.leaps), 0.0, self.keep) * broken
+        error = np.where(breaks, left_over, np.where(sticks, self.keep * broken, past.error))
         error = np.where(slipping, error + np.where(moving, self.k_m, 1.0) * ahead * self._dt, 0.0)
-        return error, broken, moving, 1.0 - k_e * error - np.where(moving, k_v * ahead, 0.0)
+        share = 1.0 - k_e * error - np.where(moving, k_v * ahead, 0.0)
+        return {"moving": moving, "error": error, "broken": broken, "leaps": leaps}, share
 
     def _pitch(self, off: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """Pitch rate that turns the wrist by `off` and then rests [rad/s]."""

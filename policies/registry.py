@@ -22,6 +22,11 @@ _CLASSES = {
 class Policy(Protocol):
     """What acts on observations, as in Stable-Baselines3."""
 
+    @property
+    def action_mode(self) -> str:
+        """Action mode of the environments it acts in."""
+        ...
+
     def predict(
         self,
         observation: np.ndarray,

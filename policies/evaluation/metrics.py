@@ -114,6 +114,20 @@ def measure_hinge(recording: Recording) -> dict[str, Any]:
     }
 
 
+def measure_planar_slip(recording: Recording) -> dict[str, Any]:
+    """How far from its target the object ended."""
+    target, final = recording.reference[-1], recording.slip[-1]
+    turn = math.degrees(final[2] - target[2])
+    return {
+        "final_error_mm": 1e3 * math.hypot(*(final[:2] - target[:2])),
+        "final_error_deg": turn,
+        "final_error_abs_deg": abs(turn),
+        "target_x_mm": 1e3 * target[0].item(),
+        "target_y_mm": 1e3 * target[1].item(),
+        "target_theta_deg": math.degrees(target[2]),
+    }
+
+
 def largest_slip(recording: Recording) -> float:
     """Largest distance from the grasp [mm]."""
     return 1e3 * np.hypot(recording.slip[:, 0], recording.slip[:, 1]).max().item()
@@ -137,6 +151,7 @@ _FORCE = Metric("mean_force_N", "grip force [N]", brief=True)
 _ROTATION = Metric("max_rotation_deg", "largest rotation [°]")
 _FINAL = Metric("final_error_abs_mm", "final error, size [mm]", brief=True)
 _FINAL_ANGLE = Metric("final_error_abs_deg", "final error, size [°]", brief=True)
+_DISTANCE = Metric("final_error_mm", "final distance to the target [mm]", brief=True)
 _SLIP = Metric("largest_slip_mm", "largest slip [mm]", brief=True)
 _SLIDE = Tolerance("slide_tolerance", "tolerance_mm", 1e3)
 
@@ -181,6 +196,15 @@ MEASURES: dict[str, Measures] = {
             _FORCE,
         ),
         _SLIP,
+    ),
+    "PlanarSlip": Measures(
+        measure_planar_slip,
+        (
+            Tolerance("tolerance", "tolerance_mm", 1e3),
+            Tolerance("angle_tolerance", "tolerance_deg", math.degrees(1.0)),
+        ),
+        (_SUCCESS, _DROPPED, _DISTANCE, _FINAL_ANGLE, _FORCE),
+        _DISTANCE,
     ),
     "Hold": Measures(
         measure_hold,

@@ -83,10 +83,12 @@ def record(experiment: Experiment, trial: Trial) -> Recording:
         sensors=experiment.sensors,
         material=trial.material,
         randomization=experiment.randomization,
+        action_mode=policy.action_mode,
         config=dict(experiment.config),
         disable_env_checker=True,
     )
-    recorder = Recorder(ObservationIndex(experiment.task, experiment.environment_config()))
+    index = ObservationIndex(experiment.task, experiment.environment_config(), policy.action_mode)
+    recorder = Recorder(index)
     try:
         observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
         recorder.begin(info)

@@ -102,7 +102,7 @@ class PlanarSlipEnv(SlipEnv):
 
     ## Rewards
 
-    The sum of these terms, each times its scale (`tasks.planar_slip.reward` in the configuration), per sample:
+    The sum of these terms, each times its scale (`tasks.planar_slip.reward`), per sample:
 
     | Term | Scale | Value before scaling |
     |---|---|---|
@@ -116,9 +116,9 @@ class PlanarSlipEnv(SlipEnv):
 
     ## Starting State
 
-    The box (`object`: 0.2 kg, 80 mm by 160 mm, gripped at its centre of mass) is held in a grip of
-    `tasks.planar_slip.initial_force` (10 N), the wrist level. Drawn are the target (`slide` 10 to 18 mm,
-    `heading` up to 60 deg and `turn` 10 to 40 deg, both either way), the material, if `material` is
+    The box (`tasks.planar_slip.object`: 0.2 kg, 160 mm by 200 mm, gripped at its centre of mass) is held in
+    a grip of `tasks.planar_slip.initial_force` (10 N), the wrist level. Drawn are the target (`slide` 10 to
+    18 mm, `heading` up to 60 deg and `turn` 10 to 40 deg, both either way), the material, if `material` is
     "random", the sensors' biases and the fractions of a count that the slip sensors begin with. Grip and
     sensors run for six samples before time 0.
 
