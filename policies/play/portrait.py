@@ -39,8 +39,9 @@ def portrait(env_id: str, material: str, seed: int = 0) -> np.ndarray:
         (480, 720, 3) uint8.
     """
     policy = policies.make(own_policy(env_id.removeprefix("slipgym/").rpartition("-")[0]))
-    made = {"render_mode": "rgb_array", "action_mode": policy.action_mode, "material": material}
-    env: Any = gym.make(env_id, **made).unwrapped
+    env: Any = gym.make(
+        env_id, render_mode="rgb_array", action_mode=policy.action_mode, material=material
+    ).unwrapped
     try:
         observation, _ = env.reset(seed=seed)
         state, over = None, False

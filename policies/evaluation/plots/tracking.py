@@ -114,8 +114,8 @@ def _away(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
     note(axes, 0.98, 0.9, "dropped" if trial["dropped"] else error, STYLE.ink, **_CORNER)
     if first:
         axes.set_ylabel("error / tolerance [–]")
-        note(axes, 0.98, 0.74, "in place", _SLIP, **_CORNER)
-        note(axes, 0.98, 0.58, "in angle", _TURN, **_CORNER)
+        note(axes, 0.98, 0.74, "in (x, y)", _SLIP, **_CORNER)
+        note(axes, 0.98, 0.58, "in theta", _TURN, **_CORNER)
 
 
 def _force(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
