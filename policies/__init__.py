@@ -6,6 +6,6 @@ policy = policies.make("linear_slip")  # or policies.load("folder/of/a/learned/p
 action, state = policy.predict(observation, state=None)
 """
 
-from policies.registry import Policy, find, is_controller, load, make, names
+from policies.registry import Policy, find, is_controller, load, make, modes, names
 
-__all__ = ["Policy", "find", "is_controller", "load", "make", "names"]
+__all__ = ["Policy", "find", "is_controller", "load", "make", "modes", "names"]

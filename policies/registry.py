@@ -14,6 +14,7 @@ _CLASSES = {
     "rotational_slip": "policies.rotational_slip:RotationalSlipPolicy",
     "hinge": "policies.hinge:HingePolicy",
     "constant_force": "policies.constant_force:ConstantForcePolicy",
+    "planar_slip": "policies.planar_slip:PlanarSlipPolicy",
     "hold": "policies.hold:HoldPolicy",
     "linear_slip": "policies.linear_slip:LinearSlipPolicy",
 }
@@ -49,6 +50,18 @@ def names() -> list[str]:
 def is_controller(name: str) -> bool:
     """Whether a name stands for a class, as `find` takes it; the others are learned."""
     return name in _CLASSES or is_reference(name)
+
+
+def modes(policy: Any) -> dict[str, Any]:
+    """Keyword arguments that an environment for a policy needs.
+
+    Args:
+        policy: Anything with a `predict`; it may have `modes`, a mapping of them, or an `action_mode`.
+    """
+    own = getattr(policy, "modes", None)
+    if own is None and hasattr(policy, "action_mode"):
+        own = {"action_mode": policy.action_mode}
+    return dict(own or {})
 
 
 def find(name: str) -> type[Policy]:
@@ -100,7 +113,7 @@ def load(which: str | os.PathLike[str], **parameters: Any) -> Policy:
         ValueError: What lies there is not a policy that this version can load, or not whole; or a
             parameter is unknown.
     """
-    if which in names():
+    if which in names() or (isinstance(which, str) and is_reference(which)):
         return make(str(which), **parameters)
     if not Path(which).exists():
         known = ", ".join(names())

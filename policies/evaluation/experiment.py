@@ -38,9 +38,7 @@ class _Spelled(Frozen):
 class PolicyChoice(_Spelled):
     """A policy of `policies.load`."""
 
-    name: str = Field(
-        description="Its name, the folder of a learned one, or one of your own as module:class [-]"
-    )
+    name: str = Field(description="Its name, the folder of a learned one, or module:class [-]")
     parameters: Mapping[str, Any] = Field(default={}, description="Its parameters [-]")
     label: str = Field(default="", description="How tables and figures call it; empty: by its name [-]")
 

@@ -75,7 +75,7 @@ def record(experiment: Experiment, trial: Trial) -> Recording:
     """Runs an episode and keeps its steps."""
     task = find(experiment.task)  # first of all: one of your own registers itself, in this process too
     policy = _policy(experiment, trial)
-    learned = isinstance(policy, LearnedPolicy)
+    modes = policies.modes(policy)
     env: Any = gym.make(
         f"slipgym:{task.id}",
         friction_source=trial.friction.source,
@@ -85,11 +85,12 @@ def record(experiment: Experiment, trial: Trial) -> Recording:
         randomization=experiment.randomization,
         config=dict(experiment.config),
         disable_env_checker=True,
-        **(policy.modes if learned else {}),
+        **modes,
     )
-    recorder = Recorder(ObservationIndex(experiment.task, experiment.environment_config()))
+    index = ObservationIndex(experiment.task, experiment.environment_config(), modes.get("action_mode"))
+    recorder = Recorder(index)
     try:
-        if learned:
+        if isinstance(policy, LearnedPolicy):
             policy.check(env)
         observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
         recorder.begin(info)

@@ -64,6 +64,8 @@ class Keyboard:
         force: Grip force per finger at the start [N].
     """
 
+    action_mode = "grip_force"
+
     def __init__(self, window: Window, config: Config, force: float) -> None:
         self._window, self._gripper, self._start = window, config.gripper, force
         self._change = _FORCE_RATE / config.physics.control_rate
@@ -127,8 +129,7 @@ def watch(
     outcomes = []
     with ExitStack() as stack:
         player: Policy | None = None if policy == KEYBOARD else _policy(policy or own_policy(task))
-        if isinstance(player, LearnedPolicy):
-            keywords = {**player.modes, **keywords}
+        keywords = {**policies.modes(player or Keyboard), **keywords}
         env: Any = gym.make(
             f"slipgym:{env_id}", render_mode="rgb_array", disable_env_checker=True, **keywords
         ).unwrapped
