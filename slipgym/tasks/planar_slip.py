@@ -124,7 +124,7 @@ REWARD = (
     Term("drop", 100.0, DROP),
 )
 TARGET, ANGLE_TOLERANCE, REST_SPEED = slice(0, 3), 3, 4
-"""Places in the episode's own numbers: slip displacement to reach [m, m, rad], tolerance [rad], speed [m/s]."""
+"""Places in the episode's own numbers: slip displacement to reach [m, m, rad], angle [rad], speed [m/s]."""
 COLUMNS = (
     Column("target_x", -1.0, 1.0, "m", "slip displacement to reach, along the pads' x axis"),
     Column("target_y", -1.0, 1.0, "m", "the same along the pads' y axis"),
