@@ -61,8 +61,10 @@ class PhysicsConfig(Frozen):
     gravity: NonNegative = Field(description="Gravitational acceleration [m/s^2]")
     control_rate: Count = Field(description="Environment steps per second [Hz]")
     engine_steps: Count = Field(description="Rigid-body engine steps per control step [-]")
-    substep_max: Positive = Field(description="Longest friction sub-step within an engine step [s]")
-    planar_substep_max: Positive = Field(description="Longest friction sub-step without an engine [s]")
+    substep_max: Positive = Field(description="Longest friction sub-step [s]")
+    planar_substep_max: Positive = Field(
+        description="Longest friction sub-step without an engine while the contact is calm [s]"
+    )
     solver_iterations: Count = Field(description="Iterations of the engine's contact solver per step [-]")
 
     @property

@@ -41,10 +41,6 @@ class PlanarLoop(SlipLoop):
         threads: int | None = None,
     ) -> None:
         super().__init__(config, task, estimator, randomization, n)
-        longest = config.physics.planar_substep_max
-        self.plant.world["substep_ticks"] = max(
-            1, int(longest / self.plant.world["tick_length"][0] * (1 + 1e-9))
-        )
         self._threads = Threads(n, threads)
         self._closed = False
         kind, plant = specification(self.estimator_choice["name"]), self.plant

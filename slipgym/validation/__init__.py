@@ -1,4 +1,4 @@
-"""The acceptance figures: physics in the full PyBullet world, and the estimator on exact data."""
+"""The acceptance figures: physics with either engine, and the estimator on exact data."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from slipgym.validation.patch_rate import patch_rate
 from slipgym.validation.patch_steps import patch_steps
 from slipgym.validation.patch_stick import patch_stick
 from slipgym.validation.patch_surface import patch_surface
+from slipgym.validation.planar import planar, slides
 from slipgym.validation.steady import steady
 
 EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
@@ -27,6 +28,8 @@ EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     halving,
     fall,
     agreement,
+    planar,
+    slides,
     distributed,
     patch_surface,
     patch_stick,
@@ -34,6 +37,6 @@ EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     patch_rate,
     estimation,
 )
-"""Each yields its figures; together about eighty seconds."""
+"""Each yields its figures; together about a hundred seconds."""
 
 __all__ = ["EXPERIMENTS", "Figure"]

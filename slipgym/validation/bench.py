@@ -1,4 +1,4 @@
-"""A bench: the full PyBullet world under prescribed loads, grip forces and wrist motion."""
+"""A bench: the full world of either engine under prescribed loads, grip forces and wrist motion."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from slipgym.config import Config, load
+from slipgym.validation.alone import AloneWorld
 from slipgym.validation.trace import Trace
 from slipgym.world.bullet import BulletWorld
 from slipgym.world.plant import build
@@ -65,6 +66,7 @@ class Bench:
         force: Grip force per finger at the start [N].
         wrist: Pad centre (x, z) and pitch at the start [m, m, rad].
         contact: Friction model of the pads.
+        engine: What moves the bodies: "bullet" or "planar".
         **box: Fields of `Box` that differ from the configured object.
     """
 
@@ -75,6 +77,7 @@ class Bench:
         force: float = 5.0,
         wrist: tuple[float, float, float] = (0.0, 0.0, 0.0),
         contact: str = "ellipsoid",
+        engine: str = "bullet",
         **box: Any,
     ) -> None:
         self.config = load(overrides, "ideal", contact)
@@ -83,7 +86,9 @@ class Bench:
         self.plant = build(self.config)
         for field in ("mu_s", "mu_c", "r"):
             self.plant.pads[field] = getattr(self.friction, field)
-        self.world = _WatchedWorld(self.config, self.plant)
+        self._alone = engine == "planar"
+        make = AloneWorld if self._alone else _WatchedWorld
+        self.world: AloneWorld | _WatchedWorld = make(self.config, self.plant)
         self.world.reset(self.box, force, wrist)
         self.time = 0.0
         self._force: float = force
@@ -104,6 +109,11 @@ class Bench:
     def engine_time(self) -> float:
         """Engine step [s]."""
         return 1.0 / self.config.physics.engine_rate
+
+    @property
+    def velocity_age(self) -> float:
+        """How long before a row of the trace its velocity holds: PyBullet's is the mean over a step [s]."""
+        return 0.0 if self._alone else 0.5 * self.engine_time
 
     @property
     def mismatch(self) -> float:

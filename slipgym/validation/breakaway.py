@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -25,19 +26,17 @@ def broken_away(bench: Bench) -> bool:
 
 
 def ramp(
-    direction: tuple[float, float, float],
-    com_offset: tuple[float, float] = (0.0, 0.0),
-    contact: str = "ellipsoid",
+    direction: tuple[float, float, float], com_offset: tuple[float, float] = (0.0, 0.0), **options: Any
 ) -> float:
     """Load at break-away as a share of mu_s sum f_n.
 
     Args:
         direction: Of the scaled load (f_x, f_z, tau / r) at the pad centre.
         com_offset: Centre of mass (x, z) from the pad centre [m].
-        contact: Friction model of the pads.
+        **options: More arguments of `Bench`.
     """
     unit = np.array(direction) / np.linalg.norm(direction)
-    with Bench(WITHOUT_GRAVITY, com_offset=com_offset, contact=contact) as bench:
+    with Bench(WITHOUT_GRAVITY, com_offset=com_offset, **options) as bench:
         limit = bench.limit()
         f_x, f_z, scaled_torque = limit * unit
         torque = bench.friction.r * scaled_torque - (com_offset[0] * f_z - com_offset[1] * f_x)
@@ -47,13 +46,14 @@ def ramp(
         return float(np.linalg.norm(trace.load[-1]) / np.linalg.norm(load) * limit / bench.limit())
 
 
-def release(eccentricity: float) -> float:
+def release(eccentricity: float, **options: Any) -> float:
     """Weight on a lever, as a share of mu_s sum f_n, when a slowly opening grip lets it go.
 
     Args:
         eccentricity: Distance of the centre of mass from the pads along x [m].
+        **options: More arguments of `Bench`.
     """
-    with Bench(com_offset=(eccentricity, 0.0), force=30.0) as bench:
+    with Bench(com_offset=(eccentricity, 0.0), force=30.0, **options) as bench:
         load = bench.box.mass * bench.config.physics.gravity
         load *= math.hypot(1.0, eccentricity / bench.friction.r)
         start = load / (2.0 * bench.friction.mu_s) / 0.9
@@ -62,7 +62,7 @@ def release(eccentricity: float) -> float:
         return load / bench.limit()
 
 
-def breakaway() -> Iterator[Figure]:
+def breakaway(**options: Any) -> Iterator[Figure]:
     """Break-away against mu_s sum f_n in many directions."""
     loads = {
         "along x": (1.0, 0.0, 0.0),
@@ -74,9 +74,9 @@ def breakaway() -> Iterator[Figure]:
         "force, little torque": (-0.9, 0.3, 0.3),
     }
     for name, direction in loads.items():
-        yield Figure(f"break-away, {name}", BOUND, 100.0 * abs(ramp(direction) - 1.0), "%")
-    off_centre = ramp((0.7, -0.5, 0.5), com_offset=(0.01, -0.02))
+        yield Figure(f"break-away, {name}", BOUND, 100.0 * abs(ramp(direction, **options) - 1.0), "%")
+    off_centre = ramp((0.7, -0.5, 0.5), com_offset=(0.01, -0.02), **options)
     yield Figure("break-away, force and torque, eccentric mass", BOUND, 100.0 * abs(off_centre - 1.0), "%")
     for eccentricity in (0.0, 0.012):
         name = f"break-away, opening grip, lever {1e3 * eccentricity:.0f} mm"
-        yield Figure(name, BOUND, 100.0 * abs(release(eccentricity) - 1.0), "%")
+        yield Figure(name, BOUND, 100.0 * abs(release(eccentricity, **options) - 1.0), "%")

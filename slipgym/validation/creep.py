@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -32,9 +33,7 @@ def grip_for(level: float, mass: float, eccentricity: float, friction: Friction)
     return load / (2.0 * friction.mu_s * level)
 
 
-def drift(
-    eccentricity: float, wrist: Signal | None = None, contact: str = "ellipsoid"
-) -> tuple[float, float]:
+def drift(eccentricity: float, wrist: Signal | None = None, **bench: Any) -> tuple[float, float]:
     """Largest displacement and rotation from where the object was after one second.
 
     Compared at whole seconds, at which the moving wrist is at rest in its first pose and the
@@ -43,7 +42,7 @@ def drift(
     Args:
         eccentricity: Distance of the centre of mass from the pads along x [m].
         wrist: Wrist velocity with a period of 1 s.
-        contact: Friction model of the pads.
+        **bench: More arguments of `Bench`.
 
     Returns:
         Distance [mm] and angle [deg].
@@ -52,14 +51,14 @@ def drift(
     level = LEVEL if wrist is None else LEVEL / (1.0 + SWAY_LOAD)
     force = grip_for(level, mass, eccentricity, friction)
     com_offset = eccentricity, 0.0
-    with Bench(force=force, friction=friction, mass=mass, com_offset=com_offset, contact=contact) as bench:
-        slip = bench.run(1.0 + DURATION, wrist=wrist).slip
-    rate = bench.config.physics.control_rate
+    with Bench(force=force, friction=friction, mass=mass, com_offset=com_offset, **bench) as held:
+        slip = held.run(1.0 + DURATION, wrist=wrist).slip
+    rate = held.config.physics.control_rate
     moved = slip[rate - 1 :: rate] - slip[rate - 1]
     return 1e3 * np.hypot(moved[:, 0], moved[:, 1]).max(), math.degrees(np.abs(moved[:, 2]).max())
 
 
-def creep() -> Iterator[Figure]:
+def creep(**bench: Any) -> Iterator[Figure]:
     """Creep at 80 % of the limit over 60 s, under weight, torque and both, at rest and moving."""
     cases = {
         "translation": (0.0, None),
@@ -69,6 +68,6 @@ def creep() -> Iterator[Figure]:
         "both, wrist swaying": (0.01, sway),
     }
     for name, (eccentricity, wrist) in cases.items():
-        distance, angle = drift(eccentricity, wrist)
+        distance, angle = drift(eccentricity, wrist, **bench)
         yield Figure(f"creep, {name}", DISTANCE_BOUND, distance, "mm")
         yield Figure(f"creep, {name}", ANGLE_BOUND, angle, "deg")

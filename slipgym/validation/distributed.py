@@ -51,7 +51,7 @@ def limit(direction: tuple[float, float, float]) -> float:
 
 def distributed() -> Iterator[Figure]:
     """Creep, break-away, steady slip, energy, halved steps and free fall."""
-    distance, angle = drift(0.01, sway, MODEL)
+    distance, angle = drift(0.01, sway, contact=MODEL)
     yield Figure(f"{MODEL}: creep, both, wrist swaying", DISTANCE_BOUND, distance, "mm")
     yield Figure(f"{MODEL}: creep, both, wrist swaying", ANGLE_BOUND, angle, "deg")
     # A ramp is slow enough for mu_s in every cell. At break-away the cells nearest to the centre of
@@ -60,14 +60,16 @@ def distributed() -> Iterator[Figure]:
         away = ramp(direction, contact=MODEL) / limit(direction) - 1.0
         yield Figure(f"{MODEL}: break-away, {name}", BOUND, 100.0 * abs(away), "%")
     angles = np.linspace(0.0, 0.5 * math.pi, DIRECTIONS)
-    found = [deviation(angle, 0.0, disc, MODEL) for angle in angles]
+    found = [deviation(angle, 0.0, disc, contact=MODEL) for angle in angles]
     yield summary(f"{MODEL}: steady slip", "disc", found)
-    rises = [throw(seed, vary_grip, MODEL)[0] for seed in range(THROWS) for vary_grip in (False, True)]
+    rises = [
+        throw(seed, vary_grip, contact=MODEL)[0] for seed in range(THROWS) for vary_grip in (False, True)
+    ]
     yield Figure(f"{MODEL}: energy gained, random throws", 1.0, max(rises), "store")
-    rises = [slide(seed, MODEL) for seed in range(THROWS)]
+    rises = [slide(seed, contact=MODEL) for seed in range(THROWS)]
     yield Figure(f"{MODEL}: energy gained, slipping and sticking", 1.0, max(rises), "store")
-    yield from compare(f"{MODEL}: halved step, stick-slip", stick_slip_grip, (0.0, 0.0), MODEL)
+    yield from compare(f"{MODEL}: halved step, stick-slip", stick_slip_grip, (0.0, 0.0), contact=MODEL)
     # turning breaks a patch away in parts: from the default sub-step of 0.25 ms it is 0.13 mm
     name = f"{MODEL}: step of 0.125 ms halved, turning"
-    yield from compare(name, stick_slip_grip, (0.003, -0.01), MODEL, refinement=2)
-    yield Figure(f"{MODEL}: free fall without grip", FALL_BOUND, drop(MODEL), "%")
+    yield from compare(name, stick_slip_grip, (0.003, -0.01), refinement=2, contact=MODEL)
+    yield Figure(f"{MODEL}: free fall without grip", FALL_BOUND, drop(contact=MODEL), "%")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -28,7 +29,7 @@ def energies(bench: Bench, trace: Trace) -> np.ndarray:
     """
     box, gravity = bench.box, bench.config.physics.gravity
     x, z, omega = trace.velocity.T
-    height = trace.position[:, 1] - 0.5 * bench.engine_time * z
+    height = trace.position[:, 1] - bench.velocity_age * z
     return 0.5 * (box.mass * (x * x + z * z) + box.inertia * omega * omega) + box.mass * gravity * height
 
 
@@ -42,7 +43,7 @@ def elastic_store(bench: Bench, force: float) -> float:
     return 2.0 * force * bench.friction.mu_s**2 / (2.0 * bench.config.contact.sigma_0)
 
 
-def throw(seed: int, vary_grip: bool, contact: str = "ellipsoid") -> tuple[float, float]:
+def throw(seed: int, vary_grip: bool, **options: Any) -> tuple[float, float]:
     """Push an object in zero gravity, let it slide and spin until it rests.
 
     Returns:
@@ -52,9 +53,7 @@ def throw(seed: int, vary_grip: bool, contact: str = "ellipsoid") -> tuple[float
     rng = np.random.default_rng(seed)
     direction = rng.normal(size=3)
     grips = rng.uniform(*GRIP_RANGE, 1000)
-    with Bench(
-        {"physics": {"gravity": 0.0}}, force=GRIP, contact=contact, size=SIZE, inertia=INERTIA
-    ) as bench:
+    with Bench({"physics": {"gravity": 0.0}}, force=GRIP, size=SIZE, inertia=INERTIA, **options) as bench:
         grip: Signal = (lambda t: grips[round(t / bench.step_time)]) if vary_grip else (lambda _: GRIP)
         bench.settle()
         push = 2.0 * bench.limit() * direction / np.linalg.norm(direction) * (1.0, 1.0, bench.friction.r)
@@ -64,7 +63,7 @@ def throw(seed: int, vary_grip: bool, contact: str = "ellipsoid") -> tuple[float
         return largest_rise(energy) / elastic_store(bench, GRIP_RANGE[1]), energy[0]
 
 
-def slide(seed: int, contact: str = "ellipsoid") -> float:
+def slide(seed: int, **options: Any) -> float:
     """Rise of the energy while weight drags the object through sticking and slipping.
 
     Returns:
@@ -72,16 +71,16 @@ def slide(seed: int, contact: str = "ellipsoid") -> float:
     """
     low, high = SLIDE_GRIPS
     grips = np.repeat(np.random.default_rng(seed).uniform(low, high, 100), 12)
-    with Bench(force=high, com_offset=(0.004, 0.0), contact=contact, size=LONG) as bench:
+    with Bench(force=high, com_offset=(0.004, 0.0), size=LONG, **options) as bench:
         bench.settle()
         energy = energies(bench, bench.run(2.0, force=lambda t: grips[round(t / bench.step_time)]))
         return largest_rise(energy) / elastic_store(bench, high)
 
 
-def energy() -> Iterator[Figure]:
+def energy(**options: Any) -> Iterator[Figure]:
     """Rise of the energy against what the bristles can store."""
     for vary_grip, name in ((False, "constant grip"), (True, "varying grip")):
-        rises = [throw(seed, vary_grip)[0] for seed in range(THROWS)]
+        rises = [throw(seed, vary_grip, **options)[0] for seed in range(THROWS)]
         yield Figure(f"energy gained, {THROWS} random throws, {name}", 1.0, max(rises), "store")
-    rises = [slide(seed) for seed in range(THROWS)]
+    rises = [slide(seed, **options) for seed in range(THROWS)]
     yield Figure("energy gained, weight, slipping and sticking", 1.0, max(rises), "store")

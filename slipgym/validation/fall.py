@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -13,9 +14,9 @@ BOUND = 0.1  # [%]
 DURATION = 0.5  # [s]
 
 
-def drop(contact: str = "ellipsoid") -> float:
+def drop(**options: Any) -> float:
     """Distance fallen against g t^2 / 2 at every control step, largest difference [%]."""
-    with Bench(force=0.0, contact=contact) as bench:
+    with Bench(force=0.0, **options) as bench:
         start = float(bench.plant.world["com"][0, 1])
         trace = bench.run(DURATION, force=lambda _: 0.0)
         parabola = 0.5 * bench.config.physics.gravity * trace.time**2
@@ -23,6 +24,6 @@ def drop(contact: str = "ellipsoid") -> float:
     return 100.0 * away.max()
 
 
-def fall() -> Iterator[Figure]:
+def fall(**options: Any) -> Iterator[Figure]:
     """An object that nothing holds."""
-    yield Figure("free fall without grip, from 1/120 s to 0.5 s", BOUND, drop(), "%")
+    yield Figure("free fall without grip, from 1/120 s to 0.5 s", BOUND, drop(**options), "%")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -29,42 +30,41 @@ def stick_slip_grip(t: float) -> float:
     return 4.0 - 2.17 * max(0.0, math.sin(2.0 * math.pi * t)) ** 4
 
 
-def travel(
-    grip: Signal, refinement: int, com_offset: tuple[float, float], contact: str = "ellipsoid"
-) -> Trace:
+def travel(grip: Signal, refinement: int, com_offset: tuple[float, float], **options: Any) -> Trace:
     """The slide under a grip force profile, open loop.
 
     Args:
         grip: Grip force per finger [N].
         refinement: Divides every step.
         com_offset: Centre of mass (x, z) from the pad centre [m].
-        contact: Friction model of the pads.
+        **options: More arguments of `Bench`.
     """
     default = load().physics
     finer = {
         "engine_steps": default.engine_steps * refinement,
         "substep_max": default.substep_max / refinement,
+        "planar_substep_max": default.planar_substep_max / refinement,
     }
-    with Bench({"physics": finer}, force=5.0, com_offset=com_offset, contact=contact, size=SIZE) as bench:
+    with Bench({"physics": finer}, force=5.0, com_offset=com_offset, size=SIZE, **options) as bench:
         bench.settle()
         bench.settle(force=lambda _: HOLDING_GRIP)
         return bench.run(DURATION, force=grip)
 
 
 def compare(
-    name: str, grip: Signal, com_offset: tuple[float, float], contact: str = "ellipsoid", refinement: int = 1
+    name: str, grip: Signal, com_offset: tuple[float, float], refinement: int = 1, **options: Any
 ) -> Iterator[Figure]:
     """Difference between a slide and the same with all steps halved; arguments as of `travel`."""
-    coarse = travel(grip, refinement, com_offset, contact).slip
-    fine = travel(grip, 2 * refinement, com_offset, contact).slip
+    coarse = travel(grip, refinement, com_offset, **options).slip
+    fine = travel(grip, 2 * refinement, com_offset, **options).slip
     away = np.abs(coarse - fine)
     length = 1e3 * np.hypot(*coarse[-1, :2])
     yield Figure(f"{name}, {length:.0f} mm", BOUND, 1e3 * np.hypot(*away[:, :2].T).max(), "mm")
     yield Figure(name, ANGLE_BOUND, math.degrees(away[:, 2].max()), "deg")
 
 
-def halving() -> Iterator[Figure]:
+def halving(**options: Any) -> Iterator[Figure]:
     """Slides that are steady, stick and slip, and turn as well."""
-    yield from compare("halved step, steady", smooth_grip, (0.0, 0.0))
-    yield from compare("halved step, stick-slip", stick_slip_grip, (0.0, 0.0))
-    yield from compare("halved step, stick-slip and turning", stick_slip_grip, (0.003, -0.01))
+    yield from compare("halved step, steady", smooth_grip, (0.0, 0.0), **options)
+    yield from compare("halved step, stick-slip", stick_slip_grip, (0.0, 0.0), **options)
+    yield from compare("halved step, stick-slip and turning", stick_slip_grip, (0.003, -0.01), **options)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -31,8 +32,8 @@ def friction_and_twist(bench: Bench, trace: Trace) -> tuple[np.ndarray, np.ndarr
     rate = np.diff(trace.velocity, axis=0) / bench.step_time
     force = rate * (mass, mass, inertia) - trace.load[1:]
     velocity = 0.5 * (trace.velocity[1:] + trace.velocity[:-1])
-    # both belong to times half an engine step before the control step; so must the lever
-    here = trace.position - 0.5 * bench.engine_time * trace.velocity
+    # both belong to times somewhat before the control step; so must the lever
+    here = trace.position - bench.velocity_age * trace.velocity
     arm = 0.5 * (here[1:] + here[:-1])
     force[:, 2] += arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
     velocity[:, 0] += velocity[:, 2] * arm[:, 1]
@@ -49,7 +50,7 @@ def deviation(
     angle: float,
     sigma_2: float,
     law: Callable[[np.ndarray], np.ndarray] = ellipsoid,
-    contact: str = "ellipsoid",
+    **options: Any,
 ) -> tuple[float, np.ndarray]:
     """Distance of friction from its law while a constant load drags the object.
 
@@ -57,14 +58,14 @@ def deviation(
         angle: Of the scaled load from translation to torque [rad].
         sigma_2: Viscous friction [s/m].
         law: Scaled friction over mu_c f_n at scaled twists, (n, 3) from (n, 3).
-        contact: Friction model of the pads.
+        **options: More arguments of `Bench`.
 
     Returns:
         Largest distance in % of mu_c sum f_n; gamma_t of the samples.
     """
     overrides = {"physics": {"gravity": 0.0}, "contact": {"sigma_2": sigma_2}}
     # inertia m r^2: the scaled mass is the same in all directions, the twist stays with the load
-    with Bench(overrides, contact=contact, mass=MASS, inertia=MASS * 0.01**2) as bench:
+    with Bench(overrides, mass=MASS, inertia=MASS * 0.01**2, **options) as bench:
         r, mu_c = bench.friction.r, bench.friction.mu_c
         bench.settle()
         total = bench.plant.fingers["contact_force"].sum()
@@ -81,10 +82,12 @@ def deviation(
     return 100.0 * away.max(), np.hypot(twist[:, 0], twist[:, 1]) / speed[sliding]
 
 
-def steady() -> Iterator[Figure]:
+def steady(**options: Any) -> Iterator[Figure]:
     """Steady slip against the ellipsoid for gamma_t from 0 to 1."""
     for sigma_2 in (0.0, 0.2):
-        found = [deviation(angle, sigma_2) for angle in np.linspace(0.0, 0.5 * math.pi, DIRECTIONS)]
+        found = [
+            deviation(angle, sigma_2, **options) for angle in np.linspace(0.0, 0.5 * math.pi, DIRECTIONS)
+        ]
         yield summary("steady slip", f"sigma_2 {sigma_2:g} s/m", found)
 
 

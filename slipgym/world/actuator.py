@@ -36,12 +36,17 @@ def ticks_to_next(finger, tick, horizon):
 
 
 @compiled
-def relax(finger, h):
-    """Advance the first-order lag by h; returns the mean force over h [N]."""
+def relaxed(finger, h):
+    """Force of the first-order lag after h, and its mean over h [N]."""
     gap = finger.force - finger.command
     if finger.lag <= 0.0:
-        finger.force = finger.command
-        return finger.command
+        return finger.command, finger.command
     decay = math.exp(-h / finger.lag)
-    finger.force = finger.command + gap * decay
-    return finger.command + gap * (1.0 - decay) * finger.lag / h
+    return finger.command + gap * decay, finger.command + gap * (1.0 - decay) * finger.lag / h
+
+
+@compiled
+def relax(finger, h):
+    """Advance the first-order lag by h; returns the mean force over h [N]."""
+    finger.force, mean = relaxed(finger, h)
+    return mean

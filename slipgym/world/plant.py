@@ -105,6 +105,7 @@ def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
     world["control_ticks"] = tick_rate // config.physics.control_rate
     world["engine_ticks"] = tick_rate // config.physics.engine_rate
     world["substep_ticks"] = max(1, math.floor(config.physics.substep_max * tick_rate * (1 + 1e-9)))
+    world["calm_ticks"] = max(1, math.floor(config.physics.planar_substep_max * tick_rate * (1 + 1e-9)))
     world["gravity"] = config.physics.gravity
     return world
 

@@ -1,0 +1,69 @@
+"""The planar world alone, driven like PyBullet's."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from slipgym.config import Config
+from slipgym.world.actuator import command
+from slipgym.world.alone import advance_alone
+from slipgym.world.placing import place
+from slipgym.world.plant import Plant
+from slipgym.world.scene import Box
+from slipgym.world.wrist import ramp_wrist
+
+
+class AloneWorld:
+    """One world that friction and the planar equations of motion alone move.
+
+    Its methods are those of `slipgym.world.bullet.BulletWorld`.
+
+    Args:
+        config: Configuration; the gripper's limits are read.
+        plant: Arrays of one world.
+    """
+
+    mismatch = 0.0
+    """There is no engine to differ from [m]."""
+
+    def __init__(self, config: Config, plant: Plant) -> None:
+        self._gripper, self._plant = config.gripper, plant
+
+    def reset(self, box: Box, force: float, wrist: tuple[float, float, float]) -> None:
+        """The box held still by both fingers."""
+        place(self._plant, 0, box, force, wrist)
+
+    def command(self, force: float) -> None:
+        """Command a grip force per finger [N]."""
+        for f in range(2):
+            command(self._plant.fingers[0, f], self._plant.world["tick"][0], force)
+
+    def command_wrist(self, velocity: np.ndarray, duration: float) -> None:
+        """Ramp the wrist velocity to a target within `duration` [s]."""
+        limits = self._gripper.wrist_speed_max, self._gripper.wrist_pitch_rate_max
+        ramp_wrist(self._plant.world[0], *velocity, *limits, duration)
+
+    def disturb(self, wrench: np.ndarray) -> None:
+        """Apply a load (f_x, f_z, torque) to the object's centre of mass until told otherwise."""
+        self._plant.world["external"] = wrench
+
+    def step(self) -> None:
+        """Advance by one control step."""
+        plant = self._plant
+        cells = None if plant.cells is None else plant.cells[0]
+        rows = plant.pads[0], cells, plant.fingers[0], plant.force_torque[0], plant.chips[0]
+        advance_alone(plant.world[0], *rows)
+
+    @property
+    def reading(self) -> tuple[Any, ...]:
+        """Pose, velocity, wrist joints, normal forces, as PyBullet tells them."""
+        world, fingers = self._plant.world[0], self._plant.fingers[0]
+        (x, z), angle, (v_x, v_z, omega) = world["com"], float(world["angle"]), world["velocity"]
+        pose = (x, 0.0, z), (0.0, -math.sin(angle / 2), 0.0, math.cos(angle / 2))
+        return pose, ((v_x, 0.0, v_z), (0.0, -omega, 0.0)), tuple(world["wrist"]), tuple(fingers["force"])
+
+    def close(self) -> None:
+        """There is nothing to release."""
