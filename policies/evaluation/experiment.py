@@ -14,7 +14,8 @@ import policies
 from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen
 from slipgym.config.errors import unknown
-from slipgym.envs.choices import DEFAULT_ESTIMATOR
+from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of
+from slipgym.envs.engines import ENGINES
 from slipgym.envs.observation import FRICTION_SOURCES
 from slipgym.tasks import find
 
@@ -103,6 +104,7 @@ class Experiment(_Spelled):
         default={}, description="Options of reset to try: every combination is a cell [-]"
     )
     sensors: str = Field(default="realistic", description="Sensor preset [-]")
+    engine: str = Field(default="bullet", description="What moves the bodies: bullet or planar [-]")
     randomization: str | Mapping[str, Any] = Field(
         default="none", description="What is drawn per episode: a preset, a file or a mapping [-]"
     )
@@ -113,6 +115,11 @@ class Experiment(_Spelled):
     def _task_exists(cls, name: str) -> str:
         find(name)
         return name
+
+    @field_validator("engine")
+    @classmethod
+    def _engine_exists(cls, name: str) -> str:
+        return one_of("engine", name, ENGINES)
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:

@@ -71,16 +71,23 @@ def run_trial(experiment: Experiment, trial: Trial) -> Result:
     return Result(row, recording.series() if trial.number == 0 else None)
 
 
-def record(experiment: Experiment, trial: Trial) -> Recording:
-    """Runs an episode and keeps its steps."""
+def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None = None) -> Recording:
+    """Runs an episode and keeps its steps.
+
+    Args:
+        experiment: What the trial is part of.
+        trial: The trial.
+        policy: Who acts instead of the trial's own.
+    """
     task = find(experiment.task)  # first of all: one of your own registers itself, in this process too
-    policy = _policy(experiment, trial)
+    policy = policy or make_policy(experiment, trial)
     modes = policies.modes(policy)
     env: Any = gym.make(
         f"slipgym:{task.id}",
         friction_source=trial.friction.source,
         estimator=dict(trial.friction.estimator),
         sensors=experiment.sensors,
+        engine=experiment.engine,
         material=trial.material,
         randomization=experiment.randomization,
         config=dict(experiment.config),
@@ -105,7 +112,7 @@ def record(experiment: Experiment, trial: Trial) -> Recording:
     return recorder.finish()
 
 
-def _policy(experiment: Experiment, trial: Trial) -> policies.Policy:
+def make_policy(experiment: Experiment, trial: Trial) -> policies.Policy:
     """Who acts; a controller gets the environment's configuration, a learned policy is checked against it."""
     parameters = dict(trial.policy.parameters)
     if experiment.config and policies.is_controller(trial.policy.name):

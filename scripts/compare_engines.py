@@ -1,0 +1,36 @@
+"""Compares the planar engine with PyBullet: the same actions, and the same controllers."""
+
+from typing import Annotated
+
+import typer
+
+TASKS = ["linear_slip", "rotational_slip", "hinge", "hold"]
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command()
+def main(
+    experiments: Annotated[
+        list[str] | None,
+        typer.Argument(help=f"Experiments; those of {', '.join(TASKS)} if none.", show_default=False),
+    ] = None,
+    trials: Annotated[int, typer.Option(min=1, help="Trials of each.")] = 200,
+    sensors: Annotated[str, typer.Option(help="Sensor preset.")] = "realistic",
+) -> None:
+    """Prints how far apart the episodes of both engines end, and how often they succeed."""
+    from policies.evaluation import load_experiment
+    from policies.evaluation.engines import compare
+    from policies.leaderboard.tables import markdown
+
+    try:
+        chosen = [
+            load_experiment(name).model_copy(update={"sensors": sensors}) for name in experiments or TASKS
+        ]
+    except (ValueError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error)) from error
+    for experiment in chosen:
+        typer.echo(markdown(compare(experiment, trials), 3))
+
+
+if __name__ == "__main__":
+    app()
