@@ -91,7 +91,7 @@ def halved(experiment: Experiment) -> Experiment:
 
 
 def evenly(experiment: Experiment, n: int) -> list[Trial]:
-    """n trials of the experiment's first policy and friction, as evenly from all its cells as can be."""
+    """Trials of the experiment's first policy and friction: n, spread evenly over all its cells."""
     first = {"policies": experiment.policies[:1], "friction": experiment.friction[:1]}
     cells = len(experiment.materials) * len(experiment.combinations())
     trials = plan(experiment.model_copy(update={**first, "trials": -(-n // cells)}))
