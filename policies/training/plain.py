@@ -1,7 +1,7 @@
 """Nested plain data as one file, without pickle: what is read back can run no code.
 
-A file is an uncompressed zip: `tree.json`, the arrays as `<k>.npy`, and `sums.json` with the SHA-256 of each of
-them. It is whole or it does not open.
+A file is an uncompressed zip: `tree.json`, the arrays as `<k>.npy`, and `sums.json` with the SHA-256 of each
+of them. It is whole or it does not open.
 """
 
 from __future__ import annotations
