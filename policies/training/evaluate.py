@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from stable_baselines3.common.vec_env import VecEnv, VecNormalize
+from stable_baselines3.common.vec_env import VecEnv
 
 from policies.training import model as learners
 from policies.training import seeds
@@ -32,7 +32,7 @@ def evaluate(config: Training, model: Any, envs: VecEnv) -> Row:
     return Row(model.num_timesteps, success, drops, reward, length)
 
 
-def _episodes(model: Any, envs: VecNormalize, seed: int) -> list[tuple[float, ...]]:
+def _episodes(model: Any, envs: Any, seed: int) -> list[tuple[float, ...]]:
     """One episode of each environment: success, drop, sum of rewards, length."""
     envs.venv.seed(seed)
     observations: Any = envs.reset()

@@ -8,6 +8,7 @@ from pathlib import Path
 from policies.evaluation.folder import stamped
 from policies.evaluation.plots.style import STYLE, styled
 from policies.training import curve, folder, scatter
+from policies.training import seeds as numbers
 from policies.training.config import Training
 from policies.training.files import changed
 from policies.training.run import train
@@ -26,6 +27,8 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
     Raises:
         ValueError: A source is unknown or a seed out of range.
     """
+    for seed in seeds:
+        numbers.training(seed)
     given = sources or [config.environment.friction_source]
     conditions = [
         changed(config, {"environment.friction_source": source}, "--friction-source") for source in given
