@@ -42,7 +42,7 @@ def differing(one, other, at=""):
     [
         "ppo",
         pytest.param("recurrent_ppo", marks=pytest.mark.slow),
-        "sac",
+        pytest.param("sac", marks=pytest.mark.slow),
         pytest.param("tqc", marks=pytest.mark.slow),
     ],
 )
