@@ -41,18 +41,19 @@ def learn_mu_c(state, p, prior, y, noise, v):
     determinant = a_11 * whole - a_12 * a_12
     inverse = 1.0 / determinant
     mu_c = (whole * y_1 - a_12 * y_2) * inverse
-    if not (math.isfinite(mu_c) and 0.0 < determinant < math.inf and w > 0.0):
-        return False
-    state.viscosity = (a_11 * y_2 - a_12 * y_1) * inverse
-    state.mu_c = clamped(mu_c, p.mu_min, p.mu_max)
     fade, spread = keep * keep, w * w * y_squared * noise
     b_11, b_12 = fade * b[0] + spread + refill, fade * b[1] + spread * v
     b_22 = fade * b[2] + spread * v * v
+    g, h = whole * inverse, a_12 * inverse
+    variance = max(g * g * b_11 - 2.0 * g * h * b_12 + h * h * b_22, 0.0)
+    if not (math.isfinite(mu_c + variance + b_22) and 0.0 < determinant < math.inf and w > 0.0):
+        return False
+    state.viscosity = (a_11 * y_2 - a_12 * y_1) * inverse
+    state.mu_c = clamped(mu_c, p.mu_min, p.mu_max)
     b[0], b[1], b[2] = b_11, b_12, b_22
     a[0], a[1], a[2] = a_11, a_12, a_22
     state.vector[0], state.vector[1] = y_1, y_2
-    g, h = whole * inverse, a_12 * inverse
-    state.sd_mu_c = math.sqrt(max(g * g * b_11 - 2.0 * g * h * b_12 + h * h * b_22, 0.0))
+    state.sd_mu_c = math.sqrt(variance)
     count_mu_c(state, p)
     return True
 
@@ -64,12 +65,13 @@ def learn_r(state, p, prior, y, noise):
     y_squared = y * y
     w = 1.0 / (y_squared * (noise + p.law_error * p.law_error))
     information = p.forgetting * state.information_r + w + refill
-    if not (math.isfinite(information) and w > 0.0 and math.isfinite(y)):
+    spread = p.forgetting * p.forgetting * state.noise_r + w * w * y_squared * noise + refill
+    if not (math.isfinite(information) and math.isfinite(spread) and w > 0.0 and math.isfinite(y)):
         return False
     inverse = 1.0 / information
     state.r = clamped(state.r + w * inverse * (y - state.r), p.r_min, p.r_max)
     state.information_r = information
-    state.noise_r = p.forgetting * p.forgetting * state.noise_r + w * w * y_squared * noise + refill
+    state.noise_r = spread
     state.sd_r = math.sqrt(state.noise_r) * inverse
     count_r(state, p)
     return True

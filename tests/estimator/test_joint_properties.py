@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import estimator
@@ -35,6 +35,7 @@ def feed(rows, name="joint", **parameters):
 
 @pytest.mark.parametrize("name", ["disc", "joint", "ukf"])
 @unhurried
+@example([(0, 0, 1, 0, 0, 0, 0), (0, 4e27, 1, 1, 0, 0, 0), (0, 0, 1, 0, 0, 0, 3e125), (0, 0, 1, 0, 0, 1, 0)])
 @given(st.one_of(extreme, gripping))
 def test_estimates_stay_finite_positive_and_in_bounds(name, rows):
     limits = estimator.JointParameters()
