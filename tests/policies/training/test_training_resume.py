@@ -12,6 +12,7 @@ import pytest
 
 pytest.importorskip("stable_baselines3")
 from policies.training import checkpoints, folder, plain, run
+from policies.training.files import changed
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -129,12 +130,17 @@ def test_a_file_is_the_old_one_or_the_new_one(tmp_path, monkeypatch, number):
 
 @pytest.mark.slow
 def test_a_kill_at_any_file_operation_changes_nothing(small, tmp_path, monkeypatch):
-    config, counted = small(budget=64), []
-    whole = tmp_path / "whole"
-    folder.begin(whole, config, 1)
+    config, counted = small(budget=32, ppo={"n_steps": 8, "batch_size": 16, "n_epochs": 1}), []
+    config = changed(config, {"evaluation.every": 16, "checkpoints.every": 16})
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda figure, path, **_: Path(path).touch())
+    whole, again = tmp_path / "whole", tmp_path / "again"
+    for path in (whole, again):
+        folder.begin(path, config, 1)
+    run.train(whole, progress=False)  # the first run of a process also reads what is then cached
     with monkeypatch.context() as patch:
         patched(patch, lambda: counted.append(1))
-        run.train(whole, progress=False)
+        run.train(again, progress=False)
+    assert len(counted) > 30
     for number in range(len(counted)):
         path = tmp_path / str(number)
         folder.begin(path, config, 1)

@@ -125,13 +125,17 @@ def test_ray_that_is_missing_is_asked_for(monkeypatch):
 
 
 @pytest.mark.slow
-def test_ray_does_the_same():
+def test_ray_does_the_same(tmp_path):
     pytest.importorskip("ray")
     code = (
-        "from policies.training.scatter import run_all; print(run_all(divmod, [(7, 3), (9, 4)], ray='local'))"
+        "from policies.training import scatter, seeds\n"
+        "print(scatter.run_all(seeds.training, [(1,), (2,)], ray='local'))"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.stdout.strip().endswith("[(2, 1), (2, 1)]"), done.stderr
+    home = {**os.environ, "HOME": str(tmp_path)}  # Ray keeps a token there
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, env=home, capture_output=True, text=True, check=False
+    )
+    assert done.stdout.strip().endswith("[16384, 32768]"), done.stderr
 
 
 def test_the_command_trains_and_mistakes_have_no_traceback(small, tmp_path):
