@@ -173,16 +173,20 @@ def contact(calls: int = 2000) -> list[Figure]:
 
 
 def patch(pairs: int, steps: int = 500) -> list[Figure]:
-    """The distributed contact's cells, and the same in plain numpy, in the same run."""
+    """The distributed contact's cells, and the same in plain numpy, in the same run.
+
+    Numpy makes a twentieth of the steps: its blocks last as long, and are interrupted as seldom.
+    """
     twist = (0.003, -0.02, 0.5)
     whole, single = DistributedContact(), DistributedContact(cells=1)
     plain = NumpyPatch(whole.positions, whole.shares)
 
     def block(pad: DistributedContact | NumpyPatch) -> tuple[float, int]:
+        count = steps if isinstance(pad, DistributedContact) else steps // 20
         start = perf_counter()
-        for _ in range(steps):
+        for _ in range(count):
             pad.step(twist, 10.0, 1e-3)
-        return perf_counter() - start, steps
+        return perf_counter() - start, count
 
     compare(partial(block, single), partial(block, plain), 3)  # warm up
     cells = compare(partial(block, single), partial(block, whole), pairs)
@@ -191,6 +195,7 @@ def patch(pairs: int, steps: int = 500) -> list[Figure]:
         Figure("DistributedContact.step, its cells alone", 1e6 * (cells.second - cells.first), "us"),
         Figure("patch in numpy, per step", 1e6 * against.second, "us"),
         Figure("patch in numpy / DistributedContact.step", against.quartiles[1], "-", ">= 20"),
+        Figure("patch in numpy / its cells alone", against.second / (cells.second - cells.first), "-"),
     ]
 
 

@@ -23,7 +23,7 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
         *measure.life(env_id, max(3, pairs // 10)),
         *measure.distributed(player, env_id, max(3, pairs // 5)),
         *measure.contact(),
-        *measure.patch(max(3, pairs // 10)),
+        *measure.patch(max(3, pairs)),
     ]
     player.env.close()
     print(report.table(figures))

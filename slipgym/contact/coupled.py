@@ -175,7 +175,7 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
 
     Args:
         pads: PAD records of the pads that hold the object, shape (p,); updated.
-        cells: Their CELL records, shape (p, n); updated. None for ellipsoids.
+        cells: Their patches, shape (p, CELL_FIELDS, n); updated. None for ellipsoids.
         inertia: Mass [kg] and moment of inertia about the centre of mass [kg m^2].
         centre: Centre of mass in the pad frame [m].
         free: Motion (x, y, theta) of the centre of mass relative to the pads in this

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from slipgym.contact.patch import prescribed_step
 from slipgym.contact.pressure import MAX_CELLS, patch_cells
-from slipgym.contact.records import pads, patch, rest
+from slipgym.contact.records import SHARE, Z_X, Z_Y, X, Y, pads, patch, rest, rest_cells
 from slipgym.contact.validation import check_friction, finite_vector, positive
 
 
@@ -82,17 +82,17 @@ class DistributedContact:
     @property
     def positions(self) -> np.ndarray:
         """Copy of the loaded cells' positions from the centre of pressure, shape (n, 2) [m]."""
-        return self._radius * np.column_stack((self._cells["x"], self._cells["y"]))
+        return self._radius * self._cells[[X, Y]].T
 
     @property
     def shares(self) -> np.ndarray:
         """Copy of the loaded cells' shares of the normal force, shape (n,), sum 1."""
-        return self._cells["share"].copy()
+        return self._cells[SHARE].copy()
 
     @property
     def bristles(self) -> np.ndarray:
         """Copy of the loaded cells' bristle states z, shape (n, 2) [m]."""
-        return np.column_stack((self._cells["z_x"], self._cells["z_y"]))
+        return self._cells[[Z_X, Z_Y]].T
 
     def step(self, twist: Sequence[float], normal_force: float, dt: float) -> tuple[float, float, float]:
         """Advance by dt at a prescribed slip twist.
@@ -109,18 +109,17 @@ class DistributedContact:
         Raises:
             ValueError: A value is not finite or outside its range.
         """
-        if len(twist) != 3 or not math.isfinite(twist[0] + twist[1] + twist[2]):
+        v_x, v_y, omega = twist if len(twist) == 3 else finite_vector("twist", twist, 3)
+        if not (math.isfinite(v_x + v_y + omega) and 0.0 <= normal_force < math.inf and 0.0 < dt < math.inf):
             finite_vector("twist", twist, 3)
-        positive(allow_zero=True, normal_force=normal_force)
-        positive(dt=dt)
-        self._pads["normal"] = normal_force
+            positive(allow_zero=True, normal_force=normal_force)
+            positive(dt=dt)
         if normal_force == 0.0:
             self.reset()
-        else:
-            v_x, v_y, omega = map(float, twist)
-            prescribed_step(self._pads[0], self._cells, (v_x, v_y, omega), float(dt))
-        f_x, f_y, tau = self._pads["wrench"][0].tolist()
-        return f_x, f_y, tau
+            return 0.0, 0.0, 0.0
+        return prescribed_step(
+            self._pads, self._cells, float(v_x), float(v_y), float(omega), float(normal_force), float(dt)
+        )
 
     def change(self, mu_c: float, mu_s: float, effective_radius: float) -> None:
         """Change the friction and the size of the patch; its pressure profile and its bristles stay.
@@ -145,4 +144,4 @@ class DistributedContact:
     def reset(self) -> None:
         """Forget the bristle states, as after a loss of contact."""
         rest(self._pads)
-        rest(self._cells)
+        rest_cells(self._cells)

@@ -30,15 +30,21 @@ from __future__ import annotations
 import math
 
 from slipgym.compiled import compiled
+from slipgym.contact.decay import decay
+
+
+@compiled
+def level(mu_c, mu_s, power):
+    """Friction level g = mu_c + (mu_s - mu_c) exp(-power) [-]."""
+    return mu_c + (mu_s - mu_c) * decay(power)
 
 
 @compiled
 def stribeck(pad, slip_speed):
-    """Friction level g(v) = mu_c + (mu_s - mu_c) exp(-(v / v_s)^gamma) [-]."""
+    """Friction level g(v) with power = (v / v_s)^gamma [-]."""
     ratio = slip_speed / pad.stribeck_velocity
     power = ratio * ratio if pad.stribeck_exponent == 2.0 else ratio**pad.stribeck_exponent
-    decay = math.exp(-power) if power < 40.0 else 0.0  # exp(-40) is below the rounding of mu_c
-    return pad.mu_c + (pad.mu_s - pad.mu_c) * decay
+    return level(pad.mu_c, pad.mu_s, power)
 
 
 @compiled

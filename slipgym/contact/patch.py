@@ -22,27 +22,32 @@ it is prescribed, otherwise extrapolated from the last two sub-steps. With s_i s
 friction of all cells is the gradient of a convex function of the twist.
 
 Twists and displacements are scaled, (x, y, r theta), as the ellipsoid's; x_i is in units of r.
+
+The loops are written to run on several cells at once: a quantity of all cells is a row in
+memory, a branch is a choice between two values, and no loop calls the mathematical library.
 """
 
 from __future__ import annotations
 
 import math
 
-from slipgym.compiled import compiled
+from slipgym.compiled import compiled, compiled_sum
 from slipgym.contact import kernel
+from slipgym.contact.decay import LARGEST
+from slipgym.contact.records import CAP, REACH, SHARE, Z_X, Z_Y, X, Y
 
 
 @compiled
-def at_cell(cell, motion):
+def at_cell(x, y, motion):
     """Displacement or velocity of a cell, a tuple of 3 with zero spin."""
-    return motion[0] - motion[2] * cell.y, motion[1] + motion[2] * cell.x, 0.0
+    return motion[0] - motion[2] * y, motion[1] + motion[2] * x, 0.0
 
 
 @compiled
-def speed_at(cell, twist):
+def speed_at(x, y, cap, twist):
     """Slip speed of a cell by which its friction level goes [m/s]."""
-    v_x, v_y, _ = at_cell(cell, twist)
-    return min(math.sqrt(v_x * v_x + v_y * v_y), cell.cap)
+    v_x, v_y, _ = at_cell(x, y, twist)
+    return min(math.sqrt(v_x * v_x + v_y * v_y), cap)
 
 
 @compiled
@@ -56,34 +61,55 @@ def expected_twist(pad, h):
 
 
 @compiled
+def set_powers(pad, cells, twist):
+    """Write (s_i / v_s)^gamma of every cell into REACH; returns how many cells feel mu_s at all."""
+    x, y, cap, power = cells[X], cells[Y], cells[CAP], cells[REACH]
+    per_unit, slow = 1.0 / pad.stribeck_velocity, 0
+    if pad.stribeck_exponent == 2.0:
+        for i in range(cells.shape[1]):
+            ratio = speed_at(x[i], y[i], cap[i], twist) * per_unit
+            power[i] = ratio * ratio
+            slow += ratio * ratio < LARGEST
+    else:  # cell by cell, as the processor has no such operation
+        for i in range(cells.shape[1]):
+            power[i] = (speed_at(x[i], y[i], cap[i], twist) * per_unit) ** pad.stribeck_exponent
+            slow += power[i] < LARGEST
+    return slow
+
+
+@compiled_sum
 def prepare(pad, cells, twist):
     """Fix every cell's friction level and bring its bristle into it.
 
     Args:
         pad: PAD record with the parameters.
-        cells: CELL (n,); updated.
+        cells: Patch (CELL_FIELDS, n); updated.
         twist: Scaled slip twist to come, tuple of 3 [m/s].
 
     Returns:
         Friction level, mean over the load [-].
     """
-    mean = 0.0
-    for i in range(cells.shape[0]):
-        cell = cells[i]
-        limit = kernel.stribeck(pad, speed_at(cell, twist))
-        mean += cell.share * limit
-        cell.reach = limit / pad.sigma_0
-        cell.z_x, cell.z_y, _ = kernel.brought_in((cell.z_x, cell.z_y, 0.0), cell.reach)
+    share, z_x, z_y, reach = cells[SHARE], cells[Z_X], cells[Z_Y], cells[REACH]
+    mu_c, mu_s, compliance, mean = pad.mu_c, pad.mu_s, 1.0 / pad.sigma_0, 0.0
+    if set_powers(pad, cells, twist) > 0:
+        for i in range(cells.shape[1]):
+            reach[i] = kernel.level(mu_c, mu_s, reach[i])
+    else:
+        reach[:] = mu_c
+    for i in range(cells.shape[1]):
+        mean += share[i] * reach[i]
+        reach[i] *= compliance
+        z_x[i], z_y[i], _ = kernel.brought_in((z_x[i], z_y[i], 0.0), reach[i])
     return mean
 
 
-@compiled
+@compiled_sum
 def respond(pad, cells, delta, h):
     """Friction of all cells after a scaled slip displacement over time h.
 
     Args:
         pad: PAD record with the parameters and the normal force.
-        cells: CELL (n,) from `prepare`; read only.
+        cells: Patch (CELL_FIELDS, n) from `prepare`; read only.
         delta: Scaled slip displacement (x, y, r theta) of the sub-step, tuple of 3 [m].
         h: Sub-step [s].
 
@@ -91,21 +117,21 @@ def respond(pad, cells, delta, h):
         force: Friction opposing `delta`, scaled components, tuple of 3 [N].
         derivative: Of `force` by `delta`, symmetric (xx, yy, tt, xy, xt, yt) [N/m].
     """
+    xs, ys, share = cells[X], cells[Y], cells[SHARE]
+    z_x, z_y, reach = cells[Z_X], cells[Z_Y], cells[REACH]
     fx, fy, ft = 0.0, 0.0, 0.0
     xx, yy, tt, xy, xt, yt = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(cells.shape[0]):
-        cell = cells[i]
-        x, y = cell.x, cell.y
-        z = (cell.z_x, cell.z_y, 0.0)
+    for i in range(cells.shape[1]):
+        x, y = xs[i], ys[i]
         # as if it carried the whole normal force: what does not differ is computed once
         force, isotropic, radial, direction, _ = kernel.respond(
-            pad, z, pad.normal, at_cell(cell, delta), h, cell.reach
+            pad, (z_x[i], z_y[i], 0.0), pad.normal, at_cell(x, y, delta), h, reach[i]
         )
-        f_x, f_y = cell.share * force[0], cell.share * force[1]
-        isotropic, radial = cell.share * isotropic, cell.share * radial
+        f_x, f_y = share[i] * force[0], share[i] * force[1]
+        isotropic, radial = share[i] * isotropic, share[i] * radial
         n_x, n_y, _ = direction
         n_t = x * n_y - y * n_x
-        fx, fy, ft = fx + f_x, fy + f_y, ft + x * f_y - y * f_x
+        fx, fy, ft = fx + f_x, fy + f_y, ft + (x * f_y - y * f_x)
         xx += isotropic - radial * n_x * n_x
         yy += isotropic - radial * n_y * n_y
         tt += isotropic * (x * x + y * y) - radial * n_t * n_t
@@ -115,24 +141,32 @@ def respond(pad, cells, delta, h):
     return (fx, fy, ft), (xx, yy, tt, xy, xt, yt)
 
 
+@compiled_sum
+def advance(pad, cells, delta, twist, h):
+    """Store bristles and caps after a scaled slip displacement; returns the friction opposing it [N]."""
+    xs, ys, share, cap = cells[X], cells[Y], cells[SHARE], cells[CAP]
+    z_x, z_y, reach = cells[Z_X], cells[Z_Y], cells[REACH]
+    fx, fy, ft = 0.0, 0.0, 0.0
+    for i in range(cells.shape[1]):
+        x, y = xs[i], ys[i]
+        stuck = speed_at(x, y, cap[i], twist)
+        force, _, _, trial, shortening = kernel.respond(
+            pad, (z_x[i], z_y[i], 0.0), pad.normal, at_cell(x, y, delta), h, reach[i]
+        )
+        f_x, f_y = share[i] * force[0], share[i] * force[1]
+        fx, fy, ft = fx + f_x, fy + f_y, ft + (x * f_y - y * f_x)
+        z_x[i], z_y[i] = shortening * trial[0], shortening * trial[1]
+        cap[i] = math.inf if shortening < 1.0 else stuck
+    return fx, fy, ft
+
+
 @compiled
 def commit(pad, cells, delta, h):
     """Store bristle states, slip twist and wrench after a scaled slip displacement."""
     for a in range(3):
         pad.twist_rate[a] = (delta[a] / h - pad.twist[a]) / h
         pad.twist[a] = delta[a] / h
-    twist = (pad.twist[0], pad.twist[1], pad.twist[2])
-    fx, fy, ft = 0.0, 0.0, 0.0
-    for i in range(cells.shape[0]):
-        cell = cells[i]
-        z = (cell.z_x, cell.z_y, 0.0)
-        force, _, _, trial, shortening = kernel.respond(
-            pad, z, pad.normal, at_cell(cell, delta), h, cell.reach
-        )
-        f_x, f_y = cell.share * force[0], cell.share * force[1]
-        fx, fy, ft = fx + f_x, fy + f_y, ft + cell.x * f_y - cell.y * f_x
-        cell.z_x, cell.z_y = shortening * trial[0], shortening * trial[1]
-        cell.cap = math.inf if shortening < 1.0 else speed_at(cell, twist)
+    fx, fy, ft = advance(pad, cells, delta, (pad.twist[0], pad.twist[1], pad.twist[2]), h)
     pad.wrench[0], pad.wrench[1], pad.wrench[2] = -fx, -fy, -pad.r * ft
 
 
@@ -143,14 +177,28 @@ def release(pad, cells, twist):
     for a in range(3):
         pad.twist[a] = twist[a]
         pad.twist_rate[a] = 0.0
-    for i in range(cells.shape[0]):
-        cell = cells[i]
-        cell.z_x, cell.z_y, cell.cap = 0.0, 0.0, math.inf
+    cells[Z_X], cells[Z_Y], cells[CAP] = 0.0, 0.0, math.inf
 
 
 @compiled
-def prescribed_step(pad, cells, twist, h):
-    """Advance a patch by a prescribed slip twist (v_x, v_y, omega) at its centre of pressure."""
-    scaled = (twist[0], twist[1], pad.r * twist[2])
-    prepare(pad, cells, scaled)
-    commit(pad, cells, (h * scaled[0], h * scaled[1], h * scaled[2]), h)
+def prescribed_step(pads, cells, v_x, v_y, omega, normal, h):
+    """Advance a patch by a prescribed slip twist at its centre of pressure.
+
+    Args:
+        pads: PAD (1,); updated. An array, since numba takes in a record of Python's ten times as slowly.
+        cells: Patch (CELL_FIELDS, n); updated.
+        v_x: Slip twist, with `v_y` and `omega` [m/s, m/s, rad/s].
+        v_y: See `v_x`.
+        omega: See `v_x`.
+        normal: Normal force, > 0 [N].
+        h: Time step [s].
+
+    Returns:
+        Friction (f_x, f_y, tau) on the object [N, N, N m].
+    """
+    pad = pads[0]
+    pad.normal = normal
+    twist = (v_x, v_y, pad.r * omega)
+    prepare(pad, cells, twist)
+    commit(pad, cells, (h * twist[0], h * twist[1], h * twist[2]), h)
+    return pad.wrench[0], pad.wrench[1], pad.wrench[2]

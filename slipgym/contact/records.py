@@ -26,20 +26,20 @@ PAD = np.dtype(
 )
 """One pad: parameters of the limit surface, bristle state and last wrench."""
 
-CELL = np.dtype(
-    [
-        ("x", "f8"),  # position from the centre of pressure over the pad's r [-]
-        ("y", "f8"),
-        ("share", "f8"),  # of the pad's normal force [-]
-        ("z_x", "f8"),  # bristle state [m]
-        ("z_y", "f8"),
-        ("cap", "f8"),  # slip speed that stick does not exceed; infinite in slip [m/s]
-        ("reach", "f8"),  # longest deflection in this step [m]
-    ]
-)
-"""One cell of a patch."""
+X, Y = 0, 1
+"""Position of a cell from the centre of pressure over the pad's r [-]."""
+SHARE = 2
+"""Share of the pad's normal force that a cell carries [-]."""
+Z_X, Z_Y = 3, 4
+"""Bristle state of a cell [m]."""
+CAP = 5
+"""Slip speed of a cell that stick does not exceed; infinite in slip [m/s]."""
+REACH = 6
+"""Longest deflection of a cell's bristle in this step [m]."""
+CELL_FIELDS = 7
+"""Rows of a patch, an array (CELL_FIELDS, n): one quantity in a row lets loops over n cells vectorise."""
 
-_STATE = "z", "slip_speed", "slip_rate", "twist", "twist_rate", "wrench", "z_x", "z_y", "cap"
+_STATE = ["z", "slip_speed", "slip_rate", "twist", "twist_rate", "wrench"]
 
 
 def pads(shape: int | tuple[int, ...], **parameters: float) -> np.ndarray:
@@ -56,20 +56,24 @@ def pads(shape: int | tuple[int, ...], **parameters: float) -> np.ndarray:
 
 
 def patch(positions: np.ndarray, shares: np.ndarray) -> np.ndarray:
-    """Return cells at rest, shape (n,).
+    """Return cells at rest, shape (CELL_FIELDS, n).
 
     Args:
         positions: From the centre of pressure, over the pad's r, shape (n, 2) [-].
         shares: Of the normal force, shape (n,), sum 1.
     """
-    array = np.zeros(len(shares), CELL)
-    array["x"], array["y"] = positions.T
-    array["share"] = shares
-    return array
+    cells = np.zeros((CELL_FIELDS, len(shares)))
+    cells[X], cells[Y] = positions.T
+    cells[SHARE] = shares
+    return cells
 
 
 def rest(array: np.ndarray) -> None:
-    """Bring an array of `PAD` or `CELL` to rest: no deflection, no speed, no wrench."""
+    """Bring an array of `PAD` to rest: no deflection, no speed, no wrench."""
     for field in _STATE:
-        if field in (array.dtype.names or ()):
-            array[field] = 0.0
+        array[field] = 0.0
+
+
+def rest_cells(cells: np.ndarray) -> None:
+    """Bring cells (..., CELL_FIELDS, n) to rest: no deflection, no speed."""
+    cells[..., [Z_X, Z_Y, CAP], :] = 0.0

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.contact.records import CELL
+from slipgym.contact.records import CELL_FIELDS
 from slipgym.sensors.starting import start_sensors
 from slipgym.world.plant import Plant, check_slip_latency, dead_ticks, patch_of
 
@@ -33,11 +33,11 @@ class Equipment:
         self._cells: dict[str, np.ndarray] = {}
         if plant.cells is not None:
             patches = {pressure: patch_of(with_pressure(config, pressure)) for pressure in pressures}
-            room = max(map(len, patches.values()))
+            room = max(cells.shape[1] for cells in patches.values())
             for pressure, cells in patches.items():
-                self._cells[pressure] = np.zeros(room, CELL)  # a cell without share of the load does nothing
-                self._cells[pressure][: len(cells)] = cells
-            plant.cells = np.zeros((*plant.pads.shape, room), CELL)
+                self._cells[pressure] = np.zeros((CELL_FIELDS, room))  # a cell without share does nothing
+                self._cells[pressure][:, : cells.shape[1]] = cells
+            plant.cells = np.zeros((*plant.pads.shape, CELL_FIELDS, room))
 
     def check(self, most: Mapping[str, float]) -> None:
         """Raise ValueError unless the plant has room for the longest times that may be drawn."""

@@ -14,7 +14,7 @@ from numba import from_dtype, types
 
 from estimator.estimate import ESTIMATE
 from slipgym.compiled import unlocked
-from slipgym.contact.records import CELL, PAD
+from slipgym.contact.records import PAD
 from slipgym.envs.actions import COMPONENT, interpret
 from slipgym.envs.guard import sound
 from slipgym.envs.observation import combine, observe
@@ -156,7 +156,7 @@ def driver(task: Any, update: Any, states: np.dtype, parameters: np.dtype, patch
     learn = types.void(state, parameter, types.float64, f2, f2, estimate)
     for function, signature in ((task.plan, plan), (task.judge, judge)):
         function.compile(signature)
-    cells = _row(CELL, 3) if patches else types.none
+    cells = types.Array(types.float64, 4, "C") if patches else types.none
     signature = types.int64(
         *(types.FunctionType(kind) for kind in (plan, judge, learn)),
         world, _row(PAD, 2), cells, finger, _row(FORCE_TORQUE, 2), _row(SLIP_SENSOR, 2),

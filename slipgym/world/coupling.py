@@ -65,7 +65,7 @@ def step_loads(
     Args:
         world: WORLD record.
         pads: PAD records (2,).
-        cells: CELL records (2, m); None for ellipsoids.
+        cells: Patches (2, CELL_FIELDS, m); None for ellipsoids.
         fingers: FINGER records (2,).
         force_torque: FORCE_TORQUE records (2,).
         chips: SLIP_SENSOR records (2,).

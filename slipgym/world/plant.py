@@ -9,7 +9,7 @@ import numpy as np
 
 from slipgym.config import Config
 from slipgym.contact.pressure import patch_cells
-from slipgym.contact.records import pads, patch, rest
+from slipgym.contact.records import pads, patch, rest, rest_cells
 from slipgym.sensors.force_torque import FORCE_TORQUE
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
@@ -31,7 +31,7 @@ class Plant:
     pads: np.ndarray
     """PAD (n, 2)."""
     cells: np.ndarray | None
-    """CELL (n, 2, m); None for ellipsoids."""
+    """Patches (n, 2, CELL_FIELDS, m); None for ellipsoids."""
     fingers: np.ndarray
     """FINGER (n, 2)."""
     force_torque: np.ndarray
@@ -43,7 +43,7 @@ class Plant:
         """Bring the contact of one world's pads to rest."""
         rest(self.pads[i])
         if self.cells is not None:
-            rest(self.cells[i])
+            rest_cells(self.cells[i])
 
     def restore(self, other: Plant) -> None:
         """Copy every array of another plant of the same size into this one."""
@@ -91,7 +91,7 @@ def check_slip_latency(config: Config, samples: int, name: str = "latency_sample
 
 
 def patch_of(config: Config) -> np.ndarray:
-    """Cells of a pad's patch, CELL (m,), in units of their own r.
+    """Cells of a pad's patch, (CELL_FIELDS, m), in units of their own r.
 
     In pure spin they then carry exactly the torque of r.
     """
@@ -121,7 +121,7 @@ def _cells(config: Config, n: int) -> np.ndarray | None:
     """The patch of every pad; an episode scales it by its r alone."""
     if config.contact.model == "ellipsoid":
         return None
-    return np.tile(patch_of(config), (n, 2, 1))
+    return np.tile(patch_of(config), (n, 2, 1, 1))
 
 
 def _fingers(config: Config, n: int) -> np.ndarray:

@@ -25,6 +25,7 @@ def test_equals_the_compiled_patch(pressure):
 
 
 def test_the_figures_of_the_patch_add_up():
-    cells, plain, ratio = (figure.value for figure in measure.patch(pairs=3, steps=50))
+    cells, plain, ratio, alone = (figure.value for figure in measure.patch(pairs=9, steps=100))
     assert 0.0 < cells < plain
-    assert ratio > 1.0
+    assert alone == pytest.approx(plain / cells)
+    assert ratio > 6.0  # 4 if the loops over the cells take one at a time, 20 and more if they take eight

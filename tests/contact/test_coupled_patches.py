@@ -8,7 +8,7 @@ from scipy.optimize import minimize
 
 from slipgym.contact.coupled import assemble, norm, prepare, solve_motion, step_pads
 from slipgym.contact.pressure import patch_cells
-from slipgym.contact.records import pads, patch
+from slipgym.contact.records import CAP, REACH, SHARE, Z_X, Z_Y, X, Y, pads, patch
 
 H = 2.5e-4
 LAW = {"mu_c": 0.4, "mu_s": 0.5, "stribeck_velocity": 1e-3, "sigma_0": 1e6, "sigma_1": 80.0, "sigma_2": 0.2}
@@ -26,7 +26,7 @@ def problems(draw):
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     array = pads(2, stribeck_velocity=1e-3, sigma_2=0.2)
     cells = patches(draw(st.sampled_from(["uniform", "hertz", "rim"])), draw(st.sampled_from([3, 5, 8])))
-    size = cells.shape[1]
+    size = cells.shape[2]
     for pad, own in zip(array, cells, strict=True):
         pad["mu_c"] = rng.uniform(0.05, 1.0)
         pad["mu_s"] = pad["mu_c"] * rng.uniform(1.0, 2.0)
@@ -36,9 +36,9 @@ def problems(draw):
         pad["cop"] = rng.uniform(-0.005, 0.005, 2)
         pad["normal"] = rng.uniform(0.1, 30.0)
         pad["twist"] = rng.normal(size=3) * 10.0 ** rng.uniform(-6.0, -1.0)
-        own["cap"] = np.where(rng.random(size) < 0.5, np.inf, 10.0 ** rng.uniform(-6.0, -2.0, size))
+        own[CAP] = np.where(rng.random(size) < 0.5, np.inf, 10.0 ** rng.uniform(-6.0, -2.0, size))
         length, angle = pad["mu_s"] / pad["sigma_0"] * rng.random(size), rng.uniform(0.0, 2.0 * np.pi, size)
-        own["z_x"], own["z_y"] = length * np.cos(angle), length * np.sin(angle)
+        own[Z_X], own[Z_Y] = length * np.cos(angle), length * np.sin(angle)
     inertia = rng.uniform(0.05, 0.5), rng.uniform(2e-5, 2e-3)
     centre = tuple(rng.uniform(-0.03, 0.03, 2))
     free = rng.normal(size=3) * 10.0 ** rng.uniform(-9.0, -4.0) * (1.0, 1.0, 100.0)
@@ -51,16 +51,16 @@ def potential(q, array, cells, _, inertia, centre, free):
     mass = np.array([inertia[0], inertia[0], inertia[1]])
     value = 0.5 / H**2 * np.sum(mass * (q - free) ** 2)
     for pad, own in zip(array, cells, strict=True):
-        at = pad["cop"][:, None] + pad["r"] * np.array([own["x"], own["y"]]) - np.array(centre)[:, None]
+        at = pad["cop"][:, None] + pad["r"] * np.array([own[X], own[Y]]) - np.array(centre)[:, None]
         delta = np.array([q[0] - q[2] * at[1], q[1] + q[2] * at[0]])
-        z = np.array([own["z_x"], own["z_y"]])
+        z = np.array([own[Z_X], own[Z_Y]])
         length = np.hypot(*(z + delta))
         stuck = 0.5 * length**2
-        slipping = own["reach"] * (length - 0.5 * own["reach"])
-        energy = (pad["sigma_0"] + pad["sigma_1"] / H) * np.where(length <= own["reach"], stuck, slipping)
+        slipping = own[REACH] * (length - 0.5 * own[REACH])
+        energy = (pad["sigma_0"] + pad["sigma_1"] / H) * np.where(length <= own[REACH], stuck, slipping)
         energy += -pad["sigma_1"] / H * np.sum(z * delta, axis=0)
         energy += 0.5 * pad["sigma_2"] / H * np.sum(delta**2, axis=0)
-        value += pad["normal"] * own["share"] @ energy
+        value += pad["normal"] * own[SHARE] @ energy
     return value
 
 
@@ -122,9 +122,9 @@ def test_in_translation_a_patch_is_an_ellipsoid(pressure, start, load):
     patchy, cells = pads(2, r=0.01, normal=2.0, **LAW), patches(pressure, 7)
     plain, velocity = patchy.copy(), np.full((2, 3), (0.0, -start, 0.0))
     if start > 0.0:
-        plain["slip_speed"], cells["cap"] = start, np.inf
+        plain["slip_speed"], cells[:, CAP] = start, np.inf
         patchy["twist"][:, 1] = -start
-        plain["z"][:, 1] = cells["z_y"] = -LAW["mu_s"] / LAW["sigma_0"]
+        plain["z"][:, 1] = cells[:, Z_Y] = -LAW["mu_s"] / LAW["sigma_0"]
     state = (0.2, 5e-4), (0.0, 0.0)
     for _ in range(40):
         free = [tuple(v * H - (0.0, load * H**2, 0.0)) for v in velocity]
@@ -140,10 +140,10 @@ def test_in_translation_a_patch_is_an_ellipsoid(pressure, start, load):
 def test_a_pad_without_normal_force_takes_no_part():
     array, cells = pads(2, r=0.01, **LAW), patches("uniform", 5)
     array["normal"] = 4.0, 0.0
-    cells["z_x"] = 1e-7
+    cells[:, Z_X] = 1e-7
     alone, own = array[:1].copy(), cells[:1].copy()
     state = (0.2, 5e-4), (0.01, 0.0), (1e-5, 2e-5, 1e-4), (0.0, 0.0, 0.0), H
     assert step_pads(array, cells, *state) == step_pads(alone, own, *state)
     np.testing.assert_array_equal(cells[0], own[0])
     np.testing.assert_array_equal(array["wrench"][1], 0.0)
-    np.testing.assert_array_equal(cells["z_x"][1], 0.0)
+    np.testing.assert_array_equal(cells[1, Z_X], 0.0)

@@ -71,7 +71,7 @@ def test_a_configuration_may_choose_the_model(make, env_id):
 
 
 def test_the_number_of_cells_is_the_configured_one(make):
-    sizes = [make(**PATCH, config={"contact": {"cells": n}})._loop.plant.cells.shape[2] for n in (5, 21)]
+    sizes = [make(**PATCH, config={"contact": {"cells": n}})._loop.plant.cells.shape[-1] for n in (5, 21)]
     assert sizes[0] <= 25 < 21**2 / 2 < sizes[1] <= 21**2
 
 
