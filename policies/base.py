@@ -24,18 +24,19 @@ class ObservationIndex:
     Args:
         task_name: As `slipgym.tasks.find` takes it; None for the sensor part that all tasks share.
         config: The environment's configuration.
-        action_mode: The environment's; those that command the wrist observe it.
+        action_mode: The environment's, None for the task's own; those that command the wrist observe it.
 
     Raises:
         ValueError: There is no such task.
     """
 
-    def __init__(self, task_name: str | None, config: Config, action_mode: str = "grip_force") -> None:
+    def __init__(self, task_name: str | None, config: Config, action_mode: str | None = None) -> None:
         self.task_name, self.action_mode = task_name, action_mode
         if task_name is None:
             columns = layout.sensor_columns(config)
         else:
-            columns = layout.columns(config, find(task_name), "true", action_mode)
+            self.action_mode = action_mode or find(task_name).action_mode
+            columns = layout.columns(config, find(task_name), "true", self.action_mode)
         self._at = {column.name: k for k, column in enumerate(columns)}
 
     def __getitem__(self, name: str) -> int:

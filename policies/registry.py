@@ -8,11 +8,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from estimator.reference import is_reference, referenced
+from policies.learned import LearnedPolicy, shipped
 
 _CLASSES = {
     "rotational_slip": "policies.rotational_slip:RotationalSlipPolicy",
     "hinge": "policies.hinge:HingePolicy",
     "constant_force": "policies.constant_force:ConstantForcePolicy",
+    "planar_slip": "policies.planar_slip:PlanarSlipPolicy",
     "hold": "policies.hold:HoldPolicy",
     "linear_slip": "policies.linear_slip:LinearSlipPolicy",
 }
@@ -41,8 +43,25 @@ class Policy(Protocol):
 
 
 def names() -> list[str]:
-    """Names that `make` knows."""
-    return sorted(_CLASSES)
+    """Names that `make` knows: controllers, and the learned policies that come with slipgym."""
+    return sorted({*_CLASSES, *shipped()})
+
+
+def is_controller(name: str) -> bool:
+    """Whether a name stands for a class, as `find` takes it; the others are learned."""
+    return name in _CLASSES or is_reference(name)
+
+
+def modes(policy: Any) -> dict[str, Any]:
+    """Keyword arguments that an environment for a policy needs.
+
+    Args:
+        policy: Anything with a `predict`; it may have `modes`, a mapping of them, or an `action_mode`.
+    """
+    own = getattr(policy, "modes", None)
+    if own is None and hasattr(policy, "action_mode"):
+        own = {"action_mode": policy.action_mode}
+    return dict(own or {})
 
 
 def find(name: str) -> type[Policy]:
@@ -68,31 +87,43 @@ def make(name: str, **parameters: Any) -> Policy:
     """Makes a policy.
 
     Args:
-        name: As for `find`.
-        **parameters: Arguments of the policy's class.
+        name: As for `find`, or that of a learned policy that comes with slipgym.
+        **parameters: Arguments of the policy's class; learned policies have none.
 
     Raises:
         ValueError: The name or a parameter is unknown, or a value is not allowed.
     """
+    if name in shipped():
+        _refuse(name, parameters, [])
+        return LearnedPolicy(shipped()[name])
     policy = find(name)
-    valid = list(inspect.signature(policy).parameters)
-    for parameter in parameters:
-        if parameter not in valid:
-            raise ValueError(f"unknown parameter {parameter!r} of policy {name!r}; valid: {', '.join(valid)}")
+    _refuse(name, parameters, list(inspect.signature(policy).parameters))
     return policy(**parameters)
 
 
-def load(path: str | os.PathLike[str]) -> Policy:
-    """Loads a trained policy.
+def load(which: str | os.PathLike[str], **parameters: Any) -> Policy:
+    """Loads a policy; nothing that lies in its files is executed.
 
     Args:
-        path: Where it was saved.
+        which: One of `names()`, or the folder of a learned policy (docs/policy_files.md).
+        **parameters: As for `make`.
 
     Raises:
-        FileNotFoundError: There is nothing at the path.
-        ValueError: What lies there is not a policy that this version can load.
+        FileNotFoundError: It is no name, and there is nothing at the path.
+        ValueError: What lies there is not a policy that this version can load, or not whole; or a
+            parameter is unknown.
     """
-    if not Path(path).exists():
+    if which in names() or (isinstance(which, str) and is_reference(which)):
+        return make(str(which), **parameters)
+    if not Path(which).exists():
         known = ", ".join(names())
-        raise FileNotFoundError(f"no policy at {os.fspath(path)!r}; policies.make knows by name: {known}")
-    raise ValueError(f"{os.fspath(path)!r} is not a policy that this version of slipgym can load")
+        raise FileNotFoundError(f"no policy at {os.fspath(which)!r}; policies.make knows by name: {known}")
+    _refuse(os.fspath(which), parameters, [])
+    return LearnedPolicy(which)
+
+
+def _refuse(name: str, parameters: dict[str, Any], valid: list[str]) -> None:
+    for parameter in parameters:
+        if parameter not in valid:
+            known = ", ".join(valid) or "none, it is learned"
+            raise ValueError(f"unknown parameter {parameter!r} of policy {name!r}; valid: {known}")

@@ -14,7 +14,8 @@ Examples:\n
   python scripts/evaluate.py my_experiment.yaml --seed 1 --output /tmp/runs
 \n
 An experiment is a YAML file; configs/experiments/ holds those that come with slipgym (linear_slip,
-rotational_slip, hinge, hold, demo), and docs/evaluation.md says what their keys mean and what a run writes.
+rotational_slip, hinge, planar_slip, hold, demo), and docs/evaluation.md says what their keys mean and what
+a run writes.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 

@@ -15,6 +15,7 @@ TASK_MODULES = {
     "slipgym/LinearSlip-v0": "slipgym.tasks.linear_slip",
     "slipgym/RotationalSlip-v0": "slipgym.tasks.rotational_slip",
     "slipgym/Hinge-v0": "slipgym.tasks.hinge",
+    "slipgym/PlanarSlip-v0": "slipgym.tasks.planar_slip",
     "slipgym/Hold-v0": "slipgym.tasks.hold",
 }
 """Id -> module that holds its TASK. A task that comes with slipgym is one such module and its row here."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
@@ -35,21 +36,27 @@ class _Spelled(Frozen):
 
 
 class PolicyChoice(_Spelled):
-    """A policy of `policies.make`."""
+    """A policy of `policies.load`."""
 
-    name: str = Field(description="Its name; one of your own as module:class [-]")
+    name: str = Field(description="Its name, the folder of a learned one, or module:class [-]")
     parameters: Mapping[str, Any] = Field(default={}, description="Its parameters [-]")
     label: str = Field(default="", description="How tables and figures call it; empty: by its name [-]")
 
     @model_validator(mode="after")
     def _exists(self) -> Self:
-        policies.find(self.name)
+        if Path(self.name).is_dir():
+            policies.load(self.name, **self.parameters)
+        elif policies.is_controller(self.name):
+            policies.find(self.name)
+        elif self.name not in policies.names():
+            message = unknown("policy", self.name, policies.names())
+            raise ValueError(f"{message}; or the folder of a learned one, or module:class")
         return self
 
     @property
     def title(self) -> str:
         """How tables and figures call it."""
-        return self.label or self.name
+        return self.label or Path(self.name).name
 
 
 class FrictionChoice(_Spelled):

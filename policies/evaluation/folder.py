@@ -6,16 +6,13 @@ import importlib.metadata
 import json
 import os
 import platform
-import shutil
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 
 import yaml
 
 from policies.evaluation.experiment import Experiment
+from policies.whole import filled_in_place as filled_in_place
 
 _PACKAGES = (
     "slipgym",
@@ -43,29 +40,6 @@ def stamped(output: str | os.PathLike[str], name: str) -> Path:
     return Path(output).expanduser().resolve() / f"{name}__{stamp}"
 
 
-@contextmanager
-def filled_in_place(path: Path) -> Iterator[Path]:
-    """Gives a temporary folder to fill that takes its place in the end; an error leaves nothing behind.
-
-    Args:
-        path: Where the folder shall appear.
-
-    Raises:
-        FileExistsError: Something is there already.
-    """
-    if path.exists():
-        raise FileExistsError(f"{path} exists already")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = Path(tempfile.mkdtemp(prefix=".partial-", dir=path.parent))
-    try:
-        yield partial
-        partial.chmod(0o777 & ~_umask())
-        partial.rename(path)
-    except BaseException:
-        shutil.rmtree(partial, ignore_errors=True)
-        raise
-
-
 def write_origin(experiment: Experiment, folder: Path) -> None:
     """Writes where results come from: the experiment, the environment's configuration, the versions."""
     documents = {"experiment": experiment, "environment": experiment.environment_config()}
@@ -89,9 +63,3 @@ def versions() -> dict[str, str | None]:
         except importlib.metadata.PackageNotFoundError:
             found[package] = None
     return found
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -85,6 +85,20 @@ def measure_hinge(recording: Recording) -> dict[str, Any]:
     }
 
 
+def measure_planar_slip(recording: Recording) -> dict[str, Any]:
+    """How far from its target the object ended."""
+    target, final = recording.reference[-1], recording.slip[-1]
+    turn = math.degrees(final[2] - target[2])
+    return {
+        "final_error_mm": 1e3 * math.hypot(*(final[:2] - target[:2])),
+        "final_error_deg": turn,
+        "final_error_abs_deg": abs(turn),
+        "target_x_mm": 1e3 * target[0].item(),
+        "target_y_mm": 1e3 * target[1].item(),
+        "target_theta_deg": math.degrees(target[2]),
+    }
+
+
 def measure_hold(recording: Recording) -> dict[str, Any]:
     """How far the object slipped, and how the grip force compares with the least that could do."""
     needed = recording.needed_force
@@ -99,6 +113,7 @@ def measure_hold(recording: Recording) -> dict[str, Any]:
 
 _FINAL = Metric("final_error_abs_mm", "final error, size [mm]", brief=True)
 _FINAL_ANGLE = Metric("final_error_abs_deg", "final error, size [°]", brief=True)
+_DISTANCE = Metric("final_error_mm", "final distance to the target [mm]", brief=True)
 _SLIDE = Tolerance("slide_tolerance", "tolerance_mm", 1e3)
 
 MEASURES: dict[str, Measures] = {
@@ -142,6 +157,15 @@ MEASURES: dict[str, Measures] = {
             FORCE,
         ),
         SLIP,
+    ),
+    "PlanarSlip": Measures(
+        measure_planar_slip,
+        (
+            Tolerance("tolerance", "tolerance_mm", 1e3),
+            Tolerance("angle_tolerance", "tolerance_deg", math.degrees(1.0)),
+        ),
+        (SUCCESS, DROPPED, _DISTANCE, _FINAL_ANGLE, FORCE),
+        _DISTANCE,
     ),
     "Hold": Measures(
         measure_hold,

@@ -21,7 +21,7 @@ class Recording:
     """True slip (x, y, theta), (T, 3) [m, m, rad]; gravity pulls along -y and turns along -theta."""
     reference: np.ndarray
     """Position, velocity, acceleration the task asks for, (T, 3) [m or rad, per s, per s^2]; in Hinge those
-    of the wrist's pitch."""
+    of the wrist's pitch, in PlanarSlip the target (x, y, theta) [m, m, rad]."""
     grip_force: np.ndarray
     """Of each finger, (T, 2) [N]."""
     needed_force: np.ndarray

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from policies.evaluation.experiment import Experiment
 from policies.evaluation.metrics import measure, measures
 from policies.evaluation.plan import Trial
 from policies.evaluation.recording import Recorder, Recording
+from policies.learned import LearnedPolicy
 from slipgym.tasks import find
 
 
@@ -73,11 +74,9 @@ def run_trial(experiment: Experiment, trial: Trial) -> Result:
 def record(experiment: Experiment, trial: Trial) -> Recording:
     """Runs an episode and keeps its steps."""
     task = find(experiment.task)  # first of all: one of your own registers itself, in this process too
-    parameters = dict(trial.policy.parameters)
-    if experiment.config:
-        parameters.setdefault("config", dict(experiment.config))
-    policy = policies.make(trial.policy.name, **parameters)
-    env = gym.make(
+    policy = _policy(experiment, trial)
+    modes = policies.modes(policy)
+    env: Any = gym.make(
         f"slipgym:{task.id}",
         friction_source=trial.friction.source,
         estimator=dict(trial.friction.estimator),
@@ -86,20 +85,38 @@ def record(experiment: Experiment, trial: Trial) -> Recording:
         randomization=experiment.randomization,
         config=dict(experiment.config),
         disable_env_checker=True,
+        **modes,
     )
-    recorder = Recorder(ObservationIndex(experiment.task, experiment.environment_config()))
+    index = ObservationIndex(experiment.task, experiment.environment_config(), modes.get("action_mode"))
+    recorder = Recorder(index)
     try:
+        if isinstance(policy, LearnedPolicy):
+            policy.check(env)
         observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
         recorder.begin(info)
         state, over = None, False
         while not over:
             action, state = policy.predict(observation, state=state)
             observation, reward, terminated, truncated, info = env.step(action)
-            recorder.add(observation, float(reward), info)
+            recorder.add(_present(env, observation), float(reward), info)
             over = terminated or truncated
     finally:
         env.close()
     return recorder.finish()
+
+
+def _policy(experiment: Experiment, trial: Trial) -> policies.Policy:
+    """Who acts; a controller gets the environment's configuration, a learned policy is checked against it."""
+    parameters = dict(trial.policy.parameters)
+    if experiment.config and policies.is_controller(trial.policy.name):
+        parameters.setdefault("config", dict(experiment.config))
+    return policies.load(trial.policy.name, **parameters)
+
+
+def _present(env: Any, observation: Any) -> np.ndarray:
+    """The newest of the observations, without privileged columns."""
+    newest = observation["policy"] if isinstance(observation, Mapping) else observation
+    return newest[-len(env.unwrapped.columns) :]
 
 
 def _task(experiment: Experiment) -> Any:

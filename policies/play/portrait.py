@@ -38,9 +38,10 @@ def portrait(env_id: str, material: str, seed: int = 0) -> np.ndarray:
     Returns:
         (480, 720, 3) uint8.
     """
-    env: Any = gym.make(env_id, render_mode="rgb_array", material=material).unwrapped
+    policy = policies.make(own_policy(env_id.removeprefix("slipgym/").rpartition("-")[0]))
+    modes = policies.modes(policy)
+    env: Any = gym.make(env_id, render_mode="rgb_array", material=material, **modes).unwrapped
     try:
-        policy = policies.make(own_policy(env.task.name))
         observation, _ = env.reset(seed=seed)
         state, over = None, False
         steps = int(env._loop.episode["steps"][0])

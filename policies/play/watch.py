@@ -15,6 +15,7 @@ import numpy as np
 from tqdm import tqdm
 
 import policies
+from policies.learned import LearnedPolicy
 from policies.play.film import Film
 from policies.play.portrait import own_policy
 from policies.registry import Policy
@@ -62,6 +63,8 @@ class Keyboard:
         config: Of the environment.
         force: Grip force per finger at the start [N].
     """
+
+    action_mode = "grip_force"
 
     def __init__(self, window: Window, config: Config, force: float) -> None:
         self._window, self._gripper, self._start = window, config.gripper, force
@@ -126,10 +129,13 @@ def watch(
     outcomes = []
     with ExitStack() as stack:
         player: Policy | None = None if policy == KEYBOARD else _policy(policy or own_policy(task))
+        keywords = {**policies.modes(player or Keyboard), **keywords}
         env: Any = gym.make(
             f"slipgym:{env_id}", render_mode="rgb_array", disable_env_checker=True, **keywords
         ).unwrapped
         stack.callback(env.close)
+        if isinstance(player, LearnedPolicy):
+            player.check(env)
         if video is None:
             window = Window(f"slipgym {task}", (WIDTH, HEIGHT))
             stack.callback(window.close)

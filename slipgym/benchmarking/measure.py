@@ -102,7 +102,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
         watches.watch("estimator", loops, "combine")
         watches.watch("observation", loops, "observe")
         watches.watch("observation", env._observer, "read")
-        watches.watch("info", env, "_info")
+        watches.watch("info", env._information, "one")
         task = loop.task
         timed = {name: watches.timed("task", getattr(task, name)) for name in ("plan", "judge")}
         loop.task = dataclasses.replace(task, **timed)

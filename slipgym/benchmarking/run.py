@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from slipgym.benchmarking import measure, report
+from slipgym.benchmarking.batch import batch
 
 
 def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
@@ -24,6 +25,7 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
         *measure.distributed(player, env_id, max(3, pairs // 5)),
         *measure.contact(),
         *measure.patch(max(3, pairs)),
+        *batch(player, env_id, max(3, pairs // 10)),
     ]
     player.env.close()
     print(report.table(figures))

@@ -19,6 +19,7 @@ __all__ = [
     "ObjectConfig",
     "Overrides",
     "PhysicsConfig",
+    "PlanarSlipConfig",
     "Randomization",
     "Ranges",
     "SensorsConfig",

@@ -71,7 +71,7 @@ _ARGUMENTS = {
     "contact": 'friction model of the pads: or `"distributed"` (see `contact.pressure`)',
     "sensors": 'sensor preset: `"realistic"` or `"ideal"`',
     "material": 'name of a material, or `"random"` for another in every episode',
-    "action_mode": "what an action means; see Action Space",
+    "action_mode": 'what an action means, see Action Space; `None`: the task\'s own, `"{mode}"`',
     "observation_mode": 'how an observation is laid out: or `"sensor"`, `"dict"`',
     "history": "how many earlier observations come along with each",
     "randomization": 'what else is drawn: `"train"`, `"eval_ood"`, a file or a mapping',
@@ -121,7 +121,7 @@ def docstring(task: Task) -> str:
         "Rewards": _joined(_rewards(task), own.get("Rewards", "")),
         "Starting State": own.get("Starting State", ""),
         "Episode End": own.get("Episode End", _END),
-        "Arguments": _arguments(),
+        "Arguments": _arguments(task),
         "Reset Options": _options(task),
         "Info": _INFO.format(reference=reference),
         "Version History": own.get("Version History", ""),
@@ -147,7 +147,7 @@ def _action(config: Config) -> str:
 
 
 def _observation(config: Config, task: Task) -> str:
-    named = columns(config, task, "estimated")
+    named = columns(config, task, "estimated", task.action_mode)
     rows = [
         (str(k), f"`{c.name}`: {c.meaning}", f"{c.low:.4g}", f"{c.high:.4g}", c.unit)
         for k, c in enumerate(named)
@@ -164,10 +164,11 @@ def _rewards(task: Task) -> str:
     return f"{head}\n\n{_table(('Term', 'Scale', 'Value before scaling'), rows)}"
 
 
-def _arguments() -> str:
+def _arguments(task: Task) -> str:
     parameters = inspect.signature(SlipEnv).parameters
     defaults = {name: repr(parameters[name].default).replace("'", '"') for name in _ARGUMENTS}
-    rows = [(f"`{name}`", f"`{defaults[name]}`", meaning) for name, meaning in _ARGUMENTS.items()]
+    told = {**_ARGUMENTS, "action_mode": _ARGUMENTS["action_mode"].format(mode=task.action_mode)}
+    rows = [(f"`{name}`", f"`{defaults[name]}`", meaning) for name, meaning in told.items()]
     return _table(("Argument", "Default", "Meaning"), rows)
 
 

@@ -55,7 +55,7 @@ class Setup:
         contact: str = "ellipsoid",
         sensors: str = "realistic",
         material: str = "random",
-        action_mode: str = "grip_force",
+        action_mode: str | None = None,
         observation_mode: str = "flat",
         history: int = 0,
         randomization: str | os.PathLike[str] | Mapping[str, Any] = "none",
@@ -63,7 +63,7 @@ class Setup:
         config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
     ) -> None:
         one_of("contact", contact, ("ellipsoid", "distributed"))
-        one_of("action_mode", action_mode, ACTION_MODES)
+        action_mode = one_of("action_mode", action_mode or task.action_mode, ACTION_MODES)
         self.config = load(config, sensors, contact)
         self.randomization = load_randomization(randomization)
         self.material = one_of("material", material, ("random", *self.config.materials))

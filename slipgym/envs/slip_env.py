@@ -36,7 +36,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         sensors: Sensor preset, "realistic" or "ideal".
         material: Name of a material, or "random" for another in every episode.
         action_mode: What an action means: "grip_force", "grip_force_pitch", "grip_force_wrist" or
-            "force_increment" (see docs/modes.md).
+            "force_increment" (see docs/modes.md); None: the task's own.
         observation_mode: "flat", "sensor" (without the friction part) or "dict" (groups "policy" and
             "privileged").
         history: How many earlier observations come along with each.
@@ -67,7 +67,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         contact: str = "ellipsoid",
         sensors: str = "realistic",
         material: str = "random",
-        action_mode: str = "grip_force",
+        action_mode: str | None = None,
         observation_mode: str = "flat",
         history: int = 0,
         randomization: str | os.PathLike[str] | Mapping[str, Any] = "none",

@@ -67,7 +67,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         contact: str = "ellipsoid",
         sensors: str = "realistic",
         material: str = "random",
-        action_mode: str = "grip_force",
+        action_mode: str | None = None,
         observation_mode: str = "flat",
         history: int = 0,
         randomization: str | os.PathLike[str] | Mapping[str, Any] = "none",

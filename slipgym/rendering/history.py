@@ -50,7 +50,7 @@ class History:
         """Keep the present."""
         loop, i = self._loop, self._row
         mu_s, mu_c, _, support_s, support_c, _ = loop.estimated[i]
-        slip, reference = loop.plant.world["slip"][i], loop.episode["reference"][i, 0]
+        slip, reference = loop.plant.world["slip"][i], loop.episode["reference"][i, self._motion.entry]
         row = self.rows[self.step]
         row[:2] = loop.plant.fingers["force"][i]
         row[2], row[3] = self._motion.path(slip), self._motion.target(reference)

@@ -21,6 +21,8 @@ class Motion:
     """Its share of the slip displacement (x, y, theta); None: the distance from the grasp."""
     sign: float = 1.0
     """It should be this times the episode's reference position."""
+    entry: int = 0
+    """Which entry of the episode's reference is its position."""
     goal: str = ""
     """Column of the task's observation that says where the reference ends; none if it stays at 0."""
 

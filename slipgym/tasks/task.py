@@ -70,6 +70,8 @@ class Task:
     """Compiled, before a control step: (episodes, worlds) sets wrist motion and disturbance."""
     judge: Callable[..., None]
     """Compiled, after a control step: (episodes, worlds, fingers, columns)."""
+    action_mode: str = "grip_force"
+    """Of its environment, unless another is asked for."""
     motion: Motion = field(default_factory=Motion)
     """What pictures, tables and figures show of the object's slip."""
     page: str | None = None

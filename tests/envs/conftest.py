@@ -22,11 +22,11 @@ def env_id(request) -> str:
 
 @pytest.fixture
 def make() -> Iterator[Callable[..., gym.Env]]:
-    """Makes bare environments and closes them after the test."""
+    """Makes bare environments, acted on by the grip force alone, and closes them after the test."""
     made = []
 
     def factory(env_id: str = IDS[0], **arguments: Any) -> gym.Env:
-        env = gym.make(env_id, **arguments).unwrapped
+        env = gym.make(env_id, **{"action_mode": "grip_force", **arguments}).unwrapped
         made.append(env)
         return env
 

@@ -18,7 +18,11 @@ def main() -> None:
     parser.add_argument("--contact", default="ellipsoid")
     parser.add_argument("--randomization", default="none")
     arguments = parser.parse_args()
-    made = {"contact": arguments.contact, "randomization": arguments.randomization}
+    made = {
+        "action_mode": "grip_force",
+        "contact": arguments.contact,
+        "randomization": arguments.randomization,
+    }
     if arguments.disturbed:
         others = [gym.make(arguments.env_id, **made) for _ in range(3)]
         others[0].close()

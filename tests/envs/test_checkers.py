@@ -1,6 +1,7 @@
 """Gymnasium's and Stable-Baselines3's checkers find nothing; warnings are errors here."""
 
 import json
+import math
 
 import gymnasium as gym
 import pytest
@@ -46,4 +47,4 @@ def test_make_needs_no_import(python, env_id):
         f"import gymnasium as gym\nenv = gym.make('slipgym:{env_id}')\nenv.reset(seed=0)\n"
         "print(env.step(env.action_space.sample())[1])\nenv.close()",
     )
-    assert float(printed) > 0.0
+    assert math.isfinite(float(printed))

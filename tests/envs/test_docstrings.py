@@ -29,7 +29,7 @@ SECTIONS = [
 
 @pytest.fixture(params=ENVIRONMENTS)
 def env(request, make):
-    return make(request.param)
+    return make(request.param, action_mode=None)
 
 
 def section(env, title: str) -> str:

@@ -11,6 +11,7 @@ ROOM = {  # from pad centre to edge, less the pad's radius [m]
     "slipgym/LinearSlip-v0": 0.065,
     "slipgym/RotationalSlip-v0": 0.005,
     "slipgym/Hinge-v0": 0.010,
+    "slipgym/PlanarSlip-v0": 0.065,
     "slipgym/Hold-v0": 0.065,
 }
 SHAPES = {
@@ -82,7 +83,7 @@ def test_the_largest_force_holds_and_the_episode_truncates_by_itself(make, env_i
 
 
 def test_an_outer_time_limit_cuts_earlier(env_id):
-    env = gym.make(env_id, max_episode_steps=10)
+    env = gym.make(env_id, max_episode_steps=10, action_mode="grip_force")
     env.reset(seed=0)
     flags = [env.step(HARDEST)[2:4] for _ in range(10)]
     assert flags == [(False, False)] * 9 + [(False, True)]
@@ -158,7 +159,7 @@ def test_frame_skip_stops_at_a_drop(make, env_id):
     assert terminated
     assert info["reward_terms"]["drop"] == -100.0
     assert info["time"] < 49 / 120
-    assert reward > -110.0
+    assert reward > -200.0  # one drop, not two
 
 
 def test_the_friction_source_fills_the_last_columns(make, env_id):

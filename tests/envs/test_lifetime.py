@@ -80,7 +80,7 @@ GROWTH = """
     def resident():
         gc.collect()
         return psutil.Process().memory_info().rss / 2**20
-    env = gym.make("{env_id}").unwrapped
+    env = gym.make("{env_id}", action_mode="grip_force").unwrapped
     def use(times):
         for k in range(times):
             {body}

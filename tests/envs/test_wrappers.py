@@ -15,7 +15,7 @@ def actions(steps: int, envs: int) -> np.ndarray:
 
 @pytest.mark.parametrize("vector", [SyncVectorEnv, partial(AsyncVectorEnv, context="spawn")])
 def test_vector_environments_equal_single_ones(make, env_id, vector):
-    envs = vector([partial(gym.make, f"slipgym:{env_id}") for _ in range(2)])
+    envs = vector([partial(gym.make, f"slipgym:{env_id}", action_mode="grip_force") for _ in range(2)])
     singles = [make(env_id) for _ in range(2)]
     options = {"duration": 1.0}
     observations, _ = envs.reset(seed=[3, 4], options=options)
@@ -31,7 +31,7 @@ def test_vector_environments_equal_single_ones(make, env_id, vector):
 
 
 def test_vector_environments_go_on_after_an_episode(env_id):
-    envs = SyncVectorEnv([partial(gym.make, env_id)] * 2)
+    envs = SyncVectorEnv([partial(gym.make, env_id, action_mode="grip_force")] * 2)
     envs.reset(seed=0, options={"duration": 0.5})
     ended = np.zeros(2, dtype=int)
     for _ in range(300):
@@ -43,7 +43,7 @@ def test_vector_environments_go_on_after_an_episode(env_id):
 
 
 def test_episode_statistics(env_id):
-    env = RecordEpisodeStatistics(gym.make(env_id))
+    env = RecordEpisodeStatistics(gym.make(env_id, action_mode="grip_force"))
     env.reset(seed=0, options={"duration": 0.5})
     total, over = 0.0, False
     while not over:
@@ -57,7 +57,7 @@ def test_episode_statistics(env_id):
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 def test_record_video_writes_a_film(env_id, tmp_path):
     pytest.importorskip("moviepy")
-    bare = gym.make(env_id, render_mode="rgb_array", frame_skip=4)
+    bare = gym.make(env_id, render_mode="rgb_array", frame_skip=4, action_mode="grip_force")
     env = RecordVideo(bare, str(tmp_path / "films"), disable_logger=True)
     assert env.metadata["render_fps"] == 30
     env.reset(seed=0, options={"duration": 0.5})

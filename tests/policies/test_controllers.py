@@ -7,13 +7,14 @@ import policies
 from policies.base import Columns, ObservationIndex
 from policies.sensing import Caution
 from slipgym.config import load
-from slipgym.envs import HingeEnv, HoldEnv, LinearSlipEnv, RotationalSlipEnv
+from slipgym.envs import HingeEnv, HoldEnv, LinearSlipEnv, PlanarSlipEnv, RotationalSlipEnv
 
 SOURCES = ("estimated", "true", "nominal")
 CONTROLLERS = [
     ("linear_slip", LinearSlipEnv),
     ("rotational_slip", RotationalSlipEnv),
     ("hinge", HingeEnv),
+    ("planar_slip", PlanarSlipEnv),
     ("hold", HoldEnv),
 ]
 
@@ -139,6 +140,7 @@ def test_without_friction_part_the_controller_says_what_it_needs(name, env_class
         ("rotational_slip", {"smoothing": -0.1}),
         ("hinge", {"smoothing": 1.0}),
         ("hinge", {"k_min": 4.0}),
+        ("planar_slip", {"wrist_acceleration": 0.0}),
         ("hold", {"decay": -0.1}),
         ("hold", {"gain": 1}),
     ],
@@ -176,3 +178,26 @@ def test_hinge_without_its_loose_start_swings_up():
     info, _ = play(env, policies.make("hinge", k_stick=2.0), 0, duration=2.0)
     env.close()
     assert not info["is_success"]
+
+
+@pytest.mark.parametrize("source", ["estimated", "true"])
+@pytest.mark.parametrize(("heading", "turn"), [(0.8, 0.5), (-0.3, -0.25)])
+def test_planar_slip_arrives(source, heading, turn):
+    env = PlanarSlipEnv(friction_source=source, material="case")
+    info, _ = play(env, policies.make("planar_slip"), 4, slide=0.014, heading=heading, turn=turn)
+    env.close()
+    assert info["is_success"]
+
+
+def test_planar_slip_follows_the_grasped_point():
+    """Travel is the sum of velocities at the pad centre; what it has slid turns with the object."""
+    index = ObservationIndex("PlanarSlip", load(), "grip_force_pitch")
+    policy = policies.make("planar_slip")
+    state = policy.initial_state(1)
+    for travel in [(0.0, -0.01, 0.0), *((0.0, -0.01, angle) for angle in np.linspace(0.0, 0.5, 200))]:
+        row = np.zeros((1, 30))
+        for name, value in zip(("travel_x", "travel_y", "travel_theta"), travel, strict=True):
+            row[0, index[name]] = value
+        row[0, [index["mu_c"], index["r"], index["support_mu_c"], index["support_r"]]] = 0.4, 0.005, 1.0, 1.0
+        _, state = policy.control(Columns(row, index), state)
+    np.testing.assert_allclose(state[0, :2], [0.01 * np.sin(0.5), -0.01 * np.cos(0.5)], rtol=2e-3)

@@ -90,6 +90,19 @@ def test_hinge_measures():
     assert row["largest_slip_mm"] == pytest.approx(0.5)
 
 
+def test_planar_slip_measures():
+    """0.5 mm and 2 degrees beside a target that is reached at the end alone."""
+    slip, target = np.zeros((10, 3)), np.array([0.01, -0.004, math.radians(-20.0)])
+    slip[-1] = target + np.array([0.0003, -0.0004, math.radians(-2.0)])
+    row = measure(recording(slip=slip, reference=np.tile(target, (10, 1))), "PlanarSlip")
+    assert row["final_error_mm"] == pytest.approx(0.5)
+    assert row["final_error_deg"] == pytest.approx(-2.0)
+    assert row["final_error_abs_deg"] == pytest.approx(2.0)
+    assert [row["target_x_mm"], row["target_y_mm"], row["target_theta_deg"]] == pytest.approx(
+        [10.0, -4.0, -20.0]
+    )
+
+
 def test_tolerances_are_options_of_their_task():
     for name, measures in MEASURES.items():
         for limit in measures.tolerances:

@@ -18,13 +18,15 @@ def env_id(request) -> str:
 
 @pytest.fixture
 def make() -> Iterator[Callable[..., Any]]:
-    """Makes bare environments and closes them after the test."""
+    """Makes bare environments, acted on by the grip force alone, and closes them after the test."""
     made = []
 
     def factory(
         env_id: str = "slipgym/LinearSlip-v0", render_mode: str = "rgb_array", **arguments: Any
     ) -> Any:
-        env = gym.make(env_id, render_mode=render_mode, **arguments).unwrapped
+        env = gym.make(
+            env_id, render_mode=render_mode, **{"action_mode": "grip_force", **arguments}
+        ).unwrapped
         made.append(env)
         return env
 

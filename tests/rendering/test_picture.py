@@ -156,7 +156,7 @@ def test_without_a_render_mode_there_is_no_picture_and_nothing_is_kept(make):
 
 
 def test_collected_and_observed_pictures(env_id):
-    env = gym.make(env_id, render_mode="rgb_array_list", frame_skip=4)
+    env = gym.make(env_id, render_mode="rgb_array_list", frame_skip=4, action_mode="grip_force")
     env.reset(seed=0)
     for _ in range(3):
         env.step(np.float32([0.0]))

@@ -69,7 +69,9 @@ def test_the_checker_passes_with_and_without_a_screen(make, env_id, hidden_scree
 
 
 def test_gymnasiums_own_window(env_id, hidden_screen):
-    env = gym.wrappers.HumanRendering(gym.make(env_id, render_mode="rgb_array", frame_skip=4))
+    env = gym.wrappers.HumanRendering(
+        gym.make(env_id, render_mode="rgb_array", frame_skip=4, action_mode="grip_force")
+    )
     env.reset(seed=0)
     env.step(np.float32([0.0]))
     assert env.render() is None

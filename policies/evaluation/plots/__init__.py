@@ -10,9 +10,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from policies.evaluation.frames import groups
+from policies.evaluation.plots.allowed import plot_allowed
 from policies.evaluation.plots.errors import plot_errors
 from policies.evaluation.plots.grip import plot_grip
-from policies.evaluation.plots.hinge import plot_hinge
 from policies.evaluation.plots.style import STYLE, styled
 from policies.evaluation.plots.tracking import plot_tracking
 from slipgym.tasks import Task, find
@@ -26,7 +26,22 @@ _OUTCOME: dict[str, tuple[str, Callable[[pd.DataFrame], Figure]]] = {
         "errors",
         partial(plot_errors, unit="deg", label="final error of the turn [°]; negative: too short"),
     ),
-    "Hinge": ("outcome", plot_hinge),
+    "Hinge": (
+        "outcome",
+        partial(
+            plot_allowed,
+            across=("largest_slip_mm", "largest slip [mm]"),
+            up=("largest_tilt_deg", "largest tilt [°]"),
+        ),
+    ),
+    "PlanarSlip": (
+        "outcome",
+        partial(
+            plot_allowed,
+            across=("final_error_mm", "final distance to the target [mm]"),
+            up=("final_error_abs_deg", "final error in theta, size [°]"),
+        ),
+    ),
     "Hold": ("grip", plot_grip),
 }
 """Task -> name and figure of how its trials ended, where it is not the final error alone."""

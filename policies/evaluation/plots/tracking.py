@@ -19,6 +19,7 @@ from slipgym.tasks import find
 from slipgym.tasks.motion import Motion
 
 _SLIP, _MU_C, _MU_S = STYLE.palette[:3]
+_TURN = STYLE.palette[3]
 _CORNER: dict[str, Any] = {"xycoords": "axes fraction", "ha": "right"}
 
 
@@ -114,6 +115,21 @@ def _tilt(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
         note(axes, 0.0, -tolerance, "tolerance", STYLE.muted, va="bottom")
 
 
+def _away(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
+    time = values(steps, "time")
+    x, y = (1e3 * values(steps, f"slip_{axis}") - trial[f"target_{axis}_mm"] for axis in ("x", "y"))
+    turn = np.abs(np.degrees(values(steps, "slip_theta")) - trial["target_theta_deg"])
+    for path, unit, colour in ((np.hypot(x, y), "mm", _SLIP), (turn, "deg", _TURN)):
+        axes.plot(time, path / trial[f"tolerance_{unit}"], color=colour)
+    axes.axhspan(0.0, 1.0, color=STYLE.band, linewidth=0)
+    error = f"final error {trial['final_error_mm']:.2f} mm, {trial['final_error_abs_deg']:.1f}°"
+    note(axes, 0.98, 0.9, "dropped" if trial["dropped"] else error, STYLE.ink, **_CORNER)
+    if first:
+        axes.set_ylabel("error / tolerance [–]")
+        note(axes, 0.98, 0.74, "in (x, y)", _SLIP, **_CORNER)
+        note(axes, 0.98, 0.58, "in theta", _TURN, **_CORNER)
+
+
 def _force(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
     time, needed = values(steps, "time"), values(steps, "needed_force")
     axes.fill_between(time, needed, color=STYLE.band, linewidth=0)
@@ -143,6 +159,7 @@ _MOTION = {
     "LinearSlip": _linear_slip,
     "RotationalSlip": _rotational_slip,
     "Hinge": _tilt,
+    "PlanarSlip": _away,
     "Hold": _largest_slip,
 }
 """Task -> its panel of the object's motion, where it says more than the path."""

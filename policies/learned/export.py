@@ -1,0 +1,211 @@
+"""Between Stable-Baselines3's models and the files of policies. Needs the extra `train`."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from policies.learned import files
+from policies.learned.description import TRAINING, WEIGHTS, Critic, Description, Environment, Network
+from policies.learned.extract import ALGORITHMS, acting_tensors, algorithm_of, array, critic_of, network_of
+from policies.learned.fitting import column_of
+
+_PACKAGES = ("slipgym", "gymnasium", "numpy", "stable-baselines3", "sb3-contrib", "torch")
+
+
+def save(
+    model: Any,
+    path: str | os.PathLike[str],
+    environment: str,
+    arguments: Mapping[str, Any],
+    normalisation: Any = None,
+    command: str = "",
+    seeds: Sequence[int] = (),
+    training: bool = True,
+) -> Path:
+    """Writes a model as a policy's folder, whole or not at all.
+
+    Args:
+        model: PPO, SAC, TQC or RecurrentPPO with an "MlpPolicy" on observations that are vectors.
+        path: Where the folder shall appear.
+        environment: Id of the environment it was trained in, such as "slipgym/LinearSlip-v0".
+        arguments: Keyword arguments of that environment.
+        normalisation: The `VecNormalize` whose observations it was trained on; None without one.
+        command: What trained it, for the record.
+        seeds: Of the training, for the record.
+        training: Whether to keep all that training adapts, so that `build` can go on from it.
+
+    Raises:
+        FileExistsError: Something is there already.
+        ValueError: The model is of a kind that the format does not hold, or not of this environment.
+    """
+    algorithm, network, where = algorithm_of(model), network_of(model), described(environment, arguments)
+    for what, space, width in (
+        ("observation", model.observation_space, where["history"] + 1),
+        ("action", model.action_space, 1),
+    ):
+        shape = (width * len(where[what]),)
+        if space.shape != shape:
+            raise ValueError(f"the model's {what} has shape {space.shape}, that of {environment} {shape}")
+    weights, kept = acting_tensors(model), _all_tensors(model)
+    normalised = None
+    if normalisation is not None:
+        kept |= _moments("reward", normalisation.ret_rms)
+        if normalisation.norm_obs:
+            normalised = {"clip": float(normalisation.clip_obs), "epsilon": float(normalisation.epsilon)}
+            moments = _moments("observation", normalisation.obs_rms)
+            kept["observation.count"] = moments.pop("observation.count")
+            weights |= moments
+    description = {
+        "environment": where,
+        "network": network.model_dump(mode="json"),
+        "normalisation": normalised,
+        "origin": {
+            "algorithm": algorithm,
+            "command": command,
+            "steps": int(model.num_timesteps),
+            "seeds": list(seeds),
+            "versions": _versions(),
+            "critic": critic_of(model).model_dump(mode="json") if training else None,
+        },
+    }
+    return files.write(path, description, weights, kept if training else None)
+
+
+def build(path: str | os.PathLike[str], env: Any, **hyperparameters: Any) -> Any:
+    """Rebuilds the model that a policy was saved from, for more training.
+
+    Networks, critics and, in SAC and TQC, the tuned entropy coefficient are those saved; optimisers start
+    afresh. Observations that were normalised must be so again: see `normaliser`.
+
+    Args:
+        path: The policy's folder; needs its `training.safetensors`.
+        env: Environment of the model, as Stable-Baselines3 takes it.
+        **hyperparameters: Of the algorithm's class.
+
+    Raises:
+        ValueError: The folder is no policy, or its tensors are not exactly the model's.
+    """
+    import torch
+
+    description, kept = files.read(path, TRAINING)
+    _, weights = files.read(path, WEIGHTS)
+    name, source = description.origin.algorithm, Path(path) / TRAINING
+    algorithm = getattr(importlib.import_module(ALGORITHMS[name]), name)
+    policy = "MlpLstmPolicy" if description.network.memory else "MlpPolicy"
+    model = algorithm(policy, env, policy_kwargs=_policy_arguments(description), **hyperparameters)
+    tensors = {key: torch.tensor(value) for key, value in kept.items()}
+    state = {
+        key.removeprefix("policy."): value for key, value in tensors.items() if key.startswith("policy.")
+    }
+    try:
+        model.policy.load_state_dict(state, strict=True)
+    except RuntimeError as error:
+        raise ValueError(f"{source}: {error}") from error
+    for key, value in acting_tensors(model).items():
+        if not np.array_equal(value, weights[key]):
+            raise ValueError(f"{source}: {key!r} is not the one of {WEIGHTS}")
+    if "log_ent_coef" in tensors and getattr(model, "log_ent_coef", None) is not None:
+        model.log_ent_coef.data[:] = tensors["log_ent_coef"]
+    return model
+
+
+def normaliser(path: str | os.PathLike[str], env: Any, **options: Any) -> Any:
+    """A `VecNormalize` that goes on where that of the training ended.
+
+    Args:
+        path: The policy's folder; needs its `training.safetensors`.
+        env: The `VecEnv` to wrap.
+        **options: Further arguments of `VecNormalize`.
+
+    Raises:
+        ValueError: The folder is no policy, or was trained without.
+    """
+    from stable_baselines3.common.vec_env import VecNormalize
+
+    description, kept = files.read(path, TRAINING)
+    _, weights = files.read(path, WEIGHTS)
+    if "reward.count" not in kept:
+        raise ValueError(f"{os.fspath(path)} was trained without VecNormalize")
+    observed, tensors = description.normalisation, {**kept, **weights}
+    if observed is not None:
+        options = {"clip_obs": observed.clip, "epsilon": observed.epsilon, **options}
+    wrapped: Any = VecNormalize(env, norm_obs=observed is not None, **options)
+    for name, attribute in (("observation", "obs_rms"), ("reward", "ret_rms")):
+        if f"{name}.count" in kept:
+            moments = getattr(wrapped, attribute)
+            moments.mean, moments.var = tensors[f"{name}.mean"].copy(), tensors[f"{name}.var"].copy()
+            moments.count = float(tensors[f"{name}.count"])
+    return wrapped
+
+
+def described(environment: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """What policy.json says about an environment.
+
+    Raises:
+        ValueError: The id or an argument is not allowed.
+    """
+    env: Any = gym.make(f"slipgym:{environment}", disable_env_checker=True, **arguments).unwrapped
+    with env:
+        values = {
+            "id": environment,
+            "arguments": dict(arguments),
+            "rate": float(env.metadata["render_fps"]),
+            "history": int(arguments.get("history", 0)),
+            "observation": [column_of(column) for column in env.columns],
+            "action": [column_of(column) for column in env.action_columns],
+        }
+    return Environment.model_validate(values).model_dump(mode="json")
+
+
+def _all_tensors(model: Any) -> dict[str, np.ndarray]:
+    found = {f"policy.{name}": array(tensor) for name, tensor in model.policy.state_dict().items()}
+    if getattr(model, "log_ent_coef", None) is not None:
+        found["log_ent_coef"] = array(model.log_ent_coef)
+    return found
+
+
+def _moments(name: str, moments: Any) -> dict[str, np.ndarray]:
+    return {
+        f"{name}.{part}": np.asarray(getattr(moments, part), np.float64) for part in ("mean", "var", "count")
+    }
+
+
+def _policy_arguments(description: Description) -> dict[str, Any]:
+    """`policy_kwargs` of the model."""
+    import torch
+
+    network, critic = description.network, description.origin.critic
+    assert isinstance(network, Network)
+    assert isinstance(critic, Critic)
+    activations = {"tanh": torch.nn.Tanh, "relu": torch.nn.ReLU, "elu": torch.nn.ELU}
+    arguments: dict[str, Any] = {"activation_fn": activations[network.activation]}
+    if description.origin.algorithm in ("SAC", "TQC"):
+        arguments["net_arch"] = {"pi": list(network.layers), "qf": list(critic.layers)}
+        arguments["n_critics"] = critic.count
+    else:
+        arguments["net_arch"] = {"pi": list(network.layers), "vf": list(critic.layers)}
+    if description.origin.algorithm == "TQC":
+        arguments["n_quantiles"] = critic.quantiles
+    if network.memory is not None:
+        arguments |= {"lstm_hidden_size": network.memory.size, "n_lstm_layers": network.memory.layers}
+        arguments |= {"shared_lstm": critic.memory == "shared", "enable_critic_lstm": critic.memory == "own"}
+    return arguments
+
+
+def _versions() -> dict[str, str | None]:
+    found: dict[str, str | None] = {"python": platform.python_version()}
+    for package in _PACKAGES:
+        try:
+            found[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            found[package] = None
+    return found

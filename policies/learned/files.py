@@ -1,0 +1,142 @@
+"""The folder of a policy: written whole, read with suspicion."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import stat
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from policies.learned import tensors
+from policies.learned.description import FORMAT, TRAINING, WEIGHTS, Description
+from policies.whole import filled_in_place, write_durably
+from slipgym.config.errors import explain, unknown
+
+DESCRIPTION = "policy.json"
+_LIMITS = {DESCRIPTION: 2**20, WEIGHTS: 2**26, TRAINING: 2**28}
+"""Largest size of a file [bytes]."""
+
+
+def write(
+    path: str | os.PathLike[str],
+    description: Mapping[str, Any],
+    weights: Mapping[str, np.ndarray],
+    training: Mapping[str, np.ndarray] | None = None,
+) -> Path:
+    """Writes the folder of a policy; it appears when it is complete, or not at all.
+
+    Args:
+        path: Where it shall appear.
+        description: As in `Description`, without `format` and `files`.
+        weights: The tensors it acts with.
+        training: All that training adapts; None leaves it out.
+
+    Raises:
+        FileExistsError: Something is there already.
+        ValueError: The parts do not make a policy that `read` would accept.
+    """
+    contents = {WEIGHTS: tensors.pack(weights)}
+    if training is not None:
+        contents[TRAINING] = tensors.pack(training)
+    hashes = {name: _sha256(data) for name, data in contents.items()}
+    text = json.dumps({"format": FORMAT, **description, "files": hashes}, indent=2, ensure_ascii=False)
+    with filled_in_place(Path(path)) as folder:
+        for name, data in {**contents, DESCRIPTION: f"{text}\n".encode()}.items():
+            write_durably(folder / name, data)
+        for name in contents:
+            read(folder, name)
+    return Path(path)
+
+
+def read_description(path: str | os.PathLike[str]) -> Description:
+    """Reads policy.json of a folder.
+
+    Raises:
+        FileNotFoundError: There is nothing at the path.
+        ValueError: What lies there is no policy; the message names the file and what is wrong.
+    """
+    folder = Path(path)
+    if not folder.exists():
+        raise FileNotFoundError(f"there is nothing at {os.fspath(path)!r}")
+    if not folder.is_dir():
+        raise ValueError(f"{folder} is a file; a policy is a folder that holds {DESCRIPTION} and {WEIGHTS}")
+    data, file = _content(folder, DESCRIPTION), folder / DESCRIPTION
+    try:
+        values = json.loads(data, object_pairs_hook=_once, parse_constant=_refuse)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{file}: is no JSON: {error}") from error
+    found = values.get("format") if isinstance(values, dict) else None
+    if type(found) is not int or found != FORMAT:
+        raise ValueError(f"{file}: format = {found!r} is unknown; this version of slipgym reads {FORMAT}")
+    try:
+        return Description.model_validate(values)
+    except ValidationError as error:
+        raise explain(error, lambda _: os.fspath(file), Description) from error
+
+
+def read(path: str | os.PathLike[str], name: str = WEIGHTS) -> tuple[Description, dict[str, np.ndarray]]:
+    """Reads a policy.
+
+    Args:
+        path: Its folder.
+        name: The file of tensors to read with its description: WEIGHTS or TRAINING.
+
+    Returns:
+        What it is, and its tensors, by name. Those of WEIGHTS are checked to be the network's.
+
+    Raises:
+        FileNotFoundError: There is nothing at the path.
+        ValueError: What lies there is no policy, or not whole, or was changed; the message names the file
+            and what is wrong.
+    """
+    description, file = read_description(path), Path(path) / name
+    if name not in description.files:
+        raise ValueError(f"{Path(path) / DESCRIPTION}: {unknown('file', name, description.files)}")
+    data = _content(Path(path), name)
+    if _sha256(data) != description.files[name]:
+        raise ValueError(
+            f"{file}: its SHA-256 is {_sha256(data)}, {DESCRIPTION} has {description.files[name]}"
+        )
+    try:
+        found = tensors.unpack(data)
+        if name == WEIGHTS:
+            tensors.check(found, tensors.expected(description))
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from error
+    return description, found
+
+
+def _content(folder: Path, name: str) -> bytes:
+    """All of a regular file of bearable size."""
+    file, limit = folder / name, _LIMITS[name]
+    if not file.exists():
+        raise ValueError(f"{folder} is no policy: it lacks {name}")
+    if not stat.S_ISREG(file.stat().st_mode):
+        raise ValueError(f"{file}: is no regular file")
+    with file.open("rb") as stream:
+        data = stream.read(limit + 1)
+    if len(data) > limit:
+        raise ValueError(f"{file}: is larger than the {limit} bytes allowed")
+    return data
+
+
+def _sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    values = dict(pairs)
+    if len(values) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise ValueError(f"duplicate key {next(name for name in names if names.count(name) > 1)!r}")
+    return values
+
+
+def _refuse(constant: str) -> None:
+    raise ValueError(f"{constant} is no number of JSON")

@@ -1,0 +1,118 @@
+"""A learned policy as it acts: numpy only."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from policies.learned import files
+from policies.learned.fitting import check_environment, check_width
+from policies.learned.forward import Memory, Network
+
+MODES = ("action_mode", "observation_mode", "history", "frame_skip")
+"""Arguments of an environment that decide what a policy reads, gives and how often."""
+
+
+class LearnedPolicy:
+    """A policy read from its folder; never changes, so one serves many episodes.
+
+    Args:
+        path: The folder; see docs/policy_files.md.
+
+    Attributes:
+        description: What policy.json says.
+
+    Raises:
+        FileNotFoundError: There is nothing at the path.
+        ValueError: What lies there is no policy, or not whole, or was changed.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.description, tensors = files.read(path)
+        self._network = Network(self.description, tensors)
+
+    @property
+    def modes(self) -> dict[str, Any]:
+        """Keyword arguments that an environment for it needs; others may differ from the training's."""
+        arguments = self.description.environment.arguments
+        return {name: arguments[name] for name in MODES if name in arguments}
+
+    def check(self, env: Any) -> None:
+        """Refuse an environment whose observations or actions mean something else than in training.
+
+        Raises:
+            ValueError: They do; the message names the first difference.
+        """
+        check_environment(self.description.environment, env)
+
+    def predict(
+        self,
+        observation: np.ndarray | Mapping[str, np.ndarray],
+        state: Memory | None = None,
+        episode_start: np.ndarray | None = None,
+        deterministic: bool = True,
+    ) -> tuple[np.ndarray, Memory | None]:
+        """Action for an observation (m,) or for a batch of them (n, m).
+
+        Args:
+            observation: From the environment, not normalised; of groups, "policy" is read.
+            state: As returned by the last call; None before the first.
+            episode_start: Rows that begin a new episode and forget their memory, (n,) bool.
+            deterministic: Must be True: a file holds what acts, not what explores.
+
+        Returns:
+            Action (k,) or (n, k), float32 within [-1, 1], and the memory: None, or hidden and cell state of
+            the LSTM layers, (n, layers, size) each, n = 1 for a single observation.
+
+        Raises:
+            ValueError: The observation, the memory or `episode_start` does not fit, or holds NaN or infinity.
+        """
+        if not deterministic:
+            raise ValueError("deterministic = False: a policy's file acts without exploration")
+        observations = self._observations(observation)
+        memory = self._memory(state, episode_start, len(np.atleast_2d(observations)))
+        with np.errstate(over="ignore", invalid="ignore"):
+            actions, memory = self._network.forward(np.atleast_2d(observations), memory)
+        if np.isnan(actions).any():
+            raise ValueError("the action is NaN: observation or weights are too large for float32")
+        return (actions if observations.ndim == 2 else actions[0]), memory
+
+    def _observations(self, observation: np.ndarray | Mapping[str, np.ndarray]) -> np.ndarray:
+        """What the network reads, (m,) or (n, m)."""
+        if isinstance(observation, Mapping):
+            if "policy" not in observation:
+                raise ValueError(f"observation has the groups {', '.join(observation)}, but no 'policy'")
+            observation = observation["policy"]
+        observations = np.asarray(observation)
+        if observations.ndim not in (1, 2):
+            raise ValueError(f"observation must have shape (m,) or (n, m), got {observations.shape}")
+        environment = self.description.environment
+        check_width(environment, observations.shape[-1])
+        if not np.isfinite(observations).all():
+            column = int(np.argwhere(~np.isfinite(np.atleast_2d(observations)))[0, 1])
+            name = environment.observation[column % len(environment.observation)].name
+            raise ValueError(f"observation column {column} ({name}) must be finite")
+        return observations
+
+    def _memory(self, state: Memory | None, episode_start: np.ndarray | None, n: int) -> Memory | None:
+        """The memory to act on: zero where an episode begins."""
+        shape = self._network.memory_shape
+        if shape is None:
+            if state is not None:
+                raise ValueError(
+                    f"state must be None for a policy without memory, got {type(state).__name__}"
+                )
+            return None
+        begun = np.zeros(n, bool) if episode_start is None else np.atleast_1d(np.asarray(episode_start, bool))
+        if begun.shape != (n,):
+            raise ValueError(f"episode_start must have shape ({n},), got {begun.shape}")
+        if state is None:
+            return np.zeros((n, *shape), np.float32), np.zeros((n, *shape), np.float32)
+        shapes = [np.shape(part) for part in state]
+        if shapes != [(n, *shape)] * 2:
+            raise ValueError(f"state has shapes {shapes}, {n} observations need {[(n, *shape)] * 2}")
+        hidden, cell = (np.where(begun[:, None, None], np.float32(0.0), part) for part in state)
+        return hidden, cell

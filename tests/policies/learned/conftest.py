@@ -1,0 +1,75 @@
+import numpy as np
+import pytest
+
+from policies.learned import files
+from policies.learned.description import Description
+from policies.learned.fitting import column_of
+from policies.learned.tensors import expected
+from slipgym.config import load
+from slipgym.envs.actions import components
+from slipgym.envs.observation import columns
+from slipgym.tasks import TASKS
+
+
+def describe(task="Hold", friction_source="estimated", action_mode="grip_force", **changes):
+    """What policy.json says, without `format` and `files`."""
+    observed = columns(load(), TASKS[task], friction_source, action_mode)
+    values = {
+        "environment": {
+            "id": f"slipgym/{task}-v0",
+            "arguments": {"friction_source": friction_source, "action_mode": action_mode},
+            "rate": 120.0,
+            "history": 0,
+            "observation": [column_of(column).model_dump() for column in observed],
+            "action": [column_of(column).model_dump() for column in components(action_mode, load())],
+        },
+        "network": {"kind": "mlp", "memory": None, "layers": [8, 6], "activation": "tanh", "squash": False},
+        "normalisation": {"clip": 10.0, "epsilon": 1e-8},
+        "origin": {
+            "algorithm": "PPO",
+            "command": "python train.py",
+            "steps": 1000,
+            "seeds": [1],
+            "versions": {"numpy": "2"},
+            "critic": None,
+        },
+    }
+    for key, change in changes.items():
+        values[key] = {**values[key], **change} if isinstance(change, dict) else change
+    return values
+
+
+def drawn(description, seed=0):
+    """Weights at random, of the size that trained ones have."""
+    rng = np.random.default_rng(seed)
+    hashes = {files.WEIGHTS: "0" * 64}
+    weights = {}
+    for name, (kind, shape) in expected(
+        Description.model_validate({"format": 1, **description, "files": hashes})
+    ).items():
+        values = rng.normal(size=shape) * (0.1 if len(shape) == 1 else shape[-1] ** -0.5)
+        weights[name] = values.astype("f4" if kind == "F32" else "f8")
+    if "observation.var" in weights:
+        weights["observation.var"] = rng.uniform(0.1, 2.0, weights["observation.var"].shape)
+    return weights
+
+
+@pytest.fixture
+def policy_folder(tmp_path):
+    """Writes policies with weights at random."""
+
+    def write(name="policy", seed=0, weights=None, **changes):
+        description = describe(**changes)
+        given = {**drawn(description, seed), **(weights or {})}
+        return files.write(tmp_path / name, description, given)
+
+    return write
+
+
+@pytest.fixture
+def lstm():
+    """Changes of a description that make a network with two LSTM layers."""
+    memory = {"size": 5, "layers": 2}
+    return {
+        "network": {"kind": "lstm", "memory": memory, "layers": [8], "activation": "relu", "squash": True}
+    }
