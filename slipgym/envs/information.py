@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from slipgym.envs.loop import SlipLoop
+from slipgym.envs.observer import Observation
 
 
 class Information:
@@ -52,3 +53,31 @@ class Information:
 
     def _times(self) -> np.ndarray:
         return self._loop.episode["step"] * self._loop.step_time
+
+
+def masked(infos: dict[str, Any], mask: np.ndarray) -> dict[str, Any]:
+    """Each info with a mask beside it that says which environments have it, as Gymnasium asks for."""
+    beside: dict[str, Any] = {}
+    for name, value in infos.items():
+        beside[name] = masked(value, mask) if isinstance(value, dict) else value
+        beside[f"_{name}"] = mask.copy()
+    return beside
+
+
+def final(observations: Observation, infos: dict[str, Any], over: np.ndarray) -> dict[str, Any]:
+    """Infos that hold the last observations and infos of episodes that are over.
+
+    Args:
+        observations: Of all environments.
+        infos: Of all environments, without masks.
+        over: Which episodes are over, (n,).
+    """
+    if not over.any():
+        return {}
+    last = np.full(len(over), None, dtype=object)
+    for i in np.flatnonzero(over).tolist():
+        if isinstance(observations, dict):
+            last[i] = {group: values[i] for group, values in observations.items()}
+        else:
+            last[i] = observations[i]
+    return masked({"final_obs": last, "final_info": infos}, over)
