@@ -15,7 +15,7 @@ from gymnasium.vector.utils import batch_space
 
 from slipgym.config import Config, Randomization
 from slipgym.config.errors import unknown
-from slipgym.envs.choices import DEFAULT_ESTIMATOR, refuse_unknown, whole
+from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, refuse_unknown, whole
 from slipgym.envs.information import Information
 from slipgym.envs.pictures import Pictures
 from slipgym.envs.planar_loop import PlanarLoop
@@ -49,6 +49,8 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         threads: Threads that share the environments; None: as many as processors, if there is work for them.
         render_mode: None, "rgb_array" or "depth_array".
         render_rows: Environments that `render` shows.
+        infos: Of which environments a step's infos tell: "all", or "ends": those whose episode ends or begins
+            in it, which spares a learner that reads no others the copies.
         config: See the scalar environment.
 
     Raises:
@@ -76,6 +78,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         threads: int | None = None,
         render_mode: str | None = None,
         render_rows: Sequence[int] = (0,),
+        infos: str = "all",
         config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
         **others: Any,
     ) -> None:
@@ -112,6 +115,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_fps": rate, "autoreset_mode": self._mode}
         self._information = Information(self._loop)
+        self._all_infos = one_of("infos", infos, ("all", "ends")) == "all"
         self._generators = Generators(num_envs)
         self.render_mode = render_mode
         self._pictures = Pictures(self._loop, render_mode, render_rows)
@@ -140,7 +144,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         rows = np.flatnonzero(asked.mask)
         for i in rows.tolist():
             self._begin(i, asked.of(i))
-        infos = {**self._information.all(), **self._drawn(rows)}
+        infos = {**self._information.of(asked.mask), **self._drawn(rows)}
         return self._observer.read(), _masked(infos, asked.mask)
 
     def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
@@ -177,12 +181,12 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         if self._mode is AutoresetMode.SAME_STEP:
             begins, self._over = self._over, np.zeros_like(self._over)
             ended = self._final(begins)
+        told = np.ones_like(begins) if self._all_infos else self._over | begins
         rows = np.flatnonzero(begins)
         for i in rows.tolist():
             self._begin(i, self._options)
-        infos = {**self._information.all(), **self._drawn(rows)}
-        everyone = np.ones(self.num_envs, dtype=bool)
-        return self._observer.read(), rewards, terminated, truncated, {**_masked(infos, everyone), **ended}
+        infos = {**self._information.of(told), **self._drawn(rows)}
+        return self._observer.read(), rewards, terminated, truncated, {**_masked(infos, told), **ended}
 
     def render(self) -> tuple[np.ndarray, ...] | None:
         """Pictures of `render_rows`; None without a render mode.
@@ -214,7 +218,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
                 final[i] = {group: values[i] for group, values in observations.items()}
             else:
                 final[i] = observations[i]
-        info = _masked(self._information.all(), over)
+        info = _masked(self._information.of(over), over)
         return {"final_obs": final, "_final_obs": over.copy(), "final_info": info, "_final_info": over.copy()}
 
     def _drawn(self, rows: np.ndarray) -> dict[str, Any]:
