@@ -108,7 +108,7 @@ def parts(player: VectorPlayer, repeats: int = 9) -> list[Figure]:
         "estimators": learn,
         "task": task,
         "observation": look,
-        "infos": env._information.all,
+        "infos": partial(env._information.of, np.ones(n, dtype=bool)),
     }
     spent = {name: per_call(stage, 1, repeats) for name, stage in stages.items()}
     rest = whole - sum(seconds for name, seconds in spent.items() if name != "contact kernel alone")

@@ -92,6 +92,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
     """Shares of one env.step, with stopwatches around its parts."""
     env = player.env
     loop = env._loop
+    assert isinstance(loop, loops.BulletLoop)
     rows: list[list[float]] = []
     with Stopwatches() as watches:
         for name in ("_loads", "_observe", "_command"):
