@@ -6,4 +6,4 @@ from pathlib import Path
 
 from estimator.caching import compiler
 
-compiled = compiler(Path(__file__).parent)
+compiled = compiler(Path(__file__).parent, error_model="numpy", forceinline=True)

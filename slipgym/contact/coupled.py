@@ -17,8 +17,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from slipgym.compiled import compiled
 from slipgym.contact import kernel, patch
 
@@ -186,16 +184,15 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
     Returns:
         Motion (x, y, theta) with friction [m, m, rad].
     """
-    limits = np.empty(pads.shape[0])
     held = False
     for i in range(pads.shape[0]):
-        limits[i] = prepare(pads[i], cells, i, h)
+        pads[i].limit = prepare(pads[i], cells, i, h)
         held = held or pads[i].normal > 0.0
-    motion = solve_motion(pads, cells, limits, inertia, centre, free, guess, h) if held else free
+    motion = solve_motion(pads, cells, pads.limit, inertia, centre, free, guess, h) if held else free
     for i in range(pads.shape[0]):
         delta = scaled(pads[i], lever(pads[i], centre), motion)
         if pads[i].normal > 0.0:
-            commit(pads[i], cells, i, limits[i], delta, h)
+            commit(pads[i], cells, i, pads[i].limit, delta, h)
         else:
             release(pads[i], cells, i, delta, h)
     return motion
