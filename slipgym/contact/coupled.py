@@ -112,7 +112,8 @@ def assemble(pads, cells, limits, inertia, centre, free, motion, h):
     Returns:
         Residual (3,) and derivative (xx, yy, tt, xy, xt, yt), as tuples.
     """
-    jx, jt = inertia[0] / (h * h), inertia[1] / (h * h)
+    rate = 1.0 / h
+    jx, jt = inertia[0] * rate * rate, inertia[1] * rate * rate
     rx, ry, rt = jx * (motion[0] - free[0]), jx * (motion[1] - free[1]), jt * (motion[2] - free[2])
     jy, jxy, jxt, jyt = jx, 0.0, 0.0, 0.0
     for i in range(pads.shape[0]):
@@ -127,14 +128,16 @@ def assemble(pads, cells, limits, inertia, centre, free, motion, h):
 @compiled
 def solve_symmetric(a, b):
     """Solve the symmetric positive definite system a x = b, a = (xx, yy, tt, xy, xt, yt)."""
-    l10, l20 = a[3] / a[0], a[4] / a[0]
-    d1 = a[1] - l10 * a[3]
-    l21 = (a[5] - l20 * a[3]) / d1
-    d2 = a[2] - l20 * a[4] - l21 * l21 * d1
+    per_d0 = 1.0 / a[0]
+    l10, l20 = a[3] * per_d0, a[4] * per_d0
+    per_d1 = 1.0 / (a[1] - l10 * a[3])
+    off = a[5] - l20 * a[3]
+    l21 = off * per_d1
+    d2 = a[2] - l20 * a[4] - l21 * off
     y1 = b[1] - l10 * b[0]
     x2 = (b[2] - l20 * b[0] - l21 * y1) / d2
-    x1 = y1 / d1 - l21 * x2
-    return b[0] / a[0] - l10 * x1 - l20 * x2, x1, x2
+    x1 = y1 * per_d1 - l21 * x2
+    return b[0] * per_d0 - l10 * x1 - l20 * x2, x1, x2
 
 
 @compiled
