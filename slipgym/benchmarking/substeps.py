@@ -31,10 +31,11 @@ def repeat(world, pads, cells, fingers, chips, forces, steps):
     """Sub-steps of the longest length; the commanded grip forces [N] come round and round."""
     h = world.substep_ticks * world.tick_length
     share = world.substep_ticks / world.engine_ticks
+    gripper = (pads[0], pads[1]), cells, (fingers[0], fingers[1]), (chips[0], chips[1])
     for k in range(steps):
         for f in range(2):
             fingers[f].command = forces[k % forces.shape[0]]
-        substep(world, pads, cells, fingers, chips, h, share)
+        substep(world, *gripper, h, share)
 
 
 def held(plant: Plant, force: float, speed: float = 0.0, load: float = 0.0) -> Plant:

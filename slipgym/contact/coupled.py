@@ -116,7 +116,7 @@ def assemble(pads, cells, limits, inertia, centre, free, motion, h):
     jx, jt = inertia[0] * rate * rate, inertia[1] * rate * rate
     rx, ry, rt = jx * (motion[0] - free[0]), jx * (motion[1] - free[1]), jt * (motion[2] - free[2])
     jy, jxy, jxt, jyt = jx, 0.0, 0.0, 0.0
-    for i in range(pads.shape[0]):
+    for i in range(len(pads)):
         if pads[i].normal > 0.0:
             force, d = respond(pads[i], cells, i, limits[i], lever(pads[i], centre), motion, h)
             rx, ry, rt = rx + force[0], ry + force[1], rt + force[2]
@@ -150,7 +150,7 @@ def norm(residual, radius):
 def solve_motion(pads, cells, limits, inertia, centre, free, motion, h):
     """Damped semi-smooth Newton iteration for the motion that balances momentum and friction."""
     tolerance = 0.0
-    for i in range(pads.shape[0]):
+    for i in range(len(pads)):
         tolerance += FORCE_TOLERANCE * limits[i] * pads[i].normal
     radius = pads[0].r
     residual, jacobian = assemble(pads, cells, limits, inertia, centre, free, motion, h)
@@ -175,7 +175,8 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
     """Advance all pads and the object's motion relative to them by one sub-step.
 
     Args:
-        pads: PAD records of the pads that hold the object, shape (p,); updated.
+        pads: PAD records of the one or two pads that hold the object, an array or a tuple; updated.
+            Numba counts references to an array, which takes as long as the friction; to a tuple it does not.
         cells: Their CELL records, shape (p, n); updated. None for ellipsoids.
         inertia: Mass [kg] and moment of inertia about the centre of mass [kg m^2].
         centre: Centre of mass in the pad frame [m].
@@ -187,15 +188,13 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
     Returns:
         Motion (x, y, theta) with friction [m, m, rad].
     """
-    held = False
-    for i in range(pads.shape[0]):
-        pads[i].limit = prepare(pads[i], cells, i, h)
-        held = held or pads[i].normal > 0.0
-    motion = solve_motion(pads, cells, pads.limit, inertia, centre, free, guess, h) if held else free
-    for i in range(pads.shape[0]):
+    limits = prepare(pads[0], cells, 0, h), prepare(pads[-1], cells, -1, h)
+    held = pads[0].normal > 0.0 or pads[-1].normal > 0.0
+    motion = solve_motion(pads, cells, limits, inertia, centre, free, guess, h) if held else free
+    for i in range(len(pads)):
         delta = scaled(pads[i], lever(pads[i], centre), motion)
         if pads[i].normal > 0.0:
-            commit(pads[i], cells, i, pads[i].limit, delta, h)
+            commit(pads[i], cells, i, limits[i], delta, h)
         else:
             release(pads[i], cells, i, delta, h)
     return motion

@@ -21,7 +21,6 @@ PAD = np.dtype(
         ("twist", "f8", 3),  # scaled slip twist of a patch [m/s]
         ("twist_rate", "f8", 3),  # its rate of change [m/s^2]
         ("normal", "f8"),  # normal force [N]
-        ("limit", "f8"),  # friction level in this sub-step [-]
         ("wrench", "f8", 3),  # on the object at the centre of pressure, pad frame [N, N, N m]
     ]
 )
