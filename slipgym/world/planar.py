@@ -57,7 +57,17 @@ def advance(world, pads, cells, fingers, force_torque, noise, chips):
 
 @compiled
 def substep(world, pads, cells, fingers, chips, h, share):
-    """Advance wrist, fingers, friction and object by h, a `share` of the engine step."""
+    """Advance wrist, fingers, friction and object by h, a `share` of the engine step.
+
+    Args:
+        world: WORLD record.
+        pads: Two PAD records, as an array or, faster (`step_pads` says why), as a tuple.
+        cells: As in `advance`.
+        fingers: Two FINGER records, likewise.
+        chips: Two SLIP_SENSOR records, likewise.
+        h: Time [s].
+        share: Of the engine step, in its means of force and friction.
+    """
     for f in range(2):
         mean = relax(fingers[f], h)
         fingers[f].mean_force += share * mean
