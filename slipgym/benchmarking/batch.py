@@ -131,7 +131,14 @@ def _samples(player: Player) -> tuple[float, int]:
 def _advance(worlds, pads, cells, fingers, force_torque, chips):
     for i in range(worlds.shape[0]):
         patch = None if cells is None else cells[i]
-        advance_alone(worlds[i], pads[i], patch, fingers[i], force_torque[i], chips[i])
+        advance_alone(
+            worlds[i],
+            (pads[i, 0], pads[i, 1]),
+            patch,
+            (fingers[i, 0], fingers[i, 1]),
+            (force_torque[i, 0], force_torque[i, 1]),
+            (chips[i, 0], chips[i, 1]),
+        )
 
 
 @unlocked
@@ -150,6 +157,8 @@ def _contacts(worlds, pads, cells, fingers):
             centre = (world.relative[0], world.relative[1])
             free = (motion[0], motion[1] - weight, motion[2])
             patch = None if cells is None else cells[i]
-            motion = step_pads(pads[i], patch, (world.mass, world.inertia), centre, free, motion, h)
+            motion = step_pads(
+                (pads[i, 0], pads[i, 1]), patch, (world.mass, world.inertia), centre, free, motion, h
+            )
             done += 1
     return done
