@@ -153,12 +153,11 @@ def _contacts(worlds, pads, cells, fingers):
         motion = (h * vx, h * vy, h * omega)
         for f in range(2):
             pads[i, f].normal = fingers[i, f].force
+        held = pads[i, 0], pads[i, 1]
         for _ in range(-(-world.control_ticks // world.substep_ticks)):
             centre = (world.relative[0], world.relative[1])
             free = (motion[0], motion[1] - weight, motion[2])
             patch = None if cells is None else cells[i]
-            motion = step_pads(
-                (pads[i, 0], pads[i, 1]), patch, (world.mass, world.inertia), centre, free, motion, h
-            )
+            motion = step_pads(held, patch, (world.mass, world.inertia), centre, free, motion, h)
             done += 1
     return done
