@@ -30,13 +30,13 @@ from __future__ import annotations
 import math
 
 from slipgym.compiled import compiled
-from slipgym.contact.decay import decay
+from slipgym.contact.decay import LARGEST
 
 
 @compiled
-def level(mu_c, mu_s, power):
-    """Friction level g = mu_c + (mu_s - mu_c) exp(-power) [-]."""
-    return mu_c + (mu_s - mu_c) * decay(power)
+def level(mu_c, mu_s, share):
+    """Friction level g = mu_c + (mu_s - mu_c) share [-], the share being exp(-(v / v_s)^gamma)."""
+    return mu_c + (mu_s - mu_c) * share
 
 
 @compiled
@@ -44,7 +44,7 @@ def stribeck(pad, slip_speed):
     """Friction level g(v) with power = (v / v_s)^gamma [-]."""
     ratio = slip_speed / pad.stribeck_velocity
     power = ratio * ratio if pad.stribeck_exponent == 2.0 else ratio**pad.stribeck_exponent
-    return level(pad.mu_c, pad.mu_s, power)
+    return level(pad.mu_c, pad.mu_s, math.exp(-power) if power < LARGEST else 0.0)
 
 
 @compiled

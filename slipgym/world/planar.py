@@ -39,6 +39,7 @@ def advance(world, pads, cells, fingers, force_torque, chips):
     for f in range(2):
         fingers[f].mean_force = 0.0
         fingers[f].reaction[:] = 0.0
+    both = (pads[0], pads[1]), cells, (fingers[0], fingers[1]), (chips[0], chips[1])
     while world.tick < end:
         ticks = min(world.substep_ticks, end - world.tick)
         for f in range(2):
@@ -46,7 +47,7 @@ def advance(world, pads, cells, fingers, force_torque, chips):
             ticks = ticks_to_next(fingers[f], world.tick, ticks)
             ticks = min(ticks, force_torque[f].period - world.tick % force_torque[f].period)
         share = ticks / world.engine_ticks
-        substep(world, pads, cells, fingers, chips, ticks * world.tick_length, share)
+        substep(world, *both, ticks * world.tick_length, share)
         world.tick += ticks
         for f in range(2):
             if world.tick % force_torque[f].period == 0:
