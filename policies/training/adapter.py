@@ -51,7 +51,7 @@ class SlipVecEnv(VecEnv):
         observations, infos = self.env.reset(seed=self._seeds, options=options)
         self._reset_seeds()
         self._reset_options()
-        self.reset_infos = [_row(infos, i) for i in range(self.num_envs)]
+        self.reset_infos = _split(infos, np.arange(self.num_envs))
         return observations
 
     def step_async(self, actions: np.ndarray) -> None:
@@ -73,14 +73,14 @@ class SlipVecEnv(VecEnv):
         observations, rewards, terminated, truncated, infos = self.env.step(self._actions)
         dones = terminated | truncated
         told: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
-        ended = np.flatnonzero(dones).tolist()
-        if ended:
+        ended = np.flatnonzero(dones)
+        if len(ended):
             last, final = infos.pop("final_obs"), infos.pop("final_info")
-            for i in ended:
-                told[i] = _row(final, i)
-                told[i]["terminal_observation"] = last[i]
-                told[i]["TimeLimit.truncated"] = truncated.item(i)
-                self.reset_infos[i] = _row(infos, i)
+            splits = _split(final, ended), _split(infos, ended)
+            for i, info, start in zip(ended.tolist(), *splits, strict=True):
+                info["terminal_observation"] = last[i]
+                info["TimeLimit.truncated"] = truncated.item(i)
+                told[i], self.reset_infos[i] = info, start
         return observations, rewards.astype(np.float32), dones, told
 
     def close(self) -> None:
@@ -186,16 +186,13 @@ def make_vec_env(
     return envs if normalise is None else VecNormalize(envs, **normalise)
 
 
-def _row(infos: Mapping[str, Any], i: int) -> dict[str, Any]:
-    """What infos of a batch say about environment i: its own arrays, plain numbers."""
-    return {
-        name: _value(values, i)
-        for name, values in infos.items()
-        if not name.startswith("_") and infos[f"_{name}"][i]
-    }
-
-
-def _value(values: Any, i: int) -> Any:
-    if isinstance(values, dict):
-        return _row(values, i)
-    return values.item(i) if values.ndim == 1 else values[i].copy()
+def _split(infos: Mapping[str, Any], rows: np.ndarray) -> list[dict[str, Any]]:
+    """What infos of a batch say about each of some environments: its own arrays, plain numbers."""
+    columns: dict[str, list[Any]] = {}
+    for name, values in infos.items():
+        if isinstance(values, dict):
+            columns[name] = _split(values, rows)
+        elif not name.startswith("_"):
+            taken = values[rows]
+            columns[name] = taken.tolist() if taken.ndim == 1 else list(taken)
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]

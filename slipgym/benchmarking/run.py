@@ -17,7 +17,7 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
         pairs: Pairs of timed blocks of the comparison with the bare loop.
         json: File to write the figures to.
     """
-    print(", ".join(f"{name} {value}" for name, value in report.machine().items()))
+    print(report.line(report.machine()))
     player = measure.Player(env_id)
     figures = [
         *measure.against_bare(player, pairs),
@@ -30,6 +30,4 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
         *batch(player, env_id, max(3, pairs // 10)),
     ]
     player.env.close()
-    print(report.table(figures))
-    if json is not None:
-        report.write(json, figures)
+    report.publish(figures, json)
