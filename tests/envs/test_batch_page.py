@@ -15,7 +15,11 @@ EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTA
 (COMMAND,) = re.findall(r'    python -c "\n(.*?)"\n\n```text\n(.*?)```', PAGE, re.DOTALL)
 
 
-@pytest.mark.parametrize(("code", "printed"), [*EXAMPLES, (textwrap.dedent(COMMAND[0]), COMMAND[1])], ids=str)
+@pytest.mark.parametrize(
+    ("code", "printed"),
+    [*EXAMPLES, (textwrap.dedent(COMMAND[0]), COMMAND[1])],
+    ids=["batch", "rows", "checker", "memory"],
+)
 def test_the_examples_print_what_the_page_says(code, printed):
     out = io.StringIO()
     with contextlib.redirect_stdout(out):
