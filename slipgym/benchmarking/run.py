@@ -6,6 +6,7 @@ from pathlib import Path
 
 from slipgym.benchmarking import measure, report
 from slipgym.benchmarking.batch import batch
+from slipgym.benchmarking.substeps import substeps
 
 
 def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
@@ -21,6 +22,7 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
     figures = [
         *measure.against_bare(player, pairs),
         *measure.breakdown(player, max(1, pairs // 3)),
+        *substeps(player.rest(), max(3, pairs // 3)),
         *measure.life(env_id, max(3, pairs // 10)),
         *measure.distributed(player, env_id, max(3, pairs // 5)),
         *measure.contact(),

@@ -49,6 +49,8 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         threads: Threads that share the environments; None: as many as processors, if there is work for them.
         render_mode: None, "rgb_array" or "depth_array".
         render_rows: Environments that `render` shows.
+        infos: Of which environments a step's infos tell: "all", or "ends": those whose episode ends or begins
+            in it, which spares a learner that reads no others the copies.
         config: See the scalar environment.
 
     Raises:
@@ -76,6 +78,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         threads: int | None = None,
         render_mode: str | None = None,
         render_rows: Sequence[int] = (0,),
+        infos: str = "all",
         config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
         **others: Any,
     ) -> None:
@@ -117,8 +120,14 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             "num_envs": num_envs,
             "autoreset_mode": self._mode.value,
         }
-        self._shown = {"threads": threads, "render_mode": render_mode, "render_rows": render_rows}
+        self._shown = {
+            "threads": threads,
+            "infos": infos,
+            "render_mode": render_mode,
+            "render_rows": render_rows,
+        }
         self._information = Information(self._loop)
+        self._all_infos = one_of("infos", infos, ("all", "ends")) == "all"
         self._generators = Generators(num_envs)
         self.render_mode = render_mode
         self._pictures = Pictures(self._loop, render_mode, render_rows)
@@ -148,7 +157,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._ready[rows] = False
         for i in rows.tolist():
             self._begin(i, asked.of(i))
-        infos = masked(self._information.all(), asked.mask)
+        infos = masked(self._information.of(asked.mask), asked.mask)
         return self._observer.read(), self._add_drawn(infos, rows)
 
     def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
@@ -187,12 +196,12 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         ended: dict[str, Any] = {}
         if self._mode is AutoresetMode.SAME_STEP:
             begins, self._over = self._over, np.zeros_like(self._over)
-            ended = final(self._observer.read(), self._information.all(), begins)
+            ended = final(self._observer.read(), self._information.of(begins), begins)
+        told = np.ones_like(begins) if self._all_infos else self._over | begins
         rows = np.flatnonzero(begins)
         for i in rows.tolist():
             self._begin(i, self._options)
-        infos = masked(self._information.all(), np.ones(self.num_envs, dtype=bool))
-        infos = self._add_drawn({**infos, **ended}, rows)
+        infos = self._add_drawn({**masked(self._information.of(told), told), **ended}, rows)
         return self._observer.read(), rewards, terminated, truncated, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:

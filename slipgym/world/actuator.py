@@ -42,6 +42,9 @@ def relax(finger, h):
     if finger.lag <= 0.0:
         finger.force = finger.command
         return finger.command
-    decay = math.exp(-h / finger.lag)
-    finger.force = finger.command + gap * decay
-    return finger.command + gap * (1.0 - decay) * finger.lag / h
+    ratio = h / finger.lag
+    if ratio != finger.relaxed:  # the exponential is slow, and steps take few lengths
+        finger.relaxed, finger.decay = ratio, math.exp(-ratio)
+        finger.mean_decay = (1.0 - finger.decay) / ratio
+    finger.force = finger.command + gap * finger.decay
+    return finger.command + gap * finger.mean_decay

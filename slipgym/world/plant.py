@@ -106,6 +106,7 @@ def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
     world["engine_ticks"] = tick_rate // config.physics.engine_rate
     world["substep_ticks"] = max(1, math.floor(config.physics.substep_max * tick_rate * (1 + 1e-9)))
     world["gravity"] = config.physics.gravity
+    world["axes"] = 1.0, 0.0
     return world
 
 
