@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from slipgym.benchmarking.memory import bytes_per_environment
-from slipgym.contact.records import CELL
+from slipgym.contact.records import CELL_FIELDS
 
 ID = "slipgym/Hold-v0"
 
@@ -27,7 +27,7 @@ def test_cells_and_history_come_on_top():
     env.close()
     assert measured(history=3) - measured() == 3 * 4 * columns
     few, many = (measured(contact="distributed", config={"contact": {"cells": k}}) for k in (3, 5))
-    assert (many - few) % (2 * CELL.itemsize) == 0
+    assert (many - few) % (2 * 8 * CELL_FIELDS) == 0
     assert many > few > measured()
 
 
