@@ -32,7 +32,9 @@ class Environment(Frozen):
     )
     sensors: str = Field(default="realistic", description="Sensor preset [-]")
     material: str = Field(default="random", description='Material, or "random" [-]')
-    action_mode: str = Field(default="grip_force", description="What an action means [-]")
+    action_mode: str | None = Field(
+        default=None, description="What an action means; null: the task's own [-]"
+    )
     observation_mode: Literal["flat", "sensor"] = Field(default="flat", description="What is observed [-]")
     history: int = Field(default=0, ge=0, description="Earlier observations that come along [-]")
     randomization: str | Mapping[str, Any] = Field(default="train", description="Drawn per episode [-]")
@@ -43,7 +45,7 @@ class Environment(Frozen):
     def _known(self) -> Self:
         if self.friction_source not in FRICTION_SOURCES:
             raise ValueError(unknown("friction source", self.friction_source, FRICTION_SOURCES))
-        if self.action_mode not in ACTION_MODES:
+        if self.action_mode not in (None, *ACTION_MODES):
             raise ValueError(unknown("action mode", self.action_mode, ACTION_MODES))
         load_randomization(self.randomization)
         materials = ("random", *load(self.config, self.sensors, self.contact).materials)
@@ -111,7 +113,15 @@ class Training(Frozen):
     algorithm: Algorithm = Field(default="ppo", description="What learns [-]")
     budget: Count = Field(description="Steps of all environments together [-]")
     num_envs: int = Field(default=8, ge=1, le=seeds.ROWS, description="Environments side by side [-]")
-    processes: bool = Field(default=False, description="Whether each environment has its own process [-]")
+    engine: Literal["planar", "bullet"] = Field(
+        default="planar", description="What moves the bodies: a compiled batch, or PyBullet [-]"
+    )
+    engine_threads: Count | None = Field(
+        default=None, description="Threads that share the batch; null: as many as processors [-]"
+    )
+    processes: bool = Field(
+        default=False, description="Whether each environment of PyBullet has its own process [-]"
+    )
     threads: Count = Field(default=1, description="Threads of torch [-]")
     environment: Environment = Field(default=Environment(), description="The environment [-]")
     normalisation: Normalisation = Field(default=Normalisation(), description="Of what is learned from [-]")

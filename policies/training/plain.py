@@ -19,12 +19,12 @@ from typing import Any
 import numpy as np
 
 from slipgym.envs.loop import LoopState
-from slipgym.envs.state import EnvState
+from slipgym.envs.state import EnvState, VectorState
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box
 from slipgym.world.snapshot import EngineState
 
-_RECORDS = {record.__name__: record for record in (EnvState, LoopState, EngineState, Box, Plant)}
+_RECORDS = {record.__name__: record for record in (EnvState, VectorState, LoopState, EngineState, Box, Plant)}
 
 
 def write(path: Path, tree: Any) -> None:

@@ -16,6 +16,10 @@ from policies.training.config import Training
 from policies.training.keeper import Keeper
 
 
+_COMMAND = "python scripts/train.py --resume {}"
+"""What a policy's file says of its origin: the run's folder holds the rest."""
+
+
 def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any]:
     """Trains what a folder asks for, on from its last checkpoint.
 
@@ -55,17 +59,17 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
             if not keeper.ended:
                 model.learn(config.budget - steps, keeper, reset_num_timesteps=state is None)
         board.close()
-        return _finish(path, config, model, keeper)
+        return _finish(path, config, seed, model, keeper)
     finally:
         training.close()
         held_out.close()
 
 
-def _finish(path: Path, config: Training, model: Any, keeper: Keeper) -> dict[str, Any]:
+def _finish(path: Path, config: Training, seed: int, model: Any, keeper: Keeper) -> dict[str, Any]:
     """Writes what a run leaves behind; the result last."""
     best = plain.read(checkpoints.best(path))
     learners.set_parameters(model, best["learner"])
-    export.write(model, best["learner"]["normalisation"], config, path)
+    export.write(model, best["learner"]["normalisation"], config, path, seed, _COMMAND.format(path.name))
     with styled():
         curve.plot({path.name: [keeper.curve]}).savefig(path / "curve.png", dpi=STYLE.dpi)
     result = {
