@@ -15,7 +15,6 @@ from policies.training.board import Board
 from policies.training.config import Training
 from policies.training.keeper import Keeper
 
-
 _COMMAND = "python scripts/train.py --resume {}"
 """What a policy's file says of its origin: the run's folder holds the rest."""
 
