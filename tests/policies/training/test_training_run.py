@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 pytest.importorskip("stable_baselines3")
-from policies.training import export, folder, run, scatter, seeds, study, sweep, vector
+import policies
+from policies.training import checkpoints, export, folder, plain, run, scatter, seeds, study, sweep, vector
 from policies.training import model as learners
 from policies.training.curve import Row
 from policies.training.evaluate import evaluate
@@ -16,9 +17,7 @@ from policies.training.evaluate import evaluate
 ROOT = Path(__file__).resolve().parents[3]
 
 
-def test_a_run_leaves_everything_behind(small, tmp_path, monkeypatch):
-    handed = []
-    monkeypatch.setattr(export, "write", lambda *arguments: handed.append(arguments))
+def test_a_run_leaves_everything_behind(small, tmp_path):
     path = tmp_path / "run"
     folder.begin(path, small(budget=64), 0)
     result = run.train(path, progress=False)
@@ -31,10 +30,23 @@ def test_a_run_leaves_everything_behind(small, tmp_path, monkeypatch):
     assert result["ended"] == "budget"
     assert result == json.loads((path / "result.json").read_text()) == run.train(path, progress=False)
     assert result["best"]["reward"] == max(row.reward for row in folder.read_curve(path))
-    ((model, normalisation, config, where),) = handed
-    assert where == path
-    assert config == small(budget=64)
-    assert normalisation["observations"]["mean"].shape == model.observation_space.shape
+
+
+@pytest.mark.parametrize("engine", ["planar", "bullet"])
+def test_the_policy_of_a_run_acts_as_its_learner(small, tmp_path, engine):
+    config, path = small(engine=engine, budget=64), tmp_path / "run"
+    folder.begin(path, config, 0)
+    run.train(path, progress=False)
+    policy = policies.load(path / export.POLICY)
+    envs = learners.normalised(config, vector.make(config, 0), training=False)
+    model = learners.make(config, envs, 0)
+    best = plain.read(checkpoints.best(path))["learner"]
+    learners.set_parameters(model, best)
+    learners.set_normalisation(envs, best["normalisation"])
+    seen = envs.venv.reset()
+    expected, _ = model.predict(envs.normalize_obs(seen), deterministic=True)
+    np.testing.assert_allclose(policy.predict(seen)[0], expected, atol=1e-6)
+    envs.close()
 
 
 def test_the_environments_are_seeded_apart(small):
