@@ -102,6 +102,7 @@ def test_policies_and_the_configuration_load_no_torch():
 
 
 def test_resuming_takes_no_other_option(tmp_path):
+    pytest.importorskip("stable_baselines3")
     with pytest.raises(ValueError, match="leave out --budget"):
         command.resumed(tmp_path, {"--seeds": None, "--budget": 3}, 1, "")
     with pytest.raises(FileNotFoundError, match="holds no training run"):
