@@ -1,4 +1,4 @@
-"""Policies behind one `predict`: classic controllers, learned ones, and what evaluates them.
+"""Policies behind one `predict`: classic controllers, learned ones, and what evaluates and trains them.
 
 import policies
 
@@ -6,6 +6,20 @@ policy = policies.make("linear_slip")  # or policies.load("folder/of/a/learned/p
 action, state = policy.predict(observation, state=None)
 """
 
+from typing import TYPE_CHECKING, Any
+
 from policies.registry import Policy, find, is_controller, load, make, modes, names
 
-__all__ = ["Policy", "find", "is_controller", "load", "make", "modes", "names"]
+if TYPE_CHECKING:
+    from policies.training.adapter import make_vec_env
+
+__all__ = ["Policy", "find", "is_controller", "load", "make", "make_vec_env", "modes", "names"]
+
+
+def __getattr__(name: str) -> Any:
+    """`make_vec_env` needs the extra "train", which nothing else here does."""
+    if name != "make_vec_env":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from policies.training.adapter import make_vec_env
+
+    return make_vec_env

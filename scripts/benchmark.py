@@ -14,8 +14,14 @@ def main() -> None:
     )
     parser.add_argument("--pairs", type=int, default=300, help="pairs of timed blocks (default: %(default)s)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there, too")
+    parser.add_argument("--learning", action="store_true", help="learning instead; needs the extra train")
     arguments = parser.parse_args()
-    benchmark(arguments.env, arguments.pairs, arguments.json)
+    if arguments.learning:
+        from policies.training.benchmark import benchmark as learning
+
+        learning(arguments.env, arguments.pairs, arguments.json)
+    else:
+        benchmark(arguments.env, arguments.pairs, arguments.json)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from gymnasium.envs.registration import parse_env_id
 from PIL import Image
 
 import policies
@@ -38,7 +39,7 @@ def portrait(env_id: str, material: str, seed: int = 0) -> np.ndarray:
     Returns:
         (480, 720, 3) uint8.
     """
-    policy = policies.make(own_policy(env_id.removeprefix("slipgym/").rpartition("-")[0]))
+    policy = policies.make(own_policy(parse_env_id(env_id)[1]))
     modes = policies.modes(policy)
     env: Any = gym.make(env_id, render_mode="rgb_array", material=material, **modes).unwrapped
     try:

@@ -108,7 +108,7 @@ def parts(player: VectorPlayer, repeats: int = 9) -> list[Figure]:
         "estimators": learn,
         "task": task,
         "observation": look,
-        "infos": env._information.all,
+        "infos": partial(env._information.of, np.ones(n, dtype=bool)),
     }
     spent = {name: per_call(stage, 1, repeats) for name, stage in stages.items()}
     rest = whole - sum(seconds for name, seconds in spent.items() if name != "contact kernel alone")
@@ -131,7 +131,14 @@ def _samples(player: Player) -> tuple[float, int]:
 def _advance(worlds, pads, cells, fingers, force_torque, chips):
     for i in range(worlds.shape[0]):
         patch = None if cells is None else cells[i]
-        advance_alone(worlds[i], pads[i], patch, fingers[i], force_torque[i], chips[i])
+        advance_alone(
+            worlds[i],
+            (pads[i, 0], pads[i, 1]),
+            patch,
+            (fingers[i, 0], fingers[i, 1]),
+            (force_torque[i, 0], force_torque[i, 1]),
+            (chips[i, 0], chips[i, 1]),
+        )
 
 
 @unlocked
@@ -146,10 +153,11 @@ def _contacts(worlds, pads, cells, fingers):
         motion = (h * vx, h * vy, h * omega)
         for f in range(2):
             pads[i, f].normal = fingers[i, f].force
+        held = pads[i, 0], pads[i, 1]
         for _ in range(-(-world.control_ticks // world.substep_ticks)):
             centre = (world.relative[0], world.relative[1])
             free = (motion[0], motion[1] - weight, motion[2])
             patch = None if cells is None else cells[i]
-            motion = step_pads(pads[i], patch, (world.mass, world.inertia), centre, free, motion, h)
+            motion = step_pads(held, patch, (world.mass, world.inertia), centre, free, motion, h)
             done += 1
     return done

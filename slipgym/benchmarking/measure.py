@@ -21,6 +21,7 @@ from slipgym.contact import DistributedContact, EllipsoidContact
 from slipgym.envs import bullet_loop as loops
 from slipgym.envs.slip_env import SlipEnv
 from slipgym.world import bullet
+from slipgym.world.plant import Plant
 
 BLOCK = 50  # control steps
 ACTIONS = -0.97, -0.7  # 1 to 4.3 N; the default box needs 2 to 3 N, so that a fifth of the time it slips
@@ -40,6 +41,11 @@ class Player:
         self.env = env
         self._rng = np.random.default_rng(0)
         self._over = True
+
+    def rest(self) -> Plant:
+        """State of a newly gripped box."""
+        self.env.reset(seed=0)
+        return self.env._loop.plant
 
     def begin(self) -> None:
         """Start an episode if the last one is over."""
@@ -92,6 +98,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
     """Shares of one env.step, with stopwatches around its parts."""
     env = player.env
     loop = env._loop
+    assert isinstance(loop, loops.BulletLoop)
     rows: list[list[float]] = []
     with Stopwatches() as watches:
         for name in ("_loads", "_observe", "_command"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -34,10 +34,22 @@ class Figure(NamedTuple):
         return self.value <= float(bound) if sign == "<=" else self.value >= float(bound)
 
 
-def machine() -> dict[str, Any]:
-    """What the figures depend on besides the code."""
-    libraries = {name: version(name) for name in LIBRARIES}
+def machine(*more: str) -> dict[str, Any]:
+    """What the figures depend on besides the code; with the versions of more libraries."""
+    libraries = {name: version(name) for name in (*LIBRARIES, *more)}
     return {"python": platform.python_version(), "cores": os.cpu_count(), **libraries}
+
+
+def line(facts: Mapping[str, Any]) -> str:
+    """Names and values in a line."""
+    return ", ".join(f"{name} {value}" for name, value in facts.items())
+
+
+def publish(figures: Sequence[Figure], json: Path | None, *more: str) -> None:
+    """Print figures, and write them to a file if there is one, with the versions of more libraries."""
+    print(table(figures))
+    if json is not None:
+        write(json, figures, *more)
 
 
 def table(figures: Sequence[Figure]) -> str:
@@ -54,10 +66,10 @@ def table(figures: Sequence[Figure]) -> str:
     )
 
 
-def write(path: Path, figures: Sequence[Figure]) -> None:
-    """Write figures as JSON; the file appears complete or not at all."""
+def write(path: Path, figures: Sequence[Figure], *more: str) -> None:
+    """Write figures as JSON, with the versions of more libraries; the file appears complete or not at all."""
     content = {
-        "machine": machine(),
+        "machine": machine(*more),
         "figures": [{**figure._asdict(), "met": figure.met} for figure in figures],
     }
     partial = path.with_name(f".{path.name}.{os.getpid()}")

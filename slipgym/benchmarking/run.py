@@ -6,6 +6,7 @@ from pathlib import Path
 
 from slipgym.benchmarking import measure, report
 from slipgym.benchmarking.batch import batch
+from slipgym.benchmarking.substeps import substeps
 
 
 def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
@@ -16,11 +17,12 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
         pairs: Pairs of timed blocks of the comparison with the bare loop.
         json: File to write the figures to.
     """
-    print(", ".join(f"{name} {value}" for name, value in report.machine().items()))
+    print(report.line(report.machine()))
     player = measure.Player(env_id)
     figures = [
         *measure.against_bare(player, pairs),
         *measure.breakdown(player, max(1, pairs // 3)),
+        *substeps(player.rest(), max(3, pairs // 3)),
         *measure.life(env_id, max(3, pairs // 10)),
         *measure.distributed(player, env_id, max(3, pairs // 5)),
         *measure.contact(),
@@ -28,6 +30,4 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
         *batch(player, env_id, max(3, pairs // 10)),
     ]
     player.env.close()
-    print(report.table(figures))
-    if json is not None:
-        report.write(json, figures)
+    report.publish(figures, json)

@@ -19,7 +19,6 @@ __all__ = [
     "ObjectConfig",
     "Overrides",
     "PhysicsConfig",
-    "PlanarSlipConfig",
     "Randomization",
     "Ranges",
     "SensorsConfig",

@@ -31,17 +31,30 @@ def read(path: Path) -> dict[str, Any]:
         FileNotFoundError: There is no such file.
         ValueError: It is no YAML, holds a key twice, or is no mapping.
     """
-    try:
-        loader = _Loader(path.read_bytes())
-        loader.name = path.name
-        data = loader.get_single_data()
-    except yaml.YAMLError as error:
-        raise ValueError(f"{path}: {error}") from error
+    data = parse(path.read_bytes(), str(path))
     if data is None:
         return {}
     if not isinstance(data, dict):
         raise ValueError(f"{path}: must be a mapping of names to values, got {type(data).__name__}")
     return data
+
+
+def parse(text: str | bytes, source: str) -> Any:
+    """Reads a YAML text, safely.
+
+    Args:
+        text: The text.
+        source: Where it comes from, for the message of an error.
+
+    Raises:
+        ValueError: It is no YAML, or holds a key twice.
+    """
+    try:
+        loader = _Loader(text)
+        loader.name = Path(source).name
+        return loader.get_single_data()
+    except yaml.YAMLError as error:
+        raise ValueError(f"{source}: {error}") from error
 
 
 class _Loader(yaml.SafeLoader):

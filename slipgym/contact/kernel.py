@@ -30,13 +30,13 @@ from __future__ import annotations
 import math
 
 from slipgym.compiled import compiled
-from slipgym.contact.decay import decay
+from slipgym.contact.decay import LARGEST
 
 
 @compiled
-def level(mu_c, mu_s, power):
-    """Friction level g = mu_c + (mu_s - mu_c) exp(-power) [-]."""
-    return mu_c + (mu_s - mu_c) * decay(power)
+def level(mu_c, mu_s, share):
+    """Friction level g = mu_c + (mu_s - mu_c) share [-], the share being exp(-(v / v_s)^gamma)."""
+    return mu_c + (mu_s - mu_c) * share
 
 
 @compiled
@@ -44,7 +44,7 @@ def stribeck(pad, slip_speed):
     """Friction level g(v) with power = (v / v_s)^gamma [-]."""
     ratio = slip_speed / pad.stribeck_velocity
     power = ratio * ratio if pad.stribeck_exponent == 2.0 else ratio**pad.stribeck_exponent
-    return level(pad.mu_c, pad.mu_s, power)
+    return level(pad.mu_c, pad.mu_s, math.exp(-power) if power < LARGEST else 0.0)
 
 
 @compiled
@@ -56,9 +56,10 @@ def friction_level(pad, h):
 @compiled
 def brought_in(z, reach):
     """Bristles brought back into the ball of a friction level that has fallen."""
-    length = math.sqrt(z[0] * z[0] + z[1] * z[1] + z[2] * z[2])
-    if length > reach:
-        return z[0] * (reach / length), z[1] * (reach / length), z[2] * (reach / length)
+    squared = z[0] * z[0] + z[1] * z[1] + z[2] * z[2]
+    if squared > reach * reach:
+        shortening = reach / math.sqrt(squared)
+        return z[0] * shortening, z[1] * shortening, z[2] * shortening
     return z
 
 
@@ -81,14 +82,16 @@ def respond(pad, z, normal, delta, h, reach):
         shortening: Factor of the return mapping on the trial deflection (1 = stick).
     """
     y = (z[0] + delta[0], z[1] + delta[1], z[2] + delta[2])
-    length = math.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
-    elastic = normal * (pad.sigma_0 + pad.sigma_1 / h)
-    damping = normal * pad.sigma_1 / h
-    viscous = normal * pad.sigma_2 / h
+    squared = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
+    rate = 1.0 / h
+    damping = normal * pad.sigma_1 * rate
+    elastic = normal * pad.sigma_0 + damping
+    viscous = normal * pad.sigma_2 * rate
     shortening, radial = 1.0, 0.0
-    if length > reach:
-        shortening = reach / length
-        radial = elastic * shortening / (length * length)
+    if squared > reach * reach:
+        per_length = 1.0 / math.sqrt(squared)
+        shortening = reach * per_length
+        radial = elastic * shortening * per_length * per_length
     spring = elastic * shortening
     force = (
         spring * y[0] - damping * z[0] + viscous * delta[0],
@@ -114,9 +117,10 @@ def commit(pad, delta, h, limit):
     force, _, _, trial, shortening = respond(pad, z, pad.normal, delta, h, limit / pad.sigma_0)
     for a in range(3):
         pad.z[a] = shortening * trial[a]
-    speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) / h
+    rate = 1.0 / h
+    speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) * rate
     if shortening < 1.0:
-        pad.slip_rate = (speed - pad.slip_speed) / h
+        pad.slip_rate = (speed - pad.slip_speed) * rate
         pad.slip_speed = speed
     else:
         pad.slip_rate = 0.0

@@ -33,7 +33,7 @@ import math
 
 from slipgym.compiled import compiled, compiled_sum
 from slipgym.contact import kernel
-from slipgym.contact.decay import LARGEST
+from slipgym.contact.decay import LARGEST, decay
 from slipgym.contact.records import CAP, REACH, SHARE, Z_X, Z_Y, X, Y
 
 
@@ -93,7 +93,7 @@ def prepare(pad, cells, twist):
     mu_c, mu_s, compliance, mean = pad.mu_c, pad.mu_s, 1.0 / pad.sigma_0, 0.0
     if set_powers(pad, cells, twist) > 0:
         for i in range(cells.shape[1]):
-            reach[i] = kernel.level(mu_c, mu_s, reach[i])
+            reach[i] = kernel.level(mu_c, mu_s, decay(reach[i]))
     else:
         reach[:] = mu_c
     for i in range(cells.shape[1]):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from gymnasium.vector import AutoresetMode
+
 from slipgym.config.errors import unknown
 
 DEFAULT_ESTIMATOR = "disc"
@@ -28,3 +30,11 @@ def whole(name: str, value: object, least: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value < least:
         raise ValueError(f"{name} = {value!r} must be a whole number >= {least}")
     return value
+
+
+def autoreset(mode: str | AutoresetMode) -> AutoresetMode:
+    """Return an autoreset mode, or raise ValueError."""
+    try:
+        return AutoresetMode(mode)
+    except ValueError:
+        raise ValueError(unknown("autoreset_mode", mode, [each.value for each in AutoresetMode])) from None

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from slipgym.envs.loop import SlipLoop
+from slipgym.envs.observer import Observation
 
 
 class Information:
@@ -42,13 +43,55 @@ class Information:
         info["time"] = self._times().item(i)
         return info
 
-    def all(self) -> dict[str, Any]:
-        """Those of all environments, as `gymnasium.vector.VectorEnv` gives them: arrays (n, ...)."""
-        loop = self._loop
-        infos: dict[str, Any] = {name: view.copy() for name, view in self._views.items()}
-        terms = {name: loop.terms[:, k].copy() for k, name in enumerate(loop.task.terms)}
-        infos["reward_terms"], infos["time"] = terms, self._times()
+    def of(self, mask: np.ndarray) -> dict[str, Any]:
+        """Those of the environments of a mask (n,), as `gymnasium.vector.VectorEnv` gives them.
+
+        Returns:
+            Arrays (n, ...), zero where the mask is False; nothing at all without one that is True.
+        """
+        if not mask.any():
+            return {}
+        loop, rows = self._loop, slice(None) if mask.all() else np.flatnonzero(mask)
+        infos: dict[str, Any] = {name: _taken(view, rows) for name, view in self._views.items()}
+        infos["reward_terms"] = {
+            name: _taken(loop.terms[:, k], rows) for k, name in enumerate(loop.task.terms)
+        }
+        infos["time"] = _taken(self._times(), rows)
         return infos
 
     def _times(self) -> np.ndarray:
         return self._loop.episode["step"] * self._loop.step_time
+
+
+def _taken(view: np.ndarray, rows: Any) -> np.ndarray:
+    taken = np.zeros(view.shape, view.dtype)
+    taken[rows] = view[rows]
+    return taken
+
+
+def masked(infos: dict[str, Any], mask: np.ndarray) -> dict[str, Any]:
+    """Each info with a mask beside it that says which environments have it, as Gymnasium asks for."""
+    beside: dict[str, Any] = {}
+    for name, value in infos.items():
+        beside[name] = masked(value, mask) if isinstance(value, dict) else value
+        beside[f"_{name}"] = mask.copy()
+    return beside
+
+
+def final(observations: Observation, infos: dict[str, Any], over: np.ndarray) -> dict[str, Any]:
+    """Infos that hold the last observations and infos of episodes that are over.
+
+    Args:
+        observations: Of all environments.
+        infos: Of all environments, without masks.
+        over: Which episodes are over, (n,).
+    """
+    if not over.any():
+        return {}
+    last = np.full(len(over), None, dtype=object)
+    for i in np.flatnonzero(over).tolist():
+        if isinstance(observations, dict):
+            last[i] = {group: values[i] for group, values in observations.items()}
+        else:
+            last[i] = observations[i]
+    return masked({"final_obs": last, "final_info": infos}, over)

@@ -20,17 +20,19 @@ class Pictures:
         rows: Which environments.
 
     Raises:
-        ValueError: The mode is unknown, or there is no such environment.
+        ValueError: The mode is unknown, or the rows are no list of environments.
     """
 
     def __init__(self, loop: SlipLoop, mode: str | None, rows: Sequence[int]) -> None:
         self._renderers: dict[int, Any] = {}
-        self._mode, self._begun = mode, False
+        self._mode, self._begun = mode, set[int]()
         if mode is None:
             return
         one_of("render_mode", mode, ("rgb_array", "depth_array"))
         from slipgym.rendering import Renderer
 
+        if not isinstance(rows, Sequence) or not rows:
+            raise ValueError(f"render_rows = {rows!r} must be a list of at least one row")
         for row in rows:
             if isinstance(row, bool) or not isinstance(row, int) or not 0 <= row < loop.n:
                 raise ValueError(f"render_rows: {row!r} must be a whole number from 0 to {loop.n - 1}")
@@ -40,7 +42,7 @@ class Pictures:
         """Environment i has begun an episode."""
         if i in self._renderers:
             self._renderers[i].begin()
-            self._begun = True
+            self._begun.add(i)
 
     def keep(self, active: np.ndarray) -> None:
         """Environments of a mask (n,) have made a step."""
@@ -52,10 +54,11 @@ class Pictures:
         """A picture of each; None without a mode.
 
         Raises:
-            RuntimeError: There was no reset yet.
+            RuntimeError: One was never reset.
         """
         if self._mode is None:
             return None
-        if not self._begun:
-            raise RuntimeError("call reset() first: there is no object yet")
+        for row in self._renderers:
+            if row not in self._begun:
+                raise RuntimeError(f"call reset() first: environment {row} has no object yet")
         return tuple(renderer.render() for renderer in self._renderers.values())

@@ -101,4 +101,8 @@ class PlanarLoop(SlipLoop):
             self.per_finger,
             self.episode,
         )
-        Guard().watch(time, bad, *arrays)
+        try:
+            Guard().watch(time, bad, *arrays)
+        except FloatingPointError as error:
+            where = f"environment {bad}: " if self.n > 1 else ""
+            raise FloatingPointError(f"{where}{error}") from None

@@ -45,7 +45,14 @@ def _move(worlds, pads, cells, fingers, force_torque, chips, force, i):
     for f in range(2):
         command(fingers[i, f], worlds[i].tick, force)
     patch = None if cells is None else cells[i]
-    advance_alone(worlds[i], pads[i], patch, fingers[i], force_torque[i], chips[i])
+    advance_alone(
+        worlds[i],
+        (pads[i, 0], pads[i, 1]),
+        patch,
+        (fingers[i, 0], fingers[i, 1]),
+        (force_torque[i, 0], force_torque[i, 1]),
+        (chips[i, 0], chips[i, 1]),
+    )
 
 
 @unlocked

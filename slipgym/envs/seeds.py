@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from gymnasium.utils import seeding
+
+from slipgym.envs.state import restored_generator
 
 
 class Generators:
@@ -32,19 +35,27 @@ class Generators:
         if seed is None:
             return
         if isinstance(seed, (int, np.integer)) and not isinstance(seed, bool):
-            seeds: list[int | None] = [int(seed) + i for i in range(self._n)]
+            seeds: Sequence[Any] = range(int(seed), int(seed) + self._n)
         elif isinstance(seed, (Sequence, np.ndarray)) and not isinstance(seed, str):
-            seeds = [None if one is None else int(one) for one in seed]
+            seeds = seed
         else:
             raise ValueError(f"seed = {seed!r} must be None, a whole number >= 0 or a list of them")
         if len(seeds) != self._n:
             raise ValueError(f"seed: {len(seeds)} seeds for {self._n} environments")
-        for i in np.flatnonzero(mask).tolist():
-            one = seeds[i]
-            if one is not None:
-                if one < 0:
-                    raise ValueError(f"seed = {one} must be a whole number >= 0")
-                self._generators[i] = seeding.np_random(one)[0]
+        asked = [(i, seeds[i]) for i in np.flatnonzero(mask).tolist() if seeds[i] is not None]
+        for i, one in asked:
+            if isinstance(one, bool) or not isinstance(one, (int, np.integer)) or one < 0:
+                raise ValueError(f"seed = {one!r} of environment {i} must be a whole number >= 0")
+        for i, one in asked:
+            self._generators[i] = seeding.np_random(int(one))[0]
+
+    def get_state(self) -> list[Mapping[str, Any]]:
+        """States of all generators, to go on from."""
+        return [self[i].bit_generator.state for i in range(self._n)]
+
+    def set_state(self, states: Sequence[Mapping[str, Any]]) -> None:
+        """Go on from the states of as many generators."""
+        self._generators[:] = map(restored_generator, states)
 
     def __getitem__(self, i: int) -> np.random.Generator:
         """That of environment i; one that was never seeded is seeded by the operating system."""

@@ -217,7 +217,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             ValueError: It is of another kind of environment.
             RuntimeError: This environment is closed.
         """
-        checked(state).check({"task": self.task.name, **self._arguments})
+        checked(state, EnvState).check({"task": self.task.name, **self._arguments})
         self._loop.check_open()
         self._np_random = restored_generator(state.generator)
         self._np_random_seed = state.seed

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -13,23 +13,11 @@ from slipgym.envs.loop import LoopState
 
 
 @dataclass(frozen=True)
-class EnvState:
-    """State of a `SlipEnv` between two steps, of an episode or before the first.
-
-    Plain data: it can be pickled, copied, and restored in another process, into any environment made with
-    the same arguments, any number of times. The continuation is equal bit for bit.
-    """
+class State:
+    """What a state belongs to."""
 
     made_of: Mapping[str, Any]
     """Task, configuration and arguments that the environment was made with."""
-    generator: Mapping[str, Any]
-    """State of the environment's random generator."""
-    seed: int | None
-    """Seed that the generator was last given."""
-    loop: LoopState | None
-    """Bodies, contacts, sensors, estimators and task; None before the first reset."""
-    frames: np.ndarray
-    """The last observations, the present one last, (1, history + 1, m)."""
 
     def check(self, made_of: Mapping[str, Any]) -> None:
         """Refuse a state of another kind of environment.
@@ -49,9 +37,46 @@ class EnvState:
                 )
 
 
-def checked(state: object) -> EnvState:
-    """Return a state, or raise TypeError if it is none."""
-    if not isinstance(state, EnvState):
+@dataclass(frozen=True)
+class EnvState(State):
+    """State of a `SlipEnv` between two steps, of an episode or before the first.
+
+    Plain data: it can be pickled, copied, and restored in another process, into any environment made with
+    the same arguments, any number of times. The continuation is equal bit for bit.
+    """
+
+    generator: Mapping[str, Any]
+    """State of the environment's random generator."""
+    seed: int | None
+    """Seed that the generator was last given."""
+    loop: LoopState | None
+    """Bodies, contacts, sensors, estimators and task; None before the first reset."""
+    frames: np.ndarray
+    """The last observations, the present one last, (1, history + 1, m)."""
+
+
+@dataclass(frozen=True)
+class VectorState(State):
+    """State of a `SlipVectorEnv` between two steps; plain data like an `EnvState`."""
+
+    generators: Sequence[Mapping[str, Any]]
+    """States of the environments' random generators."""
+    loop: LoopState
+    """Bodies, contacts, sensors, estimators and task."""
+    frames: np.ndarray
+    """The last observations, the present one last, (n, history + 1, m)."""
+    ready: np.ndarray
+    """Which environments have an episode, (n,)."""
+    over: np.ndarray
+    """Which of them are over, (n,)."""
+
+
+Kind = TypeVar("Kind", bound=State)
+
+
+def checked(state: object, kind: type[Kind]) -> Kind:
+    """Return a state of a kind, or raise TypeError if it is none."""
+    if not isinstance(state, kind):
         raise TypeError(f"state must come from get_state(), got {type(state).__name__}")
     return state
 

@@ -14,13 +14,13 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from slipgym.config import Config, Randomization
-from slipgym.config.errors import unknown
-from slipgym.envs.choices import DEFAULT_ESTIMATOR, refuse_unknown, whole
-from slipgym.envs.information import Information
+from slipgym.envs.choices import DEFAULT_ESTIMATOR, autoreset, one_of, refuse_unknown, whole
+from slipgym.envs.information import Information, final, masked
 from slipgym.envs.pictures import Pictures
 from slipgym.envs.planar_loop import PlanarLoop
 from slipgym.envs.seeds import Generators
 from slipgym.envs.setup import Setup
+from slipgym.envs.state import VectorState, checked
 from slipgym.envs.vector_options import RowOptions
 from slipgym.tasks import TASKS, Task
 
@@ -49,6 +49,8 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         threads: Threads that share the environments; None: as many as processors, if there is work for them.
         render_mode: None, "rgb_array" or "depth_array".
         render_rows: Environments that `render` shows.
+        infos: Of which environments a step's infos tell: "all", or "ends": those whose episode ends or begins
+            in it, which spares a learner that reads no others the copies.
         config: See the scalar environment.
 
     Raises:
@@ -76,11 +78,12 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         threads: int | None = None,
         render_mode: str | None = None,
         render_rows: Sequence[int] = (0,),
+        infos: str = "all",
         config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
         **others: Any,
     ) -> None:
         _refuse(others)
-        self.task: Task = TASKS[task]
+        self.task: Task = TASKS[one_of("task", task, TASKS)]
         self.num_envs = whole("num_envs", num_envs, 1)
 
         def make_loop(config: Config, task: Task, estimator: Any, randomization: Randomization) -> PlanarLoop:
@@ -108,10 +111,23 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self.single_action_space, self.single_observation_space = self._actions.space, self._observer.space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self._mode = _autoreset(autoreset_mode)
+        self._mode = autoreset(autoreset_mode)
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_fps": rate, "autoreset_mode": self._mode}
+        self._made_of = {
+            "task": self.task.name,
+            **setup.arguments,
+            "num_envs": num_envs,
+            "autoreset_mode": self._mode.value,
+        }
+        self._shown = {
+            "threads": threads,
+            "infos": infos,
+            "render_mode": render_mode,
+            "render_rows": render_rows,
+        }
         self._information = Information(self._loop)
+        self._all_infos = one_of("infos", infos, ("all", "ends")) == "all"
         self._generators = Generators(num_envs)
         self.render_mode = render_mode
         self._pictures = Pictures(self._loop, render_mode, render_rows)
@@ -138,10 +154,11 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         asked = RowOptions(options, self.num_envs, self.task.options)
         self._generators.seed(seed, asked.mask)
         rows = np.flatnonzero(asked.mask)
+        self._ready[rows] = False
         for i in rows.tolist():
             self._begin(i, asked.of(i))
-        infos = {**self._information.all(), **self._drawn(rows)}
-        return self._observer.read(), _masked(infos, asked.mask)
+        infos = masked(self._information.of(asked.mask), asked.mask)
+        return self._observer.read(), self._add_drawn(infos, rows)
 
     def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Act for `frame_skip` slip-velocity samples in every environment.
@@ -155,9 +172,10 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         Raises:
             ValueError: The actions have the wrong shape or are not finite.
             RuntimeError: The environment is closed, or one of its environments needs a reset.
-            FloatingPointError: A simulation left the finite numbers; the message names the first.
+            FloatingPointError: A simulation left the finite numbers; the message names the first. All
+                environments then need a reset.
         """
-        checked = self._actions.checked_batch(actions, self.num_envs)
+        chosen = self._actions.checked_batch(actions, self.num_envs)
         self._loop.check_open()
         begins = self._over if self._mode is AutoresetMode.NEXT_STEP else np.zeros_like(self._over)
         active = self._ready & ~self._over
@@ -166,7 +184,9 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             raise RuntimeError(f"call reset() before step(): environments {waiting[:8]} have no episode")
         loop, episode = self._loop, self._loop.episode
         loop.terms[begins] = 0.0
-        loop.step(checked, self._actions.table, self._frame_skip, active, self._observer.sight)
+        ready, self._ready = self._ready, np.zeros_like(self._ready)
+        loop.step(chosen, self._actions.table, self._frame_skip, active, self._observer.sight)
+        self._ready = ready
         self._observer.next(active)
         rewards = sum(loop.terms.T, start=np.zeros(self.num_envs))  # in the scalar environment's order
         terminated = episode["dropped"] & active
@@ -176,13 +196,13 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         ended: dict[str, Any] = {}
         if self._mode is AutoresetMode.SAME_STEP:
             begins, self._over = self._over, np.zeros_like(self._over)
-            ended = self._final(begins)
+            ended = final(self._observer.read(), self._information.of(begins), begins)
+        told = np.ones_like(begins) if self._all_infos else self._over | begins
         rows = np.flatnonzero(begins)
         for i in rows.tolist():
             self._begin(i, self._options)
-        infos = {**self._information.all(), **self._drawn(rows)}
-        everyone = np.ones(self.num_envs, dtype=bool)
-        return self._observer.read(), rewards, terminated, truncated, {**_masked(infos, everyone), **ended}
+        infos = self._add_drawn({**masked(self._information.of(told), told), **ended}, rows)
+        return self._observer.read(), rewards, terminated, truncated, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:
         """Pictures of `render_rows`; None without a render mode.
@@ -192,6 +212,42 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         """
         self._loop.check_open()
         return self._pictures.render()
+
+    def get_state(self) -> VectorState:
+        """Everything that decides what the environments do next, as plain data.
+
+        Raises:
+            RuntimeError: The environment is closed.
+        """
+        loop = self._loop.get_state()
+        frames, ready, over = self._observer.frames.copy(), self._ready.copy(), self._over.copy()
+        return VectorState(self._made_of, self._generators.get_state(), loop, frames, ready, over)
+
+    def set_state(self, state: VectorState) -> None:
+        """Go on from a state, bit for bit, also from that of another environment or process.
+
+        Args:
+            state: From `get_state` of an environment made with the same arguments; threads and rendering may
+                differ.
+
+        Raises:
+            TypeError: It is no state.
+            ValueError: It is of another kind of environment.
+            RuntimeError: This environment is closed.
+        """
+        checked(state, VectorState).check(self._made_of)
+        self._loop.set_state(state.loop)
+        self._generators.set_state(state.generators)
+        self._observer.sight.out[:] = state.frames[:, -1]
+        self._observer.frames[:] = state.frames
+        self._ready[:], self._over[:] = state.ready, state.over
+        for i in np.flatnonzero(state.ready).tolist():
+            self._pictures.begin(i)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickling and copying make a new environment with threads of its own, in the same state."""
+        state = None if self._loop.closed else self.get_state()
+        return _rebuild, ({**self._made_of, **self._shown}, state, self.spec)
 
     def close_extras(self, **_: Any) -> None:
         """End the threads."""
@@ -203,48 +259,22 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._pictures.begin(i)
         self._ready[i], self._over[i] = True, False
 
-    def _final(self, over: np.ndarray) -> dict[str, Any]:
-        """The last observations and infos of the episodes that are over."""
-        if not over.any():
-            return {}
-        observations = self._observer.read()
-        final = np.full(self.num_envs, None, dtype=object)
-        for i in np.flatnonzero(over).tolist():
-            if isinstance(observations, dict):
-                final[i] = {group: values[i] for group, values in observations.items()}
-            else:
-                final[i] = observations[i]
-        info = _masked(self._information.all(), over)
-        return {"final_obs": final, "_final_obs": over.copy(), "final_info": info, "_final_info": over.copy()}
-
-    def _drawn(self, rows: np.ndarray) -> dict[str, Any]:
-        """What the randomization drew for episodes that begin."""
-        if not len(rows) or not self._loop.drawn[rows[0]]:
-            return {}
-        drawn = np.full(self.num_envs, None, dtype=object)
-        began = np.zeros(self.num_envs, dtype=bool)
+    def _add_drawn(self, infos: dict[str, Any], rows: np.ndarray) -> dict[str, Any]:
+        """Infos with what the randomization drew for episodes that begin."""
         for i in rows.tolist():
-            drawn[i], began[i] = dict(self._loop.drawn[i]), True
-        return {"drawn": drawn, "_drawn": began}
+            if drawn := self._loop.drawn[i]:
+                infos = self._add_info(infos, {"drawn": drawn}, i)
+        return infos
 
 
-def _autoreset(mode: str | AutoresetMode) -> AutoresetMode:
-    try:
-        return AutoresetMode(mode)
-    except ValueError:
-        raise ValueError(unknown("autoreset_mode", mode, [each.value for each in AutoresetMode])) from None
-
-
-def _masked(infos: dict[str, Any], mask: np.ndarray) -> dict[str, Any]:
-    """Each info with a mask beside it that says which environments have it, as Gymnasium asks for."""
-    masked: dict[str, Any] = {}
-    for name, value in infos.items():
-        if name.startswith("_"):
-            masked[name] = value
-            continue
-        masked[name] = _masked(value, mask) if isinstance(value, dict) else value
-        masked.setdefault(f"_{name}", mask.copy())
-    return masked
+def _rebuild(arguments: Mapping[str, Any], state: VectorState | None, spec: Any) -> SlipVectorEnv:
+    env = SlipVectorEnv(**arguments)
+    env.spec = spec
+    if state is None:
+        env.close()
+    else:
+        env.set_state(state)
+    return env
 
 
 def _refuse(others: Mapping[str, Any]) -> None:

@@ -37,11 +37,20 @@ class RowOptions:
         if rows is not None:
             if not isinstance(rows, Sequence) or len(rows) != n:
                 raise ValueError(f"options['rows'] must be a list of {n} mappings or None, got {rows!r:.80}")
-            self._rows = [kind.parse({**(given or {}), **(row or {})}) for row in rows]
+            self._rows = [_row(i, row, given or {}, kind) for i, row in enumerate(rows)]
 
     def of(self, i: int) -> EpisodeOptions:
         """Options of environment i."""
         return self._common if self._rows is None else self._rows[i]
+
+
+def _row(i: int, row: Any, common: Mapping[str, Any], kind: type[EpisodeOptions]) -> EpisodeOptions:
+    try:
+        return kind.parse(
+            row if row is not None and not isinstance(row, Mapping) else {**common, **(row or {})}
+        )
+    except ValueError as error:
+        raise ValueError(f"options['rows'][{i}]: {error}") from None
 
 
 def _checked_mask(mask: Any, n: int) -> np.ndarray:

@@ -41,8 +41,11 @@ def relaxed(finger, h):
     gap = finger.force - finger.command
     if finger.lag <= 0.0:
         return finger.command, finger.command
-    decay = math.exp(-h / finger.lag)
-    return finger.command + gap * decay, finger.command + gap * (1.0 - decay) * finger.lag / h
+    ratio = h / finger.lag
+    if ratio != finger.relaxed:  # the exponential is slow, and steps take few lengths
+        finger.relaxed, finger.decay = ratio, math.exp(-ratio)
+        finger.mean_decay = (1.0 - finger.decay) / ratio
+    return finger.command + gap * finger.decay, finger.command + gap * finger.mean_decay
 
 
 @compiled

@@ -24,11 +24,11 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
 
     Args:
         world: WORLD record.
-        pads: PAD records (2,).
+        pads: Two PAD records, as an array or, faster (`step_pads` says why), as a tuple.
         cells: Patches (2, CELL_FIELDS, m); None for ellipsoids.
-        fingers: FINGER records (2,).
-        force_torque: FORCE_TORQUE records (2,).
-        chips: SLIP_SENSOR records (2,).
+        fingers: Two FINGER records, likewise.
+        force_torque: Two FORCE_TORQUE records, likewise.
+        chips: Two SLIP_SENSOR records, likewise.
     """
     end = world.tick + world.control_ticks
     sample = sample_read_next(force_torque[0], world.tick, world.control_ticks)

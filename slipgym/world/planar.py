@@ -39,6 +39,7 @@ def advance(world, pads, cells, fingers, force_torque, chips):
     for f in range(2):
         fingers[f].mean_force = 0.0
         fingers[f].reaction[:] = 0.0
+    both = (pads[0], pads[1]), cells, (fingers[0], fingers[1]), (chips[0], chips[1])
     while world.tick < end:
         ticks = min(world.substep_ticks, end - world.tick)
         for f in range(2):
@@ -46,7 +47,7 @@ def advance(world, pads, cells, fingers, force_torque, chips):
             ticks = ticks_to_next(fingers[f], world.tick, ticks)
             ticks = min(ticks, force_torque[f].period - world.tick % force_torque[f].period)
         share = ticks / world.engine_ticks
-        substep(world, pads, cells, fingers, chips, ticks * world.tick_length, share)
+        substep(world, *both, ticks * world.tick_length, share)
         world.tick += ticks
         for f in range(2):
             if world.tick % force_torque[f].period == 0:
@@ -55,35 +56,51 @@ def advance(world, pads, cells, fingers, force_torque, chips):
 
 @compiled
 def substep(world, pads, cells, fingers, chips, h, share):
-    """Advance wrist, fingers, friction and object by h, a `share` of the engine step."""
+    """Advance wrist, fingers, friction and object by h, a `share` of the engine step.
+
+    Args:
+        world: WORLD record.
+        pads: Two PAD records, as an array or, faster (`step_pads` says why), as a tuple.
+        cells: As in `advance`.
+        fingers: Two FINGER records, likewise.
+        chips: Two SLIP_SENSOR records, likewise.
+        h: Time [s].
+        share: Of the engine step, in its means of force and friction.
+    """
     for f in range(2):
         mean = relax(fingers[f], h)
         fingers[f].mean_force += share * mean
         pads[f].normal = normal_force(fingers[f])
     move_wrist(world, h)
-    cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])
-    ax = world.external[0] / world.mass
-    az = world.external[1] / world.mass - world.gravity
+    cos, sin = pad_axes(world)
+    rate, per_mass = 1.0 / h, 1.0 / world.mass  # a product costs less than a quotient
+    ax = world.external[0] * per_mass
+    az = world.external[1] * per_mass - world.gravity
     at = world.external[2] / world.inertia
     # held: backward Euler, as sticking needs; let go: the parabola itself
     held = pads[0].normal > HOLDING or pads[1].normal > HOLDING
     lead = 1.0 if held else 0.5
     late = h * (1.0 - lead)
-    drift = relative_motion(world, cos, sin, 0.0, 0.0, 0.0, h)
-    free = relative_motion(world, cos, sin, lead * ax, lead * az, lead * at, h)
+    drift = drifting(world, cos, sin, h)
+    gain = lead * h * h
+    free = (
+        drift[0] + gain * (cos * ax + sin * az),
+        drift[1] + gain * (cos * az - sin * ax),
+        drift[2] + gain * at,
+    )
     centre = (world.relative[0], world.relative[1])
     motion = step_pads(pads, cells, (world.mass, world.inertia), centre, free, drift, h)
-    braking_x = (motion[0] - free[0]) / h
-    braking_y = (motion[1] - free[1]) / h
+    braking_x = (motion[0] - free[0]) * rate
+    braking_y = (motion[1] - free[1]) * rate
     world.velocity[0] += h * ax + cos * braking_x - sin * braking_y
     world.velocity[1] += h * az + sin * braking_x + cos * braking_y
-    world.velocity[2] += h * at + (motion[2] - free[2]) / h
+    world.velocity[2] += h * at + (motion[2] - free[2]) * rate
     world.com[0] += h * (world.velocity[0] - late * ax)
     world.com[1] += h * (world.velocity[1] - late * az)
     world.angle += h * (world.velocity[2] - late * at)
     for a in range(3):
         world.relative[a] += motion[a]
-        world.relative_velocity[a] = motion[a] / h
+        world.relative_velocity[a] = motion[a] * rate
     slip = (motion[0] + motion[2] * centre[1], motion[1] - motion[2] * centre[0], motion[2])
     for f in range(2):
         accumulate_slip(chips[f], slip)
@@ -112,14 +129,23 @@ def move_wrist(world, h):
 
 
 @compiled
-def relative_motion(world, cos, sin, ax, az, at, h):
-    """Motion of the centre of mass in the pad frame over h under a given acceleration.
+def pad_axes(world):
+    """Cosine and sine of the wrist's pitch, computed anew when it has changed."""
+    if world.wrist[2] != world.pitch:
+        world.pitch = world.wrist[2]
+        world.axes[0], world.axes[1] = math.cos(world.pitch), math.sin(world.pitch)
+    return world.axes[0], world.axes[1]
+
+
+@compiled
+def drifting(world, cos, sin, h):
+    """Motion of the centre of mass in the pad frame over h at its present velocity.
 
     The wrist has already moved; cos and sin are those of its new pitch.
     """
-    x = world.com[0] + h * (world.velocity[0] + h * ax) - world.wrist[0]
-    z = world.com[1] + h * (world.velocity[1] + h * az) - world.wrist[1]
-    turned = world.angle + h * (world.velocity[2] + h * at) - world.wrist[2]
+    x = world.com[0] + h * world.velocity[0] - world.wrist[0]
+    z = world.com[1] + h * world.velocity[1] - world.wrist[1]
+    turned = world.angle + h * world.velocity[2] - world.wrist[2]
     return (
         cos * x + sin * z - world.relative[0],
         cos * z - sin * x - world.relative[1],

@@ -107,6 +107,7 @@ def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
     world["substep_ticks"] = max(1, math.floor(config.physics.substep_max * tick_rate * (1 + 1e-9)))
     world["calm_ticks"] = max(1, math.floor(config.physics.planar_substep_max * tick_rate * (1 + 1e-9)))
     world["gravity"] = config.physics.gravity
+    world["axes"] = 1.0, 0.0
     return world
 
 

@@ -26,6 +26,8 @@ WORLD = np.dtype(
         ("wrist_plan", "f8", 3),  # the same as commanded
         ("wrist_velocity", "f8", 3),  # commanded, now
         ("wrist_acceleration", "f8", 3),  # commanded, over this control step
+        ("pitch", "f8"),  # that `axes` are for [rad]
+        ("axes", "f8", 2),  # its cosine and sine
         ("relative", "f8", 3),  # centre of mass and angle in the pad frame
         ("relative_velocity", "f8", 3),  # of the centre of mass in the pad frame, last sub-step
         ("grasp_point", "f8", 2),  # body point at the pad centre at the grasp, from the com
@@ -47,6 +49,9 @@ FINGER = np.dtype(
         ("served", "i8"),  # commands ever taken up
         ("command", "f8"),  # command in effect [N]
         ("force", "f8"),  # actuator force now [N]
+        ("relaxed", "f8"),  # sub-step over lag that `decay` and `mean_decay` are for [-]
+        ("decay", "f8"),  # of the gap to the command over a sub-step [-]
+        ("mean_decay", "f8"),  # its mean over the sub-step [-]
         ("mean_force", "f8"),  # actuator force, mean over the engine step [N]
         ("contact_mean_force", "f8"),  # actuator force, mean over the step of `contact_force` [N]
         ("contact_force", "f8"),  # normal force of the engine, mean over its last step [N]

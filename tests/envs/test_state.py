@@ -20,10 +20,15 @@ def go_on(env, actions) -> list[str]:
     return [repr(env.step(action)) for action in actions]
 
 
+@pytest.fixture(params=["bullet", "planar"])
+def engine(request) -> str:
+    return request.param
+
+
 @pytest.fixture
-def midway(make, env_id):
+def midway(make, env_id, engine):
     """An environment in the middle of an episode, its object slipping."""
-    env = make(env_id)
+    env = make(env_id, engine=engine)
     env.reset(seed=4, options={"object_mass": 0.3, "com_offset": (0.004, 0.01)})
     for action in ACTIONS[:60]:
         env.step(action)
@@ -39,9 +44,9 @@ def test_going_back_again_and_again(midway):
 
 
 @pytest.mark.slow
-def test_fifty_random_moments(make, env_id):
+def test_fifty_random_moments(make, env_id, engine):
     rng = np.random.default_rng(1)
-    env, other = make(env_id), make(env_id)
+    env, other = (make(env_id, engine=engine) for _ in range(2))
     for episode in range(50):
         env.reset(seed=episode)
         for action in rng.uniform(-1.0, 0.5, (rng.integers(1, 120), 1)):
@@ -53,8 +58,8 @@ def test_fifty_random_moments(make, env_id):
         assert go_on(other, actions) == said
 
 
-def test_into_another_environment_and_its_next_episode(make, env_id, midway):
-    other = make(env_id, render_mode="rgb_array")
+def test_into_another_environment_and_its_next_episode(make, env_id, engine, midway):
+    other = make(env_id, engine=engine, render_mode="rgb_array")
     other.reset(seed=8)
     other.set_state(midway.get_state())
     assert go_on(other, ACTIONS[60:]) == go_on(midway, ACTIONS[60:])
@@ -80,8 +85,8 @@ def test_in_another_process(midway, exact_printing):
     assert done.stdout.decode().strip() == repr(go_on(midway, ACTIONS[60:120]))
 
 
-def test_before_the_first_reset_and_after_closing(make, env_id):
-    fresh = make(env_id)
+def test_before_the_first_reset_and_after_closing(make, env_id, engine):
+    fresh = make(env_id, engine=engine)
     twin = pickle.loads(pickle.dumps(fresh))
     assert repr(twin.reset(seed=1)) == repr(fresh.reset(seed=1))
     fresh.close()
@@ -92,11 +97,14 @@ def test_before_the_first_reset_and_after_closing(make, env_id):
     twin.close()
 
 
-def test_refuses_the_state_of_another_kind(make, env_id, midway):
+def test_refuses_the_state_of_another_kind(make, env_id, engine, midway):
     state = midway.get_state()
     with pytest.raises(ValueError, match=r"physics\.gravity = 9\.81, here 1\.62"):
-        make(env_id, config={"physics": {"gravity": 1.62}}).set_state(state)
+        make(env_id, engine=engine, config={"physics": {"gravity": 1.62}}).set_state(state)
     with pytest.raises(ValueError, match="another friction_source: 'estimated', here 'none'"):
-        make(env_id, friction_source="none").set_state(state)
+        make(env_id, engine=engine, friction_source="none").set_state(state)
+    other = "planar" if engine == "bullet" else "bullet"
+    with pytest.raises(ValueError, match=f"another engine: '{engine}', here '{other}'"):
+        make(env_id, engine=other).set_state(state)
     with pytest.raises(TypeError, match="get_state"):
         make(env_id).set_state({})

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-LEARNING = {"torch", "stable_baselines3"}
+LEARNING = {"torch", "stable_baselines3", "sb3_contrib"}
 FORBIDDEN = {
     "estimator": {"slipgym", "policies", "scripts", "pybullet", "gymnasium"} | LEARNING,
     "slipgym": {"policies", "scripts"} | LEARNING,
@@ -82,6 +82,12 @@ def test_import_slipgym_is_light():
     loaded = loaded_by("import slipgym")
     assert "slipgym" in loaded
     assert loaded & HEAVY == set()
+
+
+def test_import_policies_loads_no_learning_library():
+    loaded = loaded_by("import policies")
+    assert "policies" in loaded
+    assert loaded & LEARNING == set()
 
 
 def test_a_heavy_import_is_found():

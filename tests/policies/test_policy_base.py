@@ -40,7 +40,9 @@ def newton(action):
 @pytest.mark.parametrize("task", TASKS)
 def test_index_matches_the_environments_columns(task):
     index = ObservationIndex(task, CONFIG)
-    for k, column in enumerate(observation.columns(CONFIG, TASKS[task], "estimated")):
+    for k, column in enumerate(
+        observation.columns(CONFIG, TASKS[task], "estimated", TASKS[task].action_mode)
+    ):
         assert index[column.name] == k
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from slipgym.config import load
 from slipgym.tasks import TASKS
-from slipgym.tasks.planar_slip import hang
+from slipgym.tasks.planar_slip import TARGET, hang
 
 PLAN = {"slide": 0.015, "heading": 0.4, "turn": -0.3}
 END = 1440
@@ -26,7 +26,7 @@ def test_the_target_is_drawn_within_its_ranges(hand):
     targets = []
     for _ in range(500):
         TASKS["PlanarSlip"].start(load(), TASKS["PlanarSlip"].options.parse({}), rng, state.episode)
-        targets.append(state.episode["target"].copy())
+        targets.append(state.episode["own"][TARGET].copy())
     x, y, theta = np.array(targets).T
     slide, heading = np.hypot(x, y), theta + np.arctan2(-x, -y)
     assert settings.slide[0] <= slide.min() < slide.max() <= settings.slide[1]
@@ -38,8 +38,10 @@ def test_the_target_is_drawn_within_its_ranges(hand):
 
 def test_an_option_shifts_no_other_draw(hand):
     drawn, fixed = hand("PlanarSlip"), hand("PlanarSlip", turn=0.0)
-    np.testing.assert_allclose(np.hypot(*fixed.episode["target"][:2]), np.hypot(*drawn.episode["target"][:2]))
-    assert fixed.episode["target"][2] == 0.0
+    np.testing.assert_allclose(
+        np.hypot(*fixed.episode["own"][TARGET][:2]), np.hypot(*drawn.episode["own"][TARGET][:2])
+    )
+    assert fixed.episode["own"][TARGET][2] == 0.0
 
 
 def test_terms_and_columns(hand):

@@ -1,0 +1,198 @@
+"""Stable-Baselines3 on a batch of environments that one compiled call steps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from stable_baselines3.common.vec_env import VecEnv, VecMonitor, VecNormalize
+from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
+
+from slipgym.envs.vector import SlipVectorEnv
+
+_OF_ONE = {"action_space": "single_action_space", "observation_space": "single_observation_space"}
+
+
+class SlipVecEnv(VecEnv):
+    """A `SlipVectorEnv` as Stable-Baselines3 wants it.
+
+    What it returns equals, bit for bit, what a `DummyVecEnv` of scalar environments with `engine="planar"`
+    returns, but that infos are empty where no episode ended.
+
+    Args:
+        env: The batch, with autoreset mode "SameStep"; cheapest with `infos="ends"`.
+
+    Attributes:
+        env: The batch.
+        reset_infos: Infos of the episodes' starts, for each environment.
+
+    Raises:
+        ValueError: The autoreset mode is another one.
+    """
+
+    def __init__(self, env: SlipVectorEnv) -> None:
+        mode = env.metadata["autoreset_mode"]
+        if mode is not AutoresetMode.SAME_STEP:
+            raise ValueError(f"autoreset_mode = {mode.value!r} must be {AutoresetMode.SAME_STEP.value!r}")
+        self.env = env
+        super().__init__(env.num_envs, env.single_observation_space, env.single_action_space)
+        self._actions = np.zeros(env.action_space.shape or (), dtype=np.float32)
+
+    def reset(self) -> VecEnvObs:
+        """Start episodes in all environments, with the seeds and options set before.
+
+        Returns:
+            Observations (n, k), or such an array per group.
+        """
+        options = {"rows": self._options} if any(self._options) else None
+        observations, infos = self.env.reset(seed=self._seeds, options=options)
+        self._reset_seeds()
+        self._reset_options()
+        self.reset_infos = _split(infos, np.arange(self.num_envs))
+        return observations
+
+    def step_async(self, actions: np.ndarray) -> None:
+        """Take the actions (n, m) of the next `step_wait`, which does the work."""
+        self._actions = actions
+
+    def step_wait(self) -> VecEnvStepReturn:
+        """Step all environments; those whose episode ends begin another one.
+
+        Returns:
+            Observations (n, k), or such an array per group; rewards (n,) float32; whether an episode ended,
+            (n,) bool; n infos. Where one ended, its info is the scalar environment's, with
+            "terminal_observation" and "TimeLimit.truncated".
+
+        Raises:
+            ValueError: The actions have the wrong shape or are not finite.
+            RuntimeError: There was no reset yet, or it is closed.
+        """
+        observations, rewards, terminated, truncated, infos = self.env.step(self._actions)
+        dones = terminated | truncated
+        told: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        ended = np.flatnonzero(dones)
+        if len(ended):
+            last, final = infos.pop("final_obs"), infos.pop("final_info")
+            splits = _split(final, ended), _split(infos, ended)
+            for i, info, start in zip(ended.tolist(), *splits, strict=True):
+                info["terminal_observation"] = last[i]
+                info["TimeLimit.truncated"] = truncated.item(i)
+                told[i], self.reset_infos[i] = info, start
+        return observations, rewards.astype(np.float32), dones, told
+
+    def close(self) -> None:
+        """End the batch's threads; closing twice is harmless."""
+        self.env.close()
+
+    def get_images(self) -> Sequence[np.ndarray | None]:
+        """Pictures of the batch's `render_rows`, (480, 720, 3) uint8 each."""
+        return self.env.render() or ()
+
+    def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
+        """An attribute for each of some environments: they share those of the batch, but for the spaces.
+
+        Raises:
+            AttributeError: There is none.
+            ValueError: There is no such environment.
+        """
+        return [getattr(self.env, _OF_ONE.get(attr_name, attr_name))] * len(self._rows(indices))
+
+    def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
+        """Set an attribute of the batch.
+
+        Raises:
+            ValueError: `indices` leaves environments out, which share the attribute.
+        """
+        self._everyone(f"attribute {attr_name!r}", indices)
+        setattr(self.env, attr_name, value)
+
+    def env_method(
+        self, method_name: str, *method_args: Any, indices: VecEnvIndices = None, **method_kwargs: Any
+    ) -> list[Any]:
+        """Call a method of the batch once; what it returns stands for each environment.
+
+        Raises:
+            AttributeError: There is none.
+            ValueError: `indices` leaves environments out, which share the method.
+        """
+        count = self._everyone(f"method {method_name!r}", indices)
+        return [getattr(self.env, method_name)(*method_args, **method_kwargs)] * count
+
+    def env_is_wrapped(
+        self, wrapper_class: type[gym.Wrapper[Any, Any, Any, Any]], indices: VecEnvIndices = None
+    ) -> list[bool]:
+        """False for each of some environments: those of a batch have no wrappers."""
+        return [False] * len(self._rows(indices))
+
+    def _rows(self, indices: VecEnvIndices) -> list[int]:
+        rows = list(self._get_indices(indices))
+        for row in rows:
+            if not -self.num_envs <= row < self.num_envs:
+                raise ValueError(f"indices: {row!r} must be a whole number from 0 to {self.num_envs - 1}")
+        return rows
+
+    def _everyone(self, shared: str, indices: VecEnvIndices) -> int:
+        """How many indices there are, which must name every environment."""
+        rows = self._rows(indices)
+        if {row % self.num_envs for row in rows} != set(range(self.num_envs)):
+            raise ValueError(
+                f"indices = {indices!r}: all {self.num_envs} environments share the {shared}; give None"
+            )
+        return len(rows)
+
+
+def make_vec_env(
+    env_id: str,
+    num_envs: int = 1,
+    seed: int | None = None,
+    threads: int | None = None,
+    normalise: Mapping[str, Any] | None = None,
+    **keywords: Any,
+) -> VecMonitor | VecNormalize:
+    """Environments for Stable-Baselines3, stepped by one compiled call, with statistics of their episodes.
+
+    Args:
+        env_id: Of the task, "slipgym/LinearSlip-v0" for example.
+        num_envs: Environments.
+        seed: Of the first environment, the others count up from it, as of the first reset; None: drawn by the
+            operating system. A learner that is given a seed sets its own.
+        threads: Threads that share the environments; None: as many as processors, if there is work for them.
+        normalise: Keyword arguments of a `VecNormalize` around them, {} for its own; None: there is none.
+        **keywords: Of the environment.
+
+    Returns:
+        `SlipVecEnv` in a `VecMonitor`, maybe in a `VecNormalize`.
+
+    Raises:
+        ValueError: The value of an argument is unknown or not allowed.
+        TypeError: An argument is unknown.
+    """
+    batch = gym.make_vec(
+        env_id,
+        num_envs,
+        "vector_entry_point",
+        autoreset_mode=AutoresetMode.SAME_STEP,
+        threads=threads,
+        infos="ends",
+        **keywords,
+    )
+    assert isinstance(batch, SlipVectorEnv)
+    envs = VecMonitor(SlipVecEnv(batch))
+    if seed is not None:
+        envs.seed(seed)
+    return envs if normalise is None else VecNormalize(envs, **normalise)
+
+
+def _split(infos: Mapping[str, Any], rows: np.ndarray) -> list[dict[str, Any]]:
+    """What infos of a batch say about each of some environments: its own arrays, plain numbers."""
+    columns: dict[str, list[Any]] = {}
+    for name, values in infos.items():
+        if isinstance(values, dict):
+            columns[name] = _split(values, rows)
+        elif not name.startswith("_"):
+            taken = values[rows]
+            columns[name] = taken.tolist() if taken.ndim == 1 else list(taken)
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]

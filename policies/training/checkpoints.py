@@ -1,0 +1,53 @@
+"""The checkpoints of a run: the last few and the best, each one whole file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from policies.training import plain
+
+_SUFFIX = ".checkpoint"
+
+
+def folder(run: Path) -> Path:
+    """Where the checkpoints of a run are."""
+    return run / "checkpoints"
+
+
+def best(run: Path) -> Path:
+    """The best one of a run, by share of success, then by reward."""
+    return folder(run) / f"best{_SUFFIX}"
+
+
+def kept(run: Path) -> list[Path]:
+    """The last ones of a run, oldest first."""
+    return sorted(path for path in folder(run).glob(f"*{_SUFFIX}") if path.stem.isdigit())
+
+
+def save(run: Path, steps: int, state: Any, keep: int) -> None:
+    """Writes a checkpoint, then removes those before the last `keep`.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    plain.write(folder(run) / f"{steps:012d}{_SUFFIX}", state)
+    for path in kept(run)[:-keep]:
+        path.unlink()
+
+
+def last(run: Path) -> Any:
+    """The newest readable checkpoint of a run; None if there is none yet.
+
+    Raises:
+        ValueError: There are checkpoints, and all are damaged.
+    """
+    damage = None
+    for path in reversed(kept(run)):
+        try:
+            return plain.read(path)
+        except ValueError as error:
+            damage = error
+    if damage is not None:
+        raise damage
+    return None

@@ -1,0 +1,111 @@
+"""What `scripts/train.py` was asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from policies.training import files, folder
+from policies.training.config import Training
+from slipgym.config.errors import unknown
+from slipgym.tasks import TASKS
+
+MANY = ("--seeds", "--friction-source", "--set")
+"""Options that take several values, as in --seeds 0 1 2."""
+
+
+def expanded(arguments: Sequence[str]) -> list[str]:
+    """The arguments with the name of such an option before each of its values."""
+    found, option = [], ""
+    for argument in arguments:
+        if argument.startswith("--"):
+            option = argument if argument in MANY else ""
+            found.append(argument)
+        else:
+            found += [option, argument] if option and found[-1] != option else [argument]
+    return found
+
+
+def chosen(name: str | None, options: Mapping[str, Any], texts: Sequence[str]) -> Training:
+    """The configuration that a command line names, with what it sets.
+
+    Args:
+        name: Name or path of the configuration; None: the one of the option "task".
+        options: Values by dotted key; None leaves one as it is.
+        texts: Assignments by dotted key, which win over the options.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        ValueError: Nothing is named, or a name, key or value is wrong.
+    """
+    given = {key: value for key, value in options.items() if value is not None}
+    if name is None:
+        task = given.get("task")
+        if task is None:
+            raise ValueError(f"name a configuration ({', '.join(files.names())}, or a YAML file) or a --task")
+        if task not in TASKS:
+            raise ValueError(unknown("task", task, TASKS))
+        name = TASKS[task].key
+    return files.load(name, {**given, **files.assignments(texts)})
+
+
+def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Callable[[], str]:
+    """What goes on with a run or study.
+
+    Args:
+        path: Its folder.
+        others: Further options by name, none of which may be given.
+        jobs: Runs at once.
+        ray: See `scatter.run_all`.
+
+    Raises:
+        FileNotFoundError: The folder holds no run.
+        ValueError: Another option is given.
+    """
+    from policies.training import study
+
+    for name, value in others.items():
+        if value:
+            raise ValueError(f"--resume goes on as the run was begun: leave out {name}")
+    folder.runs(path)
+    return partial(study.train_all, path, jobs, ray)
+
+
+def begun(
+    config: Training,
+    seeds: Sequence[int],
+    sources: Sequence[str],
+    trials: int,
+    output: Path,
+    jobs: int,
+    ray: str,
+) -> tuple[Path, Callable[[], str]]:
+    """The folder of a new study or sweep, and what carries it out.
+
+    Args:
+        config: What to train.
+        seeds: Seeds; none given: 0.
+        sources: Friction sources; none given: the configuration's.
+        trials: Runs of a sweep; 0: no sweep.
+        output: Folder that the new one goes to.
+        jobs: Runs at once.
+        ray: See `scatter.run_all`.
+
+    Raises:
+        ModuleNotFoundError: Ray is asked for and not installed.
+        ValueError: A seed or source is wrong, or a sweep has several.
+    """
+    from policies.training import scatter, study, sweep
+
+    scatter.check(ray)
+    if not trials:
+        path = study.begin(config, seeds or [0], sources, output)
+        return path, partial(study.train_all, path, jobs, ray)
+    if len(seeds) > 1 or len(sources) > 1:
+        raise ValueError("a sweep takes one seed and one friction source")
+    for source in sources:
+        config = files.changed(config, {"environment.friction_source": source}, "--friction-source")
+    path = sweep.begin(config, output)
+    return path, partial(sweep.sweep, path, config, trials, *seeds or (0,), jobs, ray)

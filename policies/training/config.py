@@ -1,0 +1,149 @@
+"""What a training run is: task, algorithm, environment, budget, evaluation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self, TypeAlias
+
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+
+from policies.training import seeds
+from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO
+from slipgym.config import load, load_randomization
+from slipgym.config.base import Count, Frozen, Positive, as_tuple
+from slipgym.config.errors import unknown
+from slipgym.envs.actions import ACTION_MODES
+from slipgym.envs.choices import DEFAULT_ESTIMATOR
+from slipgym.envs.observation import FRICTION_SOURCES
+from slipgym.registration import ENVIRONMENTS
+from slipgym.tasks import TASKS
+
+Algorithm: TypeAlias = Literal["ppo", "recurrent_ppo", "sac", "tqc"]
+TRAINABLE = tuple(name for name in TASKS if f"slipgym/{name}-v0" in ENVIRONMENTS)
+
+
+class Environment(Frozen):
+    """Keyword arguments of the environment; see its page in docs/environments/."""
+
+    friction_source: str = Field(default="estimated", description="What it tells about friction [-]")
+    estimator: str | Mapping[str, Any] = Field(default=DEFAULT_ESTIMATOR, description="Its estimator [-]")
+    contact: Literal["ellipsoid", "distributed"] = Field(
+        default="ellipsoid", description="Friction model [-]"
+    )
+    sensors: str = Field(default="realistic", description="Sensor preset [-]")
+    material: str = Field(default="random", description='Material, or "random" [-]')
+    action_mode: str | None = Field(
+        default=None, description="What an action means; null: the task's own [-]"
+    )
+    observation_mode: Literal["flat", "sensor"] = Field(default="flat", description="What is observed [-]")
+    history: int = Field(default=0, ge=0, description="Earlier observations that come along [-]")
+    randomization: str | Mapping[str, Any] = Field(default="train", description="Drawn per episode [-]")
+    frame_skip: Count = Field(default=1, description="Samples per step [-]")
+    config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
+
+    @model_validator(mode="after")
+    def _known(self) -> Self:
+        if self.friction_source not in FRICTION_SOURCES:
+            raise ValueError(unknown("friction source", self.friction_source, FRICTION_SOURCES))
+        if self.action_mode not in (None, *ACTION_MODES):
+            raise ValueError(unknown("action mode", self.action_mode, ACTION_MODES))
+        load_randomization(self.randomization)
+        materials = ("random", *load(self.config, self.sensors, self.contact).materials)
+        if self.material not in materials:
+            raise ValueError(unknown("material", self.material, materials))
+        return self
+
+
+class Normalisation(Frozen):
+    """Running mean and variance; they are part of a checkpoint."""
+
+    observation: bool = Field(default=True, description="Whether observations are normalised [-]")
+    reward: bool = Field(default=True, description="Whether rewards are scaled by their return's spread [-]")
+    clip: Positive = Field(default=10.0, description="Normalised values are clipped here [-]")
+
+
+class Evaluation(Frozen):
+    """Episodes without exploration, on seeds that no training uses."""
+
+    every: Count = Field(default=50_000, description="Steps between two evaluations [-]")
+    episodes: Count = Field(default=40, description="Episodes of each [-]")
+    first_seed: int = Field(default=0, ge=0, lt=seeds.HELD_OUT, description="First of the held-out seeds [-]")
+
+
+class Stop(Frozen):
+    """When a run ends before its budget."""
+
+    success: float | None = Field(default=None, ge=0, le=1, description="Share of episodes solved [-]")
+    evaluations: Count = Field(default=2, description="As many evaluations in a row must reach it [-]")
+
+
+class Checkpoints(Frozen):
+    """What is kept of a run that may be interrupted."""
+
+    every: Count = Field(default=50_000, description="Steps between two checkpoints [-]")
+    keep: Count = Field(default=2, description="As many of the last are kept, besides the best [-]")
+
+
+class Dimension(Frozen):
+    """Values a sweep may try: numbers between two ends, or choices."""
+
+    low: float | int | None = Field(default=None, description="Smallest value [-]")
+    high: float | int | None = Field(default=None, description="Largest value [-]")
+    log: bool = Field(default=False, description="Whether equal ratios are equally likely [-]")
+    choices: Annotated[tuple[Any, ...], BeforeValidator(as_tuple)] = Field(
+        default=(), description="Values to choose from, instead of low and high [-]"
+    )
+
+    @model_validator(mode="after")
+    def _either(self) -> Self:
+        ends = self.low is not None, self.high is not None
+        if all(ends) == bool(self.choices) or any(ends) != all(ends):
+            raise ValueError("give either low and high or choices")
+        if all(ends) and not (0 if self.log else float("-inf")) < self.low <= self.high:  # type: ignore[operator]
+            raise ValueError(
+                f"low = {self.low!r} must not exceed high = {self.high!r}, nor 0 where log is true"
+            )
+        return self
+
+
+class Training(Frozen):
+    """A training run, but for its seed."""
+
+    task: str = Field(description="Task of the environment [-]")
+    algorithm: Algorithm = Field(default="ppo", description="What learns [-]")
+    budget: Count = Field(description="Steps of all environments together [-]")
+    num_envs: int = Field(default=8, ge=1, le=seeds.ROWS, description="Environments side by side [-]")
+    engine: Literal["planar", "bullet"] = Field(
+        default="planar", description="What moves the bodies: a compiled batch, or PyBullet [-]"
+    )
+    engine_threads: Count | None = Field(
+        default=None, description="Threads that share the batch; null: as many as processors [-]"
+    )
+    processes: bool = Field(
+        default=False, description="Whether each environment of PyBullet has its own process [-]"
+    )
+    threads: Count = Field(default=1, description="Threads of torch [-]")
+    environment: Environment = Field(default=Environment(), description="The environment [-]")
+    normalisation: Normalisation = Field(default=Normalisation(), description="Of what is learned from [-]")
+    evaluation: Evaluation = Field(default=Evaluation(), description="How progress is measured [-]")
+    stop: Stop = Field(default=Stop(), description="When a run ends early [-]")
+    checkpoints: Checkpoints = Field(default=Checkpoints(), description="What is kept meanwhile [-]")
+    ppo: PPO = Field(default=PPO(), description="Hyperparameters of ppo [-]")
+    recurrent_ppo: RecurrentPPO = Field(default=RecurrentPPO(), description="Those of recurrent_ppo [-]")
+    sac: SAC = Field(default=SAC(), description="Those of sac [-]")
+    tqc: TQC = Field(default=TQC(), description="Those of tqc [-]")
+    sweep: Mapping[str, Dimension] = Field(
+        default={}, description="What a sweep tries, by dotted key as in --set [-]"
+    )
+
+    @field_validator("task")
+    @classmethod
+    def _task_exists(cls, name: str) -> str:
+        if name not in TRAINABLE:
+            raise ValueError(unknown("task", name, TRAINABLE))
+        return name
+
+    @property
+    def hyperparameters(self) -> PPO | SAC:
+        """Those of the algorithm."""
+        return getattr(self, self.algorithm)

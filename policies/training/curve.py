@@ -1,0 +1,79 @@
+"""Learning curves: their points, and a picture of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from policies.evaluation.plots.style import colours, note
+
+_PANELS = (
+    ("success", "solved [%]", 100.0),
+    ("drops", "dropped [%]", 100.0),
+    ("reward", "sum of rewards", 1.0),
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One point of a learning curve; means over the episodes of an evaluation."""
+
+    steps: int
+    """Steps of training so far."""
+    success: float
+    """Share of episodes solved."""
+    drops: float
+    """Share of episodes in which the object was dropped."""
+    reward: float
+    """Sum of rewards of an episode."""
+    length: float
+    """Steps of an episode."""
+
+
+def plot(curves: Mapping[str, Sequence[Sequence[Row]]]) -> Figure:
+    """Success, drops and rewards over steps.
+
+    Args:
+        curves: For each condition, the curves of its seeds: thin lines, their mean bold where all have one.
+    """
+    figure = Figure(figsize=(8.4, 2.8))
+    panels = figure.subplots(1, len(_PANELS), sharex=True)
+    shades = colours(list(curves))
+    for axes, (name, label, scale) in zip(panels, _PANELS, strict=True):
+        for condition, seeds in curves.items():
+            _lines(
+                axes,
+                [[(row.steps, scale * getattr(row, name)) for row in rows] for rows in seeds],
+                shades[condition],
+            )
+        axes.set_ylabel(label)
+        if scale == 100.0:
+            axes.set_ylim(-3.0, 103.0)
+    if len(curves) > 1:
+        for k, (condition, colour) in enumerate(shades.items()):
+            note(panels[0], 0.03, 0.97 - 0.08 * k, condition, colour, xycoords="axes fraction", va="top")
+    figure.supxlabel("steps", fontsize=9.0)
+    return figure
+
+
+def _lines(axes: Axes, seeds: Sequence[Sequence[tuple[int, float]]], colour: str) -> None:
+    """A line for each seed and their mean."""
+    several = len(seeds) > 1
+    for points in seeds:
+        axes.plot(
+            *np.array(points).T,
+            color=colour,
+            alpha=0.35 if several else 1.0,
+            linewidth=0.8 if several else 1.4,
+        )
+    if several:
+        common = sorted(set.intersection(*({steps for steps, _ in points} for points in seeds)))
+        means = [np.mean([dict(points)[steps] for points in seeds]) for steps in common]
+        axes.plot(common, means, color=colour)
+    axes.xaxis.set_major_formatter(
+        lambda steps, _: f"{steps / 1e6:g} M" if steps >= 1e6 else f"{steps / 1e3:g} k"
+    )

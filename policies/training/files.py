@@ -1,0 +1,99 @@
+"""Training configurations as YAML files, with what the command line says instead."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import ValidationError
+
+from policies.training.config import Training
+from slipgym.config import files
+from slipgym.config.errors import explain, unknown
+
+
+def names() -> list[str]:
+    """Names of the training configurations that come with slipgym."""
+    return sorted(path.stem for path in (files.folder() / "training").glob("*.yaml"))
+
+
+def load(which: str | os.PathLike[str], overrides: Mapping[str, Any] | None = None) -> Training:
+    """Reads a training configuration.
+
+    Args:
+        which: One of `names()`, or the path of a YAML file.
+        overrides: What to take instead of the file's values, by dotted key ("ppo.gamma").
+
+    Raises:
+        FileNotFoundError: It looks like a path, but there is no such file.
+        ValueError: The name is unknown, or a key or value is wrong; the message names the file or option,
+            the key, and what is valid.
+    """
+    path = Path(which)
+    if path.suffix not in (".yaml", ".yml"):
+        if str(which) not in names():
+            raise ValueError(unknown("training configuration", str(which), names()))
+        path = files.folder() / "training" / f"{which}.yaml"
+    return changed(checked(files.read(path), path.name), overrides or {})
+
+
+def changed(training: Training, overrides: Mapping[str, Any], source: str = "command line") -> Training:
+    """The configuration with other values.
+
+    Args:
+        training: The configuration.
+        overrides: Values by dotted key.
+        source: Where they come from, for the message of an error.
+
+    Raises:
+        ValueError: A key or value is wrong.
+    """
+    values = training.model_dump(exclude_unset=True)
+    for key, value in overrides.items():
+        *groups, last = key.split(".")
+        at = values
+        for group in groups:
+            inner = at.get(group)
+            at[group] = dict(inner) if isinstance(inner, Mapping) else {}
+            at = at[group]
+        at[last] = value
+    return checked(values, source if overrides else training.task)
+
+
+def assignments(texts: Iterable[str]) -> dict[str, Any]:
+    """Values by dotted key out of texts like "ppo.gamma=0.99"; the value is YAML.
+
+    Raises:
+        ValueError: A text is no assignment.
+    """
+    found = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not equals or not key:
+            raise ValueError(f"--set {text!r} must be key=value, for example ppo.gamma=0.99")
+        found[key] = files.parse(value, f"--set {key}")
+    return found
+
+
+def checked(values: Mapping[str, Any], source: str) -> Training:
+    """A configuration from plain values.
+
+    Args:
+        values: As in a YAML file.
+        source: Where they come from, for the message of an error.
+
+    Raises:
+        ValueError: A key or value is wrong; one line per fault.
+    """
+    try:
+        return Training.model_validate(dict(values))
+    except ValidationError as error:
+        raise explain(error, lambda _: source, Training) from error
+
+
+def text(training: Training) -> str:
+    """The whole configuration as YAML."""
+    return yaml.safe_dump(training.model_dump(mode="json"), sort_keys=False, allow_unicode=True)

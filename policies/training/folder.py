@@ -1,0 +1,96 @@
+"""The folder of a run: what it was asked to do, and how far it got."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from policies.evaluation.folder import versions
+from policies.training import checkpoints, plain, seeds
+from policies.training.config import Training
+from policies.training.curve import Row
+from policies.training.files import checked
+from slipgym.config import files
+
+_ORDER, _RESULT, _CURVE = "run.yaml", "result.json", "curve.csv"
+
+
+def begin(folder: Path, config: Training, seed: int) -> None:
+    """Makes the folder of a run that has not started yet.
+
+    Raises:
+        FileExistsError: There is one.
+        ValueError: The seed is out of range.
+    """
+    seeds.training(seed)
+    folder.mkdir(parents=True)
+    checkpoints.folder(folder).mkdir()
+    plain.replace(folder / "versions.json", json.dumps(versions(), indent=2).encode())
+    order = {"seed": seed, "training": config.model_dump(mode="json")}
+    plain.replace(folder / _ORDER, yaml.safe_dump(order, sort_keys=False, allow_unicode=True).encode())
+
+
+def order(folder: Path) -> tuple[Training, int]:
+    """Configuration and seed of a run.
+
+    Raises:
+        FileNotFoundError: The folder holds no run.
+    """
+    path = folder / _ORDER
+    if not path.is_file():
+        raise FileNotFoundError(f"{folder} holds no training run: there is no {_ORDER} in it")
+    values = files.read(path)
+    return checked(values["training"], str(path)), values["seed"]
+
+
+def runs(folder: Path) -> list[Path]:
+    """The runs of a folder: itself, or those in it.
+
+    Raises:
+        FileNotFoundError: There are none.
+    """
+    if (folder / _ORDER).is_file():
+        return [folder]
+    found = sorted(path.parent for path in folder.glob(f"*/{_ORDER}"))
+    if not found:
+        raise FileNotFoundError(f"{folder} holds no training run: there is no {_ORDER} in it")
+    return found
+
+
+def write_curve(folder: Path, curve: Sequence[Row]) -> None:
+    """Writes curve.csv: a row for each evaluation."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, [field.name for field in fields(Row)], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(asdict(row) for row in curve)
+    plain.replace(folder / _CURVE, text.getvalue().encode())
+
+
+def read_curve(folder: Path) -> list[Row]:
+    """The evaluations of a run so far."""
+    path = folder / _CURVE
+    if not path.is_file():
+        return []
+    with path.open(newline="", encoding="utf-8") as file:
+        return [
+            Row(int(row.pop("steps")), **{name: float(value) for name, value in row.items()})
+            for row in csv.DictReader(file)
+        ]
+
+
+def write_result(folder: Path, result: dict[str, Any]) -> None:
+    """Writes result.json, which says that the run is over."""
+    plain.replace(folder / _RESULT, (json.dumps(result, indent=2) + "\n").encode())
+
+
+def result(folder: Path) -> dict[str, Any] | None:
+    """How a run ended; None if it has not."""
+    path = folder / _RESULT
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None

@@ -1,0 +1,188 @@
+"""The learner: made from a configuration, its whole state taken out and put back."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import numpy as np
+import torch
+from sb3_contrib import TQC, RecurrentPPO
+from sb3_contrib.common.recurrent.type_aliases import RNNStates
+from stable_baselines3 import PPO, SAC
+from stable_baselines3.common.base_class import BaseAlgorithm
+from stable_baselines3.common.vec_env import VecNormalize
+from torch import nn
+
+from policies.training import vector
+from policies.training.config import Training
+
+_CLASSES: dict[str, Any] = {"ppo": PPO, "recurrent_ppo": RecurrentPPO, "sac": SAC, "tqc": TQC}
+_ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "elu": nn.ELU}
+_OF_POLICY = ("net_arch", "activation", "log_std_init", "lstm_hidden_size", "n_critics")
+_COUNTERS = ("num_timesteps", "_episode_num", "_n_updates", "_current_progress_remaining")
+_LAST = ("_last_obs", "_last_episode_starts", "_last_original_obs")
+_REPLAY = ("observations", "next_observations", "actions", "rewards", "dones", "timeouts")
+
+
+def normalised(config: Training, envs: Any, training: bool = True) -> VecNormalize:
+    """Environments whose observations and rewards are normalised as configured."""
+    chosen = config.normalisation
+    return VecNormalize(
+        envs,
+        training=training,
+        norm_obs=chosen.observation,
+        norm_reward=chosen.reward and training,
+        clip_obs=chosen.clip,
+        clip_reward=chosen.clip,
+        gamma=config.hyperparameters.gamma,
+    )
+
+
+def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
+    """An untrained learner.
+
+    Args:
+        config: The run.
+        envs: Its environments, from `normalised`.
+        seed: Of the first environment; the networks are seeded with it, too.
+    """
+    torch.set_num_threads(config.threads)
+    chosen = config.hyperparameters
+    values = chosen.model_dump()
+    start, end = values.pop("learning_rate"), values.pop("learning_rate_end")
+    policy: dict[str, Any] = {name: values.pop(name) for name in _OF_POLICY if name in values}
+    policy["activation_fn"] = _ACTIVATIONS[policy.pop("activation")]
+    policy["net_arch"] = list(policy["net_arch"])
+    if config.algorithm == "tqc":
+        policy["n_quantiles"] = 25
+    return _CLASSES[config.algorithm](
+        "MlpLstmPolicy" if config.algorithm == "recurrent_ppo" else "MlpPolicy",
+        envs,
+        learning_rate=lambda left: start * (end + (1.0 - end) * left),
+        policy_kwargs=policy,
+        seed=seed,
+        device="cpu",
+        **values,
+    )
+
+
+def get_state(model: Any, replay: bool = True) -> dict[str, Any]:
+    """Everything that decides how training goes on, as plain data.
+
+    Args:
+        model: From `make`, between two updates.
+        replay: Whether the replay buffer is part of it.
+    """
+    envs = model.get_vec_normalize_env()
+    state: dict[str, Any] = {
+        "parameters": _plain(model.get_parameters()),
+        "entropy": _plain(getattr(model, "log_ent_coef", None)),
+        "counters": {name: getattr(model, name) for name in _COUNTERS},
+        "last": {name: _copied(getattr(model, name)) for name in _LAST},
+        "lstm": _plain(getattr(model, "_last_lstm_states", None)),
+        "normalisation": normalisation(envs),
+        "environments": vector.get_state(envs.venv),
+        "generators": _generators(model),
+    }
+    if replay and not isinstance(model, PPO | RecurrentPPO):
+        buffer = model.replay_buffer
+        size = buffer.buffer_size if buffer.full else buffer.pos
+        state["replay"] = {name: getattr(buffer, name)[:size].copy() for name in _REPLAY}
+        state["replay"] |= {"pos": buffer.pos, "full": buffer.full}
+    return state
+
+
+def set_state(model: Any, state: dict[str, Any]) -> None:
+    """Go on from a state: learner, normalisation, environments, random numbers.
+
+    Args:
+        model: From `make`, with the same configuration.
+        state: From `get_state`.
+
+    Raises:
+        ValueError: It is of a learner with another configuration.
+    """
+    envs = model.get_vec_normalize_env()
+    set_parameters(model, state)
+    for name, value in {**state["counters"], **state["last"]}.items():
+        setattr(model, name, _copied(value))
+    if state["lstm"] is not None:
+        pi, vf = _tensors(state["lstm"])
+        model._last_lstm_states = RNNStates(pi, vf)
+    set_normalisation(envs, state["normalisation"])
+    vector.set_state(envs.venv, state["environments"])
+    if "replay" in state:
+        saved, buffer = state["replay"], model.replay_buffer
+        for name in _REPLAY:
+            getattr(buffer, name)[: len(saved[name])] = saved[name]
+        buffer.pos, buffer.full = saved["pos"], saved["full"]
+    generators = state["generators"]
+    torch.set_rng_state(torch.from_numpy(generators["torch"].copy()))
+    np.random.set_state(generators["numpy"])  # noqa: NPY002
+    random.setstate(generators["python"])
+    model.action_space.np_random.bit_generator.state = generators["actions"]
+
+
+def set_parameters(model: Any, state: dict[str, Any]) -> None:
+    """Give a learner the parameters of a state, optimizers included."""
+    model.set_parameters(_tensors(state["parameters"]), exact_match=True, device="cpu")
+    if state["entropy"] is not None:
+        with torch.no_grad():
+            model.log_ent_coef.copy_(_tensors(state["entropy"]))
+
+
+def normalisation(envs: VecNormalize) -> dict[str, Any]:
+    """Running statistics of observations and returns."""
+    moments = {"returns": envs.ret_rms, **({"observations": envs.obs_rms} if envs.norm_obs else {})}
+    return {
+        **{
+            name: {"mean": np.array(rms.mean), "var": np.array(rms.var), "count": float(rms.count)}
+            for name, rms in moments.items()
+        },
+        "running": envs.returns.copy(),
+    }
+
+
+def set_normalisation(envs: VecNormalize, state: dict[str, Any]) -> None:
+    """Go on from statistics."""
+    moments = {"returns": envs.ret_rms, **({"observations": envs.obs_rms} if envs.norm_obs else {})}
+    for name, rms in moments.items():
+        rms.mean, rms.var, rms.count = (state[name][key] for key in ("mean", "var", "count"))
+    envs.returns = state["running"].copy()
+
+
+def _generators(model: Any) -> dict[str, Any]:
+    """States of the generators that Stable-Baselines3 draws from; torch's and numpy's are global."""
+    return {
+        "torch": torch.get_rng_state().numpy().copy(),
+        "numpy": np.random.get_state(),  # noqa: NPY002
+        "python": random.getstate(),
+        "actions": model.action_space.np_random.bit_generator.state,
+    }
+
+
+def _plain(value: Any) -> Any:
+    """Tensors as arrays, at every depth."""
+    if isinstance(value, torch.Tensor):
+        return {"tensor": value.detach().cpu().numpy().copy()}
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value] if isinstance(value, list) else tuple(map(_plain, value))
+    return value
+
+
+def _tensors(value: Any) -> Any:
+    """The reverse of `_plain`."""
+    if isinstance(value, dict):
+        if set(value) == {"tensor"}:
+            return torch.from_numpy(value["tensor"].copy())
+        return {key: _tensors(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_tensors(item) for item in value] if isinstance(value, list) else tuple(map(_tensors, value))
+    return value
+
+
+def _copied(value: Any) -> Any:
+    return value.copy() if isinstance(value, np.ndarray) else value

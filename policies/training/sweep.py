@@ -1,0 +1,112 @@
+"""A search for hyperparameters with Optuna."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import optuna
+from optuna.storages import JournalStorage
+from optuna.storages.journal import JournalFileBackend
+
+from policies.evaluation.folder import stamped
+from policies.training import files, folder, plain, scatter
+from policies.training.config import Dimension, Training
+from policies.training.curve import Row
+from policies.training.run import train
+from slipgym.tasks import TASKS
+
+_NAME, _JOURNAL = "sweep", "optuna.journal"
+
+
+def begin(config: Training, output: Path) -> Path:
+    """Makes the folder of a sweep.
+
+    Raises:
+        ValueError: The configuration declares nothing to try.
+    """
+    if not config.sweep:
+        raise ValueError("nothing to try: the configuration has no key sweep, a mapping of dotted keys")
+    path = stamped(output, f"{TASKS[config.task].key}__{config.algorithm}__sweep")
+    path.mkdir(parents=True)
+    optuna.create_study(storage=_storage(path), study_name=_NAME, direction="maximize")
+    return path
+
+
+def sweep(
+    path: Path,
+    config: Training,
+    trials: int,
+    seed: int = 0,
+    jobs: int = 1,
+    ray: str = "",
+    progress: bool = True,
+) -> str:
+    """Trains with one choice of hyperparameters after the other, and keeps the best as best.yaml.
+
+    Args:
+        path: The sweep's folder.
+        config: What the runs share, and what is tried.
+        trials: How many.
+        seed: Of all runs, and of the search.
+        jobs: Runs at once; with more than one, what is tried depends on which ends first.
+        ray: See `scatter.run_all`.
+        progress: Whether to show progress bars.
+
+    Returns:
+        What came out, as text.
+    """
+    items = [(path, config, seed, k, progress) for k in range(trials)]
+    scatter.run_all(trial, items, jobs, ray)
+    study = optuna.load_study(storage=_storage(path), study_name=_NAME)
+    found = files.changed(config, _values(study.best_params))
+    plain.replace(path / "best.yaml", files.text(found).encode())
+    return f"Look at {path}\n  best, {study.best_value:.3f}: {_values(study.best_params)}"
+
+
+def trial(path: Path, config: Training, seed: int, number: int, progress: bool) -> None:
+    """One run of a sweep, in a folder of its own."""
+    sampler = optuna.samplers.TPESampler(seed=seed + number)
+    study = optuna.load_study(storage=_storage(path), study_name=_NAME, sampler=sampler)
+
+    def objective(one: optuna.Trial) -> float:
+        chosen = _values({key: _suggest(one, key, dimension) for key, dimension in config.sweep.items()})
+        run = path / f"trial__{one.number}"
+        folder.begin(run, files.changed(config, chosen, "sweep"), seed)
+        train(run, progress, number)
+        return area(folder.read_curve(run), config)
+
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    study.optimize(objective, n_trials=1)
+
+
+def area(rows: Sequence[Row], config: Training) -> float:
+    """Mean share of episodes solved over the budget: high if it is learned early.
+
+    Args:
+        rows: A learning curve.
+        config: Its run. After an early end the last value counts for the rest.
+    """
+    due = max(len(rows), 1 + config.budget // config.evaluation.every)
+    shares = [row.success for row in rows]
+    return (sum(shares) + (due - len(rows)) * shares[-1]) / due
+
+
+def _suggest(one: optuna.Trial, key: str, dimension: Dimension) -> Any:
+    low, high = dimension.low, dimension.high
+    if dimension.choices:
+        return one.suggest_categorical(key, [json.dumps(choice) for choice in dimension.choices])
+    if isinstance(low, int) and isinstance(high, int):
+        return one.suggest_int(key, low, high, log=dimension.log)
+    return one.suggest_float(key, low, high, log=dimension.log)  # type: ignore[arg-type]
+
+
+def _values(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Choices, which Optuna keeps as text, as the values they are."""
+    return {key: json.loads(value) if isinstance(value, str) else value for key, value in parameters.items()}
+
+
+def _storage(path: Path) -> JournalStorage:
+    return JournalStorage(JournalFileBackend(str(path / _JOURNAL)))

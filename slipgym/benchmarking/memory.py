@@ -1,0 +1,19 @@
+"""What an environment of a batch takes in memory."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+from slipgym.envs.vector import SlipVectorEnv
+
+
+def bytes_per_environment(env: SlipVectorEnv) -> float:
+    """Bytes of all arrays that last from step to step, over the number of environments.
+
+    Python's own objects come on top: a random generator, the description of the box, the name of the
+    material and what the randomization drew.
+    """
+    state = env.get_state()
+    plant = [getattr(state.loop.plant, field.name) for field in fields(state.loop.plant)]
+    arrays = [*plant, *state.loop.arrays.values(), state.frames]
+    return sum(array.nbytes for array in arrays if array is not None) / env.num_envs

@@ -1,0 +1,57 @@
+"""The benchmark of learning measures what it says; how fast things are is not tested."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("stable_baselines3")
+from policies.training import benchmark
+
+ROOT = Path(__file__).resolve().parents[3]
+LINEAR = "slipgym/LinearSlip-v0"
+
+
+def test_shares_of_a_step():
+    figures = {figure.name: figure.value for figure in benchmark.shares(LINEAR, 4, 30)}
+    step, adapter = figures["SlipVectorEnv.step, n = 4"], figures["SlipVecEnv, n = 4"]
+    assert min(figures.values()) > 0.0
+    assert figures["SlipVecEnv, n = 4, share"] == pytest.approx(adapter / (step + adapter))
+    assert set(figures) >= {"VecMonitor, n = 4"}
+
+
+def test_infos_beside_those_of_ends():
+    middle, lower, upper = (figure.value for figure in benchmark.infos(LINEAR, 4, pairs=3, steps=5))
+    assert 0.0 < lower <= middle <= upper
+
+
+def test_ppo_in_both():
+    figures = {figure.name: figure.value for figure in benchmark.learning(LINEAR, 2, rollout=512)}
+    assert 0.0 < figures["PPO in a batch of 256, share of the environments"] < 1.0
+    assert min(figures.values()) > 0.0
+
+
+@pytest.mark.slow
+def test_the_script_runs(tmp_path):
+    path = tmp_path / "figures.json"
+    script = ROOT / "scripts" / "benchmark.py"
+    command = [sys.executable, script, "--learning", "--pairs", "2", "--json", path]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(path.read_text())
+    names = [figure["name"] for figure in found["figures"]]
+    assert len(names) == len(set(names)) == 20
+    assert all(name in done.stdout for name in names)
+    assert "torch" in found["machine"]
+
+
+def test_the_page_explains_what_is_printed():
+    page = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
+    printed = page.partition("## Learning")[2].partition("```text\n")[2].partition("```")[0].splitlines()[3:]
+    names = [line.partition("  ")[0] for line in printed]
+    assert len(names) == 20
+    assert all(f"**{name}" in page for name in names if "quartile" not in name and "4096" not in name)

@@ -1,0 +1,109 @@
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from policies.training import command, files, seeds
+from policies.training.config import Training
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.mark.parametrize("name", files.names())
+def test_every_configuration_loads_and_is_written_as_it_was_read(name):
+    training = files.load(name)
+    assert command.chosen(None, {"task": training.task}, []) == training
+    assert files.checked(yaml.safe_load(files.text(training)), name) == training
+
+
+def test_every_sweep_tries_keys_that_exist():
+    for name in files.names():
+        training = files.load(name)
+        for key, dimension in training.sweep.items():
+            value = dimension.choices[0] if dimension.choices else dimension.low
+            files.changed(training, {key: value})
+
+
+@pytest.mark.parametrize(
+    ("texts", "message"),
+    [
+        (
+            ["ppo.gama=0.9"],
+            r"ppo\.gama: unknown key 'gama'; did you mean 'gamma'\? valid: activation, .*vf_coef",
+        ),
+        (["gamma=0.9"], r"unknown key 'gamma'; valid: algorithm, budget"),
+        (
+            ["ppo.gamma=1.5"],
+            r"ppo\.gamma = 1\.5: must be a number|ppo\.gamma = 1\.5: must be a finite number",
+        ),
+        (["environment.friction_source=guess"], r"unknown friction source 'guess'.*valid: estimated"),
+        (["environment.randomization=trian"], r"did you mean 'train'"),
+        (["environment.material=wod"], r"did you mean 'wood'"),
+        (["environment.action_mode=grip"], r"unknown action mode 'grip'"),
+        (["task=Linear"], r"unknown task 'Linear'; did you mean 'LinearSlip'"),
+        (["algorithm=pppo"], r"one of 'ppo', 'recurrent_ppo', 'sac', 'tqc'"),
+        (["budget"], r"must be key=value"),
+        (["budget={"], r"--set budget"),
+        (["sweep={ppo.gamma: {low: 1}}"], r"either low and high or choices"),
+        (["sweep={ppo.gamma: {low: 2, high: 1}}"], r"must not exceed"),
+    ],
+)
+def test_what_is_wrong_is_named(texts, message):
+    with pytest.raises(ValueError, match=message):
+        command.chosen("linear_slip", {}, texts)
+
+
+def test_a_wrong_file_is_named(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text("task: LinearSlip\nbudget: 10\nalgoritm: ppo\n")
+    with pytest.raises(ValueError, match=r"mine\.yaml: algoritm: unknown key .*did you mean 'algorithm'"):
+        files.load(path)
+    with pytest.raises(FileNotFoundError):
+        files.load(tmp_path / "nowhere.yaml")
+    with pytest.raises(ValueError, match="linear_slip"):
+        command.chosen(None, {"task": None}, [])
+
+
+def test_assignments_win_over_options_and_both_over_the_file():
+    options = {"task": "LinearSlip", "budget": 1000, "algorithm": None}
+    chosen = command.chosen(None, options, ["budget=2000", "ppo.learning_rate=1e-3", "ppo.net_arch=[8]"])
+    assert (chosen.budget, chosen.ppo.learning_rate, chosen.ppo.net_arch) == (2000, 1e-3, (8,))
+    assert chosen.ppo.n_steps == files.load("linear_slip").ppo.n_steps
+
+
+def test_options_take_several_values():
+    line = ["linear_slip", "--seeds", "0", "1", "2", "--budget", "5", "--set", "a=1", "b=2", "--sweep", "3"]
+    assert command.expanded(line) == [
+        *["linear_slip", "--seeds", "0", "--seeds", "1", "--seeds", "2", "--budget", "5"],
+        *["--set", "a=1", "--set", "b=2", "--sweep", "3"],
+    ]
+    repeated = ["--seeds", "0", "--seeds", "1"]
+    assert command.expanded(repeated) == repeated
+
+
+def test_no_training_seed_is_held_out():
+    last = seeds.training(seeds.RUNS - 1) + seeds.ROWS - 1
+    assert last == seeds.held_out(0) - 1
+    assert seeds.training(1) - seeds.training(0) == seeds.ROWS
+    assert Training.model_fields["num_envs"].metadata[1].le == seeds.ROWS
+    for seed in (-1, seeds.RUNS):
+        with pytest.raises(ValueError, match=rf"seed = {seed}"):
+            seeds.training(seed)
+
+
+def test_policies_and_the_configuration_load_no_torch():
+    code = (
+        "import policies, policies.training.files, policies.training.command, sys\n"
+        "assert not {'torch', 'stable_baselines3', 'optuna', 'ray'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True)
+
+
+def test_resuming_takes_no_other_option(tmp_path):
+    pytest.importorskip("stable_baselines3")
+    with pytest.raises(ValueError, match="leave out --budget"):
+        command.resumed(tmp_path, {"--seeds": None, "--budget": 3}, 1, "")
+    with pytest.raises(FileNotFoundError, match="holds no training run"):
+        command.resumed(tmp_path, {"--seeds": None}, 1, "")

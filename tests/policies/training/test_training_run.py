@@ -1,0 +1,180 @@
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("stable_baselines3")
+import policies
+from policies.training import checkpoints, export, folder, plain, run, scatter, seeds, study, sweep, vector
+from policies.training import model as learners
+from policies.training.curve import Row
+from policies.training.evaluate import evaluate
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def test_a_run_leaves_everything_behind(small, tmp_path):
+    path = tmp_path / "run"
+    folder.begin(path, small(budget=64), 0)
+    result = run.train(path, progress=False)
+    for name in ("run.yaml", "versions.json", "curve.csv", "curve.png", "result.json"):
+        assert (path / name).stat().st_size > 0, name
+    assert {file.name for file in (path / "checkpoints").iterdir()} == {
+        *("000000000032.checkpoint", "000000000064.checkpoint", "best.checkpoint")
+    }
+    assert len(list((path / "tensorboard").iterdir())) == 1
+    assert result["ended"] == "budget"
+    assert result == json.loads((path / "result.json").read_text()) == run.train(path, progress=False)
+    assert result["best"]["reward"] == max(row.reward for row in folder.read_curve(path))
+
+
+@pytest.mark.parametrize("engine", ["planar", "bullet"])
+def test_the_policy_of_a_run_acts_as_its_learner(small, tmp_path, engine):
+    config, path = small(engine=engine, budget=64), tmp_path / "run"
+    folder.begin(path, config, 0)
+    run.train(path, progress=False)
+    policy = policies.load(path / export.POLICY)
+    envs = learners.normalised(config, vector.make(config, 0), training=False)
+    model = learners.make(config, envs, 0)
+    best = plain.read(checkpoints.best(path))["learner"]
+    learners.set_parameters(model, best)
+    learners.set_normalisation(envs, best["normalisation"])
+    seen = envs.venv.reset()
+    expected, _ = model.predict(envs.normalize_obs(seen), deterministic=True)
+    np.testing.assert_allclose(policy.predict(seen)[0], expected, atol=1e-6)
+    envs.close()
+
+
+def test_the_environments_are_seeded_apart(small):
+    config = small()
+    envs, same = vector.make(config, 5), vector.make(config, 5, 3)
+    first, second = envs.reset(), same.reset()
+    np.testing.assert_array_equal(first, second[:2])
+    assert not np.array_equal(first[0], first[1])
+    envs.close(), same.close()
+
+
+def test_evaluation_disturbs_nothing_and_repeats_itself(small):
+    config = small(evaluation={"every": 32, "episodes": 3})
+    envs = learners.normalised(config, vector.make(config, 0))
+    held_out = vector.make(config, seeds.held_out(0), 2)
+    model = learners.make(config, envs, 0)
+    envs.reset()
+    before = learners.normalisation(envs)
+    rows = [evaluate(config, model, held_out) for _ in range(2)]
+    after = learners.normalisation(envs)
+    assert rows[0] == rows[1]
+    assert rows[0].length == pytest.approx(12.0)
+    np.testing.assert_array_equal(before["observations"]["mean"], after["observations"]["mean"])
+    np.testing.assert_array_equal(before["observations"]["var"], after["observations"]["var"])
+    envs.close(), held_out.close()
+
+
+def test_a_run_stops_when_it_succeeds_twice(small, tmp_path, monkeypatch):
+    shares = iter([1.0, 0.0, 1.0, 1.0, 1.0])
+    monkeypatch.setattr(
+        "policies.training.keeper.evaluate",
+        lambda config, model, envs: Row(model.num_timesteps, next(shares), 0.0, 0.0, 1.0),
+    )
+    path = tmp_path / "run"
+    folder.begin(path, small(budget=960, stop={"success": 0.9, "evaluations": 2}), 0)
+    result = run.train(path, progress=False)
+    assert (result["ended"], result["steps"]) == ("success", 96)
+    assert [row.success for row in folder.read_curve(path)] == [1.0, 0.0, 1.0, 1.0]
+
+
+def test_seeds_and_sources_run_side_by_side(small, tmp_path):
+    path = study.begin(small(budget=32), [0, 1], ["true", "none"], tmp_path)
+    text = study.train_all(path, jobs=1, progress=False)
+    names = {"true__0", "true__1", "none__0", "none__1"}
+    assert {one.name for one in path.iterdir()} == {*names, "curves.png"}
+    assert all(name in text for name in names)
+    configs = {name: folder.order(path / name) for name in names}
+    assert {name: config.environment.friction_source for name, (config, _) in configs.items()} == {
+        name: name.partition("__")[0] for name in names
+    }
+    with pytest.raises(ValueError, match="seed = -1"):
+        study.begin(small(), [0, -1], [], tmp_path / "refused")
+    assert not (tmp_path / "refused").exists()
+
+
+def test_a_sweep_tries_what_is_declared(small, tmp_path):
+    config = small(
+        budget=32,
+        sweep={
+            "ppo.gamma": {"low": 0.9, "high": 0.99},
+            "ppo.net_arch": {"choices": [[4], [4, 4]]},
+            "ppo.n_epochs": {"low": 1, "high": 2},
+        },
+    )
+    path = sweep.begin(config, tmp_path)
+    text = sweep.sweep(path, config, 2, progress=False)
+    tried = [folder.order(run)[0].ppo for run in sorted(path.glob("trial__*"))]
+    assert len(tried) == 2
+    assert len({ppo.gamma for ppo in tried}) == 2
+    assert all(0.9 <= ppo.gamma <= 0.99 and ppo.net_arch in ((4,), (4, 4)) for ppo in tried)
+    assert str(path) in text
+    assert (path / "best.yaml").is_file()
+    with pytest.raises(ValueError, match="no key sweep"):
+        sweep.begin(small(), tmp_path)
+
+
+def test_the_area_rewards_learning_early(small):
+    config = small(budget=96)
+    rows = [Row(steps, success, 0.0, 0.0, 1.0) for steps, success in ((0, 0.0), (32, 1.0))]
+    assert sweep.area(rows, config) == 0.75
+    assert sweep.area([rows[0]] * 3 + [rows[1]], config) == 0.25
+
+
+def test_ray_that_is_missing_is_asked_for(monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(ModuleNotFoundError, match=r"pip install 'slipgym\[ray\]'"):
+        scatter.run_all(divmod, [(7, 3)], ray="local")
+
+
+@pytest.mark.slow
+def test_ray_does_the_same(tmp_path):
+    pytest.importorskip("ray")
+    code = (
+        "from policies.training import scatter, seeds\n"
+        "print(scatter.run_all(seeds.training, [(1,), (2,)], ray='local'))"
+    )
+    home = {**os.environ, "HOME": str(tmp_path)}  # Ray keeps a token there
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, env=home, capture_output=True, text=True, check=False
+    )
+    assert done.stdout.strip().endswith("[16384, 32768]"), done.stderr
+
+
+def test_the_command_trains_and_mistakes_have_no_traceback(small, tmp_path):
+    from policies.training.files import text
+
+    (tmp_path / "mine.yaml").write_text(text(small(budget=32)))
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "120"}
+
+    def call(*arguments):
+        script = ROOT / "scripts" / "train.py"
+        return subprocess.run(
+            [sys.executable, script, *arguments],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    done = call("mine.yaml", "--seeds", "4", "--set", "ppo.gamma=0.9", "num_envs=1")
+    assert done.returncode == 0, done.stderr
+    ((run_folder),) = (tmp_path / "runs").glob("*/estimated__4")
+    config, seed = folder.order(run_folder)
+    assert (seed, config.ppo.gamma, config.num_envs) == (4, 0.9, 1)
+    assert "solved" in done.stdout
+    assert f"--resume {run_folder.parent}" in done.stdout
+    wrong = call("mine.yaml", "--algorithm", "pppo")
+    assert wrong.returncode == 2
+    assert "'recurrent_ppo'" in wrong.stderr
+    assert "Traceback" not in wrong.stderr
