@@ -143,18 +143,18 @@ def _advance(worlds, pads, cells, fingers, force_torque, chips):
 
 @unlocked
 def _contacts(worlds, pads, cells, fingers):
-    """As many contact steps as a control step needs without samples or commands; how many that were."""
+    """As many contact steps as a control step needs without samples or commands, if all is calm; how many that were."""
     done = 0
     for i in range(worlds.shape[0]):
         world = worlds[i]
-        h = world.substep_ticks * world.tick_length
+        h = world.calm_ticks * world.tick_length
         weight = h * h * world.gravity
         vx, vy, omega = world.relative_velocity
         motion = (h * vx, h * vy, h * omega)
         for f in range(2):
             pads[i, f].normal = fingers[i, f].force
         held = pads[i, 0], pads[i, 1]
-        for _ in range(-(-world.control_ticks // world.substep_ticks)):
+        for _ in range(-(-world.control_ticks // world.calm_ticks)):
             centre = (world.relative[0], world.relative[1])
             free = (motion[0], motion[1] - weight, motion[2])
             patch = None if cells is None else cells[i]
