@@ -6,6 +6,10 @@ loops from running on several elements at once. Functions are compiled into thei
 
 from __future__ import annotations
 
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from estimator.caching import compiler
@@ -19,3 +23,21 @@ compiled_sum = compiler(_HERE, error_model="numpy", fastmath={"reassoc"})
 """For a loop that sums: its additions may be taken in another order, which is what several elements at once
 takes. The order is fixed when the function is compiled, so that equal input gives equal bits; a processor
 with other vector instructions may round otherwise. Functions that it calls keep their own order."""
+
+
+@contextmanager
+def patience(what: str, after: float = 2.0) -> Iterator[None]:
+    """Say on stderr why it takes so long, if it does: what is not in the cache has to be compiled.
+
+    Args:
+        what: What is compiled.
+        after: Time until the message [s].
+    """
+    message = f"slipgym: compiling {what}; once on this machine, for up to a minute\n"
+    timer = threading.Timer(after, sys.stderr.write, (message,))
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()

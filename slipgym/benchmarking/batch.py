@@ -21,24 +21,32 @@ from slipgym.tasks.disturbance import disturb
 from slipgym.world.alone import advance_alone
 
 SIZES = 1, 16, 256, 4096
+EVERY_ACTION = -1.0, 1.0
 STEPS = 4000
 """Steps of all environments together in a timed block, at least one vector step."""
 
 
 class VectorPlayer:
-    """Plays a batch with random grip forces about the slip limit, as `Player` plays one environment."""
+    """Plays a batch with random grip forces.
 
-    def __init__(self, env_id: str, n: int, **arguments: Any) -> None:
+    Args:
+        env_id: Id of the environment.
+        n: Environments.
+        actions: Between which actions; as `Player` plays one environment, or all there are.
+        **arguments: Of the batch.
+    """
+
+    def __init__(self, env_id: str, n: int, actions: tuple[float, float] = ACTIONS, **arguments: Any) -> None:
         env = gym.make_vec(env_id, num_envs=n, **arguments).unwrapped
         assert isinstance(env, SlipVectorEnv)
-        self.env, self.n = env, n
+        self.env, self.n, self._actions = env, n, actions
         self._rng = np.random.default_rng(0)
         self.env.reset(seed=0)
 
     def block(self, steps: int = STEPS) -> tuple[float, int]:
         """Time of some vector steps [s], with the resets in them, and the environment steps."""
         turns = max(1, steps // self.n)
-        actions = self._rng.uniform(*ACTIONS, (turns, self.n, 1)).astype(np.float32)
+        actions = self._rng.uniform(*self._actions, (turns, self.n, 1)).astype(np.float32)
         start = perf_counter()
         for action in actions:
             self.env.step(action)
@@ -49,7 +57,7 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
     """Steps per second at several sizes, against PyBullet in the same run, and from one thread to two."""
     figures = []
     for n in SIZES:
-        many = VectorPlayer(env_id, n)
+        many = VectorPlayer(env_id, n, EVERY_ACTION)
         compare(partial(_samples, player), many.block, 2)  # warm up
         result = compare(partial(_samples, player), many.block, pairs)
         most = n == SIZES[-1]
@@ -61,11 +69,15 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
             Figure(f"batch of {n} / environment with PyBullet", ratio, "-", ">= 200" if most else "")
         )
         many.env.close()
-    one, two = (VectorPlayer(env_id, SIZES[-1], threads=threads) for threads in (1, 2))
+    one, two = (VectorPlayer(env_id, SIZES[-1], EVERY_ACTION, threads=threads) for threads in (1, 2))
     block = 4 * SIZES[-1]
     result = compare(partial(two.block, block), partial(one.block, block), pairs)
     figures.append(Figure("batch of 4096: two threads / one", result.quartiles[1], "-", ">= 1.8"))
     figures += parts(one)
+    slipping = VectorPlayer(env_id, SIZES[-1])
+    seconds, steps = slipping.block(20 * SIZES[-1])
+    figures.append(Figure("batch of 4096 about the slip limit: steps per second", steps / seconds, "1/s"))
+    slipping.env.close()
     one.env.close()
     two.env.close()
     return figures

@@ -13,7 +13,7 @@ import numpy as np
 from numba import from_dtype, types
 
 from estimator.estimate import ESTIMATE
-from slipgym.compiled import unlocked
+from slipgym.compiled import patience, unlocked
 from slipgym.contact.records import PAD
 from slipgym.envs.actions import COMPONENT, interpret
 from slipgym.envs.guard import sound
@@ -172,5 +172,6 @@ def driver(task: Any, update: Any, states: np.dtype, parameters: np.dtype, patch
         types.Array(types.int64, 1, "C"), f2, f1, f1, types.Array(types.float32, 2, "C"),
         f2, _row(COMPONENT), types.Array(types.boolean, 1, "C"), f2, types.int64, types.int64, types.int64,
     )  # fmt: skip
-    _drive.compile(signature)
+    with patience(f"the batch of {task.name}"):
+        _drive.compile(signature)
     return _drive.overloads[signature.args].entry_point

@@ -11,6 +11,8 @@ CLIENTS = range(200)
 
 
 def open_clients() -> int:
+    """Number of connected physics clients; those of forgotten environments are collected first."""
+    gc.collect()
     return sum(pybullet.getConnectionInfo(client)["isConnected"] for client in CLIENTS)
 
 
@@ -32,7 +34,6 @@ def test_a_forgotten_environment_gives_its_client_back(make, env_id):
     env.reset(seed=0)
     assert open_clients() == before + 2
     del env
-    gc.collect()
     assert open_clients() == before + 1
 
 
@@ -40,7 +41,6 @@ def test_a_refused_environment_leaves_no_client(make, env_id):
     before = open_clients()
     with pytest.raises(ValueError, match="estimator"):
         make(env_id, estimator="unknown")
-    gc.collect()
     assert open_clients() == before
 
 
