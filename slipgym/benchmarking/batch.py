@@ -155,7 +155,7 @@ def _advance(worlds, pads, cells, fingers, force_torque, chips):
 
 @unlocked
 def _contacts(worlds, pads, cells, fingers):
-    """As many contact steps as a control step needs without samples or commands, if all is calm; how many that were."""
+    """As many contact steps as a calm control step needs without samples and commands; how many that were."""
     done = 0
     for i in range(worlds.shape[0]):
         world = worlds[i]
