@@ -14,16 +14,21 @@ from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import compare, per_call
 from slipgym.compiled import unlocked
 from slipgym.contact.coupled import step_pads
+from slipgym.envs.actions import interpret
 from slipgym.envs.observation import combine, observe
+from slipgym.envs.rows import move
 from slipgym.envs.vector import SlipVectorEnv
 from slipgym.sensors.measure import measure
 from slipgym.tasks.disturbance import disturb
-from slipgym.world.alone import advance_alone
+from slipgym.tasks.episode import begin_step
 
 SIZES = 1, 16, 256, 4096
 EVERY_ACTION = -1.0, 1.0
 STEPS = 4000
-"""Steps of all environments together in a timed block, at least one vector step."""
+"""Steps of all environments together in a timed block, at least `TURNS` vector steps."""
+TURNS = 4
+CACHED = 256
+"""Environments that fit into a processor's own cache: their parts are timed apart from the memory's."""
 
 
 class VectorPlayer:
@@ -42,15 +47,21 @@ class VectorPlayer:
         self.env, self.n, self._actions = env, n, actions
         self._rng = np.random.default_rng(0)
         self.env.reset(seed=0)
+        self._scatter()
 
     def block(self, steps: int = STEPS) -> tuple[float, int]:
         """Time of some vector steps [s], with the resets in them, and the environment steps."""
-        turns = max(1, steps // self.n)
+        turns = max(TURNS, steps // self.n)
         actions = self._rng.uniform(*self._actions, (turns, self.n, 1)).astype(np.float32)
         start = perf_counter()
         for action in actions:
             self.env.step(action)
         return perf_counter() - start, turns * self.n
+
+    def _scatter(self) -> None:
+        """Spread the episodes' ends evenly over time, as they are after a while: their steps differ."""
+        episode = self.env._loop.episode
+        episode["step"] = np.arange(self.n) * episode["steps"] // self.n
 
 
 def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
@@ -73,7 +84,9 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
     block = 4 * SIZES[-1]
     result = compare(partial(two.block, block), partial(one.block, block), pairs)
     figures.append(Figure("batch of 4096: two threads / one", result.quartiles[1], "-", ">= 1.8"))
-    figures += parts(one)
+    few = VectorPlayer(env_id, CACHED, EVERY_ACTION, threads=1)
+    figures += parts(few)
+    few.env.close()
     slipping = VectorPlayer(env_id, SIZES[-1])
     seconds, steps = slipping.block(20 * SIZES[-1])
     figures.append(Figure("batch of 4096 about the slip limit: steps per second", steps / seconds, "1/s"))
@@ -83,54 +96,67 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
     return figures
 
 
-def parts(player: VectorPlayer, repeats: int = 9) -> list[Figure]:
-    """Time of the parts of a step, each run over all environments as it stands, in one thread."""
+def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
+    """Time of the parts of a step, taken one after the other over all environments, in one thread."""
     env = player.env
-    loop, observer = env._loop, env._observer
+    loop, look = env._loop, env._observer.sight
     plant, n = loop.plant, player.n
-    player.block(20 * n)  # away from the start
-    seconds, _ = player.block(20 * n)
-    whole = seconds / 20
-    patches = plant.cells
-    bodies = plant.world, plant.pads, patches, plant.fingers, plant.force_torque, plant.chips
-    sensed = plant.world, plant.force_torque, plant.chips, loop.wrenches, loop.twists
-    rows = loop.wrenches.reshape(-1, 4), loop.twists.reshape(-1, 3)
-    time = 1e3  # later than any sample; every call a little later still
+    bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips
+    actions = np.random.default_rng(0).uniform(*EVERY_ACTION, (steps, n, 1))
+    time, counted = loop.episode["step"].max() * loop.step_time, 0
 
-    def learn() -> None:
-        nonlocal time
-        time += loop.step_time
-        loop.estimator.update(time, *rows)
-        combine(loop.estimator.estimates, loop.per_finger, loop.estimated)
-
-    def task() -> None:
+    def task(k: int) -> None:
+        interpret(actions[k], env._actions.table, loop.episode, loop.commands)
+        begin_step(loop.episode, loop.commands)
         disturb(loop.episode, plant.world, plant.pads, loop.truth)
         loop.task.plan(loop.episode, plant.world)
+
+    def advance(_: int) -> None:
+        nonlocal counted
+        counted += _advance(*bodies, loop.commands)
+
+    def sense(_: int) -> None:
+        measure(plant.world, plant.force_torque, plant.chips, loop.wrenches, loop.twists)
+
+    def learn(k: int) -> None:
+        loop.estimator.update(time + (k + 1) * loop.step_time, *rows)
+        combine(loop.estimator.estimates, loop.per_finger, loop.estimated)
+
+    def judge(_: int) -> None:
+        loop.episode["step"] += 1
         loop.task.judge(loop.episode, plant.world, plant.fingers, loop.task_part)
 
-    def look() -> None:
+    def see(_: int) -> None:
         arrays = loop.wrenches, loop.twists, plant.chips, loop.episode, loop.task_part, plant.world
-        observe(*arrays, *observer.sight)
+        observe(*arrays, *look)
 
-    done = _contacts(plant.world, plant.pads, patches, plant.fingers)
-    stages = {
-        "contact kernel alone": partial(_contacts, plant.world, plant.pads, patches, plant.fingers),
-        "world, contact and force loop": partial(_advance, *bodies),
-        "sensors": partial(measure, *sensed),
-        "estimators": learn,
-        "task": task,
-        "observation": look,
-        "infos": partial(env._information.of, np.ones(n, dtype=bool)),
-    }
-    spent = {name: per_call(stage, 1, repeats) for name, stage in stages.items()}
-    rest = whole - sum(seconds for name, seconds in spent.items() if name != "contact kernel alone")
-    figures = [Figure(f"batch step: {name}", 1e9 * s / n, "ns") for name, s in spent.items()]
+    rows = loop.wrenches.reshape(-1, 4), loop.twists.reshape(-1, 3)
+    stages = [
+        ("actions, plan", task),
+        ("world, contact and force loop", advance),
+        ("sensors", sense),
+        ("estimators", learn),
+        ("reward, success, drops", judge),
+        ("observation", see),
+    ]
+    whole = min(player.block(20 * n)[0] / 20 for _ in range(5)) / n
+    spent = dict.fromkeys((name for name, _ in stages), 0.0)
+    _advance(*bodies, loop.commands)
+    for k in range(steps):
+        for name, stage in stages:
+            start = perf_counter()
+            stage(k)
+            spent[name] += perf_counter() - start
+    spent = {name: seconds / (steps * n) for name, seconds in spent.items()}
+    contact = per_call(partial(_contacts, *bodies[:4]), 20) / n
+    floor = contact * counted / (steps * n)
     return [
-        Figure("batch step, one thread", 1e9 * whole / n, "ns"),
-        *figures,
-        Figure("batch step: resets, actions, copies, Gymnasium", 1e9 * rest / n, "ns"),
-        Figure("sub-steps per step", done / n, "-"),
-        Figure("batch step / its contact kernel", whole / spent["contact kernel alone"], "-"),
+        Figure("batch step, one thread, environments in the cache", 1e9 * whole, "ns"),
+        *(Figure(f"batch step: {name}", 1e9 * seconds, "ns") for name, seconds in spent.items()),
+        Figure("batch step: resets, infos, Gymnasium", 1e9 * (whole - sum(spent.values())), "ns"),
+        Figure("sub-steps per step", counted / (steps * n), "-"),
+        Figure("their contact kernel alone", 1e9 * floor, "ns"),
+        Figure("batch step / its contact kernel", whole / floor, "-"),
     ]
 
 
@@ -140,36 +166,25 @@ def _samples(player: Player) -> tuple[float, int]:
 
 
 @unlocked
-def _advance(worlds, pads, cells, fingers, force_torque, chips):
+def _advance(worlds, pads, cells, fingers, force_torque, chips, commands):
+    """A control step of all worlds; sub-steps that it took."""
+    done = 0
     for i in range(worlds.shape[0]):
-        patch = None if cells is None else cells[i]
-        advance_alone(
-            worlds[i],
-            (pads[i, 0], pads[i, 1]),
-            patch,
-            (fingers[i, 0], fingers[i, 1]),
-            (force_torque[i, 0], force_torque[i, 1]),
-            (chips[i, 0], chips[i, 1]),
-        )
+        done += move(worlds, pads, cells, fingers, force_torque, chips, commands[i, 0], i)
+    return done
 
 
 @unlocked
 def _contacts(worlds, pads, cells, fingers):
-    """As many contact steps as a calm control step needs without samples and commands; how many that were."""
-    done = 0
+    """A contact step of all worlds, of the length that calm contacts have."""
     for i in range(worlds.shape[0]):
         world = worlds[i]
         h = world.calm_ticks * world.tick_length
-        weight = h * h * world.gravity
         vx, vy, omega = world.relative_velocity
         motion = (h * vx, h * vy, h * omega)
+        free = (motion[0], motion[1] - h * h * world.gravity, motion[2])
         for f in range(2):
             pads[i, f].normal = fingers[i, f].force
-        held = pads[i, 0], pads[i, 1]
-        for _ in range(-(-world.control_ticks // world.calm_ticks)):
-            centre = (world.relative[0], world.relative[1])
-            free = (motion[0], motion[1] - weight, motion[2])
-            patch = None if cells is None else cells[i]
-            motion = step_pads(held, patch, (world.mass, world.inertia), centre, free, motion, h)
-            done += 1
-    return done
+        centre = (world.relative[0], world.relative[1])
+        patch = None if cells is None else cells[i]
+        step_pads((pads[i, 0], pads[i, 1]), patch, (world.mass, world.inertia), centre, free, motion, h)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from slipgym.compiled import compiled
+
 PAD = np.dtype(
     [
         ("mu_c", "f8"),  # Coulomb friction [-]
@@ -39,8 +41,6 @@ REACH = 6
 CELL_FIELDS = 7
 """Rows of a patch, an array (CELL_FIELDS, n): one quantity in a row lets loops over n cells vectorise."""
 
-_STATE = ["z", "slip_speed", "slip_rate", "twist", "twist_rate", "wrench"]
-
 
 def pads(shape: int | tuple[int, ...], **parameters: float) -> np.ndarray:
     """Return an array of pads at rest, Stribeck exponent 2 unless given.
@@ -68,12 +68,20 @@ def patch(positions: np.ndarray, shares: np.ndarray) -> np.ndarray:
     return cells
 
 
-def rest(array: np.ndarray) -> None:
-    """Bring an array of `PAD` to rest: no deflection, no speed, no wrench."""
-    for field in _STATE:
-        array[field] = 0.0
+@compiled
+def rest(pads):
+    """Bring pads, an array (n,) of `PAD`, to rest: no deflection, no speed, no wrench."""
+    for i in range(pads.shape[0]):
+        pad = pads[i]
+        pad.z[:] = 0.0
+        pad.slip_speed = pad.slip_rate = 0.0
+        pad.twist[:] = 0.0
+        pad.twist_rate[:] = 0.0
+        pad.wrench[:] = 0.0
 
 
-def rest_cells(cells: np.ndarray) -> None:
+@compiled
+def rest_cells(cells):
     """Bring cells (..., CELL_FIELDS, n) to rest: no deflection, no speed."""
-    cells[..., [Z_X, Z_Y, CAP], :] = 0.0
+    for row in (Z_X, Z_Y, CAP):
+        cells[..., row, :] = 0.0

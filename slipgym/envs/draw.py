@@ -127,6 +127,10 @@ class Randomizer:
             if self.active:
                 _check_radius(variant, r)
 
+    def draws(self, name: str) -> bool:
+        """Whether episodes differ in one of the numbers of `nominal_values`."""
+        return getattr(self._ranges, name) is not None
+
     def draw(self, rng: np.random.Generator, scale: float) -> Draw:
         """Draw an episode; the same number of draws whatever the scale.
 

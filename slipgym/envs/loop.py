@@ -12,6 +12,7 @@ import numpy as np
 
 import estimator as estimators
 from estimator.registry import specification
+from slipgym.compiled import compiled
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
 from slipgym.envs.draw import Draw, Randomizer
@@ -94,7 +95,7 @@ class SlipLoop(ABC):
         self.estimator = estimators.make_batch(n=2 * n, **self.estimator_choice)
         asked = self.estimator.parameters_array.dtype.names or ()
         self._tells_latency = _LATENCY in asked and _LATENCY not in self.estimator_choice
-        if self._tells_latency and n > 1:
+        if self._tells_latency and n > 1 and self._randomizer.draws("slip_latency"):
             self.estimator.parameters_array = np.repeat(self.estimator.parameters_array, 2 * n)
         self.episode = np.zeros(n, EPISODE)
         self.commands, self.terms = np.zeros((n, len(COMMANDS))), np.zeros((n, len(task.terms)))
@@ -140,7 +141,8 @@ class SlipLoop(ABC):
         friction = draw_friction(self.config, options, task_config, material, draw, rng)
         box = make_box(self.config, options, task_config, draw, rng)
         force = choose_force(self.config, options, task_config)
-        self._start_episode(self.episode[i : i + 1], box, friction, options, draw, rng)
+        copy_rows(self.episode, self._blank, i)
+        self._start_episode(self.episode[i], box, friction, options, draw, rng)
         self._place(i, box, force, tuple(self.episode["wrist_start"][i].tolist()))
         self.materials[i], self.boxes[i] = friction.material, box
         start = {"mu_s": friction.mu_s, "mu_c": friction.mu_c, "mass": box.mass}
@@ -151,11 +153,13 @@ class SlipLoop(ABC):
         self._equipment.start_sensors(i, draw.values["bias_scale"], rng)
         fingers = slice(2 * i, 2 * i + 2)
         if self._tells_latency:
-            own = self.estimator.parameters_array[fingers if self.n > 1 else slice(1)]
+            parameters = self.estimator.parameters_array
+            own = parameters[fingers if len(parameters) > 1 else slice(1)]
             own[_LATENCY] = draw.values["slip_latency"]
         self._settle(i, force)
         self.plant.chips["travel"][i] = 0.0
-        self.estimator.states[fingers], self.estimator.estimates[fingers] = self._fresh
+        for array, fresh in zip((self.estimator.states, self.estimator.estimates), self._fresh, strict=True):
+            copy_rows(array, fresh, 2 * i)
         row = slice(i, i + 1)
         combine(self.estimator.estimates[fingers], self.per_finger[row], self.estimated[row])
         self.terms[i] = self.commands[i] = 0.0
@@ -245,23 +249,29 @@ class SlipLoop(ABC):
 
     def _start_episode(
         self,
-        episode: np.ndarray,
+        row: np.void,
         box: Box,
         friction: Friction,
         options: EpisodeOptions,
         draw: Draw,
         rng: np.random.Generator,
     ) -> None:
-        episode[:] = self._blank
-        row, pad = episode[0], self.config.gripper.pad_radius
+        pad = self.config.gripper.pad_radius
         row["reach"] = box.size[0] / 2 - pad, box.size[2] / 2 - pad
         row["object_centre"] = -box.grasp_offset[0], -box.grasp_offset[1]
         row["mass"], row["inertia"] = box.mass, box.inertia
         row["mu_s"], row["mu_c"] = friction.mu_s, friction.mu_c
         row["drift"] = draw.values["friction_drift"]
-        self.task.start(self.config, options, rng, episode[0])
+        self.task.start(self.config, options, rng, row)
         for disturbance, shares in draw.happenings:
-            enter(disturbance, shares, episode[0])
+            enter(disturbance, shares, row)
+
+
+@compiled
+def copy_rows(array, rows, first):
+    """Copy rows (k,) into an array (n,) of the same records, from row `first` on; faster than numpy."""
+    for k in range(rows.shape[0]):
+        array[first + k] = rows[k]
 
 
 def _blank_episode(config: Config, task: Task, step_time: float) -> np.ndarray:

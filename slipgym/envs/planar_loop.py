@@ -50,7 +50,6 @@ class PlanarLoop(SlipLoop):
             task, kind.update_batch, batch.states.dtype, batch.parameters_array.dtype, patches
         )
         self._arguments = (
-            task.plan, task.judge, kind.update_batch,
             plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips,
             batch.parameters_array, batch.states, batch.estimates,
             self.episode, self.commands, self.wrenches, self.twists,

@@ -6,7 +6,7 @@ all; what each does is the same function that the environment with PyBullet call
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -35,17 +35,18 @@ BLOCK = 16
 def settle(worlds, pads, cells, fingers, force_torque, chips, wrenches, twists, force, steps, i):
     """Let world i come to rest in a grip of a constant force, for a number of control steps."""
     for _ in range(steps):
-        _move(worlds, pads, cells, fingers, force_torque, chips, force, i)
+        move(worlds, pads, cells, fingers, force_torque, chips, force, i)
         here = slice(i, i + 1)
         measure(worlds[here], force_torque[here], chips[here], wrenches[here], twists[here])
 
 
 @unlocked
-def _move(worlds, pads, cells, fingers, force_torque, chips, force, i):
+def move(worlds, pads, cells, fingers, force_torque, chips, force, i):
+    """A control step of world i under a commanded force; returns its number of sub-steps."""
     for f in range(2):
         command(fingers[i, f], worlds[i].tick, force)
     patch = None if cells is None else cells[i]
-    advance_alone(
+    return advance_alone(
         worlds[i],
         (pads[i, 0], pads[i, 1]),
         patch,
@@ -69,7 +70,7 @@ def _sample(
     disturb(episodes[rows], worlds[rows], pads[rows], truth[rows])
     plan(episodes[rows], worlds[rows])
     for i in range(lo, hi):
-        _move(worlds, pads, cells, fingers, force_torque, chips, commands[i, 0], i)
+        move(worlds, pads, cells, fingers, force_torque, chips, commands[i, 0], i)
     measure(worlds[rows], force_torque[rows], chips[rows], wrenches[rows], twists[rows])
     for i in range(lo, hi):
         episodes[i].step += 1
@@ -133,6 +134,27 @@ def _drive(
     return bad
 
 
+class Pointer(types.WrapperAddressProtocol):
+    """A compiled function as an argument of another, its address looked up once and not at every call.
+
+    Args:
+        function: The function.
+        signature: Of its arguments and its result.
+    """
+
+    def __init__(self, function: Any, signature: Any) -> None:
+        self._function, self._signature = function, signature  # the code lives as long as its function
+        compiled = function.get_compile_result(signature)
+        self._address = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
+
+    def __wrapper_address__(self) -> int:
+        return self._address
+
+    def signature(self) -> Any:
+        """Types of its arguments and its result."""
+        return self._signature
+
+
 def _row(dtype: Any, ndim: int = 1) -> Any:
     return types.Array(from_dtype(dtype) if isinstance(dtype, np.dtype) else dtype, ndim, "C")
 
@@ -152,7 +174,7 @@ def driver(task: Any, update: Any, states: np.dtype, parameters: np.dtype, patch
         patches: Whether pads have cells.
 
     Returns:
-        Function of all arguments of `_drive`.
+        Function of all arguments of `_drive` but the first three.
     """
     state, parameter, estimate = _row(states), _row(parameters), _row(ESTIMATE)
     episode, world, finger = _row(EPISODE), _row(WORLD), _row(FINGER, 2)
@@ -163,6 +185,7 @@ def driver(task: Any, update: Any, states: np.dtype, parameters: np.dtype, patch
     learn = types.void(state, parameter, types.float64, f2, f2, estimate)
     for function, signature in ((task.plan, plan), (task.judge, judge)):
         function.compile(signature)
+    own = (task.plan, plan), (task.judge, judge), (update, learn)
     cells = types.Array(types.float64, 4, "C") if patches else types.none
     signature = types.int64(
         *(types.FunctionType(kind) for kind in (plan, judge, learn)),
@@ -174,4 +197,5 @@ def driver(task: Any, update: Any, states: np.dtype, parameters: np.dtype, patch
     )  # fmt: skip
     with patience(f"the batch of {task.name}"):
         _drive.compile(signature)
-    return _drive.overloads[signature.args].entry_point
+        pointers = [Pointer(*function) for function in own]
+    return partial(_drive.overloads[signature.args].entry_point, *pointers)

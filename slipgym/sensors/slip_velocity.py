@@ -17,7 +17,7 @@ from slipgym.sensors.noise import standard_normal
 
 HISTORY = 32
 CHIPS_MAX = 4
-AXES = 2 * CHIPS_MAX  # rows of absent chips are zero
+AXES = 2 * CHIPS_MAX  # x and y of the first chip, of the second, ...
 
 SLIP_SENSOR = np.dtype(
     [
@@ -28,8 +28,9 @@ SLIP_SENSOR = np.dtype(
         ("range", "f8"),  # largest displacement per axis and sample [m]
         ("window", "i8"),  # samples averaged
         ("delay", "i8"),  # latency in samples
-        ("lever", "f8", (AXES, 3)),  # slip displacement -> displacement along the axes
-        ("solve", "f8", (3, AXES)),  # its least-squares inverse
+        ("chips", "i8"),  # how many
+        ("at", "f8", (CHIPS_MAX, 2)),  # where, from the pad centre, in the finger's frame [m]
+        ("spread", "f8"),  # sum of their squared distances from it [m^2]
         ("key", "u8"),  # of the noise
         ("moved", "f8", 3),  # slip displacement since the last sample, pad frame [m, m, rad]
         ("carry", "f8", AXES),  # displacement not yet counted [m]
@@ -40,22 +41,20 @@ SLIP_SENSOR = np.dtype(
 )
 
 
-def chip_levers(radius: float, chips: int) -> np.ndarray:
-    """Matrix from slip displacement (x, y, theta), in the finger's frame, to the chips' axes.
+def chip_positions(radius: float, chips: int) -> np.ndarray:
+    """Where the chips are, from the pad centre in the finger's frame; their mean is the pad centre.
 
     Args:
         radius: Distance of the chips from the pad centre [m].
-        chips: Number of chips, evenly spaced, the first straight up.
+        chips: Number of chips, evenly spaced, the first straight up, from 2 to CHIPS_MAX.
 
     Returns:
-        Array (AXES, 3) [1, 1, m].
+        Array (CHIPS_MAX, 2) [m]; rows of absent chips are zero.
     """
-    levers = np.zeros((AXES, 3))
-    for i in range(chips):
-        angle = math.pi / 2 + 2 * math.pi * i / chips
-        levers[2 * i] = 1.0, 0.0, -radius * math.sin(angle)
-        levers[2 * i + 1] = 0.0, 1.0, radius * math.cos(angle)
-    return levers
+    positions = np.zeros((CHIPS_MAX, 2))
+    angles = math.pi / 2 + 2 * math.pi * np.arange(chips) / chips
+    positions[:chips, 0], positions[:chips, 1] = radius * np.cos(angles), radius * np.sin(angles)
+    return positions
 
 
 @compiled
@@ -75,9 +74,9 @@ def sample_slip(sensor):
     row = sensor.taken % HISTORY
     x, y, theta = sensor.moved[0], sensor.moved[1], sensor.mirror * sensor.moved[2]
     sensor.moved[:] = 0.0
-    for a in range(AXES):
-        lever = sensor.lever[a]
-        seen = sensor.carry[a] + lever[0] * x + lever[1] * y + lever[2] * theta
+    for a in range(2 * sensor.chips):
+        at = sensor.at[a // 2]
+        seen = sensor.carry[a] + (x - theta * at[1] if a % 2 == 0 else y + theta * at[0])
         if sensor.noise > 0.0:
             seen += sensor.noise * standard_normal(sensor.key, AXES * sensor.taken + a)
         seen = min(max(seen, -sensor.range), sensor.range)
@@ -96,16 +95,29 @@ def read_slip(sensor, twist):
     """
     twist[:] = 0.0
     newest = sensor.taken - 1 - sensor.delay
+    for number in range(max(newest - sensor.window + 1, 0), newest + 1):
+        x, y, theta = displacement(sensor, number)
+        twist[0] += x
+        twist[1] += y
+        twist[2] += theta
+        if number == newest:
+            sensor.travel[0] += x
+            sensor.travel[1] += y
+            sensor.travel[2] += theta
     for a in range(3):
-        sign = sensor.mirror if a == 2 else 1.0
-        step = 0.0
-        for k in range(sensor.window):
-            number = newest - k
-            if number >= 0:
-                moved = 0.0
-                for b in range(AXES):
-                    moved += sign * sensor.solve[a, b] * sensor.counted[number % HISTORY, b]
-                twist[a] += moved / (sensor.window * sensor.sample_time)
-                if k == 0:
-                    step = moved
-        sensor.travel[a] += step
+        twist[a] /= sensor.window * sensor.sample_time
+
+
+@compiled
+def displacement(sensor, number):
+    """Slip displacement (x, y, theta) counted in a sample: least squares over the axes of all chips.
+
+    As the chips' mean is the pad centre, its three equations are independent of each other.
+    """
+    x, y, moment = 0.0, 0.0, 0.0
+    counted = sensor.counted[number % HISTORY]
+    for k in range(sensor.chips):
+        x += counted[2 * k]
+        y += counted[2 * k + 1]
+        moment += sensor.at[k, 0] * counted[2 * k + 1] - sensor.at[k, 1] * counted[2 * k]
+    return x / sensor.chips, y / sensor.chips, sensor.mirror * moment / sensor.spread

@@ -15,6 +15,6 @@ def start_sensors(force_torque: np.ndarray, chips: np.ndarray, rng: np.random.Ge
     """
     force_torque["history"] = chips["counted"] = chips["moved"] = chips["travel"] = 0.0
     force_torque["read"] = chips["taken"] = 0
-    keys = rng.integers(2**64, size=(3, *chips.shape), dtype=np.uint64)
+    keys = rng.bit_generator.random_raw(3 * chips.size).reshape(3, *chips.shape)
     force_torque["key"], force_torque["drift_key"], chips["key"] = keys
     chips["carry"] = rng.uniform(-1.0, 1.0, chips["carry"].shape) * chips["count"][..., None]

@@ -12,7 +12,8 @@ from slipgym.world.planar import HOLDING, locate, substep
 FLAT = 3.0  # slip speed over v_s from which the Stribeck curve has decayed, to exp(-9)
 CHANGE = 0.1  # of slip speed or v_s within a sub-step
 FIRM = 0.95  # of the friction limit; more of it is left for a load that changes
-PATCH_FIRM = 0.5  # the rim of a uniform disc slips from 0.75 on
+FAST = 0.7  # the same for as long as no command falls due
+PATCH_FIRM, PATCH_FAST = 0.5, 0.4  # the rim of a uniform disc slips from 0.75 on
 
 
 @compiled
@@ -29,7 +30,11 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
         fingers: Two FINGER records, likewise.
         force_torque: Two FORCE_TORQUE records, likewise.
         chips: Two SLIP_SENSOR records, likewise.
+
+    Returns:
+        Number of sub-steps.
     """
+    done = 0
     end = world.tick + world.control_ticks
     sample = sample_read_next(force_torque[0], world.tick, world.control_ticks)
     for f in range(2):
@@ -40,17 +45,17 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
         for f in range(2):
             take_up(fingers[f], world.tick)
             stop = world.tick + ticks_to_next(fingers[f], world.tick, stop - world.tick)
-        ticks = world.calm_ticks
+        ticks = stop - world.tick
         for f in range(2):
-            if not calm(pads[f], cells, fingers[f], ticks * world.tick_length):
-                ticks = world.substep_ticks
+            ticks = min(ticks, longest_substep(world, pads[f], cells, fingers[f], ticks))
         steps = -(-(stop - world.tick) // ticks)
         ticks = -(-(stop - world.tick) // steps)
         h = ticks * world.tick_length
         for f in range(2):
-            press(fingers[f], h)
+            press(pads[f], fingers[f], h)
         substep(world, pads, cells, fingers, chips, h, ticks / world.control_ticks)
         world.tick += ticks
+        done += 1
         if world.tick == sample:
             for f in range(2):
                 sample_force_torque(force_torque[f], pads[f], sample)
@@ -58,6 +63,7 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
     for f in range(2):
         fingers[f].contact_force = touching(fingers[f].force)
     locate(world)
+    return done
 
 
 @compiled
@@ -67,37 +73,42 @@ def touching(force):
 
 
 @compiled
-def press(finger, h):
-    """The pad presses with the actuator's mean force over a sub-step of h.
+def press(pad, finger, h):
+    """Press with the actuator's mean force over a sub-step of h in slip, with that at its end in stick.
 
-    With the force at its end the momentum of a slide under a closing grip would be wrong in the first order.
+    With the force at the end the momentum of a slide under a closing grip would be wrong in the first order.
     """
     end, mean = relaxed(finger, h)
-    finger.contact_force, finger.contact_mean_force = touching(mean), end
+    finger.contact_force = touching(mean if pad.slip_rate != 0.0 else end)
+    finger.contact_mean_force = end
 
 
 @compiled
-def calm(pad, cells, finger, h):
-    """Whether nothing about a pad's contact is quick, so that a sub-step of h resolves it.
+def longest_substep(world, pad, cells, finger, ticks):
+    """Ticks of the longest sub-step that resolves a pad's contact, at most `ticks`, or more.
 
-    Quick are break-away and what the Stribeck curve does to slow slip. Calm is a pad that sticks well within
-    the limit, one that slips where the curve is flat, one whose slip speed hardly changes, and one let go.
+    Quick are break-away and what the Stribeck curve does to slow slip. Calm is a pad that slips where the
+    curve is flat or whose slip speed hardly changes, and one that sticks within the limit; one that sticks
+    well within it, or is let go, has nothing to resolve.
 
     Args:
+        world: WORLD record.
         pad: PAD record.
         cells: None for ellipsoids; a patch breaks away in parts, so only stick is calm.
-        finger: FINGER record; no command falls due within h.
-        h: Sub-step [s].
+        finger: FINGER record; no command falls due within `ticks`.
+        ticks: How many are asked for.
     """
     if pad.slip_rate != 0.0:  # slips
-        change = h * pad.slip_rate
-        if pad.slip_speed + min(change, 0.0) > FLAT * pad.stribeck_velocity:
-            return True
-        return abs(change) < CHANGE * min(pad.slip_speed, pad.stribeck_velocity)
-    normal = touching(min(finger.force, finger.command))  # the least within h
+        change = world.calm_ticks * world.tick_length * pad.slip_rate
+        flat = pad.slip_speed + min(change, 0.0) > FLAT * pad.stribeck_velocity
+        calm = flat or abs(change) < CHANGE * min(pad.slip_speed, pad.stribeck_velocity)
+        return world.calm_ticks if calm else world.substep_ticks
+    normal = touching(min(finger.force, finger.command))  # the least within `ticks`
     if normal <= 0.0:
-        return finger.contact_force <= 0.0
+        return ticks if finger.contact_force <= 0.0 else world.substep_ticks
     fx, fy, rim = pad.wrench[0], pad.wrench[1], pad.wrench[2] / pad.r
-    share = FIRM if cells is None else PATCH_FIRM
-    firm = math.sqrt(fx * fx + fy * fy + rim * rim) < share * pad.mu_s * normal
-    return firm and pad.slip_speed < CHANGE * pad.stribeck_velocity
+    share = math.sqrt(fx * fx + fy * fy + rim * rim) / (pad.mu_s * normal)
+    firm, fast = (FIRM, FAST) if cells is None else (PATCH_FIRM, PATCH_FAST)
+    if share > firm or pad.slip_speed > CHANGE * pad.stribeck_velocity:
+        return world.substep_ticks
+    return world.calm_ticks if share > fast else ticks

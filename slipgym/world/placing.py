@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from slipgym.compiled import compiled
+from slipgym.contact.records import rest, rest_cells
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box
 
@@ -18,22 +20,35 @@ def place(plant: Plant, i: int, box: Box, force: float, wrist: tuple[float, floa
         force: Grip force per finger [N].
         wrist: Pad centre (x, z) and pitch [m, m, rad].
     """
-    world, fingers = plant.world[i], plant.fingers[i]
+    body = box.mass, box.inertia, box.size[1] / 2, *box.grasp_from_com
+    _place(plant.world, plant.pads, plant.cells, plant.fingers, i, body, force, wrist)
+
+
+@compiled
+def _place(worlds, pads, cells, fingers, i, body, force, wrist):
+    world = worlds[i]
+    mass, inertia, half_thickness, x, z = body
     cos, sin = math.cos(wrist[2]), math.sin(wrist[2])
-    x, z = box.grasp_from_com
-    for field in ("tick", "velocity", "external", "wrist_velocity", "wrist_acceleration"):
-        world[field] = 0
-    for field in ("relative_velocity", "slip", "slip_twist"):
-        world[field] = 0.0
-    world["mass"], world["inertia"] = box.mass, box.inertia
-    world["half_thickness"] = box.size[1] / 2
-    world["wrist"] = world["wrist_plan"] = wrist
-    world["relative"] = -x, -z, 0.0
-    world["grasp_point"] = x, z
-    world["com"] = wrist[0] - cos * x + sin * z, wrist[1] - sin * x - cos * z
-    world["angle"] = wrist[2]
-    for field in ("queued", "served"):
-        fingers[field] = 0
-    for field in ("command", "force", "mean_force", "contact_mean_force", "contact_force"):
-        fingers[field] = force
-    plant.relax(i)
+    world.tick = 0
+    world.velocity[:] = 0.0
+    world.external[:] = 0.0
+    world.wrist_velocity[:] = 0.0
+    world.wrist_acceleration[:] = 0.0
+    world.relative_velocity[:] = 0.0
+    world.slip[:] = 0.0
+    world.slip_twist[:] = 0.0
+    world.mass, world.inertia, world.half_thickness = mass, inertia, half_thickness
+    for a in range(3):
+        world.wrist[a] = world.wrist_plan[a] = wrist[a]
+    world.relative[0], world.relative[1], world.relative[2] = -x, -z, 0.0
+    world.grasp_point[0], world.grasp_point[1] = x, z
+    world.com[0], world.com[1] = wrist[0] - cos * x + sin * z, wrist[1] - sin * x - cos * z
+    world.angle = wrist[2]
+    for f in range(2):
+        finger = fingers[i, f]
+        finger.queued = finger.served = 0
+        finger.command = finger.force = finger.mean_force = force
+        finger.contact_mean_force = finger.contact_force = force
+    rest(pads[i])
+    if cells is not None:
+        rest_cells(cells[i])

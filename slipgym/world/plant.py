@@ -9,11 +9,11 @@ import numpy as np
 
 from slipgym.config import Config
 from slipgym.contact.pressure import patch_cells
-from slipgym.contact.records import pads, patch, rest, rest_cells
+from slipgym.contact.records import pads, patch
 from slipgym.sensors.force_torque import FORCE_TORQUE
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
-from slipgym.sensors.slip_velocity import SLIP_SENSOR, chip_levers
+from slipgym.sensors.slip_velocity import SLIP_SENSOR, chip_positions
 from slipgym.world.records import FINGER, QUEUE, WORLD
 
 MIRROR = (1.0, -1.0)  # finger 2 sees the grip axis from the other side
@@ -38,12 +38,6 @@ class Plant:
     """FORCE_TORQUE (n, 2)."""
     chips: np.ndarray
     """SLIP_SENSOR (n, 2)."""
-
-    def relax(self, i: int) -> None:
-        """Bring the contact of one world's pads to rest."""
-        rest(self.pads[i])
-        if self.cells is not None:
-            rest_cells(self.cells[i])
 
     def restore(self, other: Plant) -> None:
         """Copy every array of another plant of the same size into this one."""
@@ -77,8 +71,9 @@ def dead_ticks(config: Config, dead_time: float, name: str = "gripper.dead_time"
     Raises:
         ValueError: More commands would be under way than the queue holds.
     """
-    ticks, rate = round(dead_time * ticks_per_second(config)), config.physics.control_rate
-    if ticks * rate >= QUEUE * ticks_per_second(config):
+    clock, rate = ticks_per_second(config), config.physics.control_rate
+    ticks = round(dead_time * clock)
+    if ticks * rate >= QUEUE * clock:
         raise ValueError(f"{name} = {dead_time:g} s must be below {QUEUE} control steps ({QUEUE / rate:g} s)")
     return ticks
 
@@ -165,7 +160,7 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
 def _chips(config: Config, n: int) -> np.ndarray:
     sensor = config.sensors.slip
     check_slip_latency(config, sensor.latency_samples)
-    levers = chip_levers(sensor.chip_radius, sensor.chips)
+    positions = chip_positions(sensor.chip_radius, sensor.chips)
     chips = np.zeros((n, 2), SLIP_SENSOR)
     chips["mirror"] = MIRROR
     chips["sample_time"] = 1.0 / sensor.rate
@@ -174,6 +169,7 @@ def _chips(config: Config, n: int) -> np.ndarray:
     chips["range"] = sensor.speed_max / sensor.rate
     chips["window"] = sensor.window
     chips["delay"] = sensor.latency_samples
-    chips["lever"] = levers
-    chips["solve"] = np.linalg.pinv(levers)
+    chips["chips"] = sensor.chips
+    chips["at"] = positions
+    chips["spread"] = np.sum(positions**2)
     return chips

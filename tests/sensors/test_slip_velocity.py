@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from slipgym.config import load
-from slipgym.sensors.slip_velocity import AXES, accumulate_slip, chip_levers, read_slip, sample_slip
+from slipgym.sensors.slip_velocity import (
+    AXES,
+    accumulate_slip,
+    chip_positions,
+    displacement,
+    read_slip,
+    sample_slip,
+)
 from slipgym.world.plant import build
 
 COUNT, RADIUS, RATE = 7.94e-6, 0.0243, 120
@@ -13,6 +20,14 @@ COUNT, RADIUS, RATE = 7.94e-6, 0.0243, 120
 def sensors(**slip):
     """Both fingers' sensors as the environment builds them."""
     return build(load({"sensors": {"slip": slip}})).chips[0]
+
+
+def levers(radius: float, chips: int) -> np.ndarray:
+    """Matrix from slip displacement (x, y, theta), in the finger's frame, to the chips' axes (2 chips, 3)."""
+    rows = []
+    for x, y in chip_positions(radius, chips)[:chips]:
+        rows += [(1.0, 0.0, -y), (0.0, 1.0, x)]
+    return np.array(rows)
 
 
 def run(sensor, motions: np.ndarray) -> np.ndarray:
@@ -46,19 +61,26 @@ def test_finger_2_is_mirrored():
     mirror = exact()[0]
     run(mirror, motion * (1.0, 1.0, -1.0))
     np.testing.assert_allclose(second["counted"][0], mirror["counted"][0], rtol=1e-12)
-    solved = second["solve"] @ second["counted"][0]
+    solved = np.linalg.pinv(levers(RADIUS, 3)) @ second["counted"][0, :6]
     np.testing.assert_allclose(solved, motion[0] * (1.0, 1.0, -1.0), rtol=1e-12)
 
 
-def test_levers_are_those_of_three_chips_on_a_circle():
-    levers = chip_levers(RADIUS, 3)
-    theta = 1e-3
-    for i in range(3):
-        angle = math.pi / 2 + 2 * math.pi * i / 3
-        point = RADIUS * np.array([math.cos(angle), math.sin(angle)])
-        moved = theta * np.array([-point[1], point[0]])
-        np.testing.assert_allclose(levers[2 * i : 2 * i + 2] @ (0.0, 0.0, theta), moved, atol=1e-18)
-    np.testing.assert_array_equal(levers[6:], 0.0)
+@pytest.mark.parametrize("chips", [2, 3, 4])
+def test_chips_are_evenly_on_a_circle(chips):
+    positions = chip_positions(RADIUS, chips)
+    angles = math.pi / 2 + 2 * math.pi * np.arange(chips) / chips
+    expected = RADIUS * np.column_stack([np.cos(angles), np.sin(angles)])
+    np.testing.assert_allclose(positions[:chips], expected, atol=1e-18)
+    np.testing.assert_array_equal(positions[chips:], 0.0)
+
+
+@pytest.mark.parametrize("chips", [2, 3, 4])
+def test_the_displacement_is_the_least_squares_one(chips):
+    sensor = exact(chips=chips)[0]
+    counted = np.random.default_rng(chips).normal(size=2 * chips)
+    sensor["counted"][0, : 2 * chips] = counted
+    expected = np.linalg.lstsq(levers(RADIUS, chips), counted, rcond=None)[0]
+    np.testing.assert_allclose(displacement(sensor, 0), expected, rtol=1e-12)
 
 
 def test_no_count_no_velocity():
@@ -98,12 +120,12 @@ def test_counts_add_up_to_the_travel(finger):
     for motion in motions:
         run(sensor, motion[None])
         counted += sensor["counted"][(sensor["taken"] - 1) % len(sensor["counted"])]
-    levers = sensor["lever"] * (1.0, 1.0, sensor["mirror"])
+    to_axes = levers(RADIUS, 3) * (1.0, 1.0, sensor["mirror"])
     # truncation keeps the rest: never a whole count is missing on any axis
-    assert np.all(np.abs(counted - levers @ motions.sum(axis=0)) < COUNT * (1 + 1e-6))
+    assert np.all(np.abs(counted[:6] - to_axes @ motions.sum(axis=0)) < COUNT * (1 + 1e-6))
     # least squares of six axis errors, each below one count
     away = np.abs(sensor["travel"] - motions.sum(axis=0))
-    assert np.all(away < COUNT * np.abs(sensor["solve"]).sum(axis=1))
+    assert np.all(away < COUNT * np.abs(np.linalg.pinv(to_axes)).sum(axis=1))
 
 
 def test_quantisation_noise():

@@ -8,16 +8,19 @@ import pytest
 from slipgym.config import load
 from slipgym.validation.bench import Bench, Friction
 from slipgym.validation.planar import slides
-from slipgym.world.alone import CHANGE, FIRM, FLAT, calm
+from slipgym.world.alone import CHANGE, FAST, FIRM, FLAT, longest_substep
 from slipgym.world.plant import build
 
+PLANT = build(load())
 H = 2e-3
+CALM, SHORT = PLANT.world["calm_ticks"][0], PLANT.world["substep_ticks"][0]
+ASKED = 4 * CALM
 V_S = load().contact.stribeck_velocity
 
 
 @pytest.fixture
 def contact():
-    """Makes a pad and a finger that presses with 5 N; fields can be set."""
+    """Makes a world, one of its pads and the finger that presses it with 5 N; fields can be set."""
 
     def make(**fields):
         plant = build(load())
@@ -27,33 +30,37 @@ def contact():
         for name, value in fields.items():
             record = pad if name in pad.dtype.names else finger
             record[name] = value
-        return pad, finger
+        return plant.world[0], pad, finger
 
     return make
+
+
+LIMIT = 3.0  # of the fixture's pad [N]
 
 
 @pytest.mark.parametrize(
     ("fields", "expected"),
     [
-        ({"wrench": (0.0, 0.9 * FIRM * 3.0, 0.0)}, True),
-        ({"wrench": (0.0, 1.01 * FIRM * 3.0, 0.0)}, False),
-        ({"wrench": (0.0, 0.0, 1.01 * FIRM * 3.0 * 0.01)}, False),
-        ({"wrench": (0.0, 0.9 * FIRM * 3.0, 0.0), "command": 4.0}, False),
-        ({"wrench": (0.0, 0.9 * FIRM * 3.0, 0.0), "command": 8.0}, True),
-        ({"wrench": (0.0, 0.5, 0.0), "slip_speed": 2 * CHANGE * V_S}, False),
-        ({"slip_speed": 2 * FLAT * V_S, "slip_rate": 1.0}, True),
-        ({"slip_speed": FLAT * V_S + 0.9 * H, "slip_rate": -1.0}, False),
-        ({"slip_speed": FLAT * V_S + 1.1 * H, "slip_rate": -1.0}, True),
-        ({"slip_speed": V_S, "slip_rate": 0.9 * CHANGE * V_S / H}, True),
-        ({"slip_speed": V_S, "slip_rate": 1.1 * CHANGE * V_S / H}, False),
-        ({"slip_speed": 0.5 * V_S, "slip_rate": -0.9 * CHANGE * V_S / H}, False),
-        ({"force": 0.0, "command": 0.0, "contact_force": 0.0}, True),
-        ({"force": 5.0, "command": 0.0}, False),
+        ({"wrench": (0.0, 0.9 * FAST * LIMIT, 0.0)}, ASKED),
+        ({"wrench": (0.0, 0.9 * FIRM * LIMIT, 0.0)}, CALM),
+        ({"wrench": (0.0, 1.01 * FIRM * LIMIT, 0.0)}, SHORT),
+        ({"wrench": (0.0, 0.0, 1.01 * FIRM * LIMIT * 0.01)}, SHORT),
+        ({"wrench": (0.0, 0.9 * FIRM * LIMIT, 0.0), "command": 4.0}, SHORT),
+        ({"wrench": (0.0, 0.9 * FIRM * LIMIT, 0.0), "command": 8.0}, CALM),
+        ({"wrench": (0.0, 0.5, 0.0), "slip_speed": 2 * CHANGE * V_S}, SHORT),
+        ({"slip_speed": 2 * FLAT * V_S, "slip_rate": 1.0}, CALM),
+        ({"slip_speed": FLAT * V_S + 0.9 * H, "slip_rate": -1.0}, SHORT),
+        ({"slip_speed": FLAT * V_S + 1.1 * H, "slip_rate": -1.0}, CALM),
+        ({"slip_speed": V_S, "slip_rate": 0.9 * CHANGE * V_S / H}, CALM),
+        ({"slip_speed": V_S, "slip_rate": 1.1 * CHANGE * V_S / H}, SHORT),
+        ({"slip_speed": 0.5 * V_S, "slip_rate": -0.9 * CHANGE * V_S / H}, SHORT),
+        ({"force": 0.0, "command": 0.0, "contact_force": 0.0}, ASKED),
+        ({"force": 5.0, "command": 0.0}, SHORT),
     ],
 )
 def test_long_sub_steps_are_for_a_calm_contact(contact, fields, expected):
-    pad, finger = contact(**fields)
-    assert calm(pad, None, finger, H) is expected
+    world, pad, finger = contact(**fields)
+    assert longest_substep(world, pad, None, finger, ASKED) == expected
 
 
 def test_a_slide_under_a_closing_grip_has_the_exact_momentum():
