@@ -26,13 +26,13 @@ SIZES = 1, 16, 256, 4096
 EVERY_ACTION = -1.0, 1.0
 STEPS = 4000
 """Steps of all environments together in a timed block, at least `TURNS` vector steps."""
-TURNS = 4
+TURNS = 16
 CACHED = 256
 """Environments that fit into a processor's own cache: their parts are timed apart from the memory's."""
 
 
 class VectorPlayer:
-    """Plays a batch with random grip forces.
+    """Plays a batch with random grip forces, asking for infos where episodes end, as a learner does.
 
     Args:
         env_id: Id of the environment.
@@ -42,7 +42,7 @@ class VectorPlayer:
     """
 
     def __init__(self, env_id: str, n: int, actions: tuple[float, float] = ACTIONS, **arguments: Any) -> None:
-        env = gym.make_vec(env_id, num_envs=n, **arguments).unwrapped
+        env = gym.make_vec(env_id, num_envs=n, infos="ends", **arguments).unwrapped
         assert isinstance(env, SlipVectorEnv)
         self.env, self.n, self._actions = env, n, actions
         self._rng = np.random.default_rng(0)

@@ -110,6 +110,10 @@ class Randomizer:
         self._ranges = randomization.of(task)
         self._nominal = nominal_values(config)
         self.active = self._ranges != Ranges()
+        fields = ((name, getattr(self._ranges, name)) for name in Ranges.model_fields)
+        self._drawn = [
+            (name, field) for name, field in fields if name != "disturbances" and field is not None
+        ]
         self.pressures = tuple(dict.fromkeys((config.contact.pressure, *(self._ranges.pressure or ()))))
         self._configs = {pressure: with_pressure(config, pressure) for pressure in self.pressures}
         self._pressure = config.contact.pressure
@@ -140,10 +144,7 @@ class Randomizer:
                 names and disturbances are drawn with this probability.
         """
         values, friction, names, drawn = dict(self._nominal), {}, {}, []
-        for name in (name for name in Ranges.model_fields if name != "disturbances"):
-            field = getattr(self._ranges, name)
-            if field is None:
-                continue
+        for name, field in self._drawn:
             share, gate = rng.random(2).tolist()
             if isinstance(field, tuple):
                 names[name] = field[int(share * len(field))] if gate < scale else None
