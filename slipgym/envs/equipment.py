@@ -37,7 +37,7 @@ class Equipment:
             for pressure, cells in patches.items():
                 self._cells[pressure] = np.zeros((CELL_FIELDS, room))  # a cell without share does nothing
                 self._cells[pressure][:, : cells.shape[1]] = cells
-            plant.cells = np.zeros((*plant.pads.shape, CELL_FIELDS, room))
+            plant.cells = np.tile(self._cells[config.contact.pressure], (*plant.pads.shape, 1, 1))
 
     def check(self, most: Mapping[str, float]) -> None:
         """Raise ValueError unless the plant has room for the longest times that may be drawn."""

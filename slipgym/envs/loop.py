@@ -149,7 +149,8 @@ class SlipLoop(ABC):
         self.drawn[i] = {**start, **draw.report(options)} if self._randomizer.active else {}
         for k, field in enumerate(("mu_s", "mu_c", "r")):
             self.truth[i, k] = self.plant.pads[field][i] = getattr(friction, field)
-        self._equipment.fit(i, draw.values, draw.config.contact.pressure)
+        if self._randomizer.active:  # it fits from the start otherwise
+            self._equipment.fit(i, draw.values, draw.config.contact.pressure)
         self._equipment.start_sensors(i, draw.values["bias_scale"], rng)
         fingers = slice(2 * i, 2 * i + 2)
         if self._tells_latency:

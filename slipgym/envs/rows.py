@@ -27,8 +27,9 @@ from slipgym.world.actuator import command
 from slipgym.world.alone import advance_alone
 from slipgym.world.records import FINGER, WORLD
 
-BLOCK = 16
-"""Rows that go through a control step together: few enough to stay in the processor's nearest caches."""
+BLOCK = 256
+"""Rows that go through a control step together: few enough for the processor's second cache, and enough for it
+to fetch each array ahead."""
 
 
 @unlocked

@@ -3,7 +3,7 @@ import pytest
 from scipy import stats
 
 from slipgym.compiled import compiled
-from slipgym.sensors.noise import quantile, standard_normal, uniform
+from slipgym.sensors.noise import CELLS, TAIL, interpolated, quantile, standard_normal, uniform
 
 KEYS = np.random.default_rng(0).integers(2**64, size=4, dtype=np.uint64)
 
@@ -31,6 +31,19 @@ def test_the_quantile_inverts_the_distribution():
     p = np.concatenate([np.geomspace(2.0**-54, 0.5, 4000), 1.0 - np.geomspace(1e-15, 0.5, 4000)])
     found = np.array([quantile(x) for x in p])
     np.testing.assert_allclose(found, stats.norm.ppf(p), rtol=1e-13, atol=1e-15)
+
+
+def test_the_cubics_stand_for_the_quantile():
+    """A cubic with value and slope of f at both ends errs by at most h^4 / 384 times its fourth derivative."""
+    p = np.random.default_rng(1).random(20_000)
+    away = np.abs([interpolated(x) - quantile(x) for x in p])
+    x = -stats.norm.ppf(np.clip(np.minimum(p, 1 - p) - 1 / CELLS, TAIL / CELLS, None))  # the cell's outer end
+    fourth = (6.0 * x**3 + 7.0 * x) / stats.norm.pdf(x) ** 4
+    assert np.all(away <= fourth / CELLS**4 / 384 + 1e-15)
+    assert away.max() < 1e-7
+    tail = np.minimum(p, 1 - p) < TAIL / CELLS
+    assert tail.sum() > 400
+    assert np.all(away[tail] == 0.0)
 
 
 @pytest.mark.parametrize("key", KEYS)
