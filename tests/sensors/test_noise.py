@@ -34,7 +34,7 @@ def test_the_quantile_inverts_the_distribution():
 
 
 def test_the_cubics_stand_for_the_quantile():
-    """A cubic with value and slope of f at both ends errs by at most h^4 / 384 times its fourth derivative."""
+    """A cubic with value and slope of f at both ends errs by at most h^4 / 384 of its fourth derivative."""
     p = np.random.default_rng(1).random(20_000)
     away = np.abs([interpolated(x) - quantile(x) for x in p])
     x = -stats.norm.ppf(np.clip(np.minimum(p, 1 - p) - 1 / CELLS, TAIL / CELLS, None))  # the cell's outer end
