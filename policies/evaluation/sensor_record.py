@@ -12,6 +12,7 @@ import pandas as pd
 import policies
 from policies.learned import LearnedPolicy
 from slipgym.envs.loop import SlipLoop
+from slipgym.envs.observation import Sight
 from slipgym.sensors.force_torque import HISTORY, sensed
 from slipgym.sensors.slip_velocity import read_slip
 from slipgym.tasks import find
@@ -45,8 +46,8 @@ def record_sensors(
 
     Raises:
         FileNotFoundError: There is no policy at the path.
-        ValueError: The task, the policy, the finger or an option is unknown or not allowed, or a learned policy
-            was trained for another environment.
+        ValueError: The task, the policy, the finger or an option is unknown or not allowed, or a learned
+            policy was trained for another environment.
     """
     env_id = find(task).id
     if finger not in (1, 2):
@@ -86,11 +87,13 @@ class _Tap:
         self._twists: list[tuple[float, ...]] = []
         self._step, loop.step = loop.step, self._one_by_one
 
-    def _one_by_one(self, actions: np.ndarray, components: np.ndarray, skip: int, *rest: Any) -> None:
+    def _one_by_one(
+        self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
+    ) -> None:
         """The loop's `step`, one sample after the other."""
         episode, total = self._loop.episode[0], np.zeros_like(self._loop.terms)
         for _ in range(skip):
-            self._step(actions, components, 1, *rest)
+            self._step(actions, components, 1, active, sight)
             self._take()
             total += self._loop.terms
             if episode["dropped"] or episode["step"] >= episode["steps"]:
