@@ -10,6 +10,7 @@ from typing import Any
 import gymnasium as gym
 
 import policies
+from estimator.reference import is_reference
 from policies.learned import LearnedPolicy
 from policies.registry import Policy
 from policies.training import seeds
@@ -80,6 +81,8 @@ def episodes(
     """
     policy = policies.load(which)
     env_id, arguments = environment_of(os.fspath(which), policy, task)
+    if "estimator" not in (changes or {}):
+        _check_estimator(arguments.get("estimator"))
     env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **{**arguments, **(changes or {})})
     try:
         if isinstance(policy, LearnedPolicy):
@@ -94,3 +97,13 @@ def episodes(
             yield Outcome(info["is_success"], info["dropped"], total, info["time"])
     finally:
         env.close()
+
+
+def _check_estimator(choice: Any) -> None:
+    """Refuse what a file has to be imported for: only who runs it may ask for that."""
+    name = choice.get("name") if isinstance(choice, Mapping) else choice
+    if is_reference(name):
+        raise ValueError(
+            f"the estimator {name!r} of its policy.json is not imported unasked; give an estimator as an "
+            "argument of the environment"
+        )
