@@ -11,7 +11,6 @@ from policies.training import files as trainings
 from policies.training import folder
 from slipgym.config import load, load_randomization
 
-
 TAGS = {
     "apply": "!!python/object/apply:os.mknod ['{mark}']",
     "new": "!!python/object/new:os.mknod ['{mark}']",
