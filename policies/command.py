@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import policies
 from estimator.records import parse_settings
-from policies.episodes import episodes
+from policies.episodes import FRESH, episodes
 
 EPILOG = """
 examples:
@@ -36,7 +36,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     known = ", ".join(policies.names())
     parser.add_argument("policy", help=f"folder of a learned policy, module:class, or one of {known}")
     parser.add_argument("--episodes", type=int, default=100, help="how many (default: 100)")
-    parser.add_argument("--first", type=int, default=0, help="number of the first held-out seed (default: 0)")
+    fresh = f"number of the first held-out seed (default: {FRESH}, which no training chooses by)"
+    parser.add_argument("--first", type=int, default=FRESH, help=fresh)
     parser.add_argument("--task", help="for a controller that serves every task")
     parser.add_argument(
         "--set",

@@ -16,6 +16,9 @@ from policies.registry import Policy
 from policies.training import seeds
 from slipgym.tasks import find
 
+FRESH = 1_000_000
+"""Number of the first held-out seed here."""
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -62,7 +65,7 @@ def environment_of(which: str, policy: Policy, task: str | None) -> tuple[str, d
 def episodes(
     which: str | os.PathLike[str],
     count: int,
-    first: int = 0,
+    first: int = FRESH,
     task: str | None = None,
     changes: Mapping[str, Any] | None = None,
 ) -> Iterator[Outcome]:
@@ -71,7 +74,8 @@ def episodes(
     Args:
         which: As `policies.load` takes it.
         count: How many.
-        first: Number of the first held-out seed; see `policies.training.seeds`.
+        first: Number of the first held-out seed; see `policies.training.seeds`. The default is beyond those
+            that a training chooses its best policy by.
         task: Needed for a controller that serves every task.
         changes: Keyword arguments of the environment instead of those of the training.
 
