@@ -20,7 +20,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 @app.command(epilog=EPILOG)
 def main(
     task: Annotated[str, typer.Argument(help="LinearSlip, Hold, …", show_default=False)],
-    policy: Annotated[str, typer.Argument(help="Name of a policy.", show_default=False)],
+    policy: Annotated[str, typer.Argument(help="Name of a policy, or its folder.", show_default=False)],
     record: Annotated[Path, typer.Argument(help="csv, csv.gz or parquet to write.", show_default=False)],
     velocity: Annotated[
         Path | None, typer.Option(help="A file of its own for the velocities.", show_default=False)

@@ -1,4 +1,8 @@
-"""Builds the wheel, installs it alone into a clean environment and runs an episode far from the sources."""
+"""Builds the wheel, installs it alone into a clean environment and uses it far from the sources.
+
+An episode of a controller, then the command `slipgym-evaluate` on a learned policy: the first one that comes
+with slipgym, or a small one written here while there is none.
+"""
 
 import subprocess
 import sys
@@ -8,6 +12,7 @@ import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+SHIPPED = ROOT / "policies" / "learned" / "shipped"
 PACKAGES = {"slipgym", "estimator", "policies"}
 EPISODE = """
 import sys
@@ -27,6 +32,26 @@ assert "torch" not in sys.modules, "the base installation must not load torch"
 print(f"one episode: {steps} steps, slip {info['slip']}")
 """
 
+POLICY = """
+import sys
+import gymnasium as gym
+import numpy as np
+from policies.learned import files
+from policies.learned.fitting import column_of
+
+env = gym.make("slipgym:slipgym/Hold-v0").unwrapped
+columns, actions = ([column_of(c).model_dump() for c in cs] for cs in (env.columns, env.action_columns))
+environment = {"id": "slipgym/Hold-v0", "arguments": {}, "rate": env.metadata["render_fps"], "history": 0}
+description = {
+    "environment": {**environment, "observation": columns, "action": actions},
+    "network": {"kind": "mlp", "layers": [], "activation": "tanh", "squash": False},
+    "normalisation": None,
+    "origin": {"algorithm": "PPO", "command": "none", "steps": 0, "seeds": [], "versions": {}},
+}
+shapes = {"weight": (len(actions), len(columns)), "bias": (len(actions),)}
+files.write(sys.argv[1], description, {f"layers.0.{k}": np.zeros(v, np.float32) for k, v in shapes.items()})
+"""
+
 
 def main() -> None:
     """Fails with the first thing that is not as it should be."""
@@ -39,6 +64,12 @@ def main() -> None:
         elsewhere.mkdir()
         if subprocess.call([python, "-I", "-c", EPISODE], cwd=elsewhere):
             sys.exit("the installed wheel does not run an episode")
+        policy = next((path.parent.name for path in sorted(SHIPPED.glob("*/policy.json"))), "./small")
+        if policy == "./small":
+            subprocess.run([python, "-I", "-c", POLICY, policy], cwd=elsewhere, check=True)
+        evaluate = python.with_name("slipgym-evaluate")
+        if subprocess.call([evaluate, policy, "--episodes", "5"], cwd=elsewhere):
+            sys.exit("the installed wheel does not evaluate a learned policy")
 
 
 def build(folder: Path) -> Path:
@@ -49,15 +80,18 @@ def build(folder: Path) -> Path:
 
 
 def check_contents(wheel: Path) -> None:
-    """Exactly the three packages at top level, and every default file inside."""
+    """Exactly the three packages at top level, and every default file and learned policy inside."""
     with zipfile.ZipFile(wheel) as archive:
         files = set(archive.namelist())
     top = {name.split("/")[0] for name in files if ".dist-info/" not in name}
     if top != PACKAGES:
         sys.exit(f"top level of the wheel: {sorted(top)}, wanted {sorted(PACKAGES)}")
     wanted = {f"slipgym/{path.relative_to(ROOT).as_posix()}" for path in (ROOT / "configs").rglob("*.yaml")}
-    if not wanted or wanted - files:
-        sys.exit(f"configuration missing from the wheel: {sorted(wanted - files)}")
+    if not wanted:
+        sys.exit("there is no configuration to look for")
+    wanted |= {path.relative_to(ROOT).as_posix() for path in SHIPPED.rglob("*") if path.is_file()}
+    if wanted - files:
+        sys.exit(f"missing from the wheel: {sorted(wanted - files)}")
 
 
 def install(wheel: Path, folder: Path) -> Path:

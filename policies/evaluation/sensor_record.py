@@ -10,7 +10,9 @@ import numpy as np
 import pandas as pd
 
 import policies
+from policies.learned import LearnedPolicy
 from slipgym.envs.loop import SlipLoop
+from slipgym.envs.observation import Sight
 from slipgym.sensors.force_torque import HISTORY, sensed
 from slipgym.sensors.slip_velocity import read_slip
 from slipgym.tasks import find
@@ -32,7 +34,7 @@ def record_sensors(
 
     Args:
         task: "LinearSlip" or whatever else `slipgym.tasks.find` takes.
-        policy: A name of `policies.names()`.
+        policy: As `policies.load` takes it; a learned one brings its action mode, history and so on along.
         finger: 1 or 2.
         seed: Of the environment.
         options: Of `reset`.
@@ -43,21 +45,24 @@ def record_sensors(
         at the pad centre in the pad frame, NaN where that sensor has none, and `TRUTH` [-, -, m].
 
     Raises:
-        ValueError: The task, the policy, the finger or an option is unknown or not allowed.
+        FileNotFoundError: There is no policy at the path.
+        ValueError: The task, the policy, the finger or an option is unknown or not allowed, or a learned
+            policy was trained for another environment.
     """
     env_id = find(task).id
     if finger not in (1, 2):
         raise ValueError(f"finger = {finger!r} must be 1 or 2")
-    controller = policies.make(policy)
-    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **keywords)
+    actor = policies.load(policy)
+    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **{**policies.modes(actor), **keywords})
     try:
+        if isinstance(actor, LearnedPolicy):
+            actor.check(env)
         observation, _ = env.reset(seed=seed, options=dict(options or {}))
         tap = _Tap(env.unwrapped._loop, finger - 1)  # type: ignore[attr-defined]
         state, over = None, False
         while not over:
-            action, state = controller.predict(observation, state=state)
+            action, state = actor.predict(observation, state=state)
             observation, _, terminated, truncated, _ = env.step(action)
-            tap.take()
             over = terminated or truncated
         return tap.frame()
     finally:
@@ -65,7 +70,7 @@ def record_sensors(
 
 
 class _Tap:
-    """Collects the samples of one finger, step by step.
+    """Collects the samples of one finger, also those within a step of the environment.
 
     Args:
         loop: The environment's loop, just reset.
@@ -80,8 +85,22 @@ class _Tap:
         self._taken = self._start // int(force["period"])
         self._forces: list[tuple[float, ...]] = []
         self._twists: list[tuple[float, ...]] = []
+        self._step, loop.step = loop.step, self._one_by_one
 
-    def take(self) -> None:
+    def _one_by_one(
+        self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
+    ) -> None:
+        """The loop's `step`, one sample after the other."""
+        episode, total = self._loop.episode[0], np.zeros_like(self._loop.terms)
+        for _ in range(skip):
+            self._step(actions, components, 1, active, sight)
+            self._take()
+            total += self._loop.terms
+            if episode["dropped"] or episode["step"] >= episode["steps"]:
+                break
+        self._loop.terms[:] = total
+
+    def _take(self) -> None:
         """Keeps what was sampled since the last call, at most `HISTORY` forces."""
         plant, finger = self._loop.plant, self._finger
         force = plant.force_torque[0, finger]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
@@ -42,12 +42,16 @@ def order(folder: Path) -> tuple[Training, int]:
 
     Raises:
         FileNotFoundError: The folder holds no run.
+        ValueError: What is asked for there is wrong.
     """
     path = folder / _ORDER
     if not path.is_file():
         raise FileNotFoundError(f"{folder} holds no training run: there is no {_ORDER} in it")
     values = files.read(path)
-    return checked(values["training"], str(path)), values["seed"]
+    training, seed = values.get("training"), values.get("seed")
+    if not isinstance(training, Mapping) or type(seed) is not int:
+        raise ValueError(f"{path}: must hold a mapping 'training' and a whole number 'seed'")
+    return checked(training, str(path)), seed
 
 
 def runs(folder: Path) -> list[Path]:

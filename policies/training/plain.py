@@ -26,6 +26,11 @@ from slipgym.world.snapshot import EngineState
 
 _RECORDS = {record.__name__: record for record in (EnvState, VectorState, LoopState, EngineState, Box, Plant)}
 
+_FAULTS = (
+    *(zipfile.BadZipFile, EOFError, RuntimeError),  # no zip, or an encrypted one
+    *(KeyError, ValueError, TypeError, AttributeError, MemoryError),  # not a tree as `write` writes it
+)
+
 
 def write(path: Path, tree: Any) -> None:
     """Writes a tree of mappings, lists, tuples, records of an environment's state, arrays, bytes and scalars.
@@ -63,12 +68,15 @@ def read(path: Path) -> Any:
     """
     try:
         with zipfile.ZipFile(path) as archive:
+            packed = [entry.filename for entry in archive.infolist() if entry.compress_type]
+            if packed:  # what is stored as it is cannot be larger than the file
+                raise ValueError(f"{packed[0]!r} is compressed")
             members = {name: archive.read(name) for name in archive.namelist()}
         sums = json.loads(members.pop("sums.json"))
         if sums != {name: hashlib.sha256(content).hexdigest() for name, content in members.items()}:
             raise ValueError("a checksum differs")
         return _decoded(json.loads(members["tree.json"]), members)
-    except (zipfile.BadZipFile, KeyError, ValueError, EOFError) as error:
+    except _FAULTS as error:
         raise ValueError(f"{path} is damaged: {error}") from error
 
 

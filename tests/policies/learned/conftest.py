@@ -73,3 +73,11 @@ def lstm():
     return {
         "network": {"kind": "lstm", "memory": memory, "layers": [8], "activation": "relu", "squash": True}
     }
+
+
+@pytest.fixture
+def mark(tmp_path):
+    """A file that a crafted one would write; it is not there when the test is over."""
+    path = tmp_path / "executed"
+    yield path
+    assert not path.exists()

@@ -1,0 +1,108 @@
+"""The examples of docs/libraries/ run as they are printed, the commands of docs/first_policy.md in small."""
+
+import importlib
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGES = {
+    "ppo": ("torch",),
+    "skrl": ("torch", "skrl"),
+    "torchrl": ("torch", "torchrl"),
+    "rllib": ("torch", "ray.rllib"),
+    "minari": ("minari", "jax", "h5py"),
+}
+"""Page -> what its example imports besides slipgym; test-only where it is installed."""
+
+
+def example(page):
+    """The file on a page."""
+    text = (ROOT / "docs" / "libraries" / f"{page}.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    return code
+
+
+def called(command, folder, **more):
+    """What a command prints, in a folder of its own."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), **more}
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=600
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def run(page, folder, *arguments):
+    """What the example of a page prints; skipped where its libraries are missing or refuse this Gymnasium."""
+    for library in PAGES[page]:
+        pytest.importorskip(library, exc_type=ImportError)
+    (folder / "train.py").write_text(example(page), encoding="utf-8")
+    home = {
+        "HOME": str(folder),
+        "MINARI_DATASETS_PATH": str(folder / "datasets"),
+    }  # Ray keeps a token at home
+    return called([sys.executable, "train.py", *map(str, arguments)], folder, **home)
+
+
+def returns(printed):
+    found = re.findall(r"^ *\d+ steps: return +(-?[\d.]+)", printed, re.MULTILINE)
+    return [float(value) for value in found]
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_an_example_is_short_and_is_the_only_one_of_its_page(page):
+    code = example(page)
+    compile(code, page, "exec")
+    assert len(code.splitlines()) <= 100
+    assert set(PAGES) == {path.stem for path in (ROOT / "docs" / "libraries").glob("*.md")}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", ["ppo", "skrl", "torchrl"])
+def test_it_learns(page, tmp_path):
+    found = returns(run(page, tmp_path, 50_000))
+    assert len(found) >= 5
+    assert found[-1] > max(0.0, found[0])
+
+
+@pytest.mark.slow
+def test_the_single_file_takes_another_task(tmp_path):
+    assert returns(run("ppo", tmp_path, 20_000, "Hold"))
+
+
+@pytest.mark.slow
+def test_rllib_takes_the_batch(tmp_path):
+    gymnasium = importlib.import_module("gymnasium")
+    if not gymnasium.__version__.startswith("1.2."):
+        pytest.skip(f"RLlib wants Gymnasium 1.2.2, here is {gymnasium.__version__}")
+    assert len(returns(run("rllib", tmp_path, 8_000))) == 2
+
+
+@pytest.mark.slow
+def test_a_dataset_is_collected(tmp_path):
+    printed = run("minari", tmp_path, 2)
+    assert "2 episodes, 1560 steps, 2 solved, mean return" in printed
+    assert printed.endswith("every episode repeats itself bit for bit\n")
+
+
+@pytest.mark.slow
+def test_the_first_policy(tmp_path):
+    """Its commands, with a small budget."""
+    pytest.importorskip("stable_baselines3")
+    page = (ROOT / "docs" / "first_policy.md").read_text(encoding="utf-8")
+    (train,) = re.findall(r"^    python scripts/(train\.py linear_slip .*)$", page, re.MULTILINE)
+    small = ["budget=64", "ppo.n_steps=2", "ppo.batch_size=16", "evaluation.episodes=2"]
+    called([sys.executable, ROOT / "scripts" / train.split()[0], *train.split()[1:], *small], tmp_path)
+    (policy,) = tmp_path.glob("runs/*/estimated__0/policy")
+    commands = re.findall(r"^    slipgym-evaluate (.*)$", page, re.MULTILINE)
+    assert len(commands) == 3
+    for command in commands:
+        which, *rest = command.split()
+        which = str(policy) if which.endswith("/policy") else which
+        rest = ["--episodes", "1", *rest]
+        assert "of 1, dropped" in called([sys.executable, "-m", "policies.command", which, *rest], tmp_path)

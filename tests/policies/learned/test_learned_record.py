@@ -1,0 +1,41 @@
+"""A learned policy's episode can be recorded, every sample of it."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import policies
+from estimator import records
+from policies.evaluation.sensor_record import TWIST, record_sensors
+from slipgym.envs.choices import DEFAULT_ESTIMATOR
+
+
+def test_every_sample_within_its_steps_is_kept(policy_folder, tmp_path):
+    arguments = {"friction_source": "estimated", "frame_skip": 4}
+    folder = policy_folder(environment={"arguments": arguments, "rate": 30.0})
+    options = {"duration": 0.5, "material": "wood"}
+    frame = record_sensors("Hold", str(folder), finger=2, seed=3, options=options)
+
+    policy, over, steps = policies.load(folder), False, 0
+    env = gym.make("slipgym:slipgym/Hold-v0", **policy.modes)
+    observation, _ = env.reset(seed=3, options=options)
+    while not over:
+        observation, _, terminated, truncated, info = env.step(policy.predict(observation)[0])
+        steps, over = steps + 1, terminated or truncated
+    samples = round(info["time"] * 120)
+    env.close()
+    assert 4 * (steps - 1) < samples <= 4 * steps
+    assert frame[list(TWIST)].notna().all(axis=1).sum() == samples
+
+    frame.to_parquet(tmp_path / "log.parquet")
+    ours = records.estimate(records.load(tmp_path / "log.parquet"), DEFAULT_ESTIMATOR).estimates[-1]
+    np.testing.assert_allclose(
+        [ours[name] for name in ("mu_s", "mu_c", "r")], info["estimated_per_finger"][1], rtol=1e-9
+    )
+
+
+def test_a_policy_of_another_environment_is_refused(policy_folder):
+    with pytest.raises(ValueError, match="the policy was trained for another observation"):
+        record_sensors("LinearSlip", str(policy_folder()))
+    with pytest.raises(FileNotFoundError, match="no policy at 'nowhere'"):
+        record_sensors("Hold", "nowhere")
