@@ -4,13 +4,12 @@ import json
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pybullet
 import pytest
 
-from slipgym.benchmarking import measure
+from slipgym.benchmarking import measure, timing
 from slipgym.benchmarking.bare import BareLoop
 from slipgym.benchmarking.report import Figure, table, write
 from slipgym.benchmarking.timing import Stopwatches, compare, per_call
@@ -70,25 +69,40 @@ def test_every_part_of_a_step_is_found_and_put_back():
     player.env.close()
 
 
+class Clock:
+    """A clock that only `wait` moves, in place of the machine's."""
+
+    def __init__(self, monkeypatch):
+        self.now = 0.0
+        monkeypatch.setattr(timing, "perf_counter", lambda: self.now)
+
+    def wait(self, seconds):
+        self.now += seconds
+
+
 class Sleeper:
+    def __init__(self, clock):
+        self.clock = clock
+
     def outer(self):
-        time.sleep(0.01)
+        self.clock.wait(0.01)
         self.inner()
 
     def inner(self):
-        time.sleep(0.03)
+        self.clock.wait(0.03)
 
 
-def test_stopwatches_count_a_function_without_those_it_calls():
-    sleeper = Sleeper()
+def test_stopwatches_count_a_function_without_those_it_calls(monkeypatch):
+    clock = Clock(monkeypatch)
+    sleeper = Sleeper(clock)
     with Stopwatches() as watches:
         watches.watch("outer", sleeper, "outer")
         watches.watch("inner", sleeper, "inner")
         sleeper.outer()
         sleeper.outer()
-    assert watches.spent["outer"] == pytest.approx(0.02, rel=0.5)
-    assert watches.spent["inner"] == pytest.approx(0.06, rel=0.5)
-    assert vars(sleeper) == {}
+    assert watches.spent["outer"] == pytest.approx(0.02)
+    assert watches.spent["inner"] == pytest.approx(0.06)
+    assert vars(sleeper) == {"clock": clock}
 
 
 def test_compare_takes_medians_of_ratios_of_neighbours():
@@ -99,8 +113,9 @@ def test_compare_takes_medians_of_ratios_of_neighbours():
     assert result.quartiles == pytest.approx((2.0, 3.0, 3.5))
 
 
-def test_per_call_divides_by_the_calls():
-    assert per_call(lambda: time.sleep(0.002), calls=3, repeats=3) == pytest.approx(0.002, rel=0.9)
+def test_per_call_divides_by_the_calls(monkeypatch):
+    clock = Clock(monkeypatch)
+    assert per_call(lambda: clock.wait(0.002), calls=3, repeats=3) == pytest.approx(0.002)
 
 
 FIGURES = [Figure("fast", 1.2, "-", "<= 1.4"), Figure("slow", 30.0, "x", ">= 40"), Figure("free", 3.0, "us")]

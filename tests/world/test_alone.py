@@ -12,7 +12,7 @@ from slipgym.world.alone import CHANGE, FAST, FIRM, FLAT, longest_substep
 from slipgym.world.plant import build
 
 PLANT = build(load())
-H = 2e-3
+H = load().physics.planar_substep_max
 CALM, SHORT = PLANT.world["calm_ticks"][0], PLANT.world["substep_ticks"][0]
 ASKED = 4 * CALM
 V_S = load().contact.stribeck_velocity
