@@ -59,7 +59,7 @@ def run_study(
     replace_durably(folder / "episodes.parquet", done.to_parquet(index=False))
     for name, table in made.items():
         replace_durably(folder / f"{name}.csv", _csv(table))
-    write_page(study, done, made, missing(study, learned), command, folder, progress)
+    write_page(study, chosen, done, made, missing(study, learned), command, folder, progress)
     return folder
 
 

@@ -24,18 +24,21 @@ FIGURES: dict[str, Callable[[np.ndarray], np.ndarray]] = {"success": mean, "retu
 def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
     """Success, drops, return and grip force of each condition.
 
-    Shares have Wilson intervals, the return's interquartile mean a bootstrap interval stratified over the
-    blocks.
+    There are rows for the success over all tasks, too, of the tasks that have every source; returns of
+    different tasks are not averaged. Shares have Wilson intervals, the return's interquartile mean a
+    bootstrap interval stratified over the blocks.
     """
     rows = []
-    for keys, group in by(episodes, [*PLACE, *TOLD]):
+    together = pd.concat([part.assign(task=ALL) for _, part in _over_tasks(episodes)] or [episodes[:0]])
+    for keys, group in [*by(episodes, [*PLACE, *TOLD]), *by(together, [*PLACE, *TOLD])]:
         bootstrap = Bootstrap(values(group, "block"))
         figures = {
             "success": share_interval(int(values(group, "success").sum()), len(group)),
             "dropped": share_interval(int(values(group, "dropped").sum()), len(group)),
-            "return": bootstrap(values(group, "return"), iqm).interval,
-            "force": bootstrap(values(group, "mean_force_N")).interval,
         }
+        if keys[1] != ALL:
+            figures["return"] = bootstrap(values(group, "return"), iqm).interval
+            figures["force"] = bootstrap(values(group, "mean_force_N")).interval
         by_block = [float(values(part, "success").mean()) for _, part in by(group, ["block"])]
         row = dict(zip([*PLACE, *TOLD], keys, strict=True)) | {
             "n": len(group),
@@ -110,8 +113,9 @@ def _share(drawn: dict[str, Drawn]) -> dict[str, Any]:
 
 
 def _over_tasks(episodes: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
-    """The episodes of all tasks together, where there are several."""
-    for (world, preset, kind), group in by(episodes, ["world", "preset", "kind"]):
+    """The episodes of all tasks that have every source together, where there are several."""
+    plain = where(episodes, change="")
+    for (world, preset, kind), group in by(plain, ["world", "preset", "kind"]):
         complete = [
             part for _, part in by(group, ["task"]) if {"none", "estimated", "true"} <= set(part["source"])
         ]
