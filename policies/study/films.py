@@ -96,8 +96,8 @@ def _choose(none: pd.DataFrame, estimated: pd.DataFrame) -> tuple[int, str]:
     if (fails & solves).any():
         return int(
             np.argmax(fails & solves)
-        ), "the first that is lost without friction and solved with the estimate"
-    return 0, "the first of all: none is lost without friction and solved with the estimate"
+        ), "the first that is lost without the estimate and solved with it"
+    return 0, "the first of all, as the estimate saves no episode that is lost without it"
 
 
 def _film(study: Study, cell: Cell, number: int, path: Path) -> None:

@@ -13,7 +13,7 @@ import yaml
 from tqdm import tqdm
 
 from policies.evaluation.folder import versions
-from policies.evaluation.frames import distinct, where
+from policies.evaluation.frames import distinct, records, where, without
 from policies.evaluation.plots.style import styled
 from policies.study import figures
 from policies.study.cells import Cell
@@ -23,6 +23,7 @@ from policies.study.figures.inline import inline
 from policies.study.films import Scene, scene
 from policies.study.formats import FILTERS
 from policies.study.sentences import answers
+from policies.study.store import sources
 from policies.study.tables import ALL, by
 from policies.whole import replace_durably
 
@@ -67,11 +68,16 @@ def render(
 ) -> str:
     """The report as text; arguments as of `write_page`."""
     outcomes, shares, transfer = (tables[name] for name in ("outcomes", "shares", "transfer"))
-    plain, changed = where(outcomes, change=""), outcomes[outcomes["change"] != ""]
+    plain, changed = where(outcomes, change=""), without(outcomes, "change", "")
+    fractions = where(shares, world=study.worlds[0].label) if len(shares) else shares
     judged = where(plain, world=study.worlds[0].label, preset=study.presets[0])
     places = [
-        {"world": world, "preset": preset, "tasks": list(by(group, ["task"]))}
-        for (world, preset), group in by(plain[plain["task"] != ALL], ["world", "preset"])
+        {
+            "world": world,
+            "preset": preset,
+            "tasks": [(task, records(rows)) for (task,), rows in by(group, ["task"])],
+        }
+        for (world, preset), group in by(without(plain, "task", ALL), ["world", "preset"])
     ]
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
     environment.filters.update(FILTERS)
@@ -79,37 +85,37 @@ def render(
         study=study,
         answers=answers(study, outcomes, shares),
         tiles=_tiles(judged),
-        pictures=_pictures(study, plain, changed, shares, transfer),
+        pictures=_pictures(study, plain, changed, fractions, transfer),
         places=places,
-        shares=[row for _, row in where(shares, world=study.worlds[0].label).iterrows()],
-        transfer=[row for _, row in transfer.iterrows()],
+        shares=records(fractions),
+        transfer=records(transfer),
         transfer_most=TRANSFER_MOST,
         scenes=scenes,
         film=_film,
         missing=missing,
         command=command,
+        digest=sources(),
         episodes=len(episodes),
         versions={name: version for name, version in versions().items() if version},
         described=yaml.safe_dump(study.model_dump(mode="json"), sort_keys=False, allow_unicode=True),
     )
 
 
-def _tiles(judged: pd.DataFrame) -> list[tuple[str, str, list[pd.Series]]]:
+def _tiles(judged: pd.DataFrame) -> list[tuple[str, str, list[dict[str, Any]]]]:
     """Kind, task and the rows of its sources: of all tasks together, or of the only one."""
     tiles = []
     for (kind,), group in by(judged, ["kind"]):
         task = ALL if ALL in distinct(group, "task") else distinct(group, "task")[0]
         rows = where(group, task=task).drop_duplicates("source")
-        tiles.append((str(kind), task, [row for _, row in rows.iterrows()]))
+        tiles.append((str(kind), task, records(rows)))
     return tiles
 
 
 def _pictures(
-    study: Study, plain: pd.DataFrame, changed: pd.DataFrame, shares: pd.DataFrame, transfer: pd.DataFrame
+    study: Study, plain: pd.DataFrame, changed: pd.DataFrame, fractions: pd.DataFrame, transfer: pd.DataFrame
 ) -> dict[str, Any]:
     """Every figure as an element; by preset or kind where there is one for each."""
     first = where(plain, world=study.worlds[0].label)
-    fractions = where(shares, world=study.worlds[0].label) if len(shares) else shares
     pictures: dict[str, Any] = {
         "success": {},
         "shares": {},
@@ -117,11 +123,12 @@ def _pictures(
         "degradation": {},
         "transfer": "",
     }
+    estimator, *others = study.estimators
     with styled():
         for (preset,), group in by(first, ["preset"]):
-            success = figures.plot_success(group, study.estimators[0])
+            success = figures.plot_success(group, estimator)
             pictures["success"][preset] = inline(success, f"Episodes solved, {preset}")
-            if len(study.estimators) > 1:
+            if others:
                 compared = figures.plot_estimators(group, study.estimators)
                 pictures["estimators"][preset] = inline(compared, f"Episodes solved by estimator, {preset}")
             if len(fractions) and len(part := where(fractions, preset=preset)):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
-from policies.evaluation.frames import distinct, where
+from policies.evaluation.frames import among, distinct, records, where, without
 from policies.study.config import Study
 from policies.study.formats import figure, interval
 from policies.study.tables import ALL, ENOUGH
@@ -40,10 +40,10 @@ def _whole(here: pd.DataFrame) -> str:
 
 def _level(rows: pd.DataFrame, estimator: str) -> str:
     """Success of each source."""
-    judged = rows[rows["estimator"].isin(["", estimator])]
+    judged = among(rows, "estimator", ("", estimator))
     words = [
-        f"{figure(row, 'success', 100.0, 1)} % with friction “{row['source']}”"
-        for _, row in judged.iterrows()
+        f"{figure(row, 'success', 100.0, 1)}\N{NO-BREAK SPACE}% with friction “{row['source']}”"
+        for row in records(judged)
     ]
     return f"Solved ({_whole(rows)}): " + ", ".join(words) + "."
 
@@ -53,26 +53,25 @@ def _overall(shares: pd.DataFrame) -> str:
     rows = where(shares, task=_whole(shares), figure="success")
     if not len(rows):
         return ""
-    row = rows.iloc[0]
-    gain = (
-        f"{figure(row, 'true-none', 100.0, 1)} points (95 % interval {interval(row, 'true-none', 100.0, 1)})"
-    )
+    (row,) = records(rows)
+    spread = f"95\N{NO-BREAK SPACE}% interval {interval(row, 'true-none', 100.0, 1)}"
+    gain = f"{figure(row, 'true-none', 100.0, 1)}\N{NO-BREAK SPACE}points ({spread})"
     if row["share"] != row["share"]:
         return f"Knowing the truth brings {gain}: {row['verdict']}, so there is no share to state."
-    share = f"{figure(row, 'share', 100.0)} % ({interval(row, 'share', 100.0)})"
+    share = f"{figure(row, 'share', 100.0)}\N{NO-BREAK SPACE}% ({interval(row, 'share', 100.0)})"
     return f"Knowing the truth brings {gain}; the estimate recovers {share} of that."
 
 
 def _tasks(shares: pd.DataFrame) -> str:
     """In how many comparisons the truth counts, and where the estimate recovers enough of it."""
-    single = shares[shares["task"] != ALL]
-    counts = single[single["verdict"].isin(["yes", "no"])]
+    single = without(shares, "task", ALL)
+    counts = among(single, "verdict", ("yes", "no"))
     if not len(counts):
         return "In no single task is the difference between true and no friction significant."
     enough = where(counts, verdict="yes")
-    short = [f"{row['task']} ({row['figure']})" for _, row in where(counts, verdict="no").iterrows()]
+    short = [f"{row['task']} ({row['figure']})" for row in records(where(counts, verdict="no"))]
     words = (
-        f"True friction beats none significantly in {len(counts)} of {len(single)} comparisons of a task; "
-        f"the estimate recovers at least {100 * ENOUGH:.0f} % in {len(enough)} of these"
+        f"True friction beats none significantly in {len(counts)} of {len(single)} cases, task × figure; "
+        f"the estimate recovers at least {100 * ENOUGH:.0f}\N{NO-BREAK SPACE}% in {len(enough)} of these"
     )
     return words + (f", and less in {', '.join(short)}." if short else ".")

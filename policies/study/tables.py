@@ -29,8 +29,11 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
     bootstrap interval stratified over the blocks.
     """
     rows = []
-    together = pd.concat([part.assign(task=ALL) for _, part in _over_tasks(episodes)] or [episodes[:0]])
-    for keys, group in [*by(episodes, [*PLACE, *TOLD]), *by(together, [*PLACE, *TOLD])]:
+    together = [part.assign(task=ALL) for _, part in _over_tasks(episodes)]
+    for keys, group in [
+        *by(episodes, [*PLACE, *TOLD]),
+        *(found for part in together for found in by(part, [*PLACE, *TOLD])),
+    ]:
         bootstrap = Bootstrap(values(group, "block"))
         figures = {
             "success": share_interval(int(values(group, "success").sum()), len(group)),
@@ -88,10 +91,12 @@ def transfer(episodes: pd.DataFrame, study: Study) -> pd.DataFrame:
             pairs = here.merge(there, on=same, suffixes=("_core", ""))
             for keys, group in [*by(pairs, ["task", "preset", "kind"]), *_all(pairs)]:
                 bootstrap = Bootstrap(_strata(group))
-                core, bench = (bootstrap(100.0 * values(group, name)) for name in ("success_core", "success"))
+                core, bench = values(group, "success_core"), values(group, "success")
+                difference = bootstrap(100.0 * bench) - bootstrap(100.0 * core)
                 row = dict(zip(["task", "preset", "kind"], keys, strict=True))
-                figures = _ends({"core": core, "bullet": bench, "difference": bench - core})
-                rows.append({"contact": planar.contact, **row, "n": len(group), **figures})
+                figures = {"core": _percent(core), "bullet": _percent(bench)}
+                figures["difference"] = difference.interval
+                rows.append({"contact": planar.contact, **row, "n": len(group), **_spread(figures)})
     return pd.DataFrame(rows)
 
 
@@ -121,6 +126,11 @@ def _over_tasks(episodes: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.Da
         ]
         if len(complete) > 1:
             yield (world, ALL, preset, kind), pd.concat(complete)
+
+
+def _percent(solved: np.ndarray) -> Interval:
+    """Share of episodes with its Wilson interval [%]."""
+    return Interval(*(100.0 * end for end in share_interval(int(solved.sum()), len(solved))))
 
 
 def _all(pairs: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:

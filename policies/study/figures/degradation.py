@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -18,6 +19,8 @@ _LABELS = {
     "slip_latency": "velocity's age [samples]",
     "friction_jump": "friction after / before",
 }
+
+_APART = 0.022  # sources, over the span of the levels
 
 
 def plot_degradation(outcomes: pd.DataFrame) -> Figure:
@@ -43,15 +46,17 @@ def plot_degradation(outcomes: pd.DataFrame) -> Figure:
 
 
 def _lines(axes: Axes, outcomes: pd.DataFrame, falls: bool) -> None:
-    for source in distinct(outcomes, "source"):
+    """A line for each source, side by side where they agree."""
+    sources, span = distinct(outcomes, "source"), np.ptp(values(outcomes, "level"))
+    for k, source in enumerate(sources):
         line = where(outcomes, source=source).sort_values("level")
-        level = values(line, "level")
+        level = values(line, "level") + _APART * span * (k - (len(sources) - 1) / 2.0)
         solved, low, high = (
             100.0 * values(line, name) for name in ("success", "success_low", "success_high")
         )
-        axes.fill_between(level, low, high, color=COLOURS[source], alpha=0.13, linewidth=0)
-        axes.plot(level, solved, "o-", color=COLOURS[source], markersize=4.0, clip_on=False, zorder=3)
+        colour = COLOURS[source]
+        axes.vlines(level, low, high, color=colour, linewidth=2.0, alpha=0.4)
+        axes.plot(level, solved, "o-", color=colour, markersize=3.5, linewidth=1.0, clip_on=False, zorder=3)
     axes.set_ylim(0.0, 100.0)
     axes.grid(color=STYLE.band, linewidth=0.8)
-    if falls:
-        axes.invert_xaxis()
+    axes.xaxis.set_inverted(falls)

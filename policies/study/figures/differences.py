@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from policies.evaluation.frames import distinct, where
+from policies.evaluation.frames import distinct, records, where
 from policies.evaluation.plots.style import STYLE, note
 from policies.study.figures.marks import dot, panels, stripes
 from policies.study.tables import ENOUGH
@@ -31,15 +31,15 @@ def plot_shares(shares: pd.DataFrame) -> Figure:
     for axes, name in zip(columns, figures, strict=True):
         stripes(axes, len(tasks))
         axes.axvline(100.0 * ENOUGH, color=STYLE.palette[2], linestyle="--", linewidth=1.0)
-        for _, row in where(shares, figure=name).iterrows():
+        for row in records(where(shares, figure=name)):
             colour, shift = _KINDS[row["kind"]]
             height = tasks.index(row["task"]) + shift
             if row["share"] != row["share"]:
                 words = f"{row['kind']}: {row['verdict']}"
                 note(axes, _SPAN[0] + 4.0, height, words, STYLE.muted, va="center", fontsize=7.0)
                 continue
-            row[ends] = row[ends].astype(float).clip(_SPAN[0] / 100.0, _SPAN[1] / 100.0)
-            dot(axes, row, "share", height, colour, 100.0)
+            cut = {end: min(max(row[end], _SPAN[0] / 100.0), _SPAN[1] / 100.0) for end in ends}
+            dot(axes, cut, "share", height, colour, 100.0)
         axes.set_xlim(*_SPAN)
         axes.set_xlabel("(estimated − none) / (true − none) [%]")
     columns[0].set_yticks(range(len(tasks)), tasks)
@@ -55,7 +55,7 @@ def plot_transfer(transfer: pd.DataFrame) -> Figure:
         stripes(axes, len(tasks))
         axes.axvline(0.0, color=STYLE.muted, linewidth=0.8)
         axes.axvline(-TRANSFER_MOST, color=STYLE.palette[1], linestyle="--", linewidth=1.0)
-        for _, row in where(transfer, preset=axes.get_title(loc="left")).iterrows():
+        for row in records(where(transfer, preset=axes.get_title(loc="left"))):
             colour, shift = _KINDS[row["kind"]]
             dot(axes, row, "difference", tasks.index(row["task"]) + shift, colour)
         _at_least(axes, 2.0 * TRANSFER_MOST)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import html
 import io
 import re
+from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from policies.evaluation.plots.style import STYLE
 
-_DRAWN = {"svg.fonttype": "none", "svg.hashsalt": "slipgym"}
+_DRAWN: Any = {"svg.fonttype": "none", "svg.hashsalt": "slipgym"}
 _VARIABLES = {
     STYLE.ink: "ink",
     STYLE.muted: "muted",
@@ -37,11 +38,7 @@ def inline(figure: Figure, title: str) -> str:
     svg = re.sub(r' id="(?![pm][0-9a-f]{10})[^"]*"', "", svg)
     for colour, name in _VARIABLES.items():
         svg = re.sub(colour, f"var(--{name})", svg, flags=re.IGNORECASE)
-    opening = f'<svg role="img" aria-label="{html.escape(title)}"'
-    svg = svg.replace("<svg", opening, 1)
-    return re.sub(
-        r'(<svg[^>]*?) width="[^"]*"',
-        r"\1",
-        re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", svg, count=1),
-        count=1,
-    )
+    head, _, rest = svg.partition(">")
+    head = re.sub(r' (width|height)="[^"]*"', "", head)
+    head = head.replace("<svg", f'<svg role="img" aria-label="{html.escape(title)}"', 1)
+    return f"{head}>{rest}"

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -42,7 +41,7 @@ def panels(names: Sequence[str], rows: int, height: float, share: bool = True) -
 
 
 def dot(
-    axes: Axes, row: pd.Series, name: str, at: float, colour: str, scale: float = 1.0, **options: Any
+    axes: Axes, row: Mapping[str, Any], name: str, at: float, colour: str, scale: float = 1.0, **options: Any
 ) -> None:
     """A figure with its interval at a height."""
     value, low, high = (scale * row[column] for column in (name, f"{name}_low", f"{name}_high"))

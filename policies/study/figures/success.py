@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from policies.evaluation.frames import distinct, where
+from policies.evaluation.frames import among, distinct, records, where
 from policies.evaluation.plots.style import STYLE, note
 from policies.study.config import SOURCES
 from policies.study.figures.marks import COLOURS, dot, panels, stripes
@@ -24,7 +25,7 @@ def plot_success(outcomes: pd.DataFrame, estimator: str) -> Figure:
         outcomes: Of one world and preset, without changes.
         estimator: The estimator judged.
     """
-    judged = outcomes[outcomes["estimator"].isin(["", estimator])]
+    judged = among(outcomes, "estimator", ("", estimator))
     told = [(source, source, COLOURS[source]) for source in SOURCES if source in distinct(judged, "source")]
     return _dots(judged.assign(told=judged["source"]), told)
 
@@ -39,7 +40,7 @@ def plot_estimators(outcomes: pd.DataFrame, estimators: Sequence[str]) -> Figure
     colours = [STYLE.palette[0], STYLE.palette[5], STYLE.palette[3], STYLE.palette[4], STYLE.palette[1]]
     told = [(name, name, colours[k % len(colours)]) for k, name in enumerate(estimators)]
     told.append(("true", "the truth", COLOURS["true"]))
-    names = outcomes["estimator"].where(outcomes["estimator"] != "", outcomes["source"])
+    names = [row["estimator"] or row["source"] for row in records(outcomes)]
     return _dots(outcomes.assign(told=names), told)
 
 
@@ -51,7 +52,7 @@ def _dots(outcomes: pd.DataFrame, told: Sequence[tuple[str, str, str]]) -> Figur
         stripes(axes, len(tasks))
         for at, task in enumerate(tasks):
             for k, (value, _, colour) in enumerate(told):
-                for _, row in where(outcomes, task=task, kind=kind, told=value).iterrows():
+                for row in records(where(outcomes, task=task, kind=kind, told=value)):
                     height = at + 0.17 * (k - (len(told) - 1) / 2.0)
                     dot(axes, row, "success", height, colour, 100.0)
                     _drops(axes, row, height, colour)
@@ -63,7 +64,7 @@ def _dots(outcomes: pd.DataFrame, told: Sequence[tuple[str, str, str]]) -> Figur
     return figure
 
 
-def _drops(axes: Axes, row: pd.Series, height: float, colour: str) -> None:
+def _drops(axes: Axes, row: Mapping[str, Any], height: float, colour: str) -> None:
     if row["dropped"] >= _DROPPED:
         words = f"{100.0 * row['dropped']:.0f} % dropped"
         left = row["success_low"] > 0.35
