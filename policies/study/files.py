@@ -37,7 +37,7 @@ def load_study(which: str | os.PathLike[str]) -> Study:
 
 
 def narrowed(study: Study, **changes: Any) -> Study:
-    """The study with other values; what is None or empty stays.
+    """The study with other values; what is None or empty stays. What gets worse has no more episodes.
 
     Raises:
         ValueError: A value is not allowed.
@@ -45,6 +45,9 @@ def narrowed(study: Study, **changes: Any) -> Study:
     given = {key: value for key, value in changes.items() if value not in (None, "", (), [])}
     if "tasks" in given:
         given["videos"] = [task for task in study.videos if task in given["tasks"]]
+    if "episodes" in given and study.degradation is not None:
+        fewer = {"episodes": min(given["episodes"], study.degradation.episodes)}
+        given["degradation"] = study.degradation.model_copy(update=fewer)
     return checked({**dict(study), **given}, study.name)
 
 

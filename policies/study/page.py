@@ -69,7 +69,7 @@ def render(
     """The report as text; arguments as of `write_page`."""
     outcomes, shares, transfer = (tables[name] for name in ("outcomes", "shares", "transfer"))
     plain, changed = where(outcomes, change=""), without(outcomes, "change", "")
-    fractions = where(shares, world=study.worlds[0].label) if len(shares) else shares
+    fractions = where(shares, world=study.worlds[0].label)
     judged = where(plain, world=study.worlds[0].label, preset=study.presets[0])
     places = [
         {
@@ -131,7 +131,7 @@ def _pictures(
             if others:
                 compared = figures.plot_estimators(group, study.estimators)
                 pictures["estimators"][preset] = inline(compared, f"Episodes solved by estimator, {preset}")
-            if len(fractions) and len(part := where(fractions, preset=preset)):
+            if len(part := where(fractions, preset=preset)):
                 pictures["shares"][preset] = inline(
                     figures.plot_shares(part), f"Share of the truth, {preset}"
                 )

@@ -25,7 +25,7 @@ def answers(study: Study, outcomes: pd.DataFrame, shares: pd.DataFrame) -> list[
     found = []
     for kind in distinct(where(outcomes, **place), "kind"):
         here = where(outcomes, **place, kind=kind, change="")
-        known = where(shares, **place, kind=kind) if len(shares) else shares
+        known = where(shares, **place, kind=kind)
         sentences = [_level(where(here, task=_whole(here)), study.estimators[0])]
         if len(known):
             sentences += [_overall(known), _tasks(known)]

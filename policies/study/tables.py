@@ -15,6 +15,12 @@ from policies.study.statistics import Bootstrap, Drawn, iqm, mean
 
 PLACE = ["world", "task", "preset", "change", "level", "kind"]
 TOLD = ["source", "estimator"]
+SHARES = [
+    *("world", "task", "preset", "kind", "figure", "n"),
+    *(f"{name}{end}" for name in ("true-none", "estimated-none", "share") for end in ("", "_low", "_high")),
+    "verdict",
+]
+"""Columns of the table of shares."""
 ALL = "all tasks"
 ENOUGH = 0.8
 FIGURES: dict[str, Callable[[np.ndarray], np.ndarray]] = {"success": mean, "return": iqm}
@@ -59,9 +65,9 @@ def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
         estimator: The estimator judged.
 
     Returns:
-        A row for each place and figure, and for the success over all tasks of a place. `verdict` is "yes" or
-        "no" where true - none is significantly positive: whether the share is at least `ENOUGH`. Else it says
-        why there is no share.
+        Columns `SHARES`: a row for each place and figure, and for the success over all tasks of a place.
+        `verdict` is "yes" or "no" where true - none is significantly positive: whether the share is at least
+        `ENOUGH`. Else it says why there is no share.
     """
     rows = []
     plain = where(episodes, change="")
@@ -77,7 +83,7 @@ def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
             drawn = {name: bootstrap(values(part, column), figure) for name, part in told.items()}
             row = dict(zip(["world", "task", "preset", "kind"], keys, strict=True))
             rows.append({**row, "figure": column, "n": len(told["true"]), **_share(drawn)})
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=SHARES)
 
 
 def transfer(episodes: pd.DataFrame, study: Study) -> pd.DataFrame:

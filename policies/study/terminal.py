@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -30,13 +33,13 @@ def words(study: Study, folder: Path) -> str:
     rows = [["task", "preset", "policy", "friction", "success [%]", "dropped [%]", "return, IQM"]]
     for row in outcomes[(outcomes["world"] == world) & outcomes["change"].isna()].to_dict("records"):
         told = " ".join(str(row[name]) for name in TOLD if row[name] == row[name])
-        figures = [text(_of(row, name), unit) for name, unit in _UNITS.items()]
+        figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
         rows.append([row["task"], row["preset"], row["kind"], told, *figures])
     parts = [f"{world}:", aligned(rows), "(95 % confidence intervals in brackets)"]
     if len(shares):
         rows = [["task", "preset", "policy", "of", "(estimated - none) / (true - none) [%]", ">= 80 %"]]
         for row in shares[shares["world"] == world].to_dict("records"):
-            share = text(_of(row, "share"), "[%]") if row["share"] == row["share"] else ""
+            share = _text(row, "share", "[%]")
             rows.append([row["task"], row["preset"], row["kind"], row["figure"], share, row["verdict"]])
         parts.append(aligned(rows))
     return "\n\n".join([*parts, f"Look at:\n  {folder / 'report.html'}"])
@@ -45,5 +48,7 @@ def words(study: Study, folder: Path) -> str:
 _UNITS = {"success": "[%]", "dropped": "[%]", "return": ""}
 
 
-def _of(row: dict, name: str) -> tuple[float, float, float]:
-    return row[name], row[f"{name}_low"], row[f"{name}_high"]
+def _text(row: Mapping[str, Any], name: str, unit: str) -> str:
+    """A figure with its interval; nothing where there is none."""
+    value, low, high = row[name], row[f"{name}_low"], row[f"{name}_high"]
+    return "" if math.isnan(value) else text((value, low, high), unit)

@@ -32,6 +32,8 @@ def test_the_studies_that_come_with_slipgym():
     assert full.blocks >= 3
     less = narrowed(full, episodes=2, tasks=["Hold"], seed=None)
     assert (less.episodes, less.tasks, less.videos, less.seed) == (2, ("Hold",), (), 0)
+    assert less.degradation is not None
+    assert less.degradation.episodes == 2
 
 
 @pytest.mark.parametrize(

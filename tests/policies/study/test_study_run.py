@@ -104,6 +104,18 @@ def test_what_the_terminal_says(run, small):
     assert str(run / "report.html") in said
 
 
+def test_a_study_without_all_sources_has_no_shares(run, small, output):
+    study = small(
+        worlds=[
+            {"label": "PyBullet, ellipsoid", "engine": "bullet", "contact": "ellipsoid", "sources": ["true"]}
+        ]
+    )
+    folder = run_study(study, output, 1, progress=False)
+    assert len(pd.read_csv(folder / "shares.csv")) == 0
+    assert "LinearSlip  train   classic  true" in words(study, folder)
+    assert 'id="shares"' not in (folder / "report.html").read_text()
+
+
 def test_nothing_to_run_is_an_error(small, tmp_path):
     study = small(kinds=["learned"], learned=str(tmp_path))
     with pytest.raises(ValueError, match="no cell to run; LinearSlip: no learned policy"):
