@@ -54,7 +54,8 @@ def _overall(shares: pd.DataFrame) -> str:
     if not len(rows):
         return ""
     (row,) = records(rows)
-    spread = f"95\N{NO-BREAK SPACE}% interval {interval(row, 'true-none', 100.0, 1)}"
+    ends = interval(row, "true-none", 100.0, 1) or "unknown, too few episodes"
+    spread = f"95\N{NO-BREAK SPACE}% interval {ends}"
     gain = f"{figure(row, 'true-none', 100.0, 1)}\N{NO-BREAK SPACE}points ({spread})"
     if row["share"] != row["share"]:
         return f"Knowing the truth brings {gain}: {row['verdict']}, so there is no share to state."

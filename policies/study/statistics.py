@@ -55,6 +55,8 @@ class Drawn:
 class Bootstrap:
     """Resamples of episodes, each stratum by itself; the same for every condition, so that pairs stay pairs.
 
+    A stratum of a single episode says nothing about its spread: then there are no intervals (NaN).
+
     Args:
         strata: The stratum of each episode, (n,).
         resamples: How many.
@@ -63,11 +65,13 @@ class Bootstrap:
     def __init__(self, strata: np.ndarray, resamples: int = RESAMPLES) -> None:
         rng = np.random.default_rng(0)
         self._at = np.empty((resamples, len(strata)), dtype=np.int64)
-        for stratum in np.unique(strata):
+        names, sizes = np.unique(strata, return_counts=True)
+        self._spread = 1.0 if sizes.min() > 1 else np.nan
+        for stratum in names:
             members = np.flatnonzero(strata == stratum)
             self._at[:, members] = rng.choice(members, (resamples, len(members)))
 
     def __call__(self, values: np.ndarray, figure: Callable[[np.ndarray], np.ndarray] = mean) -> Drawn:
         """A figure of the episodes, (n,), in the order of the strata."""
         values = np.asarray(values, dtype=np.float64)
-        return Drawn(float(figure(values)), figure(values[self._at]))
+        return Drawn(float(figure(values)), self._spread * figure(values[self._at]))

@@ -33,7 +33,7 @@ def panels(names: Sequence[str], rows: int, height: float, share: bool = True) -
     for each, name in zip(axes, names, strict=True):
         each.set_title(name)
         each.set_ylim(rows - 0.5, -0.5)
-        each.tick_params(axis="y", length=0)
+        each.tick_params(axis="y", length=0, pad=9)
         each.spines["left"].set_visible(False)
         each.grid(axis="x", color=STYLE.band, linewidth=0.8)
         each.set_axisbelow(True)

@@ -27,6 +27,12 @@ def test_strata_are_resampled_each_by_itself():
     assert Bootstrap(np.zeros(60))(strata).draws.std() > 0.05
 
 
+def test_single_episodes_have_no_interval():
+    interval = Bootstrap(np.array([0, 0, 1]))(np.array([1.0, 2.0, 3.0])).interval
+    assert interval.value == 2.0
+    assert np.isnan([interval.low, interval.high]).all()
+
+
 def test_pairs_stay_pairs():
     bootstrap = Bootstrap(np.zeros(50))
     values = np.random.default_rng(0).normal(size=50)

@@ -42,6 +42,11 @@ def test_the_share_and_its_verdict(invented, solved, verdict, share):
         assert row["share_low"] < row["share"] < row["share_high"]
 
 
+def test_a_single_episode_is_never_significant(invented):
+    few = invented(CLEAR).query("episode == 5")
+    assert set(shares(few, "disc")["verdict"]) == {"not significant"}
+
+
 def test_there_is_no_share_without_all_three(invented):
     assert len(shares(invented({"none": 2, "estimated": 9}), "disc")) == 0
     assert len(shares(invented(CLEAR), "joint")) == 0
