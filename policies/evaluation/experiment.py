@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 import estimator as estimators
 import policies
 from slipgym import config as configuration
-from slipgym.config.base import Count, Frozen
+from slipgym.config.base import Count, Frozen, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of
 from slipgym.envs.engines import ENGINES
@@ -20,11 +20,7 @@ from slipgym.envs.observation import FRICTION_SOURCES
 from slipgym.tasks import find
 
 
-def _as_tuple(value: object) -> object:
-    return tuple(value) if isinstance(value, list) else value
-
-
-class _Spelled(Frozen):
+class Spelled(Frozen):
     """A model that names its valid keys when it meets an unknown one."""
 
     @model_validator(mode="before")
@@ -36,7 +32,7 @@ class _Spelled(Frozen):
         return values
 
 
-class PolicyChoice(_Spelled):
+class PolicyChoice(Spelled):
     """A policy of `policies.load`."""
 
     name: str = Field(description="Its name, the folder of a learned one, or module:class [-]")
@@ -60,7 +56,7 @@ class PolicyChoice(_Spelled):
         return self.label or Path(self.name).name
 
 
-class FrictionChoice(_Spelled):
+class FrictionChoice(Spelled):
     """What a policy is told about friction."""
 
     source: str = Field(description="friction_source of the environment [-]")
@@ -83,20 +79,20 @@ class FrictionChoice(_Spelled):
         return self.label or self.source
 
 
-class Experiment(_Spelled):
+class Experiment(Spelled):
     """Policies × friction × materials × options, each cell with a number of trials."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", description="Names the run folder [-]")
     task: str = Field(description="Task of the environment; one of your own as module:attribute [-]")
     seed: int = Field(default=0, ge=0, description="All randomness follows from it [-]")
     trials: Count = Field(description="Trials in each cell [-]")
-    policies: Annotated[tuple[PolicyChoice, ...], BeforeValidator(_as_tuple), Field(min_length=1)] = Field(
+    policies: Annotated[tuple[PolicyChoice, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
         description="The policies to compare [-]"
     )
-    friction: Annotated[tuple[FrictionChoice, ...], BeforeValidator(_as_tuple), Field(min_length=1)] = Field(
+    friction: Annotated[tuple[FrictionChoice, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
         description="What they are told about friction; the first is the one compared with [-]"
     )
-    materials: Annotated[tuple[str, ...], BeforeValidator(_as_tuple), Field(min_length=1)] = Field(
+    materials: Annotated[tuple[str, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
         default=("random",), description='Materials, or "random" [-]'
     )
     options: Mapping[str, Any] = Field(default={}, description="Options of reset, for all trials [-]")

@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from policies.evaluation.experiment import Experiment
 from slipgym.config import files
 from slipgym.config.errors import unknown
+
+M = TypeVar("M", bound=BaseModel)
 
 
 def experiment_names() -> list[str]:
@@ -76,8 +78,13 @@ def checked(values: Mapping[str, Any], source: str) -> Experiment:
     Raises:
         ValueError: A key or value is wrong; one line per fault says where and what is valid.
     """
+    return validated(Experiment, values, source)
+
+
+def validated(model: type[M], values: Mapping[str, Any], source: str) -> M:
+    """A model from plain values; arguments and errors as of `checked`."""
     try:
-        return Experiment.model_validate(dict(values))
+        return model.model_validate(dict(values))
     except ValidationError as error:
         lines = []
         for fault in error.errors():

@@ -82,18 +82,8 @@ def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None 
     task = find(experiment.task)  # first of all: one of your own registers itself, in this process too
     policy = policy or make_policy(experiment, trial)
     modes = policies.modes(policy)
-    env: Any = gym.make(
-        f"slipgym:{task.id}",
-        friction_source=trial.friction.source,
-        estimator=dict(trial.friction.estimator),
-        sensors=experiment.sensors,
-        engine=experiment.engine,
-        material=trial.material,
-        randomization=experiment.randomization,
-        config=dict(experiment.config),
-        disable_env_checker=True,
-        **modes,
-    )
+    keywords = {**environment(experiment, trial), **modes}
+    env: Any = gym.make(f"slipgym:{task.id}", disable_env_checker=True, **keywords)
     index = ObservationIndex(experiment.task, experiment.environment_config(), modes.get("action_mode"))
     recorder = Recorder(index)
     try:
@@ -110,6 +100,19 @@ def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None 
     finally:
         env.close()
     return recorder.finish()
+
+
+def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:
+    """Keyword arguments of a trial's environment, but for those that the policy decides."""
+    return {
+        "friction_source": trial.friction.source,
+        "estimator": dict(trial.friction.estimator),
+        "sensors": experiment.sensors,
+        "engine": experiment.engine,
+        "material": trial.material,
+        "randomization": experiment.randomization,
+        "config": dict(experiment.config),
+    }
 
 
 def make_policy(experiment: Experiment, trial: Trial) -> policies.Policy:

@@ -86,7 +86,7 @@ class Keyboard:
 
 def watch(
     task: str,
-    policy: str | None = None,
+    policy: str | Policy | None = None,
     video: str | os.PathLike[str] | None = None,
     episodes: int = 1,
     seed: int = 0,
@@ -99,8 +99,8 @@ def watch(
 
     Args:
         task: "LinearSlip" or whatever else `slipgym.tasks.find` takes.
-        policy: A name of `policies.names()`, the path of a trained policy, or `KEYBOARD` in a window;
-            None for the task's own.
+        policy: A name of `policies.names()`, the path of a trained policy, a policy, or `KEYBOARD` in a
+            window; None for the task's own.
         video: MP4 or GIF to write; None opens a window.
         episodes: How many, one after the other.
         seed: Of the first; the others' follow.
@@ -191,8 +191,10 @@ def _episode(
     return Outcome(seed, info["time"], info["is_success"], info["dropped"], slip, reward)
 
 
-def _policy(name: str) -> Policy:
-    """A policy by its name, or from where it was saved."""
+def _policy(name: str | Policy) -> Policy:
+    """A policy by its name, or from where it was saved; or as it is."""
+    if not isinstance(name, str):
+        return name
     known = [KEYBOARD, *policies.names()]
     if name in known:
         return policies.make(name)

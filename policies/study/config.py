@@ -1,0 +1,116 @@
+"""What a study asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self, TypeAlias
+
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+
+from policies.evaluation.experiment import FrictionChoice, Spelled
+from slipgym.config import load_randomization
+from slipgym.config.base import Count, Positive, PositiveInterval, as_tuple
+from slipgym.config.errors import unknown
+from slipgym.tasks import find
+
+Kind: TypeAlias = Literal["classic", "learned"]
+Source: TypeAlias = Literal["none", "nominal", "estimated", "true"]
+SOURCES: tuple[Source, ...] = ("none", "nominal", "estimated", "true")
+BLOCKS_MAX = 1000
+
+Names = Annotated[tuple[str, ...], BeforeValidator(as_tuple)]
+Sources = Annotated[tuple[Source, ...], BeforeValidator(as_tuple)]
+Levels = Annotated[tuple[float, ...], BeforeValidator(as_tuple)]
+
+
+class World(Spelled):
+    """Where episodes take place."""
+
+    label: str = Field(min_length=1, description="How tables and figures call it [-]")
+    engine: Literal["bullet", "planar"] = Field(description="What moves the bodies [-]")
+    contact: Literal["ellipsoid", "distributed"] = Field(description="Friction model [-]")
+    presets: Names = Field(default=(), description="Presets to run here; none given: all of the study [-]")
+    sources: Sources = Field(default=SOURCES, description="Friction sources to run here [-]")
+    estimators: Names = Field(default=(), description="Estimators to run here; none given: all [-]")
+
+
+class Degradation(Spelled):
+    """One thing at a time gets worse; everything else is as the preset says."""
+
+    world: str = Field(description="Label of the world [-]")
+    preset: str = Field(default="train", description="Preset that is changed [-]")
+    episodes: Count = Field(description="Episodes in each block [-]")
+    sources: Sources = Field(default=SOURCES, description="Friction sources to run [-]")
+    noise_scale: Levels = Field(default=(), description="White noise of all sensors over the configured [-]")
+    slip_latency: Levels = Field(default=(), description="Age of a slip velocity when it arrives [samples]")
+    friction_jump: Levels = Field(default=(), description="Friction after over before a jump [-]")
+    jump_time: PositiveInterval = Field(default=(2.5, 3.5), description="When friction jumps [s]")
+
+
+class Study(Spelled):
+    """Policies x friction sources x estimators x tasks x presets x worlds."""
+
+    name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", description="Names the study's folder [-]")
+    seed: int = Field(default=0, ge=0, description="All randomness follows from it [-]")
+    blocks: Annotated[int, Field(ge=1, le=BLOCKS_MAX)] = Field(
+        default=3, description="Blocks of episodes; the k-th seed of a learned policy acts in the k-th [-]"
+    )
+    episodes: Count = Field(description="Episodes in each block [-]")
+    tasks: Annotated[Names, Field(min_length=1)] = Field(description="Tasks [-]")
+    kinds: Annotated[tuple[Kind, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
+        default=("classic", "learned"), description="Kinds of policies [-]"
+    )
+    learned: str = Field(default="", description="Folder of learned policies; empty: those shipped [-]")
+    estimators: Annotated[Names, Field(min_length=1)] = Field(
+        default=("disc",), description="Estimators; the first is the one judged by [-]"
+    )
+    presets: Annotated[Names, Field(min_length=1)] = Field(
+        default=("train", "eval_ood"), description="Presets of randomization; the first is judged by [-]"
+    )
+    worlds: Annotated[tuple[World, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
+        description="Worlds; the first is the one judged by [-]"
+    )
+    degradation: Degradation | None = Field(default=None, description="What gets worse step by step [-]")
+    videos: Names = Field(default=(), description="Tasks that the report shows films of [-]")
+    video_speed: Positive = Field(default=1.0, description="Of the films over the real one [-]")
+    config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
+
+    @field_validator("tasks")
+    @classmethod
+    def _tasks_exist(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        for name in names:
+            find(name)
+        return names
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        for preset in self.presets:
+            load_randomization(preset)
+        for name in self.estimators:
+            FrictionChoice(source="estimated", estimator={"name": name})
+        for kind in ("tasks", "kinds", "estimators", "presets", "videos"):
+            _distinct(kind, getattr(self, kind))
+        _distinct("labels of worlds", [world.label for world in self.worlds])
+        for world in self.worlds:
+            _among("preset", world.presets, self.presets)
+            _among("estimator", world.estimators, self.estimators)
+        _among("task", self.videos, self.tasks)
+        if self.degradation is not None:
+            load_randomization(self.degradation.preset)
+            _among("world", [self.degradation.world], [world.label for world in self.worlds])
+        return self
+
+    def world(self, label: str) -> World:
+        """The world of a label."""
+        return next(world for world in self.worlds if world.label == label)
+
+
+def _distinct(what: str, names: Any) -> None:
+    if len(set(names)) < len(names):
+        raise ValueError(f"{what} must differ, got {', '.join(names)}")
+
+
+def _among(what: str, names: Any, valid: Any) -> None:
+    for name in names:
+        if name not in valid:
+            raise ValueError(unknown(what, name, valid))

@@ -1,0 +1,77 @@
+"""Interquartile means, and stratified bootstrap over paired episodes.
+
+After Agarwal et al., Deep Reinforcement Learning at the Edge of the Statistical Precipice (NeurIPS 2021):
+the mean of the middle half of the scores, percentile intervals from a bootstrap within strata.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from policies.evaluation.statistics import CONFIDENCE, Interval
+
+RESAMPLES = 4000
+
+
+def iqm(values: np.ndarray) -> np.ndarray:
+    """Mean of what is left without the lowest and the highest quarter, along the last axis."""
+    return stats.trim_mean(values, 0.25, axis=-1)
+
+
+def mean(values: np.ndarray) -> np.ndarray:
+    """Mean along the last axis."""
+    return np.mean(values, axis=-1)
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A figure and its values over the resamples; figures of the same resamples can be combined."""
+
+    value: float
+    draws: np.ndarray
+
+    def __sub__(self, other: Drawn) -> Drawn:
+        return Drawn(self.value - other.value, self.draws - other.draws)
+
+    def share_of(self, whole: Drawn) -> Drawn:
+        """This over a whole; a resample whose whole is not positive counts as minus infinity."""
+        positive = whole.draws > 0.0
+        draws = np.full(len(positive), -np.inf)
+        np.divide(self.draws, whole.draws, out=draws, where=positive)
+        return Drawn(self.value / whole.value, draws)
+
+    @property
+    def interval(self) -> Interval:
+        """The figure with its percentile interval."""
+        ends = (1.0 - CONFIDENCE) / 2.0, (1.0 + CONFIDENCE) / 2.0
+        low, high = np.quantile(self.draws, ends, method="inverted_cdf")
+        return Interval(self.value, float(low), float(high))
+
+
+class Bootstrap:
+    """Resamples of episodes, each stratum by itself; the same for every condition, so that pairs stay pairs.
+
+    A stratum of a single episode says nothing about its spread: then there are no intervals (NaN).
+
+    Args:
+        strata: The stratum of each episode, (n,).
+        resamples: How many.
+    """
+
+    def __init__(self, strata: np.ndarray, resamples: int = RESAMPLES) -> None:
+        rng = np.random.default_rng(0)
+        self._at = np.empty((resamples, len(strata)), dtype=np.int64)
+        names, sizes = np.unique(strata, return_counts=True)
+        self._spread = 1.0 if sizes.min() > 1 else np.nan
+        for stratum in names:
+            members = np.flatnonzero(strata == stratum)
+            self._at[:, members] = rng.choice(members, (resamples, len(members)))
+
+    def __call__(self, values: np.ndarray, figure: Callable[[np.ndarray], np.ndarray] = mean) -> Drawn:
+        """A figure of the episodes, (n,), in the order of the strata."""
+        values = np.asarray(values, dtype=np.float64)
+        return Drawn(float(figure(values)), self._spread * figure(values[self._at]))

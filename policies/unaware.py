@@ -1,0 +1,40 @@
+"""A controller that never learns anything about friction."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import policies
+from slipgym.config import Overrides
+from slipgym.envs.observation import FRICTION_COLUMNS
+
+
+class Unaware:
+    """A controller in an environment that says nothing about friction.
+
+    It sees what an estimator says before the first slip: values that no data supports. Every controller then
+    acts on its cautious friction (`policies.sensing.Caution`), here for the whole episode.
+
+    Args:
+        controller: A name of `policies.names()` or "module:class"; none that is learned.
+        config: Overrides of the environment's configuration.
+    """
+
+    def __init__(self, controller: str, config: Overrides | None = None) -> None:
+        self._controller = policies.make(controller, config=config)
+        self.modes = policies.modes(self._controller)
+
+    def predict(
+        self,
+        observation: np.ndarray,
+        state: Any = None,
+        episode_start: np.ndarray | None = None,
+        deterministic: bool = True,
+    ) -> tuple[np.ndarray, Any]:
+        """See `policies.Policy.predict`; the observations are those of friction_source="none"."""
+        observation = np.asarray(observation)
+        unsupported = np.zeros((*observation.shape[:-1], len(FRICTION_COLUMNS)), observation.dtype)
+        seen = np.concatenate([observation, unsupported], axis=-1)
+        return self._controller.predict(seen, state, episode_start, deterministic)

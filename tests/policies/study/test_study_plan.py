@@ -1,0 +1,123 @@
+import numpy as np
+import pytest
+
+import policies
+from policies.evaluation.plan import plan
+from policies.study import load_study, narrowed, study_names
+from policies.study.cells import cells
+from policies.study.changes import Change
+from policies.study.learned import missing, policies_of
+from policies.unaware import Unaware
+from slipgym.config import load, load_randomization
+from slipgym.envs.observation import columns
+from slipgym.tasks import find
+
+
+@pytest.fixture
+def shelf(tmp_path):
+    def make(*names):
+        for name in names:
+            (tmp_path / name).mkdir()
+            (tmp_path / name / "policy.json").write_text("{}")
+        return str(tmp_path)
+
+    return make
+
+
+def test_the_studies_that_come_with_slipgym():
+    assert study_names() == ["full", "quick"]
+    full = load_study("full")
+    assert (full.worlds[0].engine, full.worlds[0].contact) == ("bullet", "distributed")
+    assert len(full.tasks) == 5
+    assert full.blocks >= 3
+    less = narrowed(full, episodes=2, tasks=["Hold"], seed=None)
+    assert (less.episodes, less.tasks, less.videos, less.seed) == (2, ("Hold",), (), 0)
+    assert less.degradation is not None
+    assert less.degradation.episodes == 2
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"tasks": ["Juggle"]}, "Juggle"),
+        ({"presets": ["wet"]}, "wet"),
+        ({"estimators": ["oracle"]}, "oracle"),
+        ({"blocks": 0}, "blocks"),
+        ({"tasks": ["Hold", "Hold"]}, "must differ"),
+        ({"videos": ["Hinge"]}, "Hinge"),
+        ({"degradation": {"world": "mars", "episodes": 1}}, "mars"),
+        ({"colour": 1}, "colour"),
+    ],
+)
+def test_refusals(small, changes, message):
+    with pytest.raises(ValueError, match=message):
+        small(**changes)
+
+
+def test_learned_policies_by_task_source_and_seed(small, shelf):
+    folder = shelf(
+        "linear_slip_true_10", "linear_slip_true_2", "linear_slip_true", "linear_slip_none", "hold_true"
+    )
+    study = small(learned=folder)
+    found = policies_of(study)
+    assert {key: [path.name for path in paths] for key, paths in found.items()} == {
+        ("LinearSlip", "true"): ["linear_slip_true", "linear_slip_true_2", "linear_slip_true_10"],
+        ("LinearSlip", "none"): ["linear_slip_none"],
+    }
+    (notice,) = missing(study, found)
+    assert "no learned policy for estimated;" in notice
+
+
+def test_two_folders_of_one_seed_are_an_error(small, shelf):
+    with pytest.raises(ValueError, match="seed 0"):
+        policies_of(small(learned=shelf("linear_slip_true", "linear_slip_true_0")))
+
+
+def test_a_learned_policy_is_told_nominal_values_by_that_of_the_truth(small, shelf):
+    study = small(learned=shelf("linear_slip_true_0", "linear_slip_true_1"), kinds=["learned"], blocks=3)
+    found = cells(study, policies_of(study))
+    assert {(cell.source, cell.block, cell.policy[-1]) for cell in found} == {
+        (source, block, str(block % 2)) for source in ("nominal", "true") for block in range(3)
+    }
+
+
+def test_episodes_come_in_pairs(small):
+    study = small(kinds=["classic"])
+    seeds = {}
+    for cell in cells(study, {}):
+        experiment = cell.experiment(study)
+        assert experiment.environment_config().contact.model == cell.world.contact
+        seeds.setdefault(cell.block, set()).update(trial.seed for trial in plan(experiment))
+    assert len(seeds) == 2
+    assert all(len(each) == 1 for each in seeds.values())
+    assert not seeds[0] & seeds[1]
+
+
+@pytest.mark.parametrize("task", ["LinearSlip", "Hold"])
+def test_one_thing_is_changed_and_the_rest_is_as_it_was(task):
+    before = load_randomization("train").of("linear_slip" if task == "LinearSlip" else "hold")
+    after = load_randomization(Change("noise_scale", 4.0).of("train", task))
+    assert after.noise_scale is not None
+    assert after.noise_scale.ends == (4.0, 4.0)
+    assert (
+        after.model_copy(update={"noise_scale": before.noise_scale, "tasks": {}}).model_dump(
+            exclude={"tasks"}
+        )
+        == before.model_dump()
+    )
+    jump = load_randomization(Change("friction_jump", 0.7, (1.0, 2.0)).of("train", task)).disturbances[-1]
+    assert (jump.kind, jump.probability) == ("friction_jump", 1.0)
+
+
+def test_a_controller_that_learns_nothing_acts_as_before_the_first_slip():
+    controller, unaware = policies.make("hold"), Unaware("hold")
+    width = len(columns(load(), find("Hold"), "true"))
+    observations = np.random.default_rng(0).normal(0.0, 0.01, (5, width)).astype(np.float32)
+    observations[:, -3:] = 0.0  # no support: what the estimate is does not count
+    told, _ = controller.predict(observations)
+    alone, _ = unaware.predict(observations[:, :-6])
+    np.testing.assert_array_equal(alone, told)
+    assert np.ptp(alone) > 0.0
+    single, _ = unaware.predict(observations[0, :-6])
+    np.testing.assert_array_equal(single, alone[0])
+    assert unaware.modes == policies.modes(controller)

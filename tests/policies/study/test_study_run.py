@@ -1,0 +1,130 @@
+import numpy as np
+import pandas as pd
+import pytest
+
+from policies.study import run_study, words
+from policies.study.cells import cells
+from policies.study.files import load_study
+from policies.study.store import Store, fingerprint, sources
+
+FILES = {
+    "cells",
+    "episodes.parquet",
+    "outcomes.csv",
+    "report.html",
+    "shares.csv",
+    "study.yaml",
+    "transfer.csv",
+    "versions.json",
+}
+
+
+@pytest.fixture(scope="module")
+def output(tmp_path_factory):
+    return tmp_path_factory.mktemp("runs")
+
+
+@pytest.fixture
+def run(small, output):
+    """Run once; from then on the cells are there."""
+    return run_study(small(), output, 1, "the command", progress=False)
+
+
+def test_the_folder_holds_everything(run, small):
+    assert run.name == "study__small__0"
+    assert {path.name for path in run.iterdir()} == FILES
+    assert load_study(run / "study.yaml") == small()
+    episodes = pd.read_parquet(run / "episodes.parquet")
+    assert len(episodes) == 2 * (4 + 1)
+    assert not episodes.isna().any(axis=None)
+    assert set(episodes["source"]) == {"none", "nominal", "estimated", "true"}
+    by_seed = episodes.groupby("block")["seed"].nunique()
+    assert list(by_seed) == [1, 1]
+
+
+def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
+    before = (run / "episodes.parquet").read_bytes()
+
+    def fail(*_):
+        raise AssertionError("planted")
+
+    monkeypatch.setattr("policies.study.episodes.run_trial", fail)
+    assert run_study(small(), output, 1, progress=False) == run
+    assert (run / "episodes.parquet").read_bytes() == before
+    with pytest.raises(AssertionError, match="planted"):
+        run_study(small(estimators=["joint"]), output, 1, progress=False)
+
+
+def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monkeypatch):
+    from policies.study import episodes
+
+    study, count = small(), [0]
+    actual = episodes.run_trial
+
+    def some(*arguments):
+        count[0] += 1
+        if count[0] == 4:
+            raise KeyboardInterrupt
+        return actual(*arguments)
+
+    monkeypatch.setattr(episodes, "run_trial", some)
+    with pytest.raises(KeyboardInterrupt):
+        run_study(study, tmp_path, 1, progress=False)
+    kept = list((tmp_path / run.name / "cells").iterdir())
+    assert len(kept) == 3
+    again = run_study(study, tmp_path, 1, progress=False)
+    assert count[0] == 4 + 7
+    pd.testing.assert_frame_equal(*(pd.read_parquet(each / "episodes.parquet") for each in (again, run)))
+
+
+def test_a_cell_is_known_by_all_that_decides_its_result(small, monkeypatch):
+    study = small()
+    one, *others = cells(study, {})
+    marks = {fingerprint(cell, study) for cell in (one, *others)}
+    assert len(marks) == 1 + len(others)
+    assert fingerprint(one, small(seed=1)) not in marks
+    assert fingerprint(one, small(name="other", episodes=1)) in marks
+    monkeypatch.setattr("policies.study.store.sources", lambda: sources() + "changed")
+    assert fingerprint(one, study) not in marks
+
+
+def test_a_broken_cell_is_no_cell(small, tmp_path):
+    study = small()
+    store, (cell, *_) = Store(tmp_path, study), cells(study, {})
+    with pytest.raises(AttributeError):
+        store.write(cell, None)  # type: ignore[arg-type]
+    assert not store.has(cell)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_the_terminal_says(run, small):
+    said = words(small(), run)
+    assert "LinearSlip  train   classic  estimated disc" in said
+    assert "not significant" in said
+    assert str(run / "report.html") in said
+
+
+def test_a_study_without_all_sources_has_no_shares(run, small, output):
+    study = small(
+        worlds=[
+            {"label": "PyBullet, ellipsoid", "engine": "bullet", "contact": "ellipsoid", "sources": ["true"]}
+        ]
+    )
+    folder = run_study(study, output, 1, progress=False)
+    assert len(pd.read_csv(folder / "shares.csv")) == 0
+    assert "LinearSlip  train   classic  true" in words(study, folder)
+    assert 'id="shares"' not in (folder / "report.html").read_text()
+
+
+def test_nothing_to_run_is_an_error(small, tmp_path):
+    study = small(kinds=["learned"], learned=str(tmp_path))
+    with pytest.raises(ValueError, match="no cell to run; LinearSlip: no learned policy"):
+        run_study(study, tmp_path, progress=False)
+
+
+def test_both_engines_run_the_same_episode(run):
+    """An episode of 0.3 s that does not stick: 0.1 mm apart in 5 s of stick-slip (test_engines.py)."""
+    episodes = pd.read_parquet(run / "episodes.parquet").query("source == 'estimated'")
+    bullet, core = (group for _, group in episodes.groupby("world", sort=False))
+    np.testing.assert_allclose(bullet["mean_force_N"], core["mean_force_N"], rtol=0.05)
+    assert list(bullet["seed"]) == list(core["seed"])

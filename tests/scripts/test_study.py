@@ -1,0 +1,31 @@
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def call(folder, *arguments):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100"}
+    return subprocess.run(
+        [sys.executable, ROOT / "scripts" / "study.py", *arguments],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_help_teaches(tmp_path):
+    done = call(tmp_path, "--help")
+    assert done.returncode == 0, done.stderr
+    assert "study.py full --jobs 2" in done.stdout
+
+
+def test_an_unknown_study_is_refused_by_name(tmp_path):
+    done = call(tmp_path, "quik")
+    assert done.returncode == 2
+    assert "quick" in done.stderr
+    assert list(tmp_path.iterdir()) == []
