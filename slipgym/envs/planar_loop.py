@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -57,16 +57,31 @@ class PlanarLoop(SlipLoop):
         )  # fmt: skip
 
     def step(
-        self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
+        self,
+        actions: np.ndarray,
+        components: np.ndarray,
+        skip: int,
+        active: np.ndarray,
+        sight: Sight,
+        meanwhile: Callable[[], None] | None = None,
     ) -> None:
-        """See `SlipLoop.step`."""
+        """See `SlipLoop.step`.
+
+        Args:
+            actions: See there, like all but the last.
+            components: See there.
+            skip: See there.
+            active: See there.
+            sight: See there.
+            meanwhile: What may be done with the other environments at the same time.
+        """
         self.check_open()
         rest = *sight, actions, components, active, self.terms, skip
 
         def part(lo: int, hi: int) -> int:
             return self._drive(*self._arguments, *rest, lo, hi)
 
-        for bad in self._threads.run(part):
+        for bad in self._threads.run(part, meanwhile):
             if bad >= 0:
                 self._explain(bad)
 

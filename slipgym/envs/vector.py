@@ -155,8 +155,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._generators.seed(seed, asked.mask)
         rows = np.flatnonzero(asked.mask)
         self._ready[rows] = False
-        for i in rows.tolist():
-            self._begin(i, asked.of(i))
+        self._begin(rows, asked)
         infos = masked(self._information.of(asked.mask), asked.mask)
         return self._observer.read(), self._add_drawn(infos, rows)
 
@@ -177,15 +176,17 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         """
         chosen = self._actions.checked_batch(actions, self.num_envs)
         self._loop.check_open()
-        begins = self._over if self._mode is AutoresetMode.NEXT_STEP else np.zeros_like(self._over)
+        begins = self._over & (self._mode is AutoresetMode.NEXT_STEP)
         active = self._ready & ~self._over
         if not (active | begins).all():
             waiting = np.flatnonzero(~(active | begins)).tolist()
             raise RuntimeError(f"call reset() before step(): environments {waiting[:8]} have no episode")
         loop, episode = self._loop, self._loop.episode
         loop.terms[begins] = 0.0
+        rows = np.flatnonzero(begins)
         ready, self._ready = self._ready, np.zeros_like(self._ready)
-        loop.step(chosen, self._actions.table, self._frame_skip, active, self._observer.sight)
+        sight, begin = self._observer.sight, partial(self._begin, rows)  # while the others take their step
+        loop.step(chosen, self._actions.table, self._frame_skip, active, sight, begin)
         self._ready = ready
         self._observer.next(active)
         rewards = sum(loop.terms.T, start=np.zeros(self.num_envs))  # in the scalar environment's order
@@ -197,10 +198,9 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         if self._mode is AutoresetMode.SAME_STEP:
             begins, self._over = self._over, np.zeros_like(self._over)
             ended = final(self._observer.read(), self._information.of(begins), begins)
+            rows = np.flatnonzero(begins)
+            self._begin(rows)
         told = np.ones_like(begins) if self._all_infos else self._over | begins
-        rows = np.flatnonzero(begins)
-        for i in rows.tolist():
-            self._begin(i, self._options)
         infos = self._add_drawn({**masked(self._information.of(told), told), **ended}, rows)
         return self._observer.read(), rewards, terminated, truncated, infos
 
@@ -253,11 +253,13 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         """End the threads."""
         self._loop.close()
 
-    def _begin(self, i: int, options: Any) -> None:
-        self._loop.reset(options, self._material, self._generators[i], i)
-        self._observer.begin(i)
-        self._pictures.begin(i)
-        self._ready[i], self._over[i] = True, False
+    def _begin(self, rows: np.ndarray, asked: RowOptions | None = None) -> None:
+        for i in rows.tolist():
+            options = self._options if asked is None else asked.of(i)
+            self._loop.reset(options, self._material, self._generators[i], i)
+            self._observer.begin(i)
+            self._pictures.begin(i)
+            self._ready[i], self._over[i] = True, False
 
     def _add_drawn(self, infos: dict[str, Any], rows: np.ndarray) -> dict[str, Any]:
         """Infos with what the randomization drew for episodes that begin."""
