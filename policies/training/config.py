@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
@@ -123,6 +124,9 @@ class Training(Frozen):
         default=False, description="Whether each environment of PyBullet has its own process [-]"
     )
     threads: Count = Field(default=1, description="Threads of torch [-]")
+    vary: Mapping[str, list[Any]] = Field(
+        default={}, description="Options of reset; environment i always has combination i modulo their number"
+    )
     environment: Environment = Field(default=Environment(), description="The environment [-]")
     normalisation: Normalisation = Field(default=Normalisation(), description="Of what is learned from [-]")
     evaluation: Evaluation = Field(default=Evaluation(), description="How progress is measured [-]")
@@ -142,6 +146,18 @@ class Training(Frozen):
         if name not in TRAINABLE:
             raise ValueError(unknown("task", name, TRAINABLE))
         return name
+
+    @model_validator(mode="after")
+    def _options_exist(self) -> Self:
+        for options in self.combinations():
+            TASKS[self.task].options.parse(options)
+        return self
+
+    def combinations(self) -> list[dict[str, Any]]:
+        """Every combination of the options of reset that vary; without any, a single empty one."""
+        return [
+            dict(zip(self.vary, values, strict=True)) for values in itertools.product(*self.vary.values())
+        ]
 
     @property
     def hyperparameters(self) -> PPO | SAC:
