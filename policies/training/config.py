@@ -128,6 +128,11 @@ class Training(Frozen):
         default={}, description="Options of reset; environment i always has combination i modulo their number"
     )
     environment: Environment = Field(default=Environment(), description="The environment [-]")
+    shaping: Mapping[str, Any] = Field(
+        default={},
+        description="Overrides of the environment's config by dotted key, where it learns; never where it is "
+        "evaluated",
+    )
     normalisation: Normalisation = Field(default=Normalisation(), description="Of what is learned from [-]")
     evaluation: Evaluation = Field(default=Evaluation(), description="How progress is measured [-]")
     stop: Stop = Field(default=Stop(), description="When a run ends early [-]")
@@ -148,10 +153,24 @@ class Training(Frozen):
         return name
 
     @model_validator(mode="after")
-    def _options_exist(self) -> Self:
+    def _options_and_shaping_exist(self) -> Self:
         for options in self.combinations():
             TASKS[self.task].options.parse(options)
+        _ = self.shaped
         return self
+
+    @property
+    def shaped(self) -> Environment:
+        """The environment in which it learns."""
+        values = self.environment.model_dump()
+        for key, value in self.shaping.items():
+            *groups, last = key.split(".")
+            at = values["config"] = dict(values["config"])
+            for group in groups:
+                at[group] = dict(at.get(group, {}))
+                at = at[group]
+            at[last] = value
+        return Environment.model_validate(values)
 
     def combinations(self) -> list[dict[str, Any]]:
         """Every combination of the options of reset that vary; without any, a single empty one."""

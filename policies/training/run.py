@@ -41,7 +41,8 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
         return done
     first = seeds.training(seed)
     episodes = min(config.num_envs, config.evaluation.episodes)
-    training, held_out = vector.make(config, first), vector.make(config, seeds.held_out(0), episodes)
+    training = vector.make(config, first, shaped=True)
+    held_out = vector.make(config, seeds.held_out(0), episodes)
     try:
         model = learners.make(config, learners.normalised(config, training), first)
         state = checkpoints.last(path)

@@ -32,15 +32,16 @@ class Scenario(gym.Wrapper):
         return self.env.reset(seed=seed, options={**self._fixed, **(options or {})})
 
 
-def make(config: Training, seed: int, num_envs: int | None = None) -> VecEnv:
+def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool = False) -> VecEnv:
     """The environments of a run.
 
     Args:
         config: The run.
         seed: Of the first environment; environment i is seeded `seed` + i at the first reset.
         num_envs: How many; None: as many as the run trains in.
+        shaped: Whether they are those in which it learns.
     """
-    keywords = config.environment.model_dump()
+    keywords = (config.shaped if shaped else config.environment).model_dump()
     count = config.num_envs if num_envs is None else num_envs
     combinations = config.combinations()
     scenarios = [combinations[i % len(combinations)] for i in range(count)]

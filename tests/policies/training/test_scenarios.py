@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 pytest.importorskip("stable_baselines3")
-from gymnasium.vector import AutoresetMode  # noqa: E402
+from gymnasium.vector import AutoresetMode
 
-from policies.training import vector  # noqa: E402
-from policies.training.adapter import SlipVecEnv, make_vec_env  # noqa: E402
+from policies.training import vector
+from policies.training.adapter import SlipVecEnv, make_vec_env
 
 VARY = {"distance": [0.02, 0.03], "duration": [0.2, 0.3]}
 WANTED = [(0.02, 0.2), (0.02, 0.3), (0.03, 0.2), (0.03, 0.3), (0.02, 0.2)]
@@ -71,3 +71,18 @@ def test_wrong_values_are_named(small):
     batch = make_vec_env(one, 2).unwrapped.env
     with pytest.raises(ValueError, match=AutoresetMode.DISABLED.value):
         SlipVecEnv(batch, [{}, {}])
+
+
+def test_it_learns_with_the_shaping_and_is_evaluated_without(small):
+    shaping = {"tasks.linear_slip.reward.effort": 100.0, "tasks.linear_slip.tolerance": 0.005}
+    config, rewards = small(shaping=shaping, engine_threads=1), []
+    assert config.environment.config["tasks"]["linear_slip"] == {"duration": 0.2, "settle": 0.1, "hold": 0.1}
+    for shaped in (False, True):
+        envs = vector.make(config, 0, 1, shaped)
+        assert envs.get_attr("config")[0].tasks.linear_slip.tolerance == (0.005 if shaped else 0.002)
+        envs.reset()
+        rewards.append(envs.step(np.ones((1, 1), np.float32))[1].item())
+        envs.close()
+    assert rewards[1] < -100.0 < rewards[0]
+    with pytest.raises(ValueError, match="toleranse"):
+        small(shaping={"tasks.linear_slip.toleranse": 1.0})
