@@ -130,8 +130,7 @@ class Training(Frozen):
     environment: Environment = Field(default=Environment(), description="The environment [-]")
     shaping: Mapping[str, Any] = Field(
         default={},
-        description="Overrides of the environment's config by dotted key, where it learns; never where it is "
-        "evaluated",
+        description="Overrides of the environment's config where it learns; not where it is evaluated [-]",
     )
     normalisation: Normalisation = Field(default=Normalisation(), description="Of what is learned from [-]")
     evaluation: Evaluation = Field(default=Evaluation(), description="How progress is measured [-]")
@@ -163,13 +162,7 @@ class Training(Frozen):
     def shaped(self) -> Environment:
         """The environment in which it learns."""
         values = self.environment.model_dump()
-        for key, value in self.shaping.items():
-            *groups, last = key.split(".")
-            at = values["config"] = dict(values["config"])
-            for group in groups:
-                at[group] = dict(at.get(group, {}))
-                at = at[group]
-            at[last] = value
+        values["config"] = _merged(values["config"], self.shaping)
         return Environment.model_validate(values)
 
     def combinations(self) -> list[dict[str, Any]]:
@@ -182,3 +175,11 @@ class Training(Frozen):
     def hyperparameters(self) -> PPO | SAC:
         """Those of the algorithm."""
         return getattr(self, self.algorithm)
+
+
+def _merged(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """Nested mappings, with other values."""
+    merged = dict(base)
+    for key, value in overrides.items():
+        merged[key] = _merged(merged.get(key, {}), value) if isinstance(value, Mapping) else value
+    return merged
