@@ -63,6 +63,16 @@ class Normalisation(Frozen):
     clip: Positive = Field(default=10.0, description="Normalised values are clipped here [-]")
 
 
+class Imitation(Frozen):
+    """A controller that the learner acts like at first."""
+
+    policy: str = Field(description="Its name; it must have the learner's action mode [-]")
+    rounds: Count = Field(default=6, description="Rounds of acting and fitting [-]")
+    steps: Count = Field(default=250, description="Steps of each environment in a round [-]")
+    epochs: Count = Field(default=10, description="Passes over all rounds so far after each [-]")
+    learning_rate: Positive = Field(default=1e-3, description="Step size of Adam [-]")
+
+
 class Evaluation(Frozen):
     """Episodes without exploration, on seeds that no training uses."""
 
@@ -132,6 +142,7 @@ class Training(Frozen):
         default={},
         description="Overrides of the environment's config where it learns; not where it is evaluated [-]",
     )
+    imitation: Imitation | None = Field(default=None, description="What ppo begins with; null: nothing [-]")
     normalisation: Normalisation = Field(default=Normalisation(), description="Of what is learned from [-]")
     evaluation: Evaluation = Field(default=Evaluation(), description="How progress is measured [-]")
     stop: Stop = Field(default=Stop(), description="When a run ends early [-]")
