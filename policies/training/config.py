@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
+import policies
 from policies.training import seeds
 from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO
 from slipgym.config import load, load_randomization
@@ -161,6 +162,14 @@ class Training(Frozen):
         if name not in TRAINABLE:
             raise ValueError(unknown("task", name, TRAINABLE))
         return name
+
+    @model_validator(mode="after")
+    def _can_imitate(self) -> Self:
+        if self.imitation is not None:
+            if self.algorithm != "ppo":
+                raise ValueError(f"imitation is for ppo, not for {self.algorithm}")
+            policies.find(self.imitation.policy)
+        return self
 
     @model_validator(mode="after")
     def _options_and_shaping_exist(self) -> Self:
