@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-TASKS = ["linear_slip", "rotational_slip", "hinge", "planar_slip", "hold"]
+TASKS = ["linear_slip", "rotational_slip", "hinge", "hold"]
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from policies.evaluation.files import checked, load_experiment
+from policies.evaluation.frames import groups, values
 from policies.evaluation.plan import plan
 from policies.evaluation.statistics import Interval, mean_interval, share_interval
 from policies.evaluation.trial import run_trials
@@ -53,7 +54,7 @@ def trials_of(
     learned = [({"name": f"{key}_{s}", "label": LEARNED}, (s,)) for s in SOURCES if f"{key}_{s}" in shipped()]
     rows = []
     for policy, sources in (known, *learned):
-        values = {
+        given = {
             **base.model_dump(exclude_unset=True),
             "policies": [policy],
             "friction": [{"source": source} for source in sources],
@@ -61,7 +62,7 @@ def trials_of(
             "engine": engine,
             "randomization": randomization,
         }
-        experiment = checked(values, key)
+        experiment = checked(given, key)
         rows += [result.row for result in run_trials(experiment, plan(experiment), jobs, progress)]
     return pd.DataFrame(rows)
 
@@ -73,10 +74,10 @@ def outcomes(trials: pd.DataFrame) -> pd.DataFrame:
         trials: From `trials_of`.
     """
     rows = []
-    for (policy, source), group in trials.groupby(["policy", "friction"], sort=False):
+    for (policy, source), group in groups(trials, ["policy", "friction"]):
         row = {"policy": policy, "friction": source, "episodes": len(group)}
         for column, heading in _OUTCOMES.items():
-            found = group[column].to_numpy(np.float64)
+            found = values(group, column).astype(np.float64)
             if column == "success":
                 interval = Interval(*(100.0 * v for v in share_interval(int(found.sum()), len(found))))
             else:
