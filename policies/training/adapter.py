@@ -13,6 +13,8 @@ from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvO
 
 from slipgym.envs.vector import SlipVectorEnv
 
+_AUTORESET = {False: AutoresetMode.SAME_STEP, True: AutoresetMode.DISABLED}
+"""Whether there are scenarios -> the mode that a batch needs."""
 _OF_ONE = {"action_space": "single_action_space", "observation_space": "single_observation_space"}
 
 
@@ -24,20 +26,24 @@ class SlipVecEnv(VecEnv):
 
     Args:
         env: The batch, with autoreset mode "SameStep"; cheapest with `infos="ends"`.
+        scenarios: Options of reset of each environment, for all its episodes; then the autoreset mode must be
+            "Disabled". Options that are set for the next reset come on top.
 
     Attributes:
         env: The batch.
         reset_infos: Infos of the episodes' starts, for each environment.
 
     Raises:
-        ValueError: The autoreset mode is another one.
+        ValueError: The autoreset mode is another one, or there is not a scenario for each environment.
     """
 
-    def __init__(self, env: SlipVectorEnv) -> None:
-        mode = env.metadata["autoreset_mode"]
-        if mode is not AutoresetMode.SAME_STEP:
-            raise ValueError(f"autoreset_mode = {mode.value!r} must be {AutoresetMode.SAME_STEP.value!r}")
-        self.env = env
+    def __init__(self, env: SlipVectorEnv, scenarios: Sequence[Mapping[str, Any]] | None = None) -> None:
+        mode, needed = env.metadata["autoreset_mode"], _AUTORESET[scenarios is not None]
+        if mode is not needed:
+            raise ValueError(f"autoreset_mode = {mode.value!r} must be {needed.value!r}")
+        if scenarios is not None and len(scenarios) != env.num_envs:
+            raise ValueError(f"{env.num_envs} environments need as many scenarios, got {len(scenarios)}")
+        self.env, self._scenarios = env, scenarios
         super().__init__(env.num_envs, env.single_observation_space, env.single_action_space)
         self._actions = np.zeros(env.action_space.shape or (), dtype=np.float32)
 
@@ -47,7 +53,10 @@ class SlipVecEnv(VecEnv):
         Returns:
             Observations (n, k), or such an array per group.
         """
-        options = {"rows": self._options} if any(self._options) else None
+        rows: Any = self._options
+        if self._scenarios is not None:
+            rows = [{**fixed, **asked} for fixed, asked in zip(self._scenarios, self._options, strict=True)]
+        options = {"rows": rows} if any(rows) else None
         observations, infos = self.env.reset(seed=self._seeds, options=options)
         self._reset_seeds()
         self._reset_options()
@@ -75,7 +84,14 @@ class SlipVecEnv(VecEnv):
         told: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         ended = np.flatnonzero(dones)
         if len(ended):
-            last, final = infos.pop("final_obs"), infos.pop("final_info")
+            if self._scenarios is None:
+                last, final = infos.pop("final_obs"), infos.pop("final_info")
+            else:
+                last, final = observations, infos
+                rows = [
+                    options if done else None for options, done in zip(self._scenarios, dones, strict=True)
+                ]
+                observations, infos = self.env.reset(options={"reset_mask": dones, "rows": rows})
             splits = _split(final, ended), _split(infos, ended)
             for i, info, start in zip(ended.tolist(), *splits, strict=True):
                 info["terminal_observation"] = last[i]
@@ -150,6 +166,7 @@ def make_vec_env(
     seed: int | None = None,
     threads: int | None = None,
     normalise: Mapping[str, Any] | None = None,
+    scenarios: Sequence[Mapping[str, Any]] | None = None,
     **keywords: Any,
 ) -> VecMonitor | VecNormalize:
     """Environments for Stable-Baselines3, stepped by one compiled call, with statistics of their episodes.
@@ -161,6 +178,7 @@ def make_vec_env(
             operating system. A learner that is given a seed sets its own.
         threads: Threads that share the environments; None: as many as processors, if there is work for them.
         normalise: Keyword arguments of a `VecNormalize` around them, {} for its own; None: there is none.
+        scenarios: Options of reset of each environment, for all its episodes; None: there are none.
         **keywords: Of the environment.
 
     Returns:
@@ -174,13 +192,13 @@ def make_vec_env(
         env_id,
         num_envs,
         "vector_entry_point",
-        autoreset_mode=AutoresetMode.SAME_STEP,
+        autoreset_mode=_AUTORESET[scenarios is not None],
         threads=threads,
         infos="ends",
         **keywords,
     )
     assert isinstance(batch, SlipVectorEnv)
-    envs = VecMonitor(SlipVecEnv(batch))
+    envs = VecMonitor(SlipVecEnv(batch, scenarios))
     if seed is not None:
         envs.seed(seed)
     return envs if normalise is None else VecNormalize(envs, **normalise)

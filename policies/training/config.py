@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
+import policies
 from policies.training import seeds
 from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO
 from slipgym.config import load, load_randomization
@@ -60,6 +62,16 @@ class Normalisation(Frozen):
     observation: bool = Field(default=True, description="Whether observations are normalised [-]")
     reward: bool = Field(default=True, description="Whether rewards are scaled by their return's spread [-]")
     clip: Positive = Field(default=10.0, description="Normalised values are clipped here [-]")
+
+
+class Imitation(Frozen):
+    """A controller that the learner acts like at first."""
+
+    policy: str = Field(description="Its name; it must have the learner's action mode [-]")
+    rounds: Count = Field(default=6, description="Rounds of acting and fitting [-]")
+    steps: Count = Field(default=250, description="Steps of each environment in a round [-]")
+    epochs: Count = Field(default=10, description="Passes over all rounds so far after each [-]")
+    learning_rate: Positive = Field(default=1e-3, description="Step size of Adam [-]")
 
 
 class Evaluation(Frozen):
@@ -123,7 +135,15 @@ class Training(Frozen):
         default=False, description="Whether each environment of PyBullet has its own process [-]"
     )
     threads: Count = Field(default=1, description="Threads of torch [-]")
+    vary: Mapping[str, list[Any]] = Field(
+        default={}, description="Options of reset; environment i always has combination i modulo their number"
+    )
     environment: Environment = Field(default=Environment(), description="The environment [-]")
+    shaping: Mapping[str, Any] = Field(
+        default={},
+        description="Overrides of the environment's config where it learns; not where it is evaluated [-]",
+    )
+    imitation: Imitation | None = Field(default=None, description="What ppo begins with; null: nothing [-]")
     normalisation: Normalisation = Field(default=Normalisation(), description="Of what is learned from [-]")
     evaluation: Evaluation = Field(default=Evaluation(), description="How progress is measured [-]")
     stop: Stop = Field(default=Stop(), description="When a run ends early [-]")
@@ -143,7 +163,43 @@ class Training(Frozen):
             raise ValueError(unknown("task", name, TRAINABLE))
         return name
 
+    @model_validator(mode="after")
+    def _can_imitate(self) -> Self:
+        if self.imitation is not None:
+            if self.algorithm != "ppo":
+                raise ValueError(f"imitation is for ppo, not for {self.algorithm}")
+            policies.find(self.imitation.policy)
+        return self
+
+    @model_validator(mode="after")
+    def _options_and_shaping_exist(self) -> Self:
+        for options in self.combinations():
+            TASKS[self.task].options.parse(options)
+        _ = self.shaped
+        return self
+
+    @property
+    def shaped(self) -> Environment:
+        """The environment in which it learns."""
+        values = self.environment.model_dump()
+        values["config"] = _merged(values["config"], self.shaping)
+        return Environment.model_validate(values)
+
+    def combinations(self) -> list[dict[str, Any]]:
+        """Every combination of the options of reset that vary; without any, a single empty one."""
+        return [
+            dict(zip(self.vary, values, strict=True)) for values in itertools.product(*self.vary.values())
+        ]
+
     @property
     def hyperparameters(self) -> PPO | SAC:
         """Those of the algorithm."""
         return getattr(self, self.algorithm)
+
+
+def _merged(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """Nested mappings, with other values."""
+    merged = dict(base)
+    for key, value in overrides.items():
+        merged[key] = _merged(merged.get(key, {}), value) if isinstance(value, Mapping) else value
+    return merged

@@ -55,7 +55,7 @@ def plot(curves: Mapping[str, Sequence[Sequence[Row]]]) -> Figure:
             axes.set_ylim(-3.0, 103.0)
     if len(curves) > 1:
         for k, (condition, colour) in enumerate(shades.items()):
-            note(panels[0], 0.03, 0.97 - 0.08 * k, condition, colour, xycoords="axes fraction", va="top")
+            note(panels[1], 0.03, 0.97 - 0.08 * k, condition, colour, xycoords="axes fraction", va="top")
     figure.supxlabel("steps", fontsize=9.0)
     return figure
 

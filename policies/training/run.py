@@ -13,6 +13,7 @@ from policies.training import checkpoints, curve, export, folder, plain, seeds, 
 from policies.training import model as learners
 from policies.training.board import Board
 from policies.training.config import Training
+from policies.training.imitation import imitate
 from policies.training.keeper import Keeper
 
 _COMMAND = "python scripts/train.py --resume {}"
@@ -41,7 +42,8 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
         return done
     first = seeds.training(seed)
     episodes = min(config.num_envs, config.evaluation.episodes)
-    training, held_out = vector.make(config, first), vector.make(config, seeds.held_out(0), episodes)
+    training = vector.make(config, first, shaped=True)
+    held_out = vector.make(config, seeds.held_out(0), episodes)
     try:
         model = learners.make(config, learners.normalised(config, training), first)
         state = checkpoints.last(path)
@@ -55,6 +57,8 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
             if state:
                 learners.set_state(model, state["learner"])
                 keeper.set_state(state["record"])
+            elif config.imitation is not None:
+                imitate(config, model, first)
             if not keeper.ended:
                 model.learn(config.budget - steps, keeper, reset_num_timesteps=state is None)
         board.close()

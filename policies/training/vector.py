@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import gymnasium as gym
@@ -11,29 +13,68 @@ from policies.training.adapter import SlipVecEnv, make_vec_env
 from policies.training.config import Training
 
 
-def make(config: Training, seed: int, num_envs: int | None = None) -> VecEnv:
+class Scenario(gym.Wrapper):
+    """An environment whose episodes all have some options.
+
+    Args:
+        env: The environment.
+        options: Of its reset; those of a single reset come on top.
+    """
+
+    def __init__(self, env: gym.Env, options: Mapping[str, Any]) -> None:
+        super().__init__(env)
+        self._fixed = dict(options)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """See `gymnasium.Env.reset`."""
+        return self.env.reset(seed=seed, options={**self._fixed, **(options or {})})
+
+
+def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool = False) -> VecEnv:
     """The environments of a run.
 
     Args:
         config: The run.
         seed: Of the first environment; environment i is seeded `seed` + i at the first reset.
         num_envs: How many; None: as many as the run trains in.
+        shaped: Whether they are those in which it learns.
     """
-    keywords = config.environment.model_dump()
+    keywords = (config.shaped if shaped else config.environment).model_dump()
     count = config.num_envs if num_envs is None else num_envs
+    combinations = config.combinations()
+    scenarios = [combinations[i % len(combinations)] for i in range(count)]
     if config.engine == "planar":
-        made = make_vec_env(_id(config), count, seed, config.engine_threads, **keywords)
+        varied = scenarios if config.vary else None
+        made = make_vec_env(_id(config), count, seed, config.engine_threads, scenarios=varied, **keywords)
         assert isinstance(made, VecMonitor)
         return made
 
-    def one() -> gym.Env:
-        return gym.make(_id(config), disable_env_checker=True, **keywords).unwrapped
-
-    makers = [one] * count
-    envs = SubprocVecEnv(makers) if config.processes else DummyVecEnv(makers)
-    monitored = VecMonitor(envs)
+    monitored = scalar(config.task, count, combinations, config.processes, **keywords)
     monitored.seed(seed)
     return monitored
+
+
+def scalar(
+    task: str, count: int, combinations: Sequence[Mapping[str, Any]], processes: bool, **keywords: Any
+) -> VecMonitor:
+    """Scalar environments side by side.
+
+    Args:
+        task: Their task.
+        count: How many.
+        combinations: Options of reset; environment i has combination i modulo their number.
+        processes: Whether each has its own process.
+        **keywords: Of the environments.
+    """
+
+    def one(options: Mapping[str, Any]) -> gym.Env:
+        env = gym.make(f"slipgym:slipgym/{task}-v0", disable_env_checker=True, **keywords)
+        return Scenario(env.unwrapped, options)
+
+    makers = [partial(one, combinations[i % len(combinations)]) for i in range(count)]
+    return VecMonitor(SubprocVecEnv(makers) if processes else DummyVecEnv(makers))
 
 
 def get_state(envs: VecMonitor) -> dict[str, Any]:

@@ -7,6 +7,7 @@ import yaml
 
 from policies.training import command, files, seeds
 from policies.training.config import Training
+from slipgym.tasks import TASKS
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -14,7 +15,7 @@ ROOT = Path(__file__).resolve().parents[3]
 @pytest.mark.parametrize("name", files.names())
 def test_every_configuration_loads_and_is_written_as_it_was_read(name):
     training = files.load(name)
-    assert command.chosen(None, {"task": training.task}, []) == training
+    assert command.chosen(None, {"task": training.task}, []) == files.load(TASKS[training.task].key)
     assert files.checked(yaml.safe_load(files.text(training)), name) == training
 
 

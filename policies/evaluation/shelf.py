@@ -1,0 +1,123 @@
+"""The learned policies that come with slipgym beside the controllers; what knowing friction is worth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from policies.evaluation.files import checked, load_experiment
+from policies.evaluation.frames import groups, values
+from policies.evaluation.plan import plan
+from policies.evaluation.statistics import Interval, mean_interval, share_interval
+from policies.evaluation.trial import run_trials
+from policies.learned import shipped
+from slipgym.config.errors import unknown
+from slipgym.tasks import TASKS
+
+SOURCES = ("estimated", "true", "none")
+CONTROLLER, LEARNED = "controller", "learned"
+_OUTCOMES = {"success": "solved [%]", "return": "sum of rewards", "mean_force_N": "grip force [N]"}
+
+
+def trials_of(
+    key: str,
+    trials: int = 200,
+    engine: str = "bullet",
+    randomization: str | Mapping[str, Any] = "train",
+    jobs: int = 1,
+    progress: bool = True,
+) -> pd.DataFrame:
+    """The controller and the learned policies of a task in the same episodes.
+
+    Args:
+        key: Key of the task; the experiment "<key>_train" says which episodes.
+        trials: Episodes, spread evenly over the experiment's combinations of options.
+        engine: What moves the bodies.
+        randomization: What is drawn per episode.
+        jobs: Processes.
+        progress: Whether to show a progress bar.
+
+    Returns:
+        A row per trial, as in an experiment's table; the column "policy" has CONTROLLER or LEARNED.
+
+    Raises:
+        ValueError: The task, or a value, is unknown.
+    """
+    keys = [task.key for task in TASKS.values()]
+    if key not in keys:
+        raise ValueError(unknown("task", key, keys))
+    base = load_experiment(f"{key}_train")
+    known = ({"name": key, "label": CONTROLLER}, ("estimated", "true"))
+    learned = [({"name": f"{key}_{s}", "label": LEARNED}, (s,)) for s in SOURCES if f"{key}_{s}" in shipped()]
+    rows = []
+    for policy, sources in (known, *learned):
+        given = {
+            **base.model_dump(exclude_unset=True),
+            "policies": [policy],
+            "friction": [{"source": source} for source in sources],
+            "trials": -(-trials // len(base.combinations())),
+            "engine": engine,
+            "randomization": randomization,
+        }
+        experiment = checked(given, key)
+        rows += [result.row for result in run_trials(experiment, plan(experiment), jobs, progress)]
+    return pd.DataFrame(rows)
+
+
+def outcomes(trials: pd.DataFrame) -> pd.DataFrame:
+    """Share of solved episodes, sum of rewards and grip force of each policy, with 95 % intervals.
+
+    Args:
+        trials: From `trials_of`.
+    """
+    rows = []
+    for (policy, source), group in groups(trials, ["policy", "friction"]):
+        row = {"policy": policy, "friction": source, "episodes": len(group)}
+        for column, heading in _OUTCOMES.items():
+            found = values(group, column).astype(np.float64)
+            if column == "success":
+                interval = Interval(*(100.0 * v for v in share_interval(int(found.sum()), len(found))))
+            else:
+                interval = mean_interval(found)
+            row[heading] = text(interval)
+        rows.append({**row, "dropped [%]": f"{100.0 * group['dropped'].mean():.1f}"})
+    return pd.DataFrame(rows)
+
+
+def worth(trials: pd.DataFrame) -> pd.DataFrame:
+    """What knowing friction is worth to the learned policies, over paired episodes.
+
+    Args:
+        trials: From `trials_of`; needs learned policies of all three sources.
+
+    Returns:
+        For success [%] and the sum of rewards: what the policy that is told the truth has over the one that
+        is told nothing, what the one with estimates has over it, and the share of the former that this is;
+        no share where the former's 95 % interval holds 0.
+    """
+    learned = trials[trials["policy"] == LEARNED]
+    rows = []
+    for column, scale in (("success", 100.0), ("return", 1.0)):
+        table = learned.pivot(index=["options", "trial"], columns="friction", values=column).astype(float)
+        table = scale * table
+        full, part = (table[source] - table["none"] for source in ("true", "estimated"))
+        whole = mean_interval(full.to_numpy())
+        share = part.mean() / whole.value if whole.low > 0.0 else None
+        rows.append(
+            {
+                "measure": _OUTCOMES[column],
+                "true - none": text(whole),
+                "estimated - none": text(mean_interval(part.to_numpy())),
+                "share [%]": "-" if share is None else f"{100.0 * share:.0f}",
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def text(interval: Sequence[float]) -> str:
+    """Value, low and high as words."""
+    value, low, high = interval
+    return f"{value:.1f} ({low:.1f} to {high:.1f})"

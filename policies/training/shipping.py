@@ -1,0 +1,107 @@
+"""From finished studies to the policies that come with slipgym, and the pages that show how they learned."""
+
+from __future__ import annotations
+
+import csv
+import io
+import shutil
+from collections.abc import Sequence
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import NamedTuple
+
+from policies.evaluation.plots.style import STYLE, styled
+from policies.learned import files as policy_files
+from policies.learned.shelf import SHELF
+from policies.training import curve, export, files, folder
+from policies.training.curve import Row
+from slipgym.tasks import TASKS
+
+CURVES = Path("docs") / "learned"
+"""Where the curves of all seeds go, beside a picture of them."""
+
+
+class Run(NamedTuple):
+    """A finished run of a configuration that comes with slipgym."""
+
+    key: str
+    """Its task's key, which is its configuration's name, too."""
+    source: str
+    """What it was told about friction."""
+    seed: int
+    curve: list[Row]
+    policy: Path
+    """The folder of its policy."""
+
+    @property
+    def command(self) -> str:
+        """What trains it again."""
+        return f"python scripts/train.py {self.key} --friction-source {self.source} --seeds {self.seed}"
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """Of its best evaluation: share of episodes solved, then rewards."""
+        return max((row.success, row.reward) for row in self.curve)
+
+
+def ship(studies: Sequence[Path], shelf: Path = SHELF, pages: Path = CURVES) -> list[Path]:
+    """Puts the best seed of each task and friction source on the shelf, and the curves of all into the pages.
+
+    Policies and curves of the same tasks and sources give way.
+
+    Args:
+        studies: Folders of finished studies or runs.
+        shelf: Folder for the policies.
+        pages: Folder for the curves, a table and a picture for each task.
+
+    Returns:
+        The folders of the policies.
+
+    Raises:
+        FileNotFoundError: A folder holds no run.
+        ValueError: A run is not finished, or not one of the configuration that its task has.
+    """
+    found = [_finished(path) for study in studies for path in folder.runs(study)]
+    pages.mkdir(parents=True, exist_ok=True)
+    shipped = []
+    for key in sorted({run.key for run in found}):
+        runs = sorted(run for run in found if run.key == key)
+        conditions = {run.source: [other for other in runs if other.source == run.source] for run in runs}
+        shipped += [_put(max(same, key=lambda run: run.rank), shelf) for same in conditions.values()]
+        (pages / f"{key}.csv").write_text(_table(runs), encoding="utf-8")
+        with styled():
+            curves = {source: [run.curve for run in same] for source, same in conditions.items()}
+            curve.plot(curves).savefig(pages / f"{key}.png", dpi=STYLE.dpi)
+    return shipped
+
+
+def _finished(path: Path) -> Run:
+    config, seed = folder.order(path)
+    if folder.result(path) is None:
+        raise ValueError(f"{path} is not finished")
+    key, source = TASKS[config.task].key, config.environment.friction_source
+    if config != files.load(key, {"environment.friction_source": source}):
+        raise ValueError(f"{path} was not trained as configs/training/{key}.yaml says")
+    return Run(key, source, seed, folder.read_curve(path), path / export.POLICY)
+
+
+def _put(run: Run, shelf: Path) -> Path:
+    """The policy without what only training needs."""
+    description, weights = policy_files.read(run.policy)
+    values = description.model_dump(mode="json", exclude={"format", "files"})
+    values["origin"] |= {"command": run.command, "critic": None}
+    path = shelf / f"{run.key}_{run.source}"
+    if path.exists():
+        shutil.rmtree(path)
+    return policy_files.write(path, values, weights)
+
+
+def _table(runs: Sequence[Run]) -> str:
+    text = io.StringIO()
+    writer = csv.DictWriter(
+        text, ["source", "seed", *(field.name for field in fields(Row))], lineterminator="\n"
+    )
+    writer.writeheader()
+    for run in runs:
+        writer.writerows({"source": run.source, "seed": run.seed, **asdict(row)} for row in run.curve)
+    return text.getvalue()

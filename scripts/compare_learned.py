@@ -1,0 +1,34 @@
+"""Compares the learned policies that come with slipgym with the controllers."""
+
+from typing import Annotated
+
+import typer
+
+TASKS = ["linear_slip", "rotational_slip", "hinge", "hold"]
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command()
+def main(
+    tasks: Annotated[
+        list[str] | None, typer.Argument(help=f"Of {', '.join(TASKS)}; all if none.", show_default=False)
+    ] = None,
+    trials: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
+    engine: Annotated[str, typer.Option(help="What moves the bodies: bullet or planar.")] = "bullet",
+    randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "train",
+    jobs: Annotated[int, typer.Option(help="Processes; -1: one per core.")] = 1,
+) -> None:
+    """Prints what each policy achieves in the same episodes, and what knowing friction is worth."""
+    from policies.evaluation import shelf
+    from policies.leaderboard.tables import markdown
+
+    try:
+        for task in tasks or TASKS:
+            found = shelf.trials_of(task, trials, engine, randomization, jobs)
+            typer.echo(f"\n{task}\n\n{markdown(shelf.outcomes(found))}\n{markdown(shelf.worth(found))}")
+    except (ValueError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+if __name__ == "__main__":
+    app()

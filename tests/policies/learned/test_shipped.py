@@ -1,0 +1,77 @@
+"""The learned policies that come with slipgym: whole, small, and as good as they are said to be."""
+
+import csv
+from pathlib import Path
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import policies
+import slipgym  # noqa: F401
+from policies.learned import LearnedPolicy, shelf
+from slipgym.tasks import TASKS
+
+SHIPPED = shelf.shipped()
+PAGES = Path(__file__).parents[3] / "docs" / "learned"
+
+
+def made(name, **others):
+    """An environment for a policy, as it was trained."""
+    where = LearnedPolicy(SHIPPED[name]).description.environment
+    return gym.make(f"slipgym:{where.id}", **{**where.arguments, "engine": "planar", **others})
+
+
+def test_there_is_one_for_every_friction_source():
+    sources = ("estimated", "true", "none")
+    keys = {name.rsplit("_", 1)[0] for name in SHIPPED}
+    assert keys < {task.key for task in TASKS.values()}
+    assert set(SHIPPED) == {f"{key}_{source}" for key in keys for source in sources}
+    assert len(keys) == 4
+
+
+@pytest.mark.parametrize("name", [name for name in SHIPPED if name.endswith("_estimated")])
+def test_it_solves_most_episodes(name):
+    policy, n = policies.load(name), 24
+    where = policy.description.environment
+    arguments = {**where.arguments, "autoreset_mode": "Disabled", "infos": "ends"}
+    envs = gym.make_vec(f"slipgym:{where.id}", n, "vector_entry_point", **arguments)
+    observations, _ = envs.reset(seed=12345)
+    running, solved, state = np.ones(n, bool), np.zeros(n, bool), None
+    while running.any():
+        actions, state = policy.predict(observations, state)
+        observations, _, terminated, truncated, infos = envs.step(actions)
+        ended = running & (terminated | truncated)
+        if ended.any():
+            solved |= ended & infos["is_success"]
+            running &= ~ended
+            observations, _ = envs.reset(options={"reset_mask": ended})
+    envs.close()
+    assert solved.mean() >= 0.75
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_it_fits_its_environment_by_either_way_to_get_it(name):
+    assert sum(file.stat().st_size for file in SHIPPED[name].iterdir()) < 100_000
+    one, other = policies.make(name), policies.load(name)
+    assert name.endswith(one.description.environment.arguments["friction_source"])
+    with made(name) as env:
+        one.check(env)
+        observation, _ = env.reset(seed=0)
+        np.testing.assert_array_equal(one.predict(observation)[0], other.predict(observation)[0])
+        assert env.action_space.contains(one.predict(observation)[0])
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_its_seed_is_among_those_whose_curves_are_shown(name):
+    origin = LearnedPolicy(SHIPPED[name]).description.origin
+    key, source = name.rsplit("_", 1)
+    with (PAGES / f"{key}.csv").open(newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["source"] == source]
+    assert len({row["seed"] for row in rows}) >= 3
+    seed, steps = str(origin.seeds[0]), str(origin.steps)
+    best = max((float(row["success"]), float(row["reward"])) for row in rows)
+    (shown,) = [row for row in rows if (row["seed"], row["steps"]) == (seed, steps)]
+    assert (float(shown["success"]), float(shown["reward"])) == best
+    command = f"python scripts/train.py {key} --friction-source {source} --seeds {seed}"
+    assert origin.command == command

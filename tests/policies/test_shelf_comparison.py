@@ -1,0 +1,55 @@
+"""Learned policies and controllers in the same episodes."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from policies.evaluation import shelf
+
+
+def table(true, estimated, none):
+    """Trials of learned policies with these rewards; solved where they are positive."""
+    columns = {"true": true, "estimated": estimated, "none": none}
+    rows = [
+        {
+            "policy": shelf.LEARNED,
+            "friction": source,
+            "options": "",
+            "trial": k,
+            "success": reward > 0.0,
+            "dropped": False,
+            "return": reward,
+            "mean_force_N": 5.0,
+        }
+        for source, rewards in columns.items()
+        for k, reward in enumerate(rewards)
+    ]
+    return pd.DataFrame(rows)
+
+
+def test_the_share_is_of_what_the_truth_is_worth():
+    none = np.arange(20.0) - 9.5
+    found = shelf.worth(table(none + 10.0 + 0.1 * np.sin(none), none + 5.0, none)).set_index("measure")
+    assert found.loc["sum of rewards", "share [%]"] == "50"
+    assert found.loc["sum of rewards", "estimated - none"] == "5.0 (5.0 to 5.0)"
+
+
+def test_there_is_no_share_of_nothing():
+    none = np.arange(20.0) - 9.5
+    found = shelf.worth(table(none + np.cos(9.0 * none), none + 5.0, none)).set_index("measure")
+    assert found.loc["sum of rewards", "share [%]"] == "-"
+
+
+def test_outcomes_have_a_row_for_each_source():
+    found = shelf.outcomes(table([1.0, 2.0], [1.0, -2.0], [-1.0, -1.0])).set_index("friction")
+    assert [text.split()[0] for text in found["solved [%]"]] == ["100.0", "50.0", "0.0"]
+    assert list(found["grip force [N]"]) == ["5.0 (5.0 to 5.0)"] * 3
+
+
+def test_the_controller_runs_in_the_experiments_episodes():
+    trials = shelf.trials_of("hold", 2, "planar", progress=False)
+    controller = trials[trials["policy"] == shelf.CONTROLLER]
+    assert list(controller["friction"]) == ["estimated", "estimated", "true", "true"]
+    assert list(controller["seed"])[:2] == list(controller["seed"])[2:]
+    with pytest.raises(ValueError, match="'hole'"):
+        shelf.trials_of("hole")
