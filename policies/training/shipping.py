@@ -39,9 +39,9 @@ class Run(NamedTuple):
         return f"python scripts/train.py {self.key} --friction-source {self.source} --seeds {self.seed}"
 
     @property
-    def rank(self) -> tuple[float, float]:
-        """Of its best evaluation: share of episodes solved, then rewards."""
-        return max((row.success, row.reward) for row in self.curve)
+    def best(self) -> Row:
+        """Its best evaluation, which its policy is of: by the share of episodes solved, then by rewards."""
+        return max(self.curve, key=lambda row: (row.success, row.reward))
 
 
 def ship(studies: Sequence[Path], shelf: Path = SHELF, pages: Path = CURVES) -> list[Path]:
@@ -67,7 +67,10 @@ def ship(studies: Sequence[Path], shelf: Path = SHELF, pages: Path = CURVES) -> 
     for key in sorted({run.key for run in found}):
         runs = sorted(run for run in found if run.key == key)
         conditions = {run.source: [other for other in runs if other.source == run.source] for run in runs}
-        shipped += [_put(max(same, key=lambda run: run.rank), shelf) for same in conditions.values()]
+        shipped += [
+            _put(max(same, key=lambda run: (run.best.success, run.best.reward)), shelf)
+            for same in conditions.values()
+        ]
         (pages / f"{key}.csv").write_text(_table(runs), encoding="utf-8")
         with styled():
             curves = {source: [run.curve for run in same] for source, same in conditions.items()}
@@ -89,7 +92,7 @@ def _put(run: Run, shelf: Path) -> Path:
     """The policy without what only training needs."""
     description, weights = policy_files.read(run.policy)
     values = description.model_dump(mode="json", exclude={"format", "files"})
-    values["origin"] |= {"command": run.command, "critic": None}
+    values["origin"] |= {"command": run.command, "steps": run.best.steps, "critic": None}
     path = shelf / f"{run.key}_{run.source}"
     if path.exists():
         shutil.rmtree(path)
