@@ -25,7 +25,7 @@ def shelf(tmp_path):
 
 
 def test_the_studies_that_come_with_slipgym():
-    assert study_names() == ["full", "quick"]
+    assert study_names() == ["full", "quick", "short"]
     full = load_study("full")
     assert (full.worlds[0].engine, full.worlds[0].contact) == ("bullet", "distributed")
     assert len(full.tasks) == 5
