@@ -15,8 +15,8 @@ Examples:\n
   python scripts/study.py full --episodes 20 --task LinearSlip --task Hold
   python scripts/study.py my_study.yaml --learned runs/policies
 \n
-A study is a YAML file; configs/studies/ holds quick, short and full, and docs/study.md says what their keys mean. A
-study that was broken off goes on where it stopped; one that has changed runs only what is new.
+A study is a YAML file; configs/studies/ holds quick, short and full, and docs/study.md says what their keys
+mean. A study that was broken off goes on where it stopped; one that has changed runs only what is new.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 

@@ -104,6 +104,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             frame_skip,
             config,
         )
+        assert isinstance(setup.loop, PlanarLoop)
         self.config, self._frame_skip, self._material = setup.config, setup.frame_skip, setup.material
         self._loop, self._actions, self._observer = setup.loop, setup.actions, setup.observer
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
