@@ -10,8 +10,14 @@ BULLET, CORE = "PyBullet, ellipsoid", "core"
 
 
 @pytest.fixture(scope="session")
-def small():
-    """Makes studies of short slides: two worlds, two blocks of one episode."""
+def nothing(tmp_path_factory):
+    """A folder without learned policies."""
+    return str(tmp_path_factory.mktemp("shelf"))
+
+
+@pytest.fixture(scope="session")
+def small(nothing):
+    """Makes studies of short slides: two worlds, two blocks of one episode, no learned policies."""
 
     def make(**changes):
         values = {
@@ -19,6 +25,7 @@ def small():
             "blocks": 2,
             "episodes": 1,
             "tasks": ["LinearSlip"],
+            "learned": nothing,
             "presets": ["train"],
             "worlds": [
                 {"label": BULLET, "engine": "bullet", "contact": "ellipsoid"},
