@@ -28,7 +28,7 @@ from slipgym.world.alone import advance_alone
 from slipgym.world.records import FINGER, WORLD
 
 BLOCK = 256
-"""Rows that go through a control step together: few enough for the processor's second cache, and enough
+"""Rows that go through a control step together: few enough to stay in the processor's caches, and enough
 for it to fetch each array ahead."""
 
 
