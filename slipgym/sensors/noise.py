@@ -109,7 +109,7 @@ def _cubics() -> np.ndarray:
     cubics = np.zeros((CELLS, 4))
     inner = np.arange(TAIL, CELLS - TAIL + 1)
     value = np.array([quantile.py_func(k / CELLS) for k in inner.tolist()])
-    slope = math.sqrt(math.tau) * np.exp(0.5 * value**2) / CELLS
+    slope = np.array([math.sqrt(math.tau) * math.exp(0.5 * x * x) / CELLS for x in value.tolist()])
     rise = np.diff(value)
     cubics[TAIL : CELLS - TAIL] = np.column_stack(
         [
