@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from typing import Any
 
 from gymnasium.vector import AutoresetMode
 
+import estimator as estimators
+from estimator.registry import specification
 from slipgym.config.errors import unknown
 
 DEFAULT_ESTIMATOR = "disc"
 """First of the leaderboard (docs/leaderboard.md), at a sixth of the cost of the filter beside it."""
+LATENCY = "velocity_delay"
+"""Parameter by which an estimator is told how old a velocity is."""
 
 
 def one_of(name: str, value: object, valid: Iterable[str]) -> str:
@@ -38,3 +44,20 @@ def autoreset(mode: str | AutoresetMode) -> AutoresetMode:
         return AutoresetMode(mode)
     except ValueError:
         raise ValueError(unknown("autoreset_mode", mode, [each.value for each in AutoresetMode])) from None
+
+
+def chosen_estimator(choice: str | Mapping[str, Any]) -> dict[str, Any]:
+    """Name and all parameters; one that asks how old a velocity is, is told unless it was given that."""
+    if isinstance(choice, str):
+        choice = {"name": choice}
+    if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
+        raise ValueError(
+            f"estimator = {choice!r} must be a name or a mapping with a name; "
+            f"valid: {', '.join(estimators.names())}"
+        )
+    given = dict(choice)
+    name = given.pop("name")
+    parameters = asdict(specification(name).parameters.create(**given))
+    if LATENCY not in given:
+        parameters.pop(LATENCY, None)
+    return {"name": name, **parameters}

@@ -5,16 +5,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 import estimator as estimators
-from estimator.registry import specification
 from slipgym.compiled import compiled
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
+from slipgym.envs.choices import LATENCY, chosen_estimator
 from slipgym.envs.draw import Draw, Randomizer
 from slipgym.envs.episode import Friction, choose_force, draw_friction, make_box
 from slipgym.envs.equipment import Equipment
@@ -27,7 +27,6 @@ from slipgym.world.plant import Plant, build
 from slipgym.world.scene import Box
 from slipgym.world.snapshot import EngineState
 
-_LATENCY = "velocity_delay"
 WARM_UP_STEPS = 6  # control steps before time 0 in which grip and sensors come to rest
 
 
@@ -91,10 +90,10 @@ class SlipLoop(ABC):
         self._randomizer = Randomizer(config, task.key, randomization or Randomization())
         self._equipment = Equipment(config, self.plant, self._randomizer.pressures)
         self._equipment.check(self._randomizer.most)
-        self.estimator_choice = _choose_estimator(estimator)
+        self.estimator_choice = chosen_estimator(estimator)
         self.estimator = estimators.make_batch(n=2 * n, **self.estimator_choice)
         asked = self.estimator.parameters_array.dtype.names or ()
-        self._tells_latency = _LATENCY in asked and _LATENCY not in self.estimator_choice
+        self._tells_latency = LATENCY in asked and LATENCY not in self.estimator_choice
         if self._tells_latency and n > 1 and self._randomizer.draws("slip_latency"):
             self.estimator.parameters_array = np.repeat(self.estimator.parameters_array, 2 * n)
         self.episode = np.zeros(n, EPISODE)
@@ -156,7 +155,7 @@ class SlipLoop(ABC):
         if self._tells_latency:
             parameters = self.estimator.parameters_array
             own = parameters[fingers if len(parameters) > 1 else slice(1)]
-            own[_LATENCY] = draw.values["slip_latency"]
+            own[LATENCY] = draw.values["slip_latency"]
         self._settle(i, force)
         self.plant.chips["travel"][i] = 0.0
         for array, fresh in zip((self.estimator.states, self.estimator.estimates), self._fresh, strict=True):
@@ -286,20 +285,3 @@ def _blank_episode(config: Config, task: Task, step_time: float) -> np.ndarray:
     episode["scales"][0, : len(scales)] = scales
     episode["mass_factor"] = episode["jump_factor"] = episode["patch_factor"] = 1.0
     return episode
-
-
-def _choose_estimator(choice: str | Mapping[str, Any]) -> dict[str, Any]:
-    """Name and all parameters; one that asks how old a velocity is, is told unless it was given that."""
-    if isinstance(choice, str):
-        choice = {"name": choice}
-    if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
-        raise ValueError(
-            f"estimator = {choice!r} must be a name or a mapping with a name; "
-            f"valid: {', '.join(estimators.names())}"
-        )
-    given = dict(choice)
-    name = given.pop("name")
-    parameters = asdict(specification(name).parameters.create(**given))
-    if _LATENCY not in given:
-        parameters.pop(_LATENCY, None)
-    return {"name": name, **parameters}
