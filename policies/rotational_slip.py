@@ -48,9 +48,9 @@ class RotationalSlipPolicy(ForcePolicy):
 
     def __init__(
         self,
-        k_x: float = 2.0,
+        k_x: float = 3.0,
         k_v: float = 0.5,
-        k_e: float = 25.0,
+        k_e: float = 33.0,
         k_m: float = 0.15,
         moving: float = 0.03,
         stop_band: float = 0.005,

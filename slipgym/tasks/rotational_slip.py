@@ -10,10 +10,11 @@ velocity while the bar turns. After the rotational slip of Waltersson and Karayi
 
 Some sliding is inherent. On the limit surface the slip twist is normal to the load, v_t / omega = r^2
 f_t / tau, and tau / f_t is the weight's lever d cos(tilt). A turn from -angle/2 to +angle/2 about
-horizontal therefore slides 2 (r^2 / d) ln tan(45 deg + angle/4): with r = 10 mm and d = 140 mm 0.78 mm
-at 60 deg, whatever the controller does. Holding the bar level takes m g d / (2 mu_c r) per finger.
-Hence the task's own object (`tasks.rotational_slip.object`), light and long: 0.08 kg, 340 mm by 40 mm,
-gripped 140 mm from its centre, which asks for 15 N at mu_c 0.36.
+horizontal therefore slides 2 (r^2 / d) ln tan(45 deg + angle/4): with r = 10 mm and d = 180 mm 0.61 mm
+at 60 deg, whatever the controller does; on a disc (`contact="distributed"`), whose limit surface is
+flatter there, 3/2 as much. Holding the bar level takes m g d / (2 mu_c r) per finger. Hence the task's
+own object (`tasks.rotational_slip.object`), light and long: 0.06 kg, 460 mm by 40 mm, gripped 180 mm
+from its centre, which asks for 15 N at mu_c 0.36.
 
 In turns of short leaps and almost without translation the estimator "rls" learns little;
 the default, like "joint", learns enough.
@@ -82,11 +83,11 @@ DEFAULTS = {
     "slide_tolerance": 0.001,
     "initial_force": 25.0,
     "object": {  # light and long: see docs/environments/rotational_slip.md
-        "mass": 0.08,
-        "size": [0.34, 0.03, 0.04],
+        "mass": 0.06,
+        "size": [0.46, 0.03, 0.04],
         "com_offset": [0.0, 0.0],
         "inertia": None,
-        "grasp_offset": [-0.14, 0.0],
+        "grasp_offset": [-0.18, 0.0],
     },
 }
 REWARD = (

@@ -50,10 +50,10 @@ def test_sliding_back_does_not_help(hand):
 
 @pytest.mark.parametrize(("along", "dropped"), [(0.004, False), (0.006, True)])
 def test_a_bar_is_dropped_when_a_pad_reaches_its_edge(hand, along, dropped):
-    """Held 140 mm from the centre of 340 mm by 40 mm, pad 15 mm: 15 mm are left along, 5 mm across."""
+    """Held 180 mm from the centre of 460 mm by 40 mm, pad 15 mm: 35 mm are left along, 5 mm across."""
     state = hand("RotationalSlip", **OPTIONS)
-    state.episode["object_centre"] = 0.14, 0.0
-    state.episode["reach"] = 0.155, 0.005
+    state.episode["object_centre"] = 0.18, 0.0
+    state.episode["reach"] = 0.215, 0.005
     turned = -0.7  # first the bar moves along itself, then across
     state.judge(100, slip=(0.014 * math.cos(turned), 0.014 * math.sin(turned), turned))
     assert not state.episode["dropped"]
