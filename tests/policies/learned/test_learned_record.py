@@ -36,7 +36,7 @@ def test_every_sample_within_its_steps_is_kept(policy_folder, tmp_path):
 
 def test_more_samples_than_a_sensor_keeps_are_refused():
     config = {"sensors": {"force_torque": {"rate": 7560}}}  # 63 in a control step
-    with pytest.raises(ValueError, match="rate = 7560 Hz: 65 samples.* at most 64"):
+    with pytest.raises(ValueError, match=r"rate = 7560 Hz: 65 samples.* at most 64"):
         record_sensors("Hold", "hold", options={"duration": 0.1}, config=config)
     config = {"sensors": {"force_torque": {"rate": 7200}}}
     frame = record_sensors("Hold", "hold", options={"duration": 0.1, "material": "wood"}, config=config)
