@@ -123,7 +123,7 @@ def test_one_thing_is_changed_and_the_rest_is_as_it_was(task):
 
 
 def test_a_controller_that_learns_nothing_acts_as_before_the_first_slip():
-    controller, unaware = policies.make("hold"), Unaware("hold")
+    controller, unaware = policies.make("hold", probe=None), Unaware("hold")
     width = len(columns(load(), find("Hold"), "true"))
     observations = np.random.default_rng(0).normal(0.0, 0.01, (5, width)).astype(np.float32)
     observations[:, -3:] = 0.0  # no support: what the estimate is does not count
