@@ -79,6 +79,7 @@ class PlanarSlipPolicy(ForcePolicy):
         worth: Distances of slide [m] and turn [rad] from which they are worth a slip; one stops at half.
         short: How much the first slide ends before its goal [m].
         lean: Angle of the centre of mass from straight under the pads, in the middle of a turn [rad].
+        ready: Angle [rad] that the wrist may be off when the box is let slip.
         hold_margin: Grip while holding, as a multiple of what the load needs at worst [-].
         wrist_rate: Largest pitch rate of the wrist [rad/s].
         wrist_acceleration: Its largest change; the held box has to follow [rad/s^2].
@@ -104,6 +105,7 @@ class PlanarSlipPolicy(ForcePolicy):
         worth: tuple[float, float] = (0.0013, 0.03),
         short: float = 0.0015,
         lean: float = 1.5,
+        ready: float = 0.02,
         hold_margin: float = 1.4,
         wrist_rate: float = 2.0,
         wrist_acceleration: float = 12.0,
@@ -116,7 +118,13 @@ class PlanarSlipPolicy(ForcePolicy):
                 raise ValueError(f"{name} = {value!r} must be finite and > 0")
         self.speeds, self.gain, self.worth = speeds, gain, worth
         self.k_e, self.k_v, self.k_m, self.keep = k_e, k_v, k_m, keep
-        self.leaps, self.short, self.lean, self.hold_margin = leaps, short, lean, hold_margin
+        self.leaps, self.short, self.lean, self.ready, self.hold_margin = (
+            leaps,
+            short,
+            lean,
+            ready,
+            hold_margin,
+        )
         self.wrist_rate, self.wrist_acceleration = wrist_rate, wrist_acceleration
         self.caution = caution or Caution(r=0.004)
         self._dt = 1.0 / self.config.physics.control_rate
@@ -180,7 +188,7 @@ class PlanarSlipPolicy(ForcePolicy):
         arrived = distance <= np.where(slipping, 0.5, 1.0) * worth
         rests = np.abs(speed) < 0.1 * np.where(turning, self.speeds[1], self.speeds[0])
         goes_on = ~slipping & arrived & rests & (past.stage < DONE)
-        ready = (np.abs(off) < 0.02) & (np.abs(rate) < 0.1) & (past.stage < DONE)
+        ready = (np.abs(off) < self.ready) & (np.abs(rate) < 0.1) & (past.stage < DONE)
         return np.where(goes_on, past.stage + 1, past.stage), ~arrived & (slipping | ready)
 
     def _let_slip(
