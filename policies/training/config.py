@@ -90,6 +90,9 @@ class Imitation(Frozen):
         default="between",
         description="Controller and learner share the environments, or one after the other each of them [-]",
     )
+    alone_from: int | None = Field(
+        default=None, ge=1, description="Round from which only the learner acts; null: the last [-]"
+    )
     sequences: Count = Field(default=32, description="Episodes of a gradient step, with a memory [-]")
     chunk: Count = Field(default=60, description="Steps that a gradient goes back, with a memory [-]")
 

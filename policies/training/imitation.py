@@ -26,11 +26,11 @@ class _Round(NamedTuple):
 def imitate(config: Training, model: Any, seed: int) -> None:
     """Fits a learner's actions to those of a controller: DAgger (Ross et al., arXiv 1011.0686).
 
-    In the first round the controller acts, in the last the learner, in between each its share; the
-    controller is asked at every step. After a round the learner is fitted to all answers so far, after the
-    last its value function to the discounted rewards of that round. A learner with a memory is fitted to
-    whole episodes. The controller is told the truth if the learner is, and estimated friction otherwise:
-    also where the learner is told nothing.
+    In the first round the controller acts, in the last or already from `alone_from` on the learner, in
+    between each its share; the controller is asked at every step. After a round the learner is fitted to all
+    answers so far, after the last its value function to the discounted rewards of that round. A learner with
+    a memory is fitted to whole episodes. The controller is told the truth if the learner is, and estimated
+    friction otherwise: also where the learner is told nothing.
 
     Args:
         config: The run; `config.imitation` says what to imitate.
@@ -48,15 +48,15 @@ def imitate(config: Training, model: Any, seed: int) -> None:
     raw = vector.make(config.model_copy(update={"environment": told}), seed, shaped=True)
     envs, seen, fit = learners.normalised(config, raw), [], Fit(chosen, model)
     envs.norm_obs = False
+    last = chosen.rounds - 1
     for k in range(chosen.rounds):
-        share = 1.0 - k / max(1, chosen.rounds - 1)
+        share = max(0.0, 1.0 - k / max(1, chosen.alone_from or last))
         seen.append(_round(config, model, envs, _led(chosen, share, envs.num_envs)))
         _normalise(chosen, own.obs_rms, seen[-1].observations)
-        fit.slow_down(share)
+        fit.slow_down(1.0 - k / max(1, last))
         fit.actions(*([getattr(one, name) for one in seen] for name in ("observations", "answers", "ends")))
     own.ret_rms = envs.ret_rms
-    last = seen[-1]
-    fit.values([last.observations], [_returns(last, config)], [last.ends])
+    fit.values([seen[-1].observations], [_returns(seen[-1], config)], [seen[-1].ends])
     envs.close()
 
 
