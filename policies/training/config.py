@@ -146,7 +146,7 @@ class Training(Frozen):
 
     task: str = Field(description="Task of the environment [-]")
     algorithm: Algorithm = Field(default="ppo", description="What learns [-]")
-    budget: Count = Field(description="Steps of all environments together [-]")
+    budget: int = Field(ge=0, description="Steps of all environments together; 0: imitation alone [-]")
     num_envs: int = Field(default=8, ge=1, le=seeds.ROWS, description="Environments side by side [-]")
     engine: Literal["planar", "bullet"] = Field(
         default="planar", description="What moves the bodies: a compiled batch, or PyBullet [-]"
@@ -188,6 +188,8 @@ class Training(Frozen):
 
     @model_validator(mode="after")
     def _can_imitate(self) -> Self:
+        if self.budget == 0 and self.imitation is None:
+            raise ValueError("budget = 0 must be > 0 without imitation")
         if self.imitation is not None:
             if self.algorithm not in ("ppo", "recurrent_ppo"):
                 raise ValueError(f"imitation is for ppo and recurrent_ppo, not for {self.algorithm}")

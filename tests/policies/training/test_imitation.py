@@ -6,8 +6,8 @@ import pytest
 pytest.importorskip("stable_baselines3")
 import policies
 from policies.base import ForcePolicy
+from policies.training import folder, run, vector
 from policies.training import model as learners
-from policies.training import vector
 from policies.training.imitation import _led, imitate
 
 
@@ -106,6 +106,15 @@ def test_a_gate_that_remembers_long_does(small):
     assert not bias[128:].any()
 
 
+def test_a_run_may_be_imitation_alone(small, tmp_path):
+    chosen = {"policy": "linear_slip", "rounds": 2, "steps": 12, "epochs": 1}
+    folder.begin(tmp_path / "run", small(budget=0, algorithm="recurrent_ppo", imitation=chosen), 0)
+    result = run.train(tmp_path / "run", progress=False)
+    assert (result["ended"], result["steps"], result["best"]["steps"]) == ("budget", 0, 0)
+    policy = policies.load(tmp_path / "run" / "policy")
+    assert policy.description.network.kind == "lstm"
+
+
 def test_a_controller_of_another_action_mode_is_refused(small):
     config = small(imitation={"policy": "planar_slip"}, engine_threads=1)
     model = learners.make(config, learners.normalised(config, vector.make(config, 0)), 0)
@@ -118,5 +127,7 @@ def test_only_ppo_can_begin_so(small):
         small(imitation={"policy": "linear_slip"}, algorithm="sac")
     with pytest.raises(ValueError, match="linear_slop"):
         small(imitation={"policy": "linear_slop"})
+    with pytest.raises(ValueError, match="budget = 0"):
+        small(budget=0)
     with pytest.raises(ValueError, match="'kv'"):
         small(imitation={"policy": "linear_slip", "parameters": {"kv": 1.0}})
