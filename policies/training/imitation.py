@@ -30,7 +30,8 @@ def imitate(config: Training, model: Any, seed: int) -> None:
     between each its share; the controller is asked at every step. After a round the learner is fitted to all
     answers so far, after the last its value function to the discounted rewards of that round. A learner with
     a memory is fitted to whole episodes. The controller is told the truth if the learner is, and estimated
-    friction otherwise: also where the learner is told nothing.
+    friction otherwise: also where the learner is told nothing; but then it looks for no friction
+    (`policies.base.ForcePolicy.unaware`), as the learner could not use it.
 
     Args:
         config: The run; `config.imitation` says what to imitate.
@@ -87,13 +88,15 @@ def _round(config: Training, model: Any, envs: Any, led: np.ndarray) -> _Round:
     assert chosen is not None
     rate = envs.get_attr("metadata")[0]["render_fps"]  # whole: the controller acts as often as the learner
     slower = {"physics": {"control_rate": round(rate)}, "sensors": {"slip": {"rate": round(rate)}}}
-    teacher = policies.make(chosen.policy, config=slower, **chosen.parameters)
+    alone = config.environment.friction_source == "none"
+    given = getattr(policies.find(chosen.policy), "unaware", {}) if alone else {}
+    teacher = policies.make(chosen.policy, config=slower, **{**chosen.parameters, **given})
     state, memory, rows = None, None, []
     observations, starts = envs.reset(), np.ones(envs.num_envs, bool)
     for step in range(chosen.steps):
         split = observations.reshape(envs.num_envs, frames, -1)
         answers, state = teacher.predict(split[:, -1], state, starts)
-        if config.environment.friction_source == "none":
+        if alone:
             split = split[..., : -len(FRICTION_COLUMNS)]
         own = split.reshape(envs.num_envs, -1)
         normalised = model.get_vec_normalize_env().normalize_obs(own)
