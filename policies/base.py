@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import ClassVar, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
@@ -120,6 +120,8 @@ class ForcePolicy(ABC):
     """Task whose observations it reads; None for one that runs in every task."""
     action_mode: ClassVar[str] = "grip_force"
     """Action mode of the environments it acts in, one of `slipgym.envs.actions.ACTION_MODES`."""
+    unaware: ClassVar[Mapping[str, Any]] = {}
+    """Arguments it is made with where nothing is ever told about friction (`policies.unaware`)."""
 
     def __init__(self, config: Overrides | None = None) -> None:
         self.config = load(config)

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
 import numpy as np
 
 from policies.base import Columns, ForcePolicy, State
+from policies.probe import Probe, ProbeState
 from policies.sensing import Caution, scaled_load, scaled_speed
 from slipgym.config import Overrides
+
+_PROBE = Probe()
+_FIRST = 0.01  # support: less than that of one update, 0.02
 
 
 class HoldPolicy(ForcePolicy):
@@ -18,12 +25,20 @@ class HoldPolicy(ForcePolicy):
     gripper's public controller doubles the load instead (and assumes at least 2 N); a reserve
     that is added serves light objects, which a poke upsets more, and spares heavy ones.
 
+    Where nothing is known about friction it begins by lowering the grip until the object slips a little
+    (`policies.probe`), and holds on what the estimator learns from that. It is not poked at first, and the
+    earlier friction is known the longer it saves force. Told friction with full support, it never probes.
+    Probing is for estimators whose first update is the answer, "disc" and "joint": "rls" and "ukf" go there
+    step by step from a start value, and what they say after a slip or two holds less than the load.
+
     Args:
         reserve: Disturbance per finger to be ready for [N].
         margin: Safety factor on load and reserve [-].
         k_v: Force per scaled slip speed [N s/m].
         decay: Share of the force kept per sample when it falls, in [0, 1).
-        caution: Friction assumed until the estimate has support.
+        caution: Friction assumed until the estimate has support; None: for as long as it has none if it
+            probes, since it then holds on the first slip, and `Caution()` if not.
+        probe: How to find friction out; None: not at all, for as long as it does not slip by itself.
         config: Overrides of the environment's configuration.
 
     Raises:
@@ -31,6 +46,7 @@ class HoldPolicy(ForcePolicy):
     """
 
     task = "Hold"
+    unaware: ClassVar[Mapping[str, Any]] = {"probe": None}
 
     def __init__(
         self,
@@ -39,22 +55,37 @@ class HoldPolicy(ForcePolicy):
         k_v: float = 100.0,
         decay: float = 0.95,
         caution: Caution | None = None,
+        probe: Probe | None = _PROBE,
         config: Overrides | None = None,
     ) -> None:
         super().__init__(config)
         if not 0.0 <= decay < 1.0:
             raise ValueError(f"decay = {decay!r} must lie in [0, 1)")
         self.reserve, self.margin, self.k_v, self.decay = reserve, margin, k_v, decay
-        self.caution = caution or Caution()
+        self.caution = caution or (Caution() if probe is None else Caution(support=_FIRST))
+        self.probe = probe
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Force of the last sample, (n, 1) [N]."""
-        return np.zeros((n, 1))
+        """Level of the grip in the last sample [N], 0 before the first, and the probe's memory, (n, 5)."""
+        state = np.zeros((n, 1 + len(ProbeState._fields)))
+        state[:, -1] = 1.0
+        return state
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
         mu_c, r = self.caution.blend(columns, "mu_c"), self.caution.blend(columns, "r")
-        need = self.margin * (scaled_load(columns, r) + self.reserve) / mu_c
-        force = need + self.k_v * scaled_speed(columns, r)
-        force = np.maximum(force, self.decay * np.asarray(state)[:, 0])
-        return force, force[:, np.newaxis]
+        load, speed = scaled_load(columns, r), scaled_speed(columns, r)
+        level, *rest = np.asarray(state).T
+        force = self.margin * (load + self.reserve) / mu_c + self.k_v * speed
+        force = np.maximum(force, self.decay * level)
+        if self.probe is None:
+            return force, np.column_stack([force, *rest])
+        begun, memory = level > 0.0, ProbeState(*rest)
+        memory = memory._replace(load=np.where(begun, memory.load, load))
+        wanted = begun & (columns["support_mu_c"] < self.caution.support)
+        slips = self.probe.slipping(memory, load, speed)
+        limits = self.config.gripper.force_min, self.config.gripper.force_max
+        probes, command, lower, memory = self.probe.act(memory, level, slips, wanted, limits)
+        memory = memory._replace(load=memory.load + self.probe.smoothing * (load - memory.load))
+        level = np.where(probes, lower, force)
+        return np.where(probes, command, force), np.column_stack([level, *memory])

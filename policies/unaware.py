@@ -15,7 +15,8 @@ class Unaware:
     """A controller in an environment that says nothing about friction.
 
     It sees what an estimator says before the first slip: values that no data supports. Every controller then
-    acts on its cautious friction (`policies.sensing.Caution`), here for the whole episode.
+    acts on its cautious friction (`policies.sensing.Caution`), here for the whole episode. Those that would
+    look for friction do not: their class says in `unaware` what they are made with.
 
     Args:
         controller: A name of `policies.names()` or "module:class"; none that is learned.
@@ -23,7 +24,8 @@ class Unaware:
     """
 
     def __init__(self, controller: str, config: Overrides | None = None) -> None:
-        self._controller = policies.make(controller, config=config)
+        given = getattr(policies.find(controller), "unaware", {})
+        self._controller = policies.make(controller, config=config, **given)
         self.modes = policies.modes(self._controller)
 
     def predict(

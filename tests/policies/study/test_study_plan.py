@@ -17,7 +17,7 @@ from slipgym.tasks import find
 def shelf(tmp_path):
     def make(*names):
         for name in names:
-            (tmp_path / name).mkdir()
+            (tmp_path / name).mkdir(parents=True)
             (tmp_path / name / "policy.json").write_text("{}")
         return str(tmp_path)
 
@@ -68,6 +68,19 @@ def test_learned_policies_by_task_source_and_seed(small, shelf):
     assert "no learned policy for estimated;" in notice
 
 
+def test_learned_policies_as_training_left_them(small, shelf):
+    runs = [
+        f"linear_slip__ppo__20260101/{source}__{seed}/policy"
+        for source in ("none", "true")
+        for seed in (0, 1)
+    ]
+    found = policies_of(small(learned=shelf(*runs, "hold__ppo__20260101/true__0/policy")))
+    assert {key: [path.parent.name for path in paths] for key, paths in found.items()} == {
+        ("LinearSlip", "none"): ["none__0", "none__1"],
+        ("LinearSlip", "true"): ["true__0", "true__1"],
+    }
+
+
 def test_two_folders_of_one_seed_are_an_error(small, shelf):
     with pytest.raises(ValueError, match="seed 0"):
         policies_of(small(learned=shelf("linear_slip_true", "linear_slip_true_0")))
@@ -110,7 +123,7 @@ def test_one_thing_is_changed_and_the_rest_is_as_it_was(task):
 
 
 def test_a_controller_that_learns_nothing_acts_as_before_the_first_slip():
-    controller, unaware = policies.make("hold"), Unaware("hold")
+    controller, unaware = policies.make("hold", probe=None), Unaware("hold")
     width = len(columns(load(), find("Hold"), "true"))
     observations = np.random.default_rng(0).normal(0.0, 0.01, (5, width)).astype(np.float32)
     observations[:, -3:] = 0.0  # no support: what the estimate is does not count
