@@ -79,6 +79,9 @@ class PlanarSlipPolicy(ForcePolicy):
         worth: Distances of slide [m] and turn [rad] from which they are worth a slip; one stops at half.
         short: How much the first slide ends before its goal [m].
         lean: Angle of the centre of mass from straight under the pads, in the middle of a turn [rad].
+        ready: Angle [rad] that the wrist may be off when the box is let slip.
+        lead: Time at full speed by which the integral may run ahead of the force that was commanded [s]; of
+            use where another policy acts and this one is asked (docs/training.md).
         hold_margin: Grip while holding, as a multiple of what the load needs at worst [-].
         wrist_rate: Largest pitch rate of the wrist [rad/s].
         wrist_acceleration: Its largest change; the held box has to follow [rad/s^2].
@@ -104,6 +107,8 @@ class PlanarSlipPolicy(ForcePolicy):
         worth: tuple[float, float] = (0.0013, 0.03),
         short: float = 0.0015,
         lean: float = 1.5,
+        ready: float = 0.02,
+        lead: float = np.inf,
         hold_margin: float = 1.4,
         wrist_rate: float = 2.0,
         wrist_acceleration: float = 12.0,
@@ -116,7 +121,8 @@ class PlanarSlipPolicy(ForcePolicy):
                 raise ValueError(f"{name} = {value!r} must be finite and > 0")
         self.speeds, self.gain, self.worth = speeds, gain, worth
         self.k_e, self.k_v, self.k_m, self.keep = k_e, k_v, k_m, keep
-        self.leaps, self.short, self.lean, self.hold_margin = leaps, short, lean, hold_margin
+        self.leaps, self.short, self.lean = leaps, short, lean
+        self.ready, self.lead, self.hold_margin = ready, lead, hold_margin
         self.wrist_rate, self.wrist_acceleration = wrist_rate, wrist_acceleration
         self.caution = caution or Caution(r=0.004)
         self._dt = 1.0 / self.config.physics.control_rate
@@ -147,10 +153,12 @@ class PlanarSlipPolicy(ForcePolicy):
         off = np.where(fixed, 0.0, wrapped(wanted - attitude))
         speed = np.where(turning, side * both(columns, "omega"), _falling(columns))
         stage, slipping = self._decide(past, turning, distance, speed, off, columns["wrist_pitch_rate"])
-        motion, share = self._let_slip(past, turning, distance, speed, slipping)
+        load = scaled_load(columns, r) / mu_c
+        commanded = columns["command"] / np.maximum(load, 1e-3)  # below what a sensor resolves
+        motion, share = self._let_slip(past, turning, distance, speed, slipping, commanded)
         lever = np.hypot(*place) + self.short
         firm = self.hold_margin * past.weight * np.hypot(1.0, lever / r) / mu_c
-        loose = np.minimum(scaled_load(columns, r) / mu_c * share, firm)
+        loose = np.minimum(load * share, firm)
         force = np.where(slipping, loose, firm)
         rate, still = self._pitch(off, columns["wrist_pitch_rate"]), np.zeros(len(columns))
         memory = past._replace(stage=stage, slipping=slipping, side=side, **motion)
@@ -180,7 +188,7 @@ class PlanarSlipPolicy(ForcePolicy):
         arrived = distance <= np.where(slipping, 0.5, 1.0) * worth
         rests = np.abs(speed) < 0.1 * np.where(turning, self.speeds[1], self.speeds[0])
         goes_on = ~slipping & arrived & rests & (past.stage < DONE)
-        ready = (np.abs(off) < 0.02) & (np.abs(rate) < 0.1) & (past.stage < DONE)
+        ready = (np.abs(off) < self.ready) & (np.abs(rate) < 0.1) & (past.stage < DONE)
         return np.where(goes_on, past.stage + 1, past.stage), ~arrived & (slipping | ready)
 
     def _let_slip(
@@ -190,8 +198,9 @@ class PlanarSlipPolicy(ForcePolicy):
         distance: np.ndarray,
         speed: np.ndarray,
         slipping: np.ndarray,
+        commanded: np.ndarray,
     ) -> tuple[dict[str, np.ndarray], np.ndarray]:
-        """What changes in the memory, and the grip over f_slip."""
+        """What changes in the memory, and the grip over f_slip; `commanded` is what it was before."""
         k_e, k_v, top = (np.where(turning, b, a) for a, b in (self.k_e, self.k_v, self.speeds))
         ahead = np.clip(self.gain * distance, 0.25 * top, top) - speed
         moving, moved = speed > 0.15 * top, past.moving > 0.0
@@ -201,6 +210,8 @@ class PlanarSlipPolicy(ForcePolicy):
         left_over = np.clip(0.05 * (leaps - self.leaps), 0.0, self.keep) * broken
         error = np.where(breaks, left_over, np.where(sticks, self.keep * broken, past.error))
         error = np.where(slipping, error + np.where(moving, self.k_m, 1.0) * ahead * self._dt, 0.0)
+        most = np.maximum((1.0 - commanded) / k_e, self.keep * broken) + self.lead * top
+        error = np.where(moving, error, np.minimum(error, most))
         share = 1.0 - k_e * error - np.where(moving, k_v * ahead, 0.0)
         return {"moving": moving, "error": error, "broken": broken, "leaps": leaps}, share
 

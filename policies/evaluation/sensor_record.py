@@ -80,8 +80,16 @@ class _Tap:
     def __init__(self, loop: SlipLoop, finger: int) -> None:
         self._loop, self._finger = loop, finger
         self._start = int(loop.plant.world["tick"][0])
-        force = loop.plant.force_torque[0, finger]
+        force, world = loop.plant.force_torque[0, finger], loop.plant.world[0]
+        needed = int((world["control_ticks"] + force["delay"]) // force["period"]) + 2
+        if needed > HISTORY:
+            rate = loop.config.sensors.force_torque.rate
+            raise ValueError(
+                f"sensors.force_torque.rate = {rate} Hz: {needed} samples, a control step and the latency, "
+                f"would have to be kept; at most {HISTORY} are"
+            )
         force["kept"] = HISTORY
+        force["history"] = 0.0
         self._taken = self._start // int(force["period"])
         self._forces: list[tuple[float, ...]] = []
         self._twists: list[tuple[float, ...]] = []
@@ -101,7 +109,7 @@ class _Tap:
         self._loop.terms[:] = total
 
     def _take(self) -> None:
-        """Keeps what was sampled since the last call, at most `HISTORY` forces."""
+        """Keeps what was sampled since the last call."""
         plant, finger = self._loop.plant, self._finger
         force = plant.force_torque[0, finger]
         tick_length = float(plant.world["tick_length"][0])

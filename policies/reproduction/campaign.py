@@ -18,7 +18,7 @@ from policies.evaluation.frames import distinct
 from policies.evaluation.plots.style import STYLE, styled
 from policies.reproduction.mechanism import summary
 from policies.reproduction.records import Record
-from policies.reproduction.rerun import rows, variants
+from policies.reproduction.rerun import explorations, rows, variants
 from policies.reproduction.table_plot import plot_table
 from policies.reproduction.tables import markdown, mechanism_markdown, nine_columns
 from policies.reproduction.trial_plots import plot_slip, plot_trial
@@ -37,6 +37,8 @@ class Campaign:
     """What holds for all trials; with "contact"."""
     seed: int
     """What the trials' seeds were made from."""
+    exploration: Mapping[str, Any] | None = None
+    """Keys of the trials that serve as an exploration before others of the same material."""
 
 
 def reproduce(
@@ -66,8 +68,17 @@ def reproduce(
     if not scenarios:
         raise ValueError("trials must be at least 1")
     records = record_all(campaign, scenarios, jobs, progress)
-    listed = tqdm(variants(), desc="estimators", unit="estimator", disable=not progress)
-    trials = pd.DataFrame([row for variant in listed for record in records for row in rows(record, variant)])
+    explore = campaign.exploration
+    before = [None] * len(records) if explore is None else explorations(records, explore)
+    listed = tqdm(variants(explore is not None), desc="estimators", unit="estimator", disable=not progress)
+    trials = pd.DataFrame(
+        [
+            row
+            for one in listed
+            for pair in zip(records, before, strict=True)
+            for row in rows(pair[0], one, pair[1])
+        ]
+    )
     path = stamped(output, f"{campaign.name}__{campaign.seed}")
     with filled_in_place(path) as folder:
         write_origin(campaign, folder)

@@ -58,7 +58,8 @@ def reproduce_linear(
         for material, distance, duration, trial in cells
     ]
     settings = {"friction_source": friction_source, "contact": contact}
-    campaign = Campaign("linear", record_linear, settings, seed)
+    exploration = {"distance": DISTANCES[0], "duration": DURATIONS[0]}
+    campaign = Campaign("linear", record_linear, settings, seed, exploration)
     example = {"material": "plastic", "distance": 0.04, "duration": 5.0}
     return reproduce(campaign, scenarios, example, output, jobs, progress)
 

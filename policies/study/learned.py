@@ -19,24 +19,28 @@ def policies_of(study: Study) -> dict[tuple[str, str], list[Path]]:
     """The policies of a study, by task and friction source of the training; by seed within.
 
     A policy lies in a folder <task>_<source> or <task>_<source>_<seed>, as in "linear_slip_true_2"; without a
-    number it is seed 0.
+    number it is seed 0. Or it is one of those that scripts/train.py left in the folder.
 
     Raises:
         ValueError: Two folders stand for the same seed.
     """
     top = Path(study.learned) if study.learned else shelf.SHELF
+    named = {path.parent: path.parent.name for path in top.glob(f"*/{DESCRIPTION}")}
+    for path in top.glob(f"*__*/*__*/policy/{DESCRIPTION}"):
+        key, _, _ = path.parents[2].name.partition("__")
+        named[path.parent] = f"{key}_{path.parents[1].name}"
     found: dict[tuple[str, str], dict[int, Path]] = {}
-    for path in sorted(top.glob(f"*/{DESCRIPTION}")):
+    for folder, name in sorted(named.items()):
         for task in study.tasks:
             for source in SOURCES:
-                match = re.fullmatch(rf"{find(task).key}_{source}(?:_+(\d+))?", path.parent.name)
+                match = re.fullmatch(rf"{find(task).key}_{source}(?:_+(\d+))?", name)
                 if match is None:
                     continue
                 seeds = found.setdefault((task, source), {})
                 seed = int(match[1] or 0)
                 if seed in seeds:
-                    raise ValueError(f"{path.parent} and {seeds[seed]} are both seed {seed}")
-                seeds[seed] = path.parent
+                    raise ValueError(f"{folder} and {seeds[seed]} are both seed {seed}")
+                seeds[seed] = folder
     return {key: [seeds[seed] for seed in sorted(seeds)] for key, seeds in found.items()}
 
 

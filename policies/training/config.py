@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 import policies
 from policies.training import seeds
-from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO
+from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO, Share
 from slipgym.config import load, load_randomization
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.errors import unknown
@@ -68,10 +68,33 @@ class Imitation(Frozen):
     """A controller that the learner acts like at first."""
 
     policy: str = Field(description="Its name; it must have the learner's action mode [-]")
+    parameters: Mapping[str, Any] = Field(default={}, description="Of its constructor [-]")
     rounds: Count = Field(default=6, description="Rounds of acting and fitting [-]")
     steps: Count = Field(default=250, description="Steps of each environment in a round [-]")
     epochs: Count = Field(default=10, description="Passes over all rounds so far after each [-]")
     learning_rate: Positive = Field(default=1e-3, description="Step size of Adam [-]")
+    learning_rate_end: Share = Field(
+        default=1.0, description="Share of it left in the last round; linear in between [-]"
+    )
+    huber: Positive | None = Field(
+        default=None, description="Error of an action from which the loss grows linearly; null: squares [-]"
+    )
+    max_grad_norm: Positive | None = Field(
+        default=None, description="Gradients are clipped to this norm; null: they are not [-]"
+    )
+    spread: Literal["variance", "deviation"] = Field(
+        default="variance",
+        description="What scales an observation; rare values hardly change its mean absolute deviation [-]",
+    )
+    hand_over: Literal["between", "within"] = Field(
+        default="between",
+        description="Controller and learner share the environments, or one after the other each of them [-]",
+    )
+    alone_from: int | None = Field(
+        default=None, ge=1, description="Round from which only the learner acts; null: the last [-]"
+    )
+    sequences: Count = Field(default=32, description="Episodes of a gradient step, with a memory [-]")
+    chunk: Count = Field(default=60, description="Steps that a gradient goes back, with a memory [-]")
 
 
 class Evaluation(Frozen):
@@ -123,7 +146,7 @@ class Training(Frozen):
 
     task: str = Field(description="Task of the environment [-]")
     algorithm: Algorithm = Field(default="ppo", description="What learns [-]")
-    budget: Count = Field(description="Steps of all environments together [-]")
+    budget: int = Field(ge=0, description="Steps of all environments together; 0: imitation alone [-]")
     num_envs: int = Field(default=8, ge=1, le=seeds.ROWS, description="Environments side by side [-]")
     engine: Literal["planar", "bullet"] = Field(
         default="planar", description="What moves the bodies: a compiled batch, or PyBullet [-]"
@@ -143,7 +166,7 @@ class Training(Frozen):
         default={},
         description="Overrides of the environment's config where it learns; not where it is evaluated [-]",
     )
-    imitation: Imitation | None = Field(default=None, description="What ppo begins with; null: nothing [-]")
+    imitation: Imitation | None = Field(default=None, description="What PPO begins with; null: nothing [-]")
     normalisation: Normalisation = Field(default=Normalisation(), description="Of what is learned from [-]")
     evaluation: Evaluation = Field(default=Evaluation(), description="How progress is measured [-]")
     stop: Stop = Field(default=Stop(), description="When a run ends early [-]")
@@ -165,10 +188,13 @@ class Training(Frozen):
 
     @model_validator(mode="after")
     def _can_imitate(self) -> Self:
+        if self.budget == 0 and self.imitation is None:
+            raise ValueError("budget = 0 must be > 0 without imitation")
         if self.imitation is not None:
-            if self.algorithm != "ppo":
-                raise ValueError(f"imitation is for ppo, not for {self.algorithm}")
+            if self.algorithm not in ("ppo", "recurrent_ppo"):
+                raise ValueError(f"imitation is for ppo and recurrent_ppo, not for {self.algorithm}")
             policies.find(self.imitation.policy)
+            policies.make(self.imitation.policy, **self.imitation.parameters)
         return self
 
     @model_validator(mode="after")

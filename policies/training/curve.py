@@ -69,6 +69,7 @@ def _lines(axes: Axes, seeds: Sequence[Sequence[tuple[int, float]]], colour: str
             color=colour,
             alpha=0.35 if several else 1.0,
             linewidth=0.8 if several else 1.4,
+            marker="o" if len(points) == 1 else None,
         )
     if several:
         common = sorted(set.intersection(*({steps for steps, _ in points} for points in seeds)))

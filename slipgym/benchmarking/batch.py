@@ -12,6 +12,7 @@ import numpy as np
 from slipgym.benchmarking.measure import ACTIONS, Player
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import compare, per_call
+from slipgym.benchmarking.twins import Twins
 from slipgym.compiled import unlocked
 from slipgym.contact.coupled import step_pads
 from slipgym.envs.actions import interpret
@@ -84,6 +85,10 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
     block = 4 * SIZES[-1]
     result = compare(partial(two.block, block), partial(one.block, block), pairs)
     figures.append(Figure("batch of 4096: two threads / one", result.quartiles[1], "-", ">= 1.8"))
+    with Twins(_single, env_id) as twins:
+        compare(partial(twins.both, block), partial(twins.alone, block), 2)
+        result = compare(partial(twins.both, block), partial(twins.alone, block), pairs)
+    figures.append(Figure("the same: two processes of a thread / one of them", result.quartiles[1], "-"))
     few = VectorPlayer(env_id, CACHED, EVERY_ACTION, threads=1)
     figures += parts(few)
     few.env.close()
@@ -158,6 +163,10 @@ def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
         Figure("their contact kernel alone", 1e9 * floor, "ns"),
         Figure("batch step / its contact kernel", whole / floor, "-"),
     ]
+
+
+def _single(env_id: str) -> VectorPlayer:
+    return VectorPlayer(env_id, SIZES[-1], EVERY_ACTION, threads=1)
 
 
 def _samples(player: Player) -> tuple[float, int]:

@@ -20,6 +20,7 @@ class Information:
     def __init__(self, loop: SlipLoop) -> None:
         self._loop = loop
         plant, episode = loop.plant, loop.episode
+        self._steps = episode["step"]
         self._views: dict[str, np.ndarray] = {
             "true": loop.true_friction,
             "estimated": loop.estimated[:, :3],
@@ -40,7 +41,7 @@ class Information:
         for name in ("is_success", "dropped"):
             info[name] = info[name].item()
         info["reward_terms"] = dict(zip(loop.task.terms, loop.terms[i].tolist(), strict=True))
-        info["time"] = self._times().item(i)
+        info["time"] = self._steps.item(i) * loop.step_time
         return info
 
     def of(self, mask: np.ndarray) -> dict[str, Any]:
@@ -56,11 +57,8 @@ class Information:
         infos["reward_terms"] = {
             name: _taken(loop.terms[:, k], rows) for k, name in enumerate(loop.task.terms)
         }
-        infos["time"] = _taken(self._times(), rows)
+        infos["time"] = _taken(self._steps, rows) * loop.step_time
         return infos
-
-    def _times(self) -> np.ndarray:
-        return self._loop.episode["step"] * self._loop.step_time
 
 
 def _taken(view: np.ndarray, rows: Any) -> np.ndarray:

@@ -29,6 +29,11 @@ class PlanarLoop(SlipLoop):
         randomization: What is drawn.
         n: Environments.
         threads: Threads that share them; None: as many as there are processors, if there is work for them.
+
+    Attributes:
+        rewards: Sum of the last step's reward terms, (n,).
+        dropped: Whether the object was dropped in it, (n,).
+        finished: Whether the episode's time had passed after it, (n,).
     """
 
     def __init__(
@@ -43,6 +48,7 @@ class PlanarLoop(SlipLoop):
         super().__init__(config, task, estimator, randomization, n)
         self._threads = Threads(n, threads)
         self._closed = False
+        self.rewards, (self.dropped, self.finished) = np.zeros(n), np.zeros((2, n), bool)
         kind, plant = specification(self.estimator_choice["name"]), self.plant
         batch = self.estimator
         patches = plant.cells is not None
@@ -55,6 +61,7 @@ class PlanarLoop(SlipLoop):
             self.episode, self.commands, self.wrenches, self.twists,
             self.per_finger, self.estimated, self.task_part, self.truth,
         )  # fmt: skip
+        self._results = self.rewards, self.dropped, self.finished
 
     def step(
         self,
@@ -76,7 +83,7 @@ class PlanarLoop(SlipLoop):
             meanwhile: What may be done with the other environments at the same time.
         """
         self.check_open()
-        rest = *sight, actions, components, active, self.terms, skip
+        rest = *sight, actions, components, active, self.terms, *self._results, skip
 
         def part(lo: int, hi: int) -> int:
             return self._drive(*self._arguments, *rest, lo, hi)

@@ -14,14 +14,14 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from slipgym.config import Config, Randomization
-from slipgym.envs.choices import DEFAULT_ESTIMATOR, autoreset, one_of, refuse_unknown, whole
+from slipgym.envs.choices import DEFAULT_ESTIMATOR, autoreset, one_of, whole
 from slipgym.envs.information import Information, final, masked
 from slipgym.envs.pictures import Pictures
 from slipgym.envs.planar_loop import PlanarLoop
 from slipgym.envs.seeds import Generators
 from slipgym.envs.setup import Setup
 from slipgym.envs.state import VectorState, checked
-from slipgym.envs.vector_options import RowOptions
+from slipgym.envs.vector_options import RowOptions, refuse_scalar
 from slipgym.tasks import TASKS, Task
 
 
@@ -82,7 +82,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
         **others: Any,
     ) -> None:
-        _refuse(others)
+        refuse_scalar(others, inspect.signature(SlipVectorEnv.__init__).parameters)
         self.task: Task = TASKS[one_of("task", task, TASKS)]
         self.num_envs = whole("num_envs", num_envs, 1)
 
@@ -112,14 +112,14 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self.single_action_space, self.single_observation_space = self._actions.space, self._observer.space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self._mode = autoreset(autoreset_mode)
+        self.autoreset_mode = autoreset(autoreset_mode)
         rate = self.config.physics.control_rate / frame_skip
-        self.metadata = {**self.metadata, "render_fps": rate, "autoreset_mode": self._mode}
+        self.metadata = {**self.metadata, "render_fps": rate, "autoreset_mode": self.autoreset_mode}
         self._made_of = {
             "task": self.task.name,
             **setup.arguments,
             "num_envs": num_envs,
-            "autoreset_mode": self._mode.value,
+            "autoreset_mode": self.autoreset_mode.value,
         }
         self._shown = {
             "threads": threads,
@@ -177,26 +177,25 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         """
         chosen = self._actions.checked_batch(actions, self.num_envs)
         self._loop.check_open()
-        begins = self._over & (self._mode is AutoresetMode.NEXT_STEP)
+        begins = self._over & (self.autoreset_mode is AutoresetMode.NEXT_STEP)
         active = self._ready & ~self._over
         if not (active | begins).all():
             waiting = np.flatnonzero(~(active | begins)).tolist()
             raise RuntimeError(f"call reset() before step(): environments {waiting[:8]} have no episode")
-        loop, episode = self._loop, self._loop.episode
-        loop.terms[begins] = 0.0
+        loop = self._loop
+        loop.rewards[begins] = loop.terms[begins] = 0.0
         rows = np.flatnonzero(begins)
         ready, self._ready = self._ready, np.zeros_like(self._ready)
         sight, begin = self._observer.sight, partial(self._begin, rows)  # while the others take their step
         loop.step(chosen, self._actions.table, self._frame_skip, active, sight, begin)
         self._ready = ready
         self._observer.next(active)
-        rewards = sum(loop.terms.T, start=np.zeros(self.num_envs))  # in the scalar environment's order
-        terminated = episode["dropped"] & active
-        truncated = (episode["step"] >= episode["steps"]) & active & ~terminated
+        rewards = loop.rewards.copy()
+        terminated, truncated = loop.dropped & active, loop.finished & active & ~loop.dropped
         self._pictures.keep(active)
         self._over = terminated | truncated
         ended: dict[str, Any] = {}
-        if self._mode is AutoresetMode.SAME_STEP:
+        if self.autoreset_mode is AutoresetMode.SAME_STEP:
             begins, self._over = self._over, np.zeros_like(self._over)
             ended = final(self._observer.read(), self._information.of(begins), begins)
             rows = np.flatnonzero(begins)
@@ -278,23 +277,6 @@ def _rebuild(arguments: Mapping[str, Any], state: VectorState | None, spec: Any)
     else:
         env.set_state(state)
     return env
-
-
-def _refuse(others: Mapping[str, Any]) -> None:
-    """Raise for arguments that only the scalar environment has, and for unknown ones."""
-    if "engine" in others and others["engine"] != "planar":
-        raise ValueError(
-            f"engine = {others['engine']!r}: the batch runs on the planar engine alone; for PyBullet use "
-            'gym.make_vec(..., vectorization_mode="async")'
-        )
-    refuse_unknown(set(others) - {"engine"}, _KEYWORDS)
-
-
-_KEYWORDS = [
-    name
-    for name in inspect.signature(SlipVectorEnv.__init__).parameters
-    if name not in ("self", "task", "others")
-]
 
 
 def __getattr__(name: str) -> partial[SlipVectorEnv]:

@@ -14,7 +14,7 @@ import numpy as np
 from slipgym.compiled import compiled
 from slipgym.sensors.noise import standard_normal
 
-HISTORY = 128
+HISTORY = 64
 
 FORCE_TORQUE = np.dtype(
     [

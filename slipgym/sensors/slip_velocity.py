@@ -15,7 +15,7 @@ import numpy as np
 from slipgym.compiled import compiled
 from slipgym.sensors.noise import standard_normal
 
-HISTORY = 32
+HISTORY = 16
 CHIPS_MAX = 4
 AXES = 2 * CHIPS_MAX  # x and y of the first chip, of the second, ...
 

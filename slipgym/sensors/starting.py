@@ -25,7 +25,9 @@ def start_sensors(force_torque: np.ndarray, chips: np.ndarray, rng: np.random.Ge
 def _start(force_torque, chips, keys, carries):
     for i in range(chips.shape[0]):
         wrench, slip = force_torque[i], chips[i]
-        wrench.history[:] = 0.0
+        for k in range(wrench.kept):
+            for a in range(6):
+                wrench.history[k, a] = 0.0
         wrench.read = 0
         wrench.key, wrench.drift_key, slip.key = keys[0, i], keys[1, i], keys[2, i]
         slip.counted[:] = 0.0

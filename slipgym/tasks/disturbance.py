@@ -21,10 +21,6 @@ FIELDS = [
         "f8",
         (SHAKES, 3, 3),
     ),  # per axis: amplitude [m, rad], omega [rad/s], phase [rad]
-    ("pushes", "i8"),  # how many
-    ("push_start", "i8", PUSHES_MAX),  # control step
-    ("push_end", "i8", PUSHES_MAX),  # first control step without it
-    ("push_wrench", "f8", (PUSHES_MAX, 3)),  # on the centre of mass, world [N, N, N m]
     ("mass", "f8"),  # of the object at reset [kg]
     ("inertia", "f8"),  # likewise [kg m^2]
     ("mass_step", "i8"),  # control step at which both change
@@ -36,6 +32,11 @@ FIELDS = [
     ("jump_factor", "f8"),  # after over before [-]
     ("patch", "f8", 2),  # distance from the grasp at which it begins and ends [m]
     ("patch_factor", "f8"),  # friction on it over elsewhere [-]
+    ("pushes", "i8"),  # how many
+    # last, as they are long and most steps have no push
+    ("push_start", "i8", PUSHES_MAX),  # control step
+    ("push_end", "i8", PUSHES_MAX),  # first control step without it
+    ("push_wrench", "f8", (PUSHES_MAX, 3)),  # on the centre of mass, world [N, N, N m]
 ]
 """Fields of EPISODE."""
 

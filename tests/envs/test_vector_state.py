@@ -28,7 +28,9 @@ def midway(env_id=ID, **arguments):
     """A batch in which some episodes are over, some go on."""
     env = gym.make_vec(env_id, **{**MADE, **arguments})
     env.reset(seed=4)
-    for action in actions(env, 300):
+    for k, action in enumerate(actions(env, 300)):
+        if k == 5:  # from now on not all of them end at the same time
+            env.reset(options={"reset_mask": np.arange(env.num_envs) == 0})
         _, _, terminated, truncated, _ = env.step(action)
         over = terminated | truncated
         if over.any() and not over.all():

@@ -34,6 +34,17 @@ def test_every_sample_within_its_steps_is_kept(policy_folder, tmp_path):
     )
 
 
+def test_more_samples_than_a_sensor_keeps_are_refused():
+    config = {"sensors": {"force_torque": {"rate": 7560}}}  # 63 in a control step
+    with pytest.raises(ValueError, match=r"rate = 7560 Hz: 65 samples.* at most 64"):
+        record_sensors("Hold", "hold", options={"duration": 0.1}, config=config)
+    config = {"sensors": {"force_torque": {"rate": 7200}}}
+    frame = record_sensors("Hold", "hold", options={"duration": 0.1, "material": "wood"}, config=config)
+    forces = frame["f_n"].dropna()
+    assert len(forces) == 720
+    assert np.ptp(forces.diff().abs().dropna()) < 1.0  # none is missing, so that all steps are small
+
+
 def test_a_policy_of_another_environment_is_refused(policy_folder):
     with pytest.raises(ValueError, match="the policy was trained for another observation"):
         record_sensors("LinearSlip", str(policy_folder()))

@@ -17,7 +17,7 @@ from slipgym.tasks import find
 def shelf(tmp_path):
     def make(*names):
         for name in names:
-            (tmp_path / name).mkdir()
+            (tmp_path / name).mkdir(parents=True)
             (tmp_path / name / "policy.json").write_text("{}")
         return str(tmp_path)
 
@@ -66,6 +66,19 @@ def test_learned_policies_by_task_source_and_seed(small, shelf):
     }
     (notice,) = missing(study, found)
     assert "no learned policy for estimated;" in notice
+
+
+def test_learned_policies_as_training_left_them(small, shelf):
+    runs = [
+        f"linear_slip__ppo__20260101/{source}__{seed}/policy"
+        for source in ("none", "true")
+        for seed in (0, 1)
+    ]
+    found = policies_of(small(learned=shelf(*runs, "hold__ppo__20260101/true__0/policy")))
+    assert {key: [path.parent.name for path in paths] for key, paths in found.items()} == {
+        ("LinearSlip", "none"): ["none__0", "none__1"],
+        ("LinearSlip", "true"): ["true__0", "true__1"],
+    }
 
 
 def test_two_folders_of_one_seed_are_an_error(small, shelf):
