@@ -90,7 +90,7 @@ def _round(config: Training, model: Any, envs: Any, led: np.ndarray) -> _Round:
     slower = {"physics": {"control_rate": round(rate)}, "sensors": {"slip": {"rate": round(rate)}}}
     alone = config.environment.friction_source == "none"
     given = getattr(policies.find(chosen.policy), "unaware", {}) if alone else {}
-    teacher = policies.make(chosen.policy, config=slower, **{**chosen.parameters, **given})
+    teacher = policies.make(chosen.policy, config=slower, **{**given, **chosen.parameters})
     state, memory, rows = None, None, []
     observations, starts = envs.reset(), np.ones(envs.num_envs, bool)
     for step in range(chosen.steps):
