@@ -151,10 +151,25 @@ def norm(residual, radius):
 
 @compiled
 def solve_motion(pads, cells, limits, inertia, centre, free, motion, h):
-    """Damped semi-smooth Newton iteration for the motion that balances momentum and friction."""
+    """Damped semi-smooth Newton iteration for the motion that balances momentum and friction.
+
+    If it does not get there from the guess, it begins again from rest, which lies on the other side of the
+    break-away; the better result counts.
+    """
     tolerance = 0.0
     for i in range(len(pads)):
         tolerance += FORCE_TOLERANCE * limits[i] * pads[i].normal
+    motion, error = iterate(pads, cells, limits, inertia, centre, free, motion, h, tolerance)
+    if error > tolerance:
+        other, rest = iterate(pads, cells, limits, inertia, centre, free, (0.0, 0.0, 0.0), h, tolerance)
+        if rest < error:
+            return other
+    return motion
+
+
+@compiled
+def iterate(pads, cells, limits, inertia, centre, free, motion, h, tolerance):
+    """The iteration from a first guess; returns the motion and the norm of its residual [N]."""
     radius = pads[0].r
     residual, jacobian = assemble(pads, cells, limits, inertia, centre, free, motion, h)
     error = norm(residual, radius)
@@ -170,7 +185,7 @@ def solve_motion(pads, cells, limits, inertia, centre, free, motion, h):
             if error < before:
                 break
             share *= 0.5
-    return motion
+    return motion, error
 
 
 @compiled

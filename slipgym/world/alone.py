@@ -7,7 +7,7 @@ import math
 from slipgym.compiled import compiled
 from slipgym.sensors.force_torque import sample_force_torque, sample_read_next
 from slipgym.world.actuator import relaxed, take_up, ticks_to_next
-from slipgym.world.planar import HOLDING, locate, substep
+from slipgym.world.planar import HOLDING, locate, pad_axes, substep
 
 FLAT = 3.0  # slip speed over v_s from which the Stribeck curve has decayed, to exp(-9)
 CHANGE = 0.1  # of slip speed or v_s within a sub-step
@@ -53,6 +53,8 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
         h = ticks * world.tick_length
         for f in range(2):
             press(pads[f], fingers[f], h)
+        if sticks(pads[0]) or sticks(pads[1]):
+            carry(world, h)
         substep(world, pads, cells, fingers, chips, h, ticks / world.control_ticks)
         world.tick += ticks
         done += 1
@@ -64,6 +66,35 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
         fingers[f].contact_force = touching(fingers[f].force)
     locate(world)
     return done
+
+
+@compiled
+def sticks(pad):
+    """Whether a pad held the object without slip in the last sub-step."""
+    return pad.normal > HOLDING and pad.slip_rate == 0.0
+
+
+@compiled
+def carry(world, h):
+    """Give an object that sticks the velocity of the pads half of the coming sub-step ago.
+
+    Backward Euler takes the mean velocity over a sub-step for the one at its end, half a sub-step late. In
+    equal sub-steps that cancels, and friction is what the acceleration a asks for; a sub-step of h after one
+    of k would ask for a (k + h) / 2 h, many times of it where h is short.
+
+    Args:
+        world: WORLD record.
+        h: Length of the coming sub-step [s].
+    """
+    cos, sin = pad_axes(world)
+    x, z = world.com[0] - world.wrist[0], world.com[1] - world.wrist[1]
+    vx, vz, omega = world.wrist_velocity
+    ax, az, alpha = world.wrist_acceleration
+    rx, rz, turning = world.relative_velocity
+    ago = 0.5 * h
+    world.velocity[0] = vx - omega * z - ago * (ax - alpha * z - omega * omega * x) + cos * rx - sin * rz
+    world.velocity[1] = vz + omega * x - ago * (az + alpha * x - omega * omega * z) + sin * rx + cos * rz
+    world.velocity[2] = omega - ago * alpha + turning
 
 
 @compiled

@@ -89,7 +89,11 @@ def substep(world, pads, cells, fingers, chips, h, share):
         drift[2] + gain * at,
     )
     centre = (world.relative[0], world.relative[1])
-    motion = step_pads(pads, cells, (world.mass, world.inertia), centre, free, drift, h)
+    # a sub-step this long is one of firm stick: what the object would drift in it lies far beyond break-away,
+    # from where Newton's iteration may not find back
+    firm = h > 1.001 * world.calm_ticks * world.tick_length
+    guess = (0.0, 0.0, 0.0) if firm else drift
+    motion = step_pads(pads, cells, (world.mass, world.inertia), centre, free, guess, h)
     braking_x = (motion[0] - free[0]) * rate
     braking_y = (motion[1] - free[1]) * rate
     world.velocity[0] += h * ax + cos * braking_x - sin * braking_y
