@@ -3,11 +3,12 @@
 import math
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from slipgym.contact.coupled import assemble, norm, solve_motion, solve_symmetric, step_pads
+from slipgym.contact.coupled import assemble, norm, prepare, solve_motion, solve_symmetric, step_pads
 from slipgym.contact.records import pads
 
 H = 5e-4
@@ -158,3 +159,27 @@ def test_without_any_normal_force_the_object_is_free():
     array = pads(2, **EQUAL)
     free = (1e-4, -2e-4, 3e-3)
     assert step_pads(array, NO_CELLS, (0.2, 5e-4), (0.01, 0.0), free, (0.0, 0.0, 0.0), H) == free
+
+
+@pytest.mark.parametrize("h", [2.5e-4, 5e-4, 5e-3])
+def test_momentum_is_balanced_however_far_the_guess(h):
+    """Loads of up to three times the limit; in 5 ms an object drifts far beyond what the bristles reach."""
+    rng = np.random.default_rng(0)
+    for _ in range(400):
+        array = pads(
+            2, stribeck_velocity=1e-3, sigma_2=0.2, sigma_1=80.0, sigma_0=10 ** rng.uniform(5.3, 6.7)
+        )
+        array["mu_c"] = rng.uniform(0.2, 0.8)
+        array["mu_s"] = array["mu_c"] * rng.uniform(1.0, 1.9)
+        array["r"], array["normal"] = rng.uniform(0.004, 0.01), rng.uniform(1.0, 25.0)
+        pad = array[0]
+        held = 2.0 * pad["mu_s"] * pad["normal"]
+        z, load = (v / np.linalg.norm(v) for v in rng.normal(size=(2, 3)))
+        array["z"] = z * rng.uniform(0.0, 0.7) * pad["mu_s"] / pad["sigma_0"]
+        mass, arm = rng.uniform(0.05, 0.4), np.array([1.0, 1.0, pad["r"]])
+        inertia = mass, 1e-3 * mass
+        free = tuple(h**2 * rng.uniform(0.0, 3.0) * held * load * arm / [mass, mass, inertia[1]])
+        limits = tuple(prepare(one, NO_CELLS, 0, h) for one in array)
+        motion = solve_motion(array, NO_CELLS, limits, inertia, (0.0, 0.0), free, free, h)
+        residual, _ = assemble(array, NO_CELLS, limits, inertia, (0.0, 0.0), free, motion, h)
+        assert norm(residual, pad["r"]) <= 1e-9 * held
