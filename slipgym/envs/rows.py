@@ -94,8 +94,8 @@ def _drive(
 ):  # fmt: skip
     """A step, that is `skip` samples, of the active rows among lo to hi; an episode that ends stops its row.
 
-    What it was worth and whether the episode ended stands in arrays of their own: to gather it from the
-    records of thousands of rows takes as long as a quarter of the step.
+    What it was worth and whether the episode ended stands in arrays of their own: gathered later, from the
+    records of thousands of rows, each would be a miss of the cache.
 
     Returns:
         The first row with a number that is not finite; -1 without one.

@@ -40,9 +40,7 @@ def test_more_samples_than_a_sensor_keeps_are_refused():
         record_sensors("Hold", "hold", options={"duration": 0.1}, config=config)
     config = {"sensors": {"force_torque": {"rate": 7200}}}
     frame = record_sensors("Hold", "hold", options={"duration": 0.1, "material": "wood"}, config=config)
-    forces = frame["f_n"].dropna()
-    assert len(forces) == 720
-    assert np.ptp(forces.diff().abs().dropna()) < 1.0  # none is missing, so that all steps are small
+    assert frame["f_n"].notna().sum() == 720
 
 
 def test_a_policy_of_another_environment_is_refused(policy_folder):
