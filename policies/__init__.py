@@ -8,7 +8,8 @@ action, state = policy.predict(observation, state=None)
 
 from typing import TYPE_CHECKING, Any
 
-from policies.registry import Policy, find, is_controller, load, make, modes, names
+from policies.controllers import is_controller
+from policies.registry import Policy, find, load, make, modes, names
 
 if TYPE_CHECKING:
     from policies.training.adapter import make_vec_env

@@ -1,24 +1,14 @@
 """The table of policies, and how to make one by name."""
 
-import inspect
 import os
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
-from estimator.reference import is_reference, referenced
+from estimator.reference import is_reference
+from policies import controllers
 from policies.learned import LearnedPolicy, shipped
-
-_CLASSES = {
-    "rotational_slip": "policies.rotational_slip:RotationalSlipPolicy",
-    "hinge": "policies.hinge:HingePolicy",
-    "constant_force": "policies.constant_force:ConstantForcePolicy",
-    "planar_slip": "policies.planar_slip:PlanarSlipPolicy",
-    "hold": "policies.hold:HoldPolicy",
-    "linear_slip": "policies.linear_slip:LinearSlipPolicy",
-}
-"""Name -> module:class; imported on first use."""
 
 
 class Policy(Protocol):
@@ -44,12 +34,7 @@ class Policy(Protocol):
 
 def names() -> list[str]:
     """Names that `make` knows: controllers, and the learned policies that come with slipgym."""
-    return sorted({*_CLASSES, *shipped()})
-
-
-def is_controller(name: str) -> bool:
-    """Whether a name stands for a class, as `find` takes it; the others are learned."""
-    return name in _CLASSES or is_reference(name)
+    return sorted({*controllers.CLASSES, *shipped()})
 
 
 def modes(policy: Any) -> dict[str, Any]:
@@ -73,14 +58,7 @@ def find(name: str) -> type[Policy]:
     Raises:
         ValueError: There is none.
     """
-    if is_reference(name):
-        policy = referenced(name)
-        if not isinstance(policy, type) or not callable(getattr(policy, "predict", None)):
-            raise ValueError(f"{name!r} is no policy: a class with a method predict")
-        return policy
-    if name not in _CLASSES:
-        raise ValueError(f"unknown policy {name!r}; valid: {', '.join(names())}")
-    return referenced(_CLASSES[name])
+    return controllers.find(name, names())
 
 
 def make(name: str, **parameters: Any) -> Policy:
@@ -94,11 +72,9 @@ def make(name: str, **parameters: Any) -> Policy:
         ValueError: The name or a parameter is unknown, or a value is not allowed.
     """
     if name in shipped():
-        _refuse(name, parameters, [])
+        controllers.refuse(name, parameters, [])
         return LearnedPolicy(shipped()[name])
-    policy = find(name)
-    _refuse(name, parameters, list(inspect.signature(policy).parameters))
-    return policy(**parameters)
+    return controllers.make(name, parameters, names())
 
 
 def load(which: str | os.PathLike[str], **parameters: Any) -> Policy:
@@ -118,12 +94,5 @@ def load(which: str | os.PathLike[str], **parameters: Any) -> Policy:
     if not Path(which).exists():
         known = ", ".join(names())
         raise FileNotFoundError(f"no policy at {os.fspath(which)!r}; policies.make knows by name: {known}")
-    _refuse(os.fspath(which), parameters, [])
+    controllers.refuse(os.fspath(which), parameters, [])
     return LearnedPolicy(which)
-
-
-def _refuse(name: str, parameters: dict[str, Any], valid: list[str]) -> None:
-    for parameter in parameters:
-        if parameter not in valid:
-            known = ", ".join(valid) or "none, it is learned"
-            raise ValueError(f"unknown parameter {parameter!r} of policy {name!r}; valid: {known}")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-import policies
+from policies import controllers
 from slipgym.config import Overrides
 from slipgym.envs.observation import FRICTION_COLUMNS
 
@@ -21,12 +21,13 @@ class Unaware:
     Args:
         controller: A name of `policies.names()` or "module:class"; none that is learned.
         config: Overrides of the environment's configuration.
+        **parameters: Of the controller's class.
     """
 
-    def __init__(self, controller: str, config: Overrides | None = None) -> None:
-        given = getattr(policies.find(controller), "unaware", {})
-        self._controller = policies.make(controller, config=config, **given)
-        self.modes = policies.modes(self._controller)
+    def __init__(self, controller: str, config: Overrides | None = None, **parameters: Any) -> None:
+        given = getattr(controllers.find(controller), "unaware", {})
+        self._controller = controllers.make(controller, {"config": config, **given, **parameters})
+        self.modes = {"action_mode": self._controller.action_mode}
 
     def predict(
         self,

@@ -7,6 +7,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, JsonValue, field_validator, model_validator
 
+from policies.controllers import CLASSES
 from slipgym.config import names
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.errors import unknown
@@ -32,6 +33,7 @@ class Column(Frozen):
     unit: _Text = Field(description="Unit of the bounds [-]")
 
 
+_Number = bool | float | None
 _Columns = Annotated[tuple[Column, ...], BeforeValidator(as_tuple), Field(min_length=1, max_length=1024)]
 
 
@@ -93,6 +95,23 @@ class Normalisation(Frozen):
     epsilon: Positive = Field(description="Added to the variance [unit^2]")
 
 
+class Residual(Frozen):
+    """A controller whose actions the network changes: clip(action + reach network(observation, action))."""
+
+    controller: str = Field(description="Its name, of those that come with slipgym [-]")
+    parameters: Mapping[str, _Number | Annotated[tuple[_Number, ...], BeforeValidator(as_tuple)]] = Field(
+        default={}, description="Numbers that its class is made with [-]"
+    )
+    reach: float = Field(gt=0.0, le=2.0, description="Largest change of an action [-]")
+
+    @field_validator("controller")
+    @classmethod
+    def _comes_with_slipgym(cls, name: str) -> str:
+        if name not in CLASSES:
+            raise ValueError(unknown("controller", name, CLASSES))
+        return name
+
+
 class Critic(Frozen):
     """What rebuilding the model for more training needs besides the policy's own network."""
 
@@ -122,10 +141,18 @@ class Description(Frozen):
     environment: Environment = Field(description="The environment it was trained in [-]")
     network: Network = Field(description="What turns an observation into an action [-]")
     normalisation: Normalisation | None = Field(description="Of observations; null: none [-]")
+    residual: Residual | None = Field(
+        default=None, description="What the network changes; null: it acts by itself [-]"
+    )
     origin: Origin = Field(description="How it came about [-]")
     files: Mapping[str, Annotated[str, Field(pattern=r"\A[0-9a-f]{64}\z")]] = Field(
         description="SHA-256 of each other file by its name [-]"
     )
+
+    @property
+    def width(self) -> int:
+        """Numbers that the network reads: an observation, and behind it the action that it may change."""
+        return self.environment.width + (0 if self.residual is None else len(self.environment.action))
 
     @field_validator("files")
     @classmethod

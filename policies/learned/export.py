@@ -14,7 +14,15 @@ import gymnasium as gym
 import numpy as np
 
 from policies.learned import files
-from policies.learned.description import TRAINING, WEIGHTS, Critic, Description, Environment, Network
+from policies.learned.description import (
+    TRAINING,
+    WEIGHTS,
+    Critic,
+    Description,
+    Environment,
+    Network,
+    Residual,
+)
 from policies.learned.extract import ALGORITHMS, acting_tensors, algorithm_of, array, critic_of, network_of
 from policies.learned.fitting import column_of
 
@@ -30,6 +38,7 @@ def save(
     command: str = "",
     seeds: Sequence[int] = (),
     training: bool = True,
+    residual: Residual | None = None,
 ) -> Path:
     """Writes a model as a policy's folder, whole or not at all.
 
@@ -42,17 +51,19 @@ def save(
         command: What trained it, for the record.
         seeds: Of the training, for the record.
         training: Whether to keep all that training adapts, so that `build` can go on from it.
+        residual: The controller whose actions the model changes; its observations end with them.
 
     Raises:
         FileExistsError: Something is there already.
         ValueError: The model is of a kind that the format does not hold, or not of this environment.
     """
     algorithm, network, where = algorithm_of(model), network_of(model), described(environment, arguments)
-    for what, space, width in (
-        ("observation", model.observation_space, where["history"] + 1),
-        ("action", model.action_space, 1),
+    acts = len(where["action"])
+    reads = (where["history"] + 1) * len(where["observation"]) + (0 if residual is None else acts)
+    for what, space, shape in (
+        ("observation", model.observation_space, (reads,)),
+        ("action", model.action_space, (acts,)),
     ):
-        shape = (width * len(where[what]),)
         if space.shape != shape:
             raise ValueError(f"the model's {what} has shape {space.shape}, that of {environment} {shape}")
     weights, kept = acting_tensors(model), _all_tensors(model)
@@ -68,6 +79,7 @@ def save(
         "environment": where,
         "network": network.model_dump(mode="json"),
         "normalisation": normalised,
+        "residual": None if residual is None else residual.model_dump(mode="json"),
         "origin": {
             "algorithm": algorithm,
             "command": command,

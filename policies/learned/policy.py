@@ -11,6 +11,7 @@ import numpy as np
 from policies.learned import files
 from policies.learned.fitting import check_environment, check_width
 from policies.learned.forward import Memory, Network
+from policies.learned.residual import Underlying
 
 MODES = ("action_mode", "observation_mode", "history", "frame_skip")
 """Arguments of an environment that decide what a policy reads, gives and how often."""
@@ -33,6 +34,10 @@ class LearnedPolicy:
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.description, tensors = files.read(path)
         self._network = Network(self.description, tensors)
+        self._underlying = None
+        if (residual := self.description.residual) is not None:
+            where = self.description.environment
+            self._underlying = Underlying(residual, where.arguments, len(where.observation), where.rate)
 
     @property
     def modes(self) -> dict[str, Any]:
@@ -51,10 +56,10 @@ class LearnedPolicy:
     def predict(
         self,
         observation: np.ndarray | Mapping[str, np.ndarray],
-        state: Memory | None = None,
+        state: Any = None,
         episode_start: np.ndarray | None = None,
         deterministic: bool = True,
-    ) -> tuple[np.ndarray, Memory | None]:
+    ) -> tuple[np.ndarray, Any]:
         """Action for an observation (m,) or for a batch of them (n, m).
 
         Args:
@@ -65,7 +70,8 @@ class LearnedPolicy:
 
         Returns:
             Action (k,) or (n, k), float32 within [-1, 1], and the memory: None, or hidden and cell state of
-            the LSTM layers, (n, layers, size) each, n = 1 for a single observation.
+            the LSTM layers, (n, layers, size) each, n = 1 for a single observation; of a residual policy
+            the controller's memory and this one, a tuple.
 
         Raises:
             ValueError: The observation, the memory or `episode_start` does not fit, or holds NaN or infinity.
@@ -73,12 +79,26 @@ class LearnedPolicy:
         if not deterministic:
             raise ValueError("deterministic = False: a policy's file acts without exploration")
         observations = self._observations(observation)
-        memory = self._memory(state, episode_start, len(np.atleast_2d(observations)))
+        rows = np.atleast_2d(observations)
+        if self._underlying is None:
+            actions, memory = self._act(rows, state, episode_start)
+        else:
+            beneath, own = _parts(state)
+            given, beneath = self._underlying.act(rows, beneath, episode_start)
+            change, own = self._act(np.concatenate([rows, given], axis=1), own, episode_start)
+            actions, memory = self._underlying.changed(given, change), (beneath, own)
+        return (actions if observations.ndim == 2 else actions[0]), memory
+
+    def _act(
+        self, rows: np.ndarray, state: Memory | None, episode_start: np.ndarray | None
+    ) -> tuple[np.ndarray, Memory | None]:
+        """What the network makes of rows (n, width) of numbers."""
+        memory = self._memory(state, episode_start, len(rows))
         with np.errstate(over="ignore", invalid="ignore"):
-            actions, memory = self._network.forward(np.atleast_2d(observations), memory)
+            actions, memory = self._network.forward(rows, memory)
         if np.isnan(actions).any():
             raise ValueError("the action is NaN: observation or weights are too large for float32")
-        return (actions if observations.ndim == 2 else actions[0]), memory
+        return actions, memory
 
     def _observations(self, observation: np.ndarray | Mapping[str, np.ndarray]) -> np.ndarray:
         """What the network reads, (m,) or (n, m)."""
@@ -116,3 +136,12 @@ class LearnedPolicy:
             raise ValueError(f"state has shapes {shapes}, {n} observations need {[(n, *shape)] * 2}")
         hidden, cell = (np.where(begun[:, None, None], np.float32(0.0), part) for part in state)
         return hidden, cell
+
+
+def _parts(state: Any) -> tuple[Any, Any]:
+    """Memory of the controller and of the network of a residual policy."""
+    if state is None:
+        return None, None
+    if not isinstance(state, tuple) or len(state) != 2:
+        raise ValueError(f"state must be what the last call returned, got {type(state).__name__}")
+    return state

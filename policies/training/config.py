@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 import policies
+from policies.learned.description import Residual
 from policies.training import seeds
 from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO, Share
 from slipgym.config import load, load_randomization
@@ -167,6 +168,10 @@ class Training(Frozen):
         description="Overrides of the environment's config where it learns; not where it is evaluated [-]",
     )
     imitation: Imitation | None = Field(default=None, description="What PPO begins with; null: nothing [-]")
+    residual: Residual | None = Field(
+        default=None,
+        description="A controller whose actions the learner changes; null: it acts by itself [-]",
+    )
     normalisation: Normalisation = Field(default=Normalisation(), description="Of what is learned from [-]")
     evaluation: Evaluation = Field(default=Evaluation(), description="How progress is measured [-]")
     stop: Stop = Field(default=Stop(), description="When a run ends early [-]")
@@ -195,6 +200,22 @@ class Training(Frozen):
                 raise ValueError(f"imitation is for ppo and recurrent_ppo, not for {self.algorithm}")
             policies.find(self.imitation.policy)
             policies.make(self.imitation.policy, **self.imitation.parameters)
+        return self
+
+    @model_validator(mode="after")
+    def _can_change_the_controller(self) -> Self:
+        if self.residual is None:
+            return self
+        if self.imitation is not None:
+            raise ValueError("residual and imitation exclude each other: a residual begins as its controller")
+        if self.environment.observation_mode != "flat":
+            raise ValueError("residual needs observation_mode 'flat', which its controller reads")
+        controller = policies.make(self.residual.controller, **self.residual.parameters)
+        needs, has = policies.modes(controller)["action_mode"], TASKS[self.task].action_mode
+        if needs != (self.environment.action_mode or has):
+            raise ValueError(f"residual: {self.residual.controller} needs action_mode {needs!r}")
+        if getattr(controller, "task", None) not in (None, self.task):
+            raise ValueError(f"residual: {self.residual.controller} is not for {self.task}")
         return self
 
     @model_validator(mode="after")

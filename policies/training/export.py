@@ -36,4 +36,5 @@ def write(
     envs = model.get_vec_normalize_env()
     learners.set_normalisation(envs, dict(normalisation))
     arguments = config.environment.model_dump(mode="json")
-    return export.save(model, path, f"slipgym/{config.task}-v0", arguments, envs, command, [seed])
+    where = f"slipgym/{config.task}-v0"
+    return export.save(model, path, where, arguments, envs, command, [seed], residual=config.residual)

@@ -9,8 +9,10 @@ from typing import Any
 import gymnasium as gym
 from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv, VecMonitor
 
+from policies.learned.residual import Underlying
 from policies.training.adapter import SlipVecEnv, make_vec_env
 from policies.training.config import Training
+from policies.training.residual import ResidualVecEnv
 
 
 class Scenario(gym.Wrapper):
@@ -48,12 +50,14 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
     if config.engine == "planar":
         varied = scenarios if config.vary else None
         made = make_vec_env(_id(config), count, seed, config.engine_threads, scenarios=varied, **keywords)
-        assert isinstance(made, VecMonitor)
+    else:
+        made = scalar(config.task, count, combinations, config.processes, **keywords)
+        made.seed(seed)
+    assert isinstance(made, VecMonitor)
+    if config.residual is None:
         return made
-
-    monitored = scalar(config.task, count, combinations, config.processes, **keywords)
-    monitored.seed(seed)
-    return monitored
+    columns, metadata = made.get_attr("columns")[0], made.get_attr("metadata")[0]
+    return ResidualVecEnv(made, Underlying(config.residual, keywords, len(columns), metadata["render_fps"]))
 
 
 def scalar(
@@ -77,8 +81,10 @@ def scalar(
     return VecMonitor(SubprocVecEnv(makers) if processes else DummyVecEnv(makers))
 
 
-def get_state(envs: VecMonitor) -> dict[str, Any]:
+def get_state(envs: VecMonitor | ResidualVecEnv) -> dict[str, Any]:
     """Everything that decides what the environments do next, as plain data."""
+    if isinstance(envs, ResidualVecEnv):
+        return {**get_state(envs.venv), "residual": envs.get_state()}
     states = envs.env_method("get_state")
     return {
         "envs": states[:1] if _is_batch(envs) else states,
@@ -87,12 +93,15 @@ def get_state(envs: VecMonitor) -> dict[str, Any]:
     }
 
 
-def set_state(envs: VecMonitor, state: dict[str, Any]) -> None:
+def set_state(envs: VecMonitor | ResidualVecEnv, state: dict[str, Any]) -> None:
     """Go on from a state.
 
     Raises:
         ValueError: It is of other environments.
     """
+    if isinstance(envs, ResidualVecEnv):
+        envs.set_state(state["residual"])
+        envs = envs.venv
     for index, one in enumerate(state["envs"]):
         envs.env_method("set_state", one, indices=None if _is_batch(envs) else index)
     envs.episode_returns, envs.episode_lengths = state["returns"].copy(), state["lengths"].copy()

@@ -1,0 +1,66 @@
+"""A controller under a learner that only changes its actions: residual policy learning.
+
+T. Silver, K. Allen, J. Tenenbaum, L. Kaelbling, Residual policy learning, arXiv 1812.06298; T. Johannink et
+al., Residual reinforcement learning for robot control, arXiv 1812.03201.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from policies import controllers
+from policies.learned.description import Residual
+from policies.unaware import Unaware
+
+
+def at_rate(rate: float, config: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Configuration of a controller that acts as often as a learner.
+
+    Args:
+        rate: Actions per second, rounded to whole ones.
+        config: Overrides of the environment's configuration.
+    """
+    given = dict(config or {})
+    sensors = dict(given.get("sensors", {}))
+    given["physics"] = {**given.get("physics", {}), "control_rate": round(rate)}
+    given["sensors"] = {**sensors, "slip": {**sensors.get("slip", {}), "rate": round(rate)}}
+    return given
+
+
+class Underlying:
+    """The controller of a residual policy, reading the newest of the observations that the learner reads.
+
+    Args:
+        residual: The controller, and how far its actions may be changed.
+        arguments: Keyword arguments of the environment; told no friction, the controller is `Unaware`.
+        columns: Numbers in one observation, without the earlier ones.
+        rate: Actions per second.
+
+    Raises:
+        ValueError: The controller has no such parameter.
+    """
+
+    def __init__(self, residual: Residual, arguments: Mapping[str, Any], columns: int, rate: float) -> None:
+        name, config = residual.controller, at_rate(rate, arguments.get("config"))
+        self._columns, self._reach = columns, np.float32(residual.reach)
+        if arguments.get("friction_source") == "none":
+            self._controller: Any = Unaware(name, config, **residual.parameters)
+        else:
+            self._controller = controllers.make(name, {**residual.parameters, "config": config})
+
+    def act(self, observations: np.ndarray, state: Any, starts: np.ndarray | None) -> tuple[np.ndarray, Any]:
+        """Actions (n, k) for observations (n, m), earlier ones first in each, and the controller's memory.
+
+        Args:
+            observations: As the learner reads them.
+            state: The controller's memory; None before the first call.
+            starts: Which rows begin an episode, (n,) bool; None: none but before the first call.
+        """
+        return self._controller.predict(observations[:, -self._columns :], state, starts)
+
+    def changed(self, actions: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """Actions (n, k) with what the learner adds, its output being within [-1, 1]; float32."""
+        return np.clip(actions + self._reach * change, -1.0, 1.0).astype(np.float32)

@@ -1,0 +1,66 @@
+"""Environments in which a learner changes the actions of a controller."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from gymnasium.spaces import Box
+from stable_baselines3.common.vec_env import VecEnvWrapper, VecMonitor
+from stable_baselines3.common.vec_env.base_vec_env import VecEnvStepReturn
+
+from policies.learned.residual import Underlying
+
+
+class ResidualVecEnv(VecEnvWrapper):
+    """Environments whose observations end with a controller's action, and whose actions change it.
+
+    Args:
+        venv: The environments; observations are vectors.
+        underlying: The controller.
+    """
+
+    venv: VecMonitor
+
+    def __init__(self, venv: VecMonitor, underlying: Underlying) -> None:
+        observed, acted = venv.observation_space, venv.action_space
+        assert isinstance(observed, Box)
+        assert isinstance(acted, Box)
+        low, high = (
+            np.concatenate([getattr(space, end) for space in (observed, acted)]) for end in ("low", "high")
+        )
+        super().__init__(venv, observation_space=Box(low, high))
+        self._underlying, self._state = underlying, None
+        self._given = np.zeros((venv.num_envs, *acted.shape), np.float32)
+
+    def reset(self) -> np.ndarray:
+        """Start episodes in all environments; the controller forgets all."""
+        return self._seen(self.venv.reset(), np.ones(self.num_envs, bool))
+
+    def step_async(self, actions: np.ndarray) -> None:
+        """Take the changes (n, k) of the next `step_wait`."""
+        self.venv.step_async(self._underlying.changed(self._given, actions))
+
+    def step_wait(self) -> VecEnvStepReturn:
+        """Step all environments; the controller acts on what an episode's last observation is, too."""
+        observations, rewards, dones, infos = self.venv.step_wait()
+        if dones.any():
+            last: Any = np.array(observations)
+            for i in np.flatnonzero(dones):
+                last[i] = infos[i]["terminal_observation"]
+            given, _ = self._underlying.act(last, self._state, None)
+            for i in np.flatnonzero(dones):
+                infos[i]["terminal_observation"] = np.concatenate([last[i], given[i]])
+        return self._seen(observations, dones), rewards, dones, infos
+
+    def get_state(self) -> dict[str, Any]:
+        """The controller's memory and its present actions, as plain data."""
+        return {"memory": self._state, "given": self._given.copy()}
+
+    def set_state(self, state: dict[str, Any]) -> None:
+        """Go on from a state."""
+        self._state, self._given = state["memory"], state["given"].copy()
+
+    def _seen(self, observations: Any, starts: np.ndarray) -> np.ndarray:
+        self._given, self._state = self._underlying.act(observations, self._state, starts)
+        return np.concatenate([observations, self._given], axis=1)
