@@ -96,7 +96,7 @@ class Normalisation(Frozen):
 
 
 class Residual(Frozen):
-    """A controller whose actions the network changes: clip(action + reach network(observation, action))."""
+    """A controller whose actions a network changes: action + reach network(observation, action, memory)."""
 
     controller: str = Field(description="Its name, of those that come with slipgym [-]")
     parameters: Mapping[str, _Number | Annotated[tuple[_Number, ...], BeforeValidator(as_tuple)]] = Field(
@@ -110,6 +110,12 @@ class Residual(Frozen):
         if name not in CLASSES:
             raise ValueError(unknown("controller", name, CLASSES))
         return name
+
+
+class Underlay(Residual):
+    """The same with what else the network reads."""
+
+    memory: int = Field(ge=0, le=1024, description="Numbers in the controller's memory [-]")
 
 
 class Critic(Frozen):
@@ -141,7 +147,7 @@ class Description(Frozen):
     environment: Environment = Field(description="The environment it was trained in [-]")
     network: Network = Field(description="What turns an observation into an action [-]")
     normalisation: Normalisation | None = Field(description="Of observations; null: none [-]")
-    residual: Residual | None = Field(
+    residual: Underlay | None = Field(
         default=None, description="What the network changes; null: it acts by itself [-]"
     )
     origin: Origin = Field(description="How it came about [-]")
@@ -151,8 +157,9 @@ class Description(Frozen):
 
     @property
     def width(self) -> int:
-        """Numbers that the network reads: an observation, and behind it the action that it may change."""
-        return self.environment.width + (0 if self.residual is None else len(self.environment.action))
+        """Numbers that the network reads: an observation; behind it a controller's action and memory."""
+        where, residual = self.environment, self.residual
+        return where.width + (0 if residual is None else len(where.action) + residual.memory)
 
     @field_validator("files")
     @classmethod

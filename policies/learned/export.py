@@ -25,6 +25,7 @@ from policies.learned.description import (
 )
 from policies.learned.extract import ALGORITHMS, acting_tensors, algorithm_of, array, critic_of, network_of
 from policies.learned.fitting import column_of
+from policies.learned.residual import Underlying
 
 _PACKAGES = ("slipgym", "gymnasium", "numpy", "stable-baselines3", "sb3-contrib", "torch")
 
@@ -51,15 +52,20 @@ def save(
         command: What trained it, for the record.
         seeds: Of the training, for the record.
         training: Whether to keep all that training adapts, so that `build` can go on from it.
-        residual: The controller whose actions the model changes; its observations end with them.
+        residual: The controller whose actions the model changes; its observations end with the controller's
+            action and memory.
 
     Raises:
         FileExistsError: Something is there already.
         ValueError: The model is of a kind that the format does not hold, or not of this environment.
     """
     algorithm, network, where = algorithm_of(model), network_of(model), described(environment, arguments)
-    acts = len(where["action"])
-    reads = (where["history"] + 1) * len(where["observation"]) + (0 if residual is None else acts)
+    acts, reads = len(where["action"]), (where["history"] + 1) * len(where["observation"])
+    underlay = None
+    if residual is not None:
+        underlying = Underlying(residual, arguments, len(where["observation"]), where["rate"])
+        underlay = {**residual.model_dump(mode="json"), "memory": underlying.memory}
+        reads += acts + underlying.memory
     for what, space, shape in (
         ("observation", model.observation_space, (reads,)),
         ("action", model.action_space, (acts,)),
@@ -79,7 +85,7 @@ def save(
         "environment": where,
         "network": network.model_dump(mode="json"),
         "normalisation": normalised,
-        "residual": None if residual is None else residual.model_dump(mode="json"),
+        "residual": underlay,
         "origin": {
             "algorithm": algorithm,
             "command": command,

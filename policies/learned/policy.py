@@ -38,6 +38,11 @@ class LearnedPolicy:
         if (residual := self.description.residual) is not None:
             where = self.description.environment
             self._underlying = Underlying(residual, where.arguments, len(where.observation), where.rate)
+            if self._underlying.memory != residual.memory:
+                raise ValueError(
+                    f"{path}: the memory of its controller {residual.controller!r} had {residual.memory} "
+                    f"numbers in training, in this version of slipgym it has {self._underlying.memory}"
+                )
 
     @property
     def modes(self) -> dict[str, Any]:
@@ -84,8 +89,8 @@ class LearnedPolicy:
             actions, memory = self._act(rows, state, episode_start)
         else:
             beneath, own = _parts(state)
-            given, beneath = self._underlying.act(rows, beneath, episode_start)
-            change, own = self._act(np.concatenate([rows, given], axis=1), own, episode_start)
+            given, rows, beneath = self._underlying.act(rows, beneath, episode_start)
+            change, own = self._act(rows, own, episode_start)
             actions, memory = self._underlying.changed(given, change), (beneath, own)
         return (actions if observations.ndim == 2 else actions[0]), memory
 

@@ -51,16 +51,32 @@ class Underlying:
         else:
             self._controller = controllers.make(name, {**residual.parameters, "config": config})
 
-    def act(self, observations: np.ndarray, state: Any, starts: np.ndarray | None) -> tuple[np.ndarray, Any]:
-        """Actions (n, k) for observations (n, m), earlier ones first in each, and the controller's memory.
+    @property
+    def memory(self) -> int:
+        """Numbers in the controller's memory."""
+        return sum(part.shape[1] for part in _parts(self._controller.initial_state(1)))
+
+    def act(
+        self, observations: np.ndarray, state: Any, starts: np.ndarray | None
+    ) -> tuple[np.ndarray, np.ndarray, Any]:
+        """What the controller does.
 
         Args:
-            observations: As the learner reads them.
+            observations: As the environment gives them, earlier ones first in each, (n, m).
             state: The controller's memory; None before the first call.
             starts: Which rows begin an episode, (n,) bool; None: none but before the first call.
+
+        Returns:
+            Its actions (n, k); what the learner reads: observations, actions and memory, float32; the memory.
         """
-        return self._controller.predict(observations[:, -self._columns :], state, starts)
+        actions, state = self._controller.predict(observations[:, -self._columns :], state, starts)
+        read = np.concatenate([observations, actions, *_parts(state)], axis=1, dtype=np.float32)
+        return actions, read, state
 
     def changed(self, actions: np.ndarray, change: np.ndarray) -> np.ndarray:
         """Actions (n, k) with what the learner adds, its output being within [-1, 1]; float32."""
         return np.clip(actions + self._reach * change, -1.0, 1.0).astype(np.float32)
+
+
+def _parts(state: Any) -> tuple[np.ndarray, ...]:
+    return state if isinstance(state, tuple) else (state,)

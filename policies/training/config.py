@@ -13,7 +13,7 @@ from policies.learned.description import Residual
 from policies.training import seeds
 from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO, Share
 from slipgym.config import load, load_randomization
-from slipgym.config.base import Count, Frozen, Positive, as_tuple
+from slipgym.config.base import Count, Frozen, NonNegative, Positive, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.envs.actions import ACTION_MODES
 from slipgym.envs.choices import DEFAULT_ESTIMATOR
@@ -166,6 +166,9 @@ class Training(Frozen):
     shaping: Mapping[str, Any] = Field(
         default={},
         description="Overrides of the environment's config where it learns; not where it is evaluated [-]",
+    )
+    bonus: NonNegative = Field(
+        default=0.0, description="Reward for a solved episode at its end, where it learns [-]"
     )
     imitation: Imitation | None = Field(default=None, description="What PPO begins with; null: nothing [-]")
     residual: Residual | None = Field(

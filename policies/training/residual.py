@@ -6,30 +6,29 @@ from typing import Any
 
 import numpy as np
 from gymnasium.spaces import Box
-from stable_baselines3.common.vec_env import VecEnvWrapper, VecMonitor
+from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
 from stable_baselines3.common.vec_env.base_vec_env import VecEnvStepReturn
 
 from policies.learned.residual import Underlying
 
 
 class ResidualVecEnv(VecEnvWrapper):
-    """Environments whose observations end with a controller's action, and whose actions change it.
+    """Environments whose observations end with a controller's action and memory, and whose actions change it.
 
     Args:
         venv: The environments; observations are vectors.
         underlying: The controller.
     """
 
-    venv: VecMonitor
-
-    def __init__(self, venv: VecMonitor, underlying: Underlying) -> None:
+    def __init__(self, venv: VecEnv, underlying: Underlying) -> None:
         observed, acted = venv.observation_space, venv.action_space
         assert isinstance(observed, Box)
         assert isinstance(acted, Box)
         low, high = (
             np.concatenate([getattr(space, end) for space in (observed, acted)]) for end in ("low", "high")
         )
-        super().__init__(venv, observation_space=Box(low, high))
+        memory = np.full(underlying.memory, np.inf, np.float32)
+        super().__init__(venv, Box(np.append(low, -memory), np.append(high, memory)))
         self._underlying, self._state = underlying, None
         self._given = np.zeros((venv.num_envs, *acted.shape), np.float32)
 
@@ -48,9 +47,9 @@ class ResidualVecEnv(VecEnvWrapper):
             last: Any = np.array(observations)
             for i in np.flatnonzero(dones):
                 last[i] = infos[i]["terminal_observation"]
-            given, _ = self._underlying.act(last, self._state, None)
+            _, read, _ = self._underlying.act(last, self._state, None)
             for i in np.flatnonzero(dones):
-                infos[i]["terminal_observation"] = np.concatenate([last[i], given[i]])
+                infos[i]["terminal_observation"] = read[i]
         return self._seen(observations, dones), rewards, dones, infos
 
     def get_state(self) -> dict[str, Any]:
@@ -62,5 +61,5 @@ class ResidualVecEnv(VecEnvWrapper):
         self._state, self._given = state["memory"], state["given"].copy()
 
     def _seen(self, observations: Any, starts: np.ndarray) -> np.ndarray:
-        self._given, self._state = self._underlying.act(observations, self._state, starts)
-        return np.concatenate([observations, self._given], axis=1)
+        self._given, read, self._state = self._underlying.act(observations, self._state, starts)
+        return read

@@ -11,6 +11,7 @@ from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv,
 
 from policies.learned.residual import Underlying
 from policies.training.adapter import SlipVecEnv, make_vec_env
+from policies.training.bonus import BonusVecEnv
 from policies.training.config import Training
 from policies.training.residual import ResidualVecEnv
 
@@ -53,11 +54,12 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
     else:
         made = scalar(config.task, count, combinations, config.processes, **keywords)
         made.seed(seed)
-    assert isinstance(made, VecMonitor)
-    if config.residual is None:
-        return made
-    columns, metadata = made.get_attr("columns")[0], made.get_attr("metadata")[0]
-    return ResidualVecEnv(made, Underlying(config.residual, keywords, len(columns), metadata["render_fps"]))
+    envs: VecEnv = made
+    if config.residual is not None:
+        columns, metadata = envs.get_attr("columns")[0], envs.get_attr("metadata")[0]
+        underlying = Underlying(config.residual, keywords, len(columns), metadata["render_fps"])
+        envs = ResidualVecEnv(envs, underlying)
+    return BonusVecEnv(envs, config.bonus) if shaped and config.bonus else envs
 
 
 def scalar(
@@ -81,10 +83,12 @@ def scalar(
     return VecMonitor(SubprocVecEnv(makers) if processes else DummyVecEnv(makers))
 
 
-def get_state(envs: VecMonitor | ResidualVecEnv) -> dict[str, Any]:
+def get_state(envs: Any) -> dict[str, Any]:
     """Everything that decides what the environments do next, as plain data."""
     if isinstance(envs, ResidualVecEnv):
         return {**get_state(envs.venv), "residual": envs.get_state()}
+    if isinstance(envs, BonusVecEnv):
+        return get_state(envs.venv)
     states = envs.env_method("get_state")
     return {
         "envs": states[:1] if _is_batch(envs) else states,
@@ -93,15 +97,17 @@ def get_state(envs: VecMonitor | ResidualVecEnv) -> dict[str, Any]:
     }
 
 
-def set_state(envs: VecMonitor | ResidualVecEnv, state: dict[str, Any]) -> None:
+def set_state(envs: Any, state: dict[str, Any]) -> None:
     """Go on from a state.
 
     Raises:
         ValueError: It is of other environments.
     """
-    if isinstance(envs, ResidualVecEnv):
-        envs.set_state(state["residual"])
-        envs = envs.venv
+    if isinstance(envs, ResidualVecEnv | BonusVecEnv):
+        if isinstance(envs, ResidualVecEnv):
+            envs.set_state(state["residual"])
+        set_state(envs.venv, state)
+        return
     for index, one in enumerate(state["envs"]):
         envs.env_method("set_state", one, indices=None if _is_batch(envs) else index)
     envs.episode_returns, envs.episode_lengths = state["returns"].copy(), state["lengths"].copy()
