@@ -38,7 +38,7 @@ def algorithm_of(model: Any) -> str:
             break
     else:
         raise ValueError(unknown("algorithm", classes[0], ALGORITHMS))
-    if model.use_sde:
+    if model.use_sde and name in ("SAC", "TQC"):
         raise ValueError("use_sde = True: policies with state-dependent exploration have no file format")
     if model.policy.features_extractor_class.__name__ != "FlattenExtractor":
         extractor = model.policy.features_extractor_class.__name__

@@ -37,6 +37,12 @@ class PPO(_Shared):
     max_grad_norm: Positive = Field(default=0.5, description="Gradients are clipped to this norm [-]")
     target_kl: Positive | None = Field(default=None, description="Stop an update's passes beyond it [-]")
     log_std_init: float = Field(default=0.0, description="Logarithm of the first standard deviation [-]")
+    use_sde: bool = Field(
+        default=False, description="Whether exploration depends on the state, not on time [-]"
+    )
+    sde_sample_freq: int = Field(
+        default=-1, ge=-1, description="Steps after which it does so in another way; -1: only an update [-]"
+    )
 
 
 class RecurrentPPO(PPO):
