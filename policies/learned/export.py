@@ -119,6 +119,8 @@ def build(path: str | os.PathLike[str], env: Any, **hyperparameters: Any) -> Any
     name, source = description.origin.algorithm, Path(path) / TRAINING
     algorithm = getattr(importlib.import_module(ALGORITHMS[name]), name)
     policy = "MlpLstmPolicy" if description.network.memory else "MlpPolicy"
+    if kept.get("policy.log_std", np.zeros(1)).ndim == 2:  # a deviation for each unit, not for each action
+        hyperparameters = {"use_sde": True, **hyperparameters}
     model = algorithm(policy, env, policy_kwargs=_policy_arguments(description), **hyperparameters)
     tensors = {key: torch.tensor(value) for key, value in kept.items()}
     state = {

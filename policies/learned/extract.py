@@ -39,7 +39,7 @@ def algorithm_of(model: Any) -> str:
     else:
         raise ValueError(unknown("algorithm", classes[0], ALGORITHMS))
     if model.use_sde and name in ("SAC", "TQC"):
-        raise ValueError("use_sde = True: policies with state-dependent exploration have no file format")
+        raise ValueError(f"use_sde = True: what {name} then acts with has no file format")
     if model.policy.features_extractor_class.__name__ != "FlattenExtractor":
         extractor = model.policy.features_extractor_class.__name__
         raise ValueError(f"features extractor {extractor!r}: a file holds networks that read a vector")

@@ -27,7 +27,9 @@ def write_onnx(policy: str | os.PathLike[str], path: str | os.PathLike[str]) -> 
     Input `observation` (n, m) float32, as it comes from the environment; output `action` (n, k) float32
     within [-1, 1]. Normalisation (in float64, as in training) and clipping are part of the graph. LSTM
     layers add inputs `hidden` and `cell` (n, layers, size), zero where an episode begins, and outputs
-    `next_hidden` and `next_cell`. The metadata `policy` is policy.json: columns, units, what -1 and +1 mean.
+    `next_hidden` and `next_cell`. A residual policy has inputs `controller_action` (n, k) and
+    `controller_memory` (n, j): what its controller, which is no part of the graph, does and remembers then.
+    The metadata `policy` is policy.json: columns, units, what -1 and +1 mean.
 
     Args:
         policy: Name of a learned policy that comes with slipgym, or a policy's folder.
@@ -44,11 +46,14 @@ def write_onnx(policy: str | os.PathLike[str], path: str | os.PathLike[str]) -> 
 
 def graph_of(description: Description, tensors: dict[str, np.ndarray]) -> onnx.ModelProto:
     """The graph of a policy, from what `files.read` returns."""
-    graph, width = _Graph(), description.environment.width
-    inputs, outputs = [("observation", (width,))], [("action", (len(description.environment.action),))]
-    x, network = "observation", description.network
+    graph, acts = _Graph(), len(description.environment.action)
+    inputs, outputs = [("observation", (description.environment.width,))], [("action", (acts,))]
+    x, network, residual = "observation", description.network, description.residual
+    if residual is not None:
+        inputs += [("controller_action", (acts,)), ("controller_memory", (residual.memory,))]
+        x = graph.add("Concat", [name for name, _ in inputs], axis=1)
     if description.normalisation is not None:
-        x = _normalised(graph, description.normalisation, tensors)
+        x = _normalised(graph, x, description.normalisation, tensors)
     if network.memory is not None:
         shape = (network.memory.layers, network.memory.size)
         inputs += [("hidden", shape), ("cell", shape)]
@@ -61,10 +66,14 @@ def graph_of(description: Description, tensors: dict[str, np.ndarray]) -> onnx.M
         x = graph.add("Gemm", [x, *names], transB=1)
         if k < len(network.layers):
             x = graph.add({"tanh": "Tanh", "relu": "Relu", "elu": "Elu"}[network.activation], [x])
-    if network.squash:
-        graph.add("Tanh", [x], output="action")
+    ends = graph.scalar(-1.0), graph.scalar(1.0)
+    bounded = ("Tanh", [x]) if network.squash else ("Clip", [x, *ends])
+    if residual is None:
+        graph.add(*bounded, output="action")
     else:
-        graph.add("Clip", [x, graph.scalar(-1.0), graph.scalar(1.0)], output="action")
+        change = graph.add("Mul", [graph.add(*bounded), graph.scalar(residual.reach)])
+        sum_ = graph.add("Add", ["controller_action", change])
+        graph.add("Clip", [sum_, *ends], output="action")
     model = helper.make_model(
         helper.make_graph(graph.nodes, "policy", _values(inputs), _values(outputs), graph.constants),
         opset_imports=[helper.make_opsetid("", OPSET)],
@@ -102,9 +111,9 @@ class _Graph:
         return names
 
 
-def _normalised(graph: _Graph, given: Normalisation, tensors: dict[str, np.ndarray]) -> str:
+def _normalised(graph: _Graph, x: str, given: Normalisation, tensors: dict[str, np.ndarray]) -> str:
     scale = np.sqrt(tensors["observation.var"] + given.epsilon)
-    x = graph.add("Cast", ["observation"], to=TensorProto.DOUBLE)
+    x = graph.add("Cast", [x], to=TensorProto.DOUBLE)
     x = graph.add("Sub", [x, graph.constant("observation.mean", tensors["observation.mean"])])
     x = graph.add("Div", [x, graph.constant("observation.scale", scale)])
     x = graph.add("Clip", [x, graph.scalar(-given.clip, np.float64), graph.scalar(given.clip, np.float64)])

@@ -25,6 +25,7 @@ def describe(task="Hold", friction_source="estimated", action_mode="grip_force",
         },
         "network": {"kind": "mlp", "memory": None, "layers": [8, 6], "activation": "tanh", "squash": False},
         "normalisation": {"clip": 10.0, "epsilon": 1e-8},
+        "residual": None,
         "origin": {
             "algorithm": "PPO",
             "command": "python train.py",
@@ -35,7 +36,7 @@ def describe(task="Hold", friction_source="estimated", action_mode="grip_force",
         },
     }
     for key, change in changes.items():
-        values[key] = {**values[key], **change} if isinstance(change, dict) else change
+        values[key] = {**(values[key] or {}), **change} if isinstance(change, dict) else change
     return values
 
 

@@ -132,6 +132,19 @@ def test_training_goes_on_from_a_file(venv, tmp_path):
     np.testing.assert_allclose(policies.load(second).predict(batch)[0], wanted, atol=1e-6)
 
 
+def test_a_policy_that_explored_by_state_acts_and_goes_on(venv, tmp_path):
+    few = {"n_steps": 64, "batch_size": 32, "n_epochs": 1}
+    model = made("PPO", venv, use_sde=True, **few)
+    model.learn(64)
+    folder = export.save(model, tmp_path / "policy", ENV, ARGUMENTS, venv)
+    batch = observations(venv, 16)
+    wanted, _ = model.predict(venv.normalize_obs(batch), deterministic=True)
+    np.testing.assert_allclose(policies.load(folder).predict(batch)[0], wanted, atol=1e-6)
+    rebuilt = export.build(folder, venv, device="cpu", **few)
+    assert rebuilt.use_sde
+    rebuilt.learn(64)
+
+
 def test_a_policy_may_leave_its_training_behind(venv, tmp_path):
     folder = export.save(made("SAC", venv), tmp_path / "lean", ENV, ARGUMENTS, venv, training=False)
     assert {path.name for path in folder.iterdir()} == {"policy.json", WEIGHTS}
@@ -161,7 +174,6 @@ def test_training_tensors_of_another_model_are_refused(venv, tmp_path):
 @pytest.mark.parametrize(
     ("name", "changes", "message"),
     [
-        ("PPO", {"use_sde": True}, "use_sde = True"),
         ("PPO", {"activation": "SiLU"}, r"unknown activation 'SiLU'.*ReLU"),
         ("RecurrentPPO", {"policy_kwargs": {"lstm_kwargs": {"dropout": 0.1}, "n_lstm_layers": 2}}, "dropout"),
     ],
@@ -172,6 +184,13 @@ def test_what_a_file_cannot_hold_is_refused(name, changes, message, venv, torch,
     with pytest.raises(ValueError, match=message):
         export.save(made(name, venv, **changes), tmp_path / "no", ENV, ARGUMENTS, venv)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_state_dependent_exploration_of_sac_is_refused(venv, tmp_path):
+    model = made("SAC", venv)
+    model.use_sde = True  # its network then ends with a layer of its own
+    with pytest.raises(ValueError, match="use_sde = True: what SAC"):
+        export.save(model, tmp_path / "no", ENV, ARGUMENTS, venv)
 
 
 def test_another_environment_or_algorithm_is_refused(venv, tmp_path):

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import policies
 from policies.learned import LearnedPolicy
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -67,6 +68,21 @@ def test_graph_and_policy_remember_alike(policy_folder, lstm, tmp_path):
         action, hidden, cell = graph.run(names, inputs)
         for ours, theirs in ((wanted, action), (state[0], hidden), (state[1], cell)):
             np.testing.assert_allclose(theirs, ours, atol=2e-6)
+
+
+def test_graph_changes_a_controller_as_the_policy_does(policy_folder, tmp_path):
+    residual = {"controller": "hold", "parameters": {}, "reach": 0.3, "memory": 5}
+    policy = LearnedPolicy(folder := policy_folder(residual=residual))
+    graph, controller = session(folder, tmp_path / "policy.onnx"), policies.make("hold")
+    state, own, rng = None, None, np.random.default_rng(0)
+    for _ in range(5):
+        observations = np.abs(rng.normal(size=(16, policy.description.environment.width))).astype(np.float32)
+        wanted, state = policy.predict(observations, state)
+        given, own = controller.predict(observations, own)
+        inputs = {"observation": observations, "controller_action": given}
+        (actions,) = graph.run(["action"], {**inputs, "controller_memory": own.astype(np.float32)})
+        np.testing.assert_allclose(actions, wanted, atol=2e-6)
+        assert not np.allclose(actions, given, atol=0.01)
 
 
 def test_the_file_says_what_the_numbers_mean(policy_folder, tmp_path):

@@ -47,8 +47,9 @@ def differing(one, other, at=""):
         pytest.param("tqc", marks=pytest.mark.slow),
     ],
 )
-def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algorithm):
-    config = small(algorithm=algorithm)
+@pytest.mark.parametrize("residual", [None, {"controller": "linear_slip", "reach": 0.2}])
+def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algorithm, residual):
+    config = small(algorithm=algorithm, residual=residual, bonus=0.0 if residual is None else 20.0)
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     folder.begin(whole, config, 3)
     run.train(whole, progress=False)
