@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-TASKS = ["linear_slip", "rotational_slip", "hinge", "hold"]
+TASKS = ["linear_slip", "rotational_slip", "hinge", "planar_slip", "hold"]
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
@@ -18,14 +18,15 @@ def main(
     randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "train",
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core.")] = 1,
 ) -> None:
-    """Prints what each policy achieves in the same episodes, and what knowing friction is worth."""
+    """Prints what each policy achieves in the same episodes, what learning adds, and what friction is worth."""
     from policies.evaluation import shelf
     from policies.leaderboard.tables import markdown
 
     try:
         for task in tasks or TASKS:
             found = shelf.trials_of(task, trials, engine, randomization, jobs)
-            typer.echo(f"\n{task}\n\n{markdown(shelf.outcomes(found))}\n{markdown(shelf.worth(found))}")
+            tables = (shelf.outcomes(found), shelf.gains(found), shelf.worth(found))
+            typer.echo("\n".join([f"\n{task}\n", *map(markdown, tables)]))
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
 

@@ -87,6 +87,33 @@ def outcomes(trials: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
+def gains(trials: pd.DataFrame) -> pd.DataFrame:
+    """What the learned policies have over the controller that is told the same, over paired episodes.
+
+    Args:
+        trials: From `trials_of`.
+
+    Returns:
+        For success [%] and the sum of rewards: mean difference with its 95 % interval, per friction source.
+    """
+    rows = []
+    for column, scale in (("success", 100.0), ("return", 1.0)):
+        tables = {
+            policy: trials[trials["policy"] == policy].pivot(
+                index=["options", "trial"], columns="friction", values=column
+            )
+            for policy in (CONTROLLER, LEARNED)
+        }
+        both = [source for source in SOURCES if all(source in table for table in tables.values())]
+        found = {
+            source: scale * (tables[LEARNED][source].astype(float) - tables[CONTROLLER][source].astype(float))
+            for source in both
+        }
+        row = {source: text(mean_interval(difference.to_numpy())) for source, difference in found.items()}
+        rows.append({"learned - controller": _OUTCOMES[column], **row})
+    return pd.DataFrame(rows)
+
+
 def worth(trials: pd.DataFrame) -> pd.DataFrame:
     """What knowing friction is worth to the learned policies, over paired episodes.
 

@@ -40,6 +40,17 @@ def test_there_is_no_share_of_nothing():
     assert found.loc["sum of rewards", "share [%]"] == "-"
 
 
+def test_gains_are_those_of_the_same_episodes_and_the_same_friction():
+    learned = table([3.0, 5.0], [2.0, 4.0], [9.0, 9.0])
+    controller = table([1.0, 3.0], [2.5, 4.5], [0.0, 0.0])
+    controller = controller[controller["friction"] != "none"].assign(policy=shelf.CONTROLLER)
+    found = shelf.gains(pd.concat([learned, controller])).set_index("learned - controller")
+    assert list(found.columns) == ["estimated", "true"]
+    assert found.loc["sum of rewards", "true"] == "2.0 (2.0 to 2.0)"
+    assert found.loc["sum of rewards", "estimated"] == "-0.5 (-0.5 to -0.5)"
+    assert found.loc["solved [%]", "estimated"] == "0.0 (0.0 to 0.0)"
+
+
 def test_outcomes_have_a_row_for_each_source():
     found = shelf.outcomes(table([1.0, 2.0], [1.0, -2.0], [-1.0, -1.0])).set_index("friction")
     assert [text.split()[0] for text in found["solved [%]"]] == ["100.0", "50.0", "0.0"]
