@@ -17,11 +17,11 @@ from slipgym.compiled import unlocked
 from slipgym.contact.coupled import step_pads
 from slipgym.envs.actions import interpret
 from slipgym.envs.observation import combine, observe
-from slipgym.envs.rows import move
 from slipgym.envs.vector import SlipVectorEnv
 from slipgym.sensors.measure import measure
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import begin_step
+from slipgym.world.alone import move
 
 SIZES = 1, 16, 256, 4096
 EVERY_ACTION = -1.0, 1.0

@@ -23,8 +23,7 @@ from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import EPISODE, begin_step
-from slipgym.world.actuator import command
-from slipgym.world.alone import advance_alone
+from slipgym.world.alone import move
 from slipgym.world.records import FINGER, WORLD
 
 BLOCK = 256
@@ -39,22 +38,6 @@ def settle(worlds, pads, cells, fingers, force_torque, chips, wrenches, twists, 
         move(worlds, pads, cells, fingers, force_torque, chips, force, i)
         here = slice(i, i + 1)
         measure(worlds[here], force_torque[here], chips[here], wrenches[here], twists[here])
-
-
-@unlocked
-def move(worlds, pads, cells, fingers, force_torque, chips, force, i):
-    """A control step of world i under a commanded force; returns its number of sub-steps."""
-    for f in range(2):
-        command(fingers[i, f], worlds[i].tick, force)
-    patch = None if cells is None else cells[i]
-    return advance_alone(
-        worlds[i],
-        (pads[i, 0], pads[i, 1]),
-        patch,
-        (fingers[i, 0], fingers[i, 1]),
-        (force_torque[i, 0], force_torque[i, 1]),
-        (chips[i, 0], chips[i, 1]),
-    )
 
 
 @unlocked

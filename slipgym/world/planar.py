@@ -60,14 +60,15 @@ def substep(world, pads, cells, fingers, chips, h, share):
 
     Args:
         world: WORLD record.
-        pads: Two PAD records, as an array or, faster (`step_pads` says why), as a tuple.
+        pads: Two PAD records, or one that stands for both, as an array or, faster (`step_pads` says why), as a
+            tuple.
         cells: As in `advance`.
-        fingers: Two FINGER records, likewise.
-        chips: Two SLIP_SENSOR records, likewise.
+        fingers: As many FINGER records, likewise.
+        chips: As many SLIP_SENSOR records, likewise.
         h: Time [s].
         share: Of the engine step, in its means of force and friction.
     """
-    for f in range(2):
+    for f in range(len(pads)):
         mean = relax(fingers[f], h)
         fingers[f].mean_force += share * mean
         pads[f].normal = normal_force(fingers[f])
@@ -78,7 +79,7 @@ def substep(world, pads, cells, fingers, chips, h, share):
     az = world.external[1] * per_mass - world.gravity
     at = world.external[2] / world.inertia
     # held: backward Euler, as sticking needs; let go: the parabola itself
-    held = pads[0].normal > HOLDING or pads[1].normal > HOLDING
+    held = pads[0].normal > HOLDING or pads[-1].normal > HOLDING
     lead = 1.0 if held else 0.5
     late = h * (1.0 - lead)
     drift = drifting(world, cos, sin, h)
@@ -93,7 +94,8 @@ def substep(world, pads, cells, fingers, chips, h, share):
     # from where Newton's iteration may not find back
     firm = h > 1.001 * world.calm_ticks * world.tick_length
     guess = (0.0, 0.0, 0.0) if firm else drift
-    motion = step_pads(pads, cells, (world.mass, world.inertia), centre, free, guess, h)
+    part = 0.5 * len(pads)  # of the object: one pad has half of it to hold
+    motion = step_pads(pads, cells, (part * world.mass, part * world.inertia), centre, free, guess, h)
     braking_x = (motion[0] - free[0]) * rate
     braking_y = (motion[1] - free[1]) * rate
     world.velocity[0] += h * ax + cos * braking_x - sin * braking_y
@@ -106,7 +108,7 @@ def substep(world, pads, cells, fingers, chips, h, share):
         world.relative[a] += motion[a]
         world.relative_velocity[a] = motion[a] * rate
     slip = (motion[0] + motion[2] * centre[1], motion[1] - motion[2] * centre[0], motion[2])
-    for f in range(2):
+    for f in range(len(pads)):
         accumulate_slip(chips[f], slip)
         fx, fy, tau = pads[f].wrench
         fingers[f].reaction[0] += share * (cos * fx - sin * fy)

@@ -8,11 +8,10 @@ import pytest
 
 import policies
 from slipgym.config import load
-from slipgym.envs.rows import move
 from slipgym.sensors.measure import measure
 from slipgym.validation.bench import Bench, Friction
 from slipgym.validation.planar import slides
-from slipgym.world.alone import CHANGE, FAST, FIRM, FLAT, longest_substep
+from slipgym.world.alone import CHANGE, FAST, FIRM, FLAT, longest_substep, move
 from slipgym.world.placing import place
 from slipgym.world.plant import build
 from slipgym.world.scene import Box
