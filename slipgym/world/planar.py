@@ -60,8 +60,8 @@ def substep(world, pads, cells, fingers, chips, h, share):
 
     Args:
         world: WORLD record.
-        pads: Two PAD records, or one that stands for both, as an array or, faster (`step_pads` says why), as a
-            tuple.
+        pads: Two PAD records, or one that stands for both, as an array or, faster (`step_pads` says why), as
+            a tuple.
         cells: As in `advance`.
         fingers: As many FINGER records, likewise.
         chips: As many SLIP_SENSOR records, likewise.
