@@ -6,8 +6,8 @@ import math
 
 from slipgym.compiled import compiled
 from slipgym.sensors.force_torque import sample_force_torque, sample_read_next
-from slipgym.world.actuator import command, relaxed, take_up, ticks_to_next
-from slipgym.world.planar import HOLDING, locate, pad_axes, substep
+from slipgym.world.actuator import command, least_force, relax_through, take_up, ticks_to_next
+from slipgym.world.planar import HOLDING, locate, pad_axes, slide
 
 FLAT = 3.0  # slip speed over v_s from which the Stribeck curve has decayed, to exp(-9)
 CHANGE = 0.1  # of slip speed or v_s within a sub-step
@@ -77,25 +77,23 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
     done = 0
     end = world.tick + world.control_ticks
     sample = sample_read_next(force_torque[0], world.tick, world.control_ticks)
-    for f in range(len(pads)):
-        fingers[f].mean_force = 0.0
-        fingers[f].reaction[:] = 0.0
     while world.tick < end:
-        stop = min(end, sample)
         for f in range(len(pads)):
             take_up(fingers[f], world.tick)
-            stop = world.tick + ticks_to_next(fingers[f], world.tick, stop - world.tick)
-        ticks = stop - world.tick
-        for f in range(len(pads)):
-            ticks = min(ticks, longest_substep(world, pads[f], cells, fingers[f], ticks))
+        stop = min(end, sample)
+        ticks = longest_of_all(world, pads, cells, fingers, stop)
+        if ticks < stop - world.tick:  # then a command that falls due ends a sub-step, too
+            for f in range(len(pads)):
+                stop = world.tick + ticks_to_next(fingers[f], world.tick, stop - world.tick)
+            ticks = longest_of_all(world, pads, cells, fingers, stop)
         steps = -(-(stop - world.tick) // ticks)
         ticks = -(-(stop - world.tick) // steps)
         h = ticks * world.tick_length
-        for f in range(len(pads)):
-            press(pads[f], fingers[f], h)
         if sticks(pads[0]) or sticks(pads[-1]):
             carry(world, h)
-        substep(world, pads, cells, fingers, chips, h, ticks / world.control_ticks)
+        for f in range(len(pads)):
+            press(world, pads[f], fingers[f], ticks)
+        slide(world, pads, cells, chips, h)
         world.tick += ticks
         done += 1
         if world.tick == sample:
@@ -144,14 +142,22 @@ def touching(force):
 
 
 @compiled
-def press(pad, finger, h):
-    """Press with the actuator's mean force over a sub-step of h in slip, with that at its end in stick.
+def press(world, pad, finger, ticks):
+    """Press with the actuator's mean force over a sub-step in slip, with that at its end in stick.
 
     With the force at the end the momentum of a slide under a closing grip would be wrong in the first order.
     """
-    end, mean = relaxed(finger, h)
-    finger.contact_force = touching(mean if pad.slip_rate != 0.0 else end)
-    finger.contact_mean_force = end
+    mean = relax_through(finger, world.tick, ticks, world.tick_length)
+    pad.normal = finger.contact_force = touching(mean if pad.slip_rate != 0.0 else finger.force)
+
+
+@compiled
+def longest_of_all(world, pads, cells, fingers, stop):
+    """Ticks of the longest sub-step that resolves the contact of every pad, at most those until `stop`."""
+    asked = ticks = stop - world.tick
+    for f in range(len(pads)):
+        ticks = min(ticks, longest_substep(world, pads[f], cells, fingers[f], asked))
+    return ticks
 
 
 @compiled
@@ -166,7 +172,7 @@ def longest_substep(world, pad, cells, finger, ticks):
         world: WORLD record.
         pad: PAD record.
         cells: None for ellipsoids; a patch breaks away in parts, so only stick is calm.
-        finger: FINGER record; no command falls due within `ticks`.
+        finger: FINGER record.
         ticks: How many are asked for.
     """
     if pad.slip_rate != 0.0:  # slips
@@ -174,9 +180,10 @@ def longest_substep(world, pad, cells, finger, ticks):
         flat = pad.slip_speed + min(change, 0.0) > FLAT * pad.stribeck_velocity
         calm = flat or abs(change) < CHANGE * min(pad.slip_speed, pad.stribeck_velocity)
         return world.calm_ticks if calm else world.substep_ticks
-    normal = touching(min(finger.force, finger.command))  # the least within `ticks`
+    normal = touching(least_force(finger, world.tick + ticks))
     if normal <= 0.0:
-        return ticks if finger.contact_force <= 0.0 else world.substep_ticks
+        free = finger.contact_force <= 0.0
+        return ticks_to_next(finger, world.tick, ticks) if free else world.substep_ticks
     fx, fy, rim = pad.wrench[0], pad.wrench[1], pad.wrench[2] / pad.r
     share = math.sqrt(fx * fx + fy * fy + rim * rim) / (pad.mu_s * normal)
     firm, fast = (FIRM, FAST) if cells is None else (PATCH_FIRM, PATCH_FAST)

@@ -60,18 +60,37 @@ def substep(world, pads, cells, fingers, chips, h, share):
 
     Args:
         world: WORLD record.
-        pads: Two PAD records, or one that stands for both, as an array or, faster (`step_pads` says why), as
-            a tuple.
+        pads: Two PAD records, as an array or, faster (`step_pads` says why), as a tuple.
         cells: As in `advance`.
-        fingers: As many FINGER records, likewise.
-        chips: As many SLIP_SENSOR records, likewise.
+        fingers: Two FINGER records, likewise.
+        chips: Two SLIP_SENSOR records, likewise.
         h: Time [s].
         share: Of the engine step, in its means of force and friction.
     """
-    for f in range(len(pads)):
+    for f in range(2):
         mean = relax(fingers[f], h)
         fingers[f].mean_force += share * mean
         pads[f].normal = normal_force(fingers[f])
+    slide(world, pads, cells, chips, h)
+    cos, sin = pad_axes(world)
+    for f in range(2):
+        fx, fy, tau = pads[f].wrench
+        fingers[f].reaction[0] += share * (cos * fx - sin * fy)
+        fingers[f].reaction[1] += share * (sin * fx + cos * fy)
+        fingers[f].reaction[2] += share * tau
+
+
+@compiled
+def slide(world, pads, cells, chips, h):
+    """Advance wrist, friction and object by h under the pads' normal forces.
+
+    Args:
+        world: WORLD record.
+        pads: Two PAD records, or one that stands for both, as an array or a tuple.
+        cells: As in `advance`.
+        chips: As many SLIP_SENSOR records, likewise.
+        h: Time [s].
+    """
     move_wrist(world, h)
     cos, sin = pad_axes(world)
     rate, per_mass = 1.0 / h, 1.0 / world.mass  # a product costs less than a quotient
@@ -110,10 +129,6 @@ def substep(world, pads, cells, fingers, chips, h, share):
     slip = (motion[0] + motion[2] * centre[1], motion[1] - motion[2] * centre[0], motion[2])
     for f in range(len(pads)):
         accumulate_slip(chips[f], slip)
-        fx, fy, tau = pads[f].wrench
-        fingers[f].reaction[0] += share * (cos * fx - sin * fy)
-        fingers[f].reaction[1] += share * (sin * fx + cos * fy)
-        fingers[f].reaction[2] += share * tau
 
 
 @compiled
