@@ -206,8 +206,8 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
     Returns:
         Motion (x, y, theta) with friction [m, m, rad].
     """
-    # one pad is prepared twice, to the same end
-    limits = prepare(pads[0], cells, 0, h), prepare(pads[-1], cells, -1, h)
+    first = prepare(pads[0], cells, 0, h)
+    limits = first, first if len(pads) == 1 else prepare(pads[-1], cells, -1, h)
     held = pads[0].normal > 0.0 or pads[-1].normal > 0.0
     motion = solve_motion(pads, cells, limits, inertia, centre, free, guess, h) if held else free
     for i in range(len(pads)):

@@ -71,6 +71,26 @@ def substep(world, pads, cells, fingers, chips, h, share):
         mean = relax(fingers[f], h)
         fingers[f].mean_force += share * mean
         pads[f].normal = normal_force(fingers[f])
+    slide(world, pads, cells, chips, h)
+    cos, sin = pad_axes(world)
+    for f in range(2):
+        fx, fy, tau = pads[f].wrench
+        fingers[f].reaction[0] += share * (cos * fx - sin * fy)
+        fingers[f].reaction[1] += share * (sin * fx + cos * fy)
+        fingers[f].reaction[2] += share * tau
+
+
+@compiled
+def slide(world, pads, cells, chips, h):
+    """Advance wrist, friction and object by h under the pads' normal forces.
+
+    Args:
+        world: WORLD record.
+        pads: Two PAD records, or one that stands for both, as an array or a tuple.
+        cells: As in `advance`.
+        chips: As many SLIP_SENSOR records, likewise.
+        h: Time [s].
+    """
     move_wrist(world, h)
     cos, sin = pad_axes(world)
     rate, per_mass = 1.0 / h, 1.0 / world.mass  # a product costs less than a quotient
@@ -78,7 +98,7 @@ def substep(world, pads, cells, fingers, chips, h, share):
     az = world.external[1] * per_mass - world.gravity
     at = world.external[2] / world.inertia
     # held: backward Euler, as sticking needs; let go: the parabola itself
-    held = pads[0].normal > HOLDING or pads[1].normal > HOLDING
+    held = pads[0].normal > HOLDING or pads[-1].normal > HOLDING
     lead = 1.0 if held else 0.5
     late = h * (1.0 - lead)
     drift = drifting(world, cos, sin, h)
@@ -93,7 +113,8 @@ def substep(world, pads, cells, fingers, chips, h, share):
     # from where Newton's iteration may not find back
     firm = h > 1.001 * world.calm_ticks * world.tick_length
     guess = (0.0, 0.0, 0.0) if firm else drift
-    motion = step_pads(pads, cells, (world.mass, world.inertia), centre, free, guess, h)
+    part = 0.5 * len(pads)  # of the object: one pad has half of it to hold
+    motion = step_pads(pads, cells, (part * world.mass, part * world.inertia), centre, free, guess, h)
     braking_x = (motion[0] - free[0]) * rate
     braking_y = (motion[1] - free[1]) * rate
     world.velocity[0] += h * ax + cos * braking_x - sin * braking_y
@@ -106,12 +127,8 @@ def substep(world, pads, cells, fingers, chips, h, share):
         world.relative[a] += motion[a]
         world.relative_velocity[a] = motion[a] * rate
     slip = (motion[0] + motion[2] * centre[1], motion[1] - motion[2] * centre[0], motion[2])
-    for f in range(2):
+    for f in range(len(pads)):
         accumulate_slip(chips[f], slip)
-        fx, fy, tau = pads[f].wrench
-        fingers[f].reaction[0] += share * (cos * fx - sin * fy)
-        fingers[f].reaction[1] += share * (sin * fx + cos * fy)
-        fingers[f].reaction[2] += share * tau
 
 
 @compiled
