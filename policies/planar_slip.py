@@ -80,8 +80,6 @@ class PlanarSlipPolicy(ForcePolicy):
         short: How much the first slide ends before its goal [m].
         lean: Angle of the centre of mass from straight under the pads, in the middle of a turn [rad].
         ready: Angle [rad] that the wrist may be off when the box is let slip.
-        lead: Time at full speed by which the integral may run ahead of the force that was commanded [s]; of
-            use where another policy acts and this one is asked (docs/training.md).
         hold_margin: Grip while holding, as a multiple of what the load needs at worst [-].
         wrist_rate: Largest pitch rate of the wrist [rad/s].
         wrist_acceleration: Its largest change; the held box has to follow [rad/s^2].
@@ -108,7 +106,6 @@ class PlanarSlipPolicy(ForcePolicy):
         short: float = 0.0015,
         lean: float = 1.5,
         ready: float = 0.02,
-        lead: float = np.inf,
         hold_margin: float = 1.4,
         wrist_rate: float = 2.0,
         wrist_acceleration: float = 12.0,
@@ -122,7 +119,7 @@ class PlanarSlipPolicy(ForcePolicy):
         self.speeds, self.gain, self.worth = speeds, gain, worth
         self.k_e, self.k_v, self.k_m, self.keep = k_e, k_v, k_m, keep
         self.leaps, self.short, self.lean = leaps, short, lean
-        self.ready, self.lead, self.hold_margin = ready, lead, hold_margin
+        self.ready, self.hold_margin = ready, hold_margin
         self.wrist_rate, self.wrist_acceleration = wrist_rate, wrist_acceleration
         self.caution = caution or Caution(r=0.004)
         self._dt = 1.0 / self.config.physics.control_rate
@@ -154,8 +151,7 @@ class PlanarSlipPolicy(ForcePolicy):
         speed = np.where(turning, side * both(columns, "omega"), _falling(columns))
         stage, slipping = self._decide(past, turning, distance, speed, off, columns["wrist_pitch_rate"])
         load = scaled_load(columns, r) / mu_c
-        commanded = columns["command"] / np.maximum(load, 1e-3)  # below what a sensor resolves
-        motion, share = self._let_slip(past, turning, distance, speed, slipping, commanded)
+        motion, share = self._let_slip(past, turning, distance, speed, slipping)
         lever = np.hypot(*place) + self.short
         firm = self.hold_margin * past.weight * np.hypot(1.0, lever / r) / mu_c
         loose = np.minimum(load * share, firm)
@@ -198,9 +194,8 @@ class PlanarSlipPolicy(ForcePolicy):
         distance: np.ndarray,
         speed: np.ndarray,
         slipping: np.ndarray,
-        commanded: np.ndarray,
     ) -> tuple[dict[str, np.ndarray], np.ndarray]:
-        """What changes in the memory, and the grip over f_slip; `commanded` is what it was before."""
+        """What changes in the memory, and the grip over f_slip."""
         k_e, k_v, top = (np.where(turning, b, a) for a, b in (self.k_e, self.k_v, self.speeds))
         ahead = np.clip(self.gain * distance, 0.25 * top, top) - speed
         moving, moved = speed > 0.15 * top, past.moving > 0.0
@@ -210,8 +205,6 @@ class PlanarSlipPolicy(ForcePolicy):
         left_over = np.clip(0.05 * (leaps - self.leaps), 0.0, self.keep) * broken
         error = np.where(breaks, left_over, np.where(sticks, self.keep * broken, past.error))
         error = np.where(slipping, error + np.where(moving, self.k_m, 1.0) * ahead * self._dt, 0.0)
-        most = np.maximum((1.0 - commanded) / k_e, self.keep * broken) + self.lead * top
-        error = np.where(moving, error, np.minimum(error, most))
         share = 1.0 - k_e * error - np.where(moving, k_v * ahead, 0.0)
         return {"moving": moving, "error": error, "broken": broken, "leaps": leaps}, share
 

@@ -49,9 +49,6 @@ class RecurrentPPO(PPO):
     """PPO with an LSTM before the hidden layers, in actor and critic."""
 
     lstm_hidden_size: Count = Field(default=64, description="Units of the LSTM [-]")
-    memory_span: Annotated[int, Field(ge=3)] | None = Field(
-        default=None, description="Steps that it begins to remember over; null: one or two, as torch has it"
-    )
 
 
 class SAC(_Shared):

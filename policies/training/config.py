@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 import policies
 from policies.learned.description import Residual
 from policies.training import seeds
-from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO, Share
+from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO
 from slipgym.config import load, load_randomization
 from slipgym.config.base import Count, Frozen, NonNegative, Positive, as_tuple
 from slipgym.config.errors import unknown
@@ -65,39 +65,6 @@ class Normalisation(Frozen):
     clip: Positive = Field(default=10.0, description="Normalised values are clipped here [-]")
 
 
-class Imitation(Frozen):
-    """A controller that the learner acts like at first."""
-
-    policy: str = Field(description="Its name; it must have the learner's action mode [-]")
-    parameters: Mapping[str, Any] = Field(default={}, description="Of its constructor [-]")
-    rounds: Count = Field(default=6, description="Rounds of acting and fitting [-]")
-    steps: Count = Field(default=250, description="Steps of each environment in a round [-]")
-    epochs: Count = Field(default=10, description="Passes over all rounds so far after each [-]")
-    learning_rate: Positive = Field(default=1e-3, description="Step size of Adam [-]")
-    learning_rate_end: Share = Field(
-        default=1.0, description="Share of it left in the last round; linear in between [-]"
-    )
-    huber: Positive | None = Field(
-        default=None, description="Error of an action from which the loss grows linearly; null: squares [-]"
-    )
-    max_grad_norm: Positive | None = Field(
-        default=None, description="Gradients are clipped to this norm; null: they are not [-]"
-    )
-    spread: Literal["variance", "deviation"] = Field(
-        default="variance",
-        description="What scales an observation; rare values hardly change its mean absolute deviation [-]",
-    )
-    hand_over: Literal["between", "within"] = Field(
-        default="between",
-        description="Controller and learner share the environments, or one after the other each of them [-]",
-    )
-    alone_from: int | None = Field(
-        default=None, ge=1, description="Round from which only the learner acts; null: the last [-]"
-    )
-    sequences: Count = Field(default=32, description="Episodes of a gradient step, with a memory [-]")
-    chunk: Count = Field(default=60, description="Steps that a gradient goes back, with a memory [-]")
-
-
 class Evaluation(Frozen):
     """Episodes without exploration, on seeds that no training uses."""
 
@@ -147,7 +114,7 @@ class Training(Frozen):
 
     task: str = Field(description="Task of the environment [-]")
     algorithm: Algorithm = Field(default="ppo", description="What learns [-]")
-    budget: int = Field(ge=0, description="Steps of all environments together; 0: imitation alone [-]")
+    budget: Count = Field(description="Steps of all environments together [-]")
     num_envs: int = Field(default=8, ge=1, le=seeds.ROWS, description="Environments side by side [-]")
     engine: Literal["planar", "bullet"] = Field(
         default="planar", description="What moves the bodies: a compiled batch, or PyBullet [-]"
@@ -170,7 +137,6 @@ class Training(Frozen):
     bonus: NonNegative = Field(
         default=0.0, description="Reward for a solved episode at its end, where it learns [-]"
     )
-    imitation: Imitation | None = Field(default=None, description="What PPO begins with; null: nothing [-]")
     residual: Residual | None = Field(
         default=None,
         description="A controller whose actions the learner changes; null: it acts by itself [-]",
@@ -195,22 +161,9 @@ class Training(Frozen):
         return name
 
     @model_validator(mode="after")
-    def _can_imitate(self) -> Self:
-        if self.budget == 0 and self.imitation is None:
-            raise ValueError("budget = 0 must be > 0 without imitation")
-        if self.imitation is not None:
-            if self.algorithm not in ("ppo", "recurrent_ppo"):
-                raise ValueError(f"imitation is for ppo and recurrent_ppo, not for {self.algorithm}")
-            policies.find(self.imitation.policy)
-            policies.make(self.imitation.policy, **self.imitation.parameters)
-        return self
-
-    @model_validator(mode="after")
     def _can_change_the_controller(self) -> Self:
         if self.residual is None:
             return self
-        if self.imitation is not None:
-            raise ValueError("residual and imitation exclude each other: a residual begins as its controller")
         if self.environment.observation_mode != "flat":
             raise ValueError("residual needs observation_mode 'flat', which its controller reads")
         controller = policies.make(self.residual.controller, **self.residual.parameters)

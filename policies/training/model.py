@@ -56,8 +56,7 @@ def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
     policy["net_arch"] = list(policy["net_arch"])
     if config.algorithm == "tqc":
         policy["n_quantiles"] = 25
-    span = values.pop("memory_span", None)
-    model = _CLASSES[config.algorithm](
+    return _CLASSES[config.algorithm](
         "MlpLstmPolicy" if config.algorithm == "recurrent_ppo" else "MlpPolicy",
         envs,
         learning_rate=lambda left: start * (end + (1.0 - end) * left),
@@ -66,30 +65,6 @@ def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
         device="cpu",
         **values,
     )
-    if span is not None:
-        remember(model.policy, span)
-    return model
-
-
-def remember(policy: Any, span: int) -> None:
-    """Has the LSTM layers begin with memories of 1 to `span` - 1 steps (Tallec & Ollivier, arXiv 1804.11188).
-
-    A forget gate at f keeps 1 / (1 - f) steps; torch begins with 2, and what a network does not remember at
-    first it hardly learns to remember.
-
-    Args:
-        policy: Of RecurrentPPO.
-        span: In steps.
-    """
-    for lstm in (policy.lstm_actor, policy.lstm_critic):
-        size, names = lstm.hidden_size, [name for name, _ in lstm.named_parameters() if "bias" in name]
-        with torch.no_grad():
-            for name in names:
-                bias = getattr(lstm, name)
-                bias.zero_()
-                if "bias_ih" in name:
-                    bias[size : 2 * size] = torch.log1p(torch.rand(size) * (span - 2.0))
-                    bias[:size] = -bias[size : 2 * size]
 
 
 def get_state(model: Any, replay: bool = True) -> dict[str, Any]:

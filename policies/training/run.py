@@ -13,7 +13,6 @@ from policies.training import checkpoints, curve, export, folder, plain, seeds, 
 from policies.training import model as learners
 from policies.training.board import Board
 from policies.training.config import Training
-from policies.training.imitation import imitate
 from policies.training.keeper import Keeper
 
 _COMMAND = "python scripts/train.py --resume {}"
@@ -57,8 +56,6 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
             if state:
                 learners.set_state(model, state["learner"])
                 keeper.set_state(state["record"])
-            elif config.imitation is not None:
-                imitate(config, model, first)
             if not keeper.ended:
                 model.learn(config.budget - steps, keeper, reset_num_timesteps=state is None)
         board.close()

@@ -121,8 +121,6 @@ def test_a_crafted_file_is_refused(small, tmp_path, monkeypatch):
 
 
 def test_what_does_not_fit_is_refused(small):
-    with pytest.raises(ValueError, match="exclude each other"):
-        small(residual=RESIDUAL, imitation={"policy": "linear_slip"})
     with pytest.raises(ValueError, match="is not for LinearSlip"):
         small(residual={"controller": "hold", "reach": 0.1})
     with pytest.raises(ValueError, match="unknown controller 'nobody'"):
