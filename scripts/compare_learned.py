@@ -18,7 +18,7 @@ def main(
     randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "train",
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core.")] = 1,
 ) -> None:
-    """Prints what each policy achieves in the same episodes, what learning adds, what friction is worth."""
+    """Prints what each policy achieves in the same episodes, what learning adds, what friction adds."""
     from policies.evaluation import shelf
     from policies.leaderboard.tables import markdown
 
