@@ -13,7 +13,7 @@ import policies
 from policies.learned import LearnedPolicy
 from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observation import Sight
-from slipgym.sensors.force_torque import HISTORY, sensed
+from slipgym.sensors.force_torque import HISTORY, roomier, sensed
 from slipgym.sensors.slip_velocity import read_slip
 from slipgym.tasks import find
 
@@ -88,8 +88,7 @@ class _Tap:
                 f"sensors.force_torque.rate = {rate} Hz: {needed} samples, a control step and the latency, "
                 f"would have to be kept; at most {HISTORY} are"
             )
-        force["kept"] = HISTORY
-        force["history"] = 0.0
+        loop.plant.force_torque = roomier(loop.plant.force_torque, needed)
         self._taken = self._start // int(force["period"])
         self._forces: list[tuple[float, ...]] = []
         self._twists: list[tuple[float, ...]] = []

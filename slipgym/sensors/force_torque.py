@@ -44,6 +44,21 @@ def force_torque(kept: int) -> np.dtype:
     )
 
 
+def roomier(sensors: np.ndarray, kept: int) -> np.ndarray:
+    """The same sensors with room for more loads, none of which there is yet.
+
+    Args:
+        sensors: FORCE_TORQUE.
+        kept: Loads to keep, at most `HISTORY`.
+    """
+    larger = np.zeros(sensors.shape, force_torque(kept))
+    for name in larger.dtype.names or ():
+        if name != "history":
+            larger[name] = sensors[name]
+    larger["kept"] = kept
+    return larger
+
+
 @compiled
 def sample_force_torque(sensor, pad, tick):
     """Keep the load on a finger at a sampling instant; what the sensor makes of it is left to who reads it.

@@ -83,7 +83,7 @@ def test_every_key_but_the_optional_ones_is_needed(whole):
             assert not told or last in told or "is missing" in told
             optional |= set() if told else {last}
     assert needed > 100
-    assert optional == {"critic", "friction_source", "action_mode", "numpy"}
+    assert optional == {"critic", "residual", "friction_source", "action_mode", "numpy"}
 
 
 @BUDGET
