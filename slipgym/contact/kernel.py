@@ -49,8 +49,8 @@ def stribeck(pad, slip_speed):
 
 @compiled
 def friction_level(pad, h):
-    """Friction level g at the slip speed expected after a sub-step of h [-]."""
-    return stribeck(pad, max(0.0, pad.slip_speed + h * pad.slip_rate))
+    """Friction level g at the slip speed expected in the middle of a sub-step of h [-]."""
+    return stribeck(pad, max(0.0, pad.slip_speed + (pad.half_step + 0.5 * h) * pad.slip_rate))
 
 
 @compiled
@@ -119,8 +119,9 @@ def commit(pad, delta, h, limit):
         pad.z[a] = shortening * trial[a]
     rate = 1.0 / h
     speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) * rate
+    between, pad.half_step = pad.half_step + 0.5 * h, 0.5 * h
     if shortening < 1.0:
-        pad.slip_rate = (speed - pad.slip_speed) * rate
+        pad.slip_rate = (speed - pad.slip_speed) / between
         pad.slip_speed = speed
     else:
         pad.slip_rate = 0.0

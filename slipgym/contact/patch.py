@@ -52,11 +52,12 @@ def speed_at(x, y, cap, twist):
 
 @compiled
 def expected_twist(pad, h):
-    """Scaled slip twist expected after a sub-step of h [m/s]."""
+    """Scaled slip twist expected in the middle of a sub-step of h [m/s]."""
+    ahead = pad.half_step + 0.5 * h
     return (
-        pad.twist[0] + h * pad.twist_rate[0],
-        pad.twist[1] + h * pad.twist_rate[1],
-        pad.twist[2] + h * pad.twist_rate[2],
+        pad.twist[0] + ahead * pad.twist_rate[0],
+        pad.twist[1] + ahead * pad.twist_rate[1],
+        pad.twist[2] + ahead * pad.twist_rate[2],
     )
 
 
@@ -163,8 +164,9 @@ def advance(pad, cells, delta, twist, h):
 @compiled
 def commit(pad, cells, delta, h):
     """Store bristle states, slip twist and wrench after a scaled slip displacement."""
+    between, pad.half_step = pad.half_step + 0.5 * h, 0.5 * h
     for a in range(3):
-        pad.twist_rate[a] = (delta[a] / h - pad.twist[a]) / h
+        pad.twist_rate[a] = (delta[a] / h - pad.twist[a]) / between
         pad.twist[a] = delta[a] / h
     fx, fy, ft = advance(pad, cells, delta, (pad.twist[0], pad.twist[1], pad.twist[2]), h)
     pad.wrench[0], pad.wrench[1], pad.wrench[2] = -fx, -fy, -pad.r * ft

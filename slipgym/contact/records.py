@@ -20,6 +20,7 @@ PAD = np.dtype(
         ("z", "f8", 3),  # bristle state in the scaled displacement (x, y, r theta) [m]
         ("slip_speed", "f8"),  # scaled slip speed; does not rise in stick [m/s]
         ("slip_rate", "f8"),  # its rate of change [m/s^2]
+        ("half_step", "f8"),  # half of the last sub-step: speed and twist are means, those of its middle [s]
         ("twist", "f8", 3),  # scaled slip twist of a patch [m/s]
         ("twist_rate", "f8", 3),  # its rate of change [m/s^2]
         ("normal", "f8"),  # normal force [N]
@@ -74,7 +75,7 @@ def rest(pads):
     for i in range(pads.shape[0]):
         pad = pads[i]
         pad.z[:] = 0.0
-        pad.slip_speed = pad.slip_rate = 0.0
+        pad.slip_speed = pad.slip_rate = pad.half_step = 0.0
         pad.twist[:] = 0.0
         pad.twist_rate[:] = 0.0
         pad.wrench[:] = 0.0

@@ -52,7 +52,7 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
         ticks = -(-(stop - world.tick) // steps)
         h = ticks * world.tick_length
         for f in range(2):
-            press(pads[f], fingers[f], h)
+            press(fingers[f], h)
         if sticks(pads[0]) or sticks(pads[1]):
             carry(world, h)
         substep(world, pads, cells, fingers, chips, h, ticks / world.control_ticks)
@@ -104,14 +104,10 @@ def touching(force):
 
 
 @compiled
-def press(pad, finger, h):
-    """Press with the actuator's mean force over a sub-step of h in slip, with that at its end in stick.
-
-    With the force at the end the momentum of a slide under a closing grip would be wrong in the first order.
-    """
-    end, mean = relaxed(finger, h)
-    finger.contact_force = touching(mean if pad.slip_rate != 0.0 else end)
-    finger.contact_mean_force = end
+def press(finger, h):
+    """Press with the actuator's force in a coming sub-step of h."""
+    end, _ = relaxed(finger, h)
+    finger.contact_force, finger.contact_mean_force = touching(end), end
 
 
 @compiled
