@@ -22,7 +22,9 @@ The step is backward Euler in the object's momentum, so it knows mass and inerti
 and has no stiffness limit. g is that of the speed expected at the sub-step's end,
 extrapolated from the last two; with g so fixed each pad's force is the gradient of a
 convex function of the twist: the coupled problem of both pads has one solution,
-which a semi-smooth Newton iteration finds.
+which a semi-smooth Newton iteration finds. If its speed says another g, as in a
+break-away, where slip grows within a sub-step, that one is fixed and the problem solved
+once more.
 """
 
 from __future__ import annotations
@@ -105,9 +107,24 @@ def respond(pad, z, normal, delta, h, reach):
 def prepare(pad, h):
     """Fix the friction level of a sub-step and bring the bristles into it; returns the level [-]."""
     limit = friction_level(pad, h)
-    z = brought_in((pad.z[0], pad.z[1], pad.z[2]), limit / pad.sigma_0)
-    pad.z[0], pad.z[1], pad.z[2] = z
+    bring_in(pad, (pad.z[0], pad.z[1], pad.z[2]), limit)
     return limit
+
+
+@compiled
+def bring_in(pad, z, limit):
+    """Give a pad the bristles z, brought into a friction level."""
+    pad.z[0], pad.z[1], pad.z[2] = brought_in(z, limit / pad.sigma_0)
+
+
+@compiled
+def level_found(pad, delta, h, limit):
+    """Friction level at the slip speed that a scaled slip displacement has turned out to be; in stick `limit`."""
+    x, y, t = pad.z[0] + delta[0], pad.z[1] + delta[1], pad.z[2] + delta[2]
+    reach = limit / pad.sigma_0
+    if x * x + y * y + t * t <= reach * reach:
+        return limit
+    return stribeck(pad, math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h)
 
 
 @compiled
