@@ -23,7 +23,6 @@ from slipgym.contact import kernel, patch
 MAX_NEWTON = 30
 MAX_HALVINGS = 8
 FORCE_TOLERANCE = 1e-10  # of the friction limit; rounding reaches about 1e-13
-LEVEL_TOLERANCE = 1e-3  # of the friction level, between what was expected and what was found
 
 
 @compiled
@@ -196,14 +195,11 @@ def bristles(pad):
 
 
 @compiled
-def levels_found(pads, limits, centre, motion, h):
-    """Friction levels of ellipsoids that a motion stands for, of the first and the last pad [-]."""
-    first = scaled(pads[0], lever(pads[0], centre), motion)
-    last = scaled(pads[-1], lever(pads[-1], centre), motion)
-    return (
-        kernel.level_found(pads[0], first, h, limits[0]),
-        kernel.level_found(pads[-1], last, h, limits[1]),
-    )
+def revise(pad, cells, i, limit, before, delta, h):
+    """Fix the friction levels anew if a scaled slip displacement means others; returns their mean [-]."""
+    if cells is None:
+        return kernel.revise(pad, before, delta, h, limit)
+    return patch.revise(pad, cells[i], delta, h, limit)
 
 
 @compiled
@@ -229,13 +225,15 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
     limits = prepare(pads[0], cells, 0, h), prepare(pads[-1], cells, -1, h)
     held = pads[0].normal > 0.0 or pads[-1].normal > 0.0
     motion = solve_motion(pads, cells, limits, inertia, centre, free, guess, h) if held else free
-    if cells is None and held:
-        found = levels_found(pads, limits, centre, motion, h)
-        away = max(abs(found[0] - limits[0]), abs(found[1] - limits[1]))
-        if away > LEVEL_TOLERANCE * limits[0]:
+    if held:
+        first = scaled(pads[0], lever(pads[0], centre), motion)
+        last = scaled(pads[-1], lever(pads[-1], centre), motion)
+        found = (
+            revise(pads[0], cells, 0, limits[0], before[0], first, h),
+            revise(pads[-1], cells, -1, limits[1], before[1], last, h),
+        )
+        if found[0] != limits[0] or found[1] != limits[1]:
             limits = found
-            kernel.bring_in(pads[-1], before[1], found[1])
-            kernel.bring_in(pads[0], before[0], found[0])
             motion = solve_motion(pads, cells, limits, inertia, centre, free, motion, h)
     for i in range(len(pads)):
         delta = scaled(pads[i], lever(pads[i], centre), motion)

@@ -34,6 +34,8 @@ import math
 from slipgym.compiled import compiled
 from slipgym.contact.decay import LARGEST
 
+LEVEL_TOLERANCE = 1e-3  # of the friction level, between what was expected and what was found
+
 
 @compiled
 def level(mu_c, mu_s, share):
@@ -56,13 +58,10 @@ def friction_level(pad, h):
 
 
 @compiled
-def brought_in(z, reach):
-    """Bristles brought back into the ball of a friction level that has fallen."""
+def kept(z, reach):
+    """Share of its deflection that a bristle keeps in the ball of a friction level, which may have fallen [-]."""
     squared = z[0] * z[0] + z[1] * z[1] + z[2] * z[2]
-    if squared > reach * reach:
-        shortening = reach / math.sqrt(squared)
-        return z[0] * shortening, z[1] * shortening, z[2] * shortening
-    return z
+    return reach / math.sqrt(squared) if squared > reach * reach else 1.0
 
 
 @compiled
@@ -114,17 +113,34 @@ def prepare(pad, h):
 @compiled
 def bring_in(pad, z, limit):
     """Give a pad the bristles z, brought into a friction level."""
-    pad.z[0], pad.z[1], pad.z[2] = brought_in(z, limit / pad.sigma_0)
+    share = kept(z, limit / pad.sigma_0)
+    pad.z[0], pad.z[1], pad.z[2] = share * z[0], share * z[1], share * z[2]
 
 
 @compiled
-def level_found(pad, delta, h, limit):
-    """Friction level at the slip speed that a scaled slip displacement has turned out to be; in stick `limit`."""
+def revise(pad, before, delta, h, limit):
+    """Fix the level anew that the slip speed of a sub-step turns out to mean, if it is another.
+
+    Args:
+        pad: PAD record.
+        before: Bristles at the start of the sub-step, tuple of 3 [m].
+        delta: Scaled slip displacement under `limit`, tuple of 3 [m].
+        h: Sub-step [s].
+        limit: The level so far [-].
+
+    Returns:
+        The level; `limit` if it is near.
+    """
     x, y, t = pad.z[0] + delta[0], pad.z[1] + delta[1], pad.z[2] + delta[2]
     reach = limit / pad.sigma_0
+    speed = math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h
     if x * x + y * y + t * t <= reach * reach:
+        speed = min(speed, pad.slip_speed)
+    found = stribeck(pad, speed)
+    if abs(found - limit) <= LEVEL_TOLERANCE * limit:
         return limit
-    return stribeck(pad, math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h)
+    bring_in(pad, before, found)
+    return found
 
 
 @compiled

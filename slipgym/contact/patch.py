@@ -34,7 +34,9 @@ import math
 from slipgym.compiled import compiled, compiled_sum
 from slipgym.contact import kernel
 from slipgym.contact.decay import LARGEST, decay
-from slipgym.contact.records import CAP, REACH, SHARE, Z_X, Z_Y, X, Y
+from slipgym.contact.records import CAP, KEPT, REACH, SHARE, Z_X, Z_Y, X, Y
+
+FLAT = 3.0  # slip speed over v_s from which the Stribeck curve has decayed, to exp(-9)
 
 
 @compiled
@@ -80,7 +82,7 @@ def set_powers(pad, cells, twist):
 
 @compiled_sum
 def prepare(pad, cells, twist):
-    """Fix every cell's friction level and bring its bristle into it.
+    """Fix every cell's friction level and bring its bristle into it; once more in a step is the same as once.
 
     Args:
         pad: PAD record with the parameters.
@@ -90,7 +92,7 @@ def prepare(pad, cells, twist):
     Returns:
         Friction level, mean over the load [-].
     """
-    share, z_x, z_y, reach = cells[SHARE], cells[Z_X], cells[Z_Y], cells[REACH]
+    share, z_x, z_y, reach, kept = cells[SHARE], cells[Z_X], cells[Z_Y], cells[REACH], cells[KEPT]
     mu_c, mu_s, compliance, mean = pad.mu_c, pad.mu_s, 1.0 / pad.sigma_0, 0.0
     if set_powers(pad, cells, twist) > 0:
         for i in range(cells.shape[1]):
@@ -100,7 +102,9 @@ def prepare(pad, cells, twist):
     for i in range(cells.shape[1]):
         mean += share[i] * reach[i]
         reach[i] *= compliance
-        z_x[i], z_y[i], _ = kernel.brought_in((z_x[i], z_y[i], 0.0), reach[i])
+        x, y = z_x[i] / kept[i], z_y[i] / kept[i]
+        kept[i] = kernel.kept((x, y, 0.0), reach[i])
+        z_x[i], z_y[i] = kept[i] * x, kept[i] * y
     return mean
 
 
@@ -146,7 +150,7 @@ def respond(pad, cells, delta, h):
 def advance(pad, cells, delta, twist, h):
     """Store bristles and caps after a scaled slip displacement; returns the friction opposing it [N]."""
     xs, ys, share, cap = cells[X], cells[Y], cells[SHARE], cells[CAP]
-    z_x, z_y, reach = cells[Z_X], cells[Z_Y], cells[REACH]
+    z_x, z_y, reach, kept = cells[Z_X], cells[Z_Y], cells[REACH], cells[KEPT]
     fx, fy, ft = 0.0, 0.0, 0.0
     for i in range(cells.shape[1]):
         x, y = xs[i], ys[i]
@@ -158,7 +162,34 @@ def advance(pad, cells, delta, twist, h):
         fx, fy, ft = fx + f_x, fy + f_y, ft + (x * f_y - y * f_x)
         z_x[i], z_y[i] = shortening * trial[0], shortening * trial[1]
         cap[i] = math.inf if shortening < 1.0 else stuck
+        kept[i] = 1.0
     return fx, fy, ft
+
+
+@compiled
+def revise(pad, cells, delta, h, limit):
+    """Fix the friction levels anew that a scaled slip displacement turns out to mean, if they are others.
+
+    Args:
+        pad: PAD record.
+        cells: Patch (CELL_FIELDS, n) from `prepare`; updated.
+        delta: Scaled slip displacement under these levels, tuple of 3 [m].
+        h: Sub-step [s].
+        limit: Their mean over the load [-].
+
+    Returns:
+        The mean; `limit` if it is near.
+    """
+    expected, found = expected_twist(pad, h), (delta[0] / h, delta[1] / h, delta[2] / h)
+    away = math.sqrt(
+        (found[0] - expected[0]) ** 2 + (found[1] - expected[1]) ** 2 + (found[2] - expected[2]) ** 2
+    )
+    near = kernel.LEVEL_TOLERANCE * pad.mu_c
+    fast = limit - pad.mu_c < near and math.hypot(found[0], found[1]) > FLAT * pad.stribeck_velocity
+    if fast or (pad.mu_s - pad.mu_c) * away < near * pad.stribeck_velocity:
+        return limit  # without a look at the cells
+    mean = prepare(pad, cells, found)
+    return mean if abs(mean - limit) > kernel.LEVEL_TOLERANCE * limit else prepare(pad, cells, expected)
 
 
 @compiled
@@ -179,7 +210,7 @@ def release(pad, cells, twist):
     for a in range(3):
         pad.twist[a] = twist[a]
         pad.twist_rate[a] = 0.0
-    cells[Z_X], cells[Z_Y], cells[CAP] = 0.0, 0.0, math.inf
+    cells[Z_X], cells[Z_Y], cells[KEPT], cells[CAP] = 0.0, 0.0, 1.0, math.inf
 
 
 @compiled

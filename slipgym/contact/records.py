@@ -39,7 +39,9 @@ CAP = 5
 """Slip speed of a cell that stick does not exceed; infinite in slip [m/s]."""
 REACH = 6
 """Longest deflection of a cell's bristle in this step [m]."""
-CELL_FIELDS = 7
+KEPT = 7
+"""Share of its deflection that a cell's bristle has kept in this step's friction level [-]."""
+CELL_FIELDS = 8
 """Rows of a patch, an array (CELL_FIELDS, n): one quantity in a row lets loops over n cells vectorise."""
 
 
@@ -66,6 +68,7 @@ def patch(positions: np.ndarray, shares: np.ndarray) -> np.ndarray:
     cells = np.zeros((CELL_FIELDS, len(shares)))
     cells[X], cells[Y] = positions.T
     cells[SHARE] = shares
+    cells[KEPT] = 1.0
     return cells
 
 

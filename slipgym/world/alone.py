@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from slipgym.compiled import compiled
+from slipgym.contact.patch import FLAT
 from slipgym.sensors.force_torque import sample_force_torque, sample_read_next
 from slipgym.world.actuator import relaxed, take_up, ticks_to_next
 from slipgym.world.planar import HOLDING, locate, pad_axes, substep
 
-FLAT = 3.0  # slip speed over v_s from which the Stribeck curve has decayed, to exp(-9)
 CHANGE = 0.1  # of slip speed or v_s within a sub-step
 FIRM = 0.95  # of the friction limit; more of it is left for a load that changes
 FAST = 0.7  # the same for as long as no command falls due

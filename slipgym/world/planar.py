@@ -90,7 +90,8 @@ def substep(world, pads, cells, fingers, chips, h, share):
         drift[1] + gain * (cos * az - sin * ax),
         drift[2] + gain * at,
     )
-    centre = (world.relative[0], world.relative[1])
+    # the levers are those of the time that the accelerations stand for
+    centre = (world.relative[0] + late * drift[0], world.relative[1] + late * drift[1])
     # a sub-step this long is one of firm stick: what the object would drift in it lies far beyond break-away,
     # from where Newton's iteration may not find back
     firm = h > 1.001 * world.calm_ticks * world.tick_length
