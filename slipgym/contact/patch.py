@@ -37,6 +37,13 @@ from slipgym.contact.decay import LARGEST, decay
 from slipgym.contact.records import CAP, KEPT, REACH, SHARE, Z_X, Z_Y, X, Y
 
 FLAT = 3.0  # slip speed over v_s from which the Stribeck curve has decayed, to exp(-9)
+MOSTLY = 0.5  # of the load, on cells that slip: the patch does
+
+
+@compiled
+def length(vector):
+    """Length of a tuple of 3."""
+    return math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
 
 
 @compiled
@@ -148,10 +155,14 @@ def respond(pad, cells, delta, h):
 
 @compiled_sum
 def advance(pad, cells, delta, twist, h):
-    """Store bristles and caps after a scaled slip displacement; returns the friction opposing it [N]."""
+    """Store bristles and caps after a scaled slip displacement.
+
+    Returns:
+        Friction opposing it, tuple of 3 [N], and the share of the load on cells that slip [-].
+    """
     xs, ys, share, cap = cells[X], cells[Y], cells[SHARE], cells[CAP]
     z_x, z_y, reach, kept = cells[Z_X], cells[Z_Y], cells[REACH], cells[KEPT]
-    fx, fy, ft = 0.0, 0.0, 0.0
+    fx, fy, ft, slipping = 0.0, 0.0, 0.0, 0.0
     for i in range(cells.shape[1]):
         x, y = xs[i], ys[i]
         stuck = speed_at(x, y, cap[i], twist)
@@ -162,8 +173,9 @@ def advance(pad, cells, delta, twist, h):
         fx, fy, ft = fx + f_x, fy + f_y, ft + (x * f_y - y * f_x)
         z_x[i], z_y[i] = shortening * trial[0], shortening * trial[1]
         cap[i] = math.inf if shortening < 1.0 else stuck
+        slipping += share[i] if shortening < 1.0 else 0.0
         kept[i] = 1.0
-    return fx, fy, ft
+    return (fx, fy, ft), slipping
 
 
 @compiled
@@ -181,9 +193,7 @@ def revise(pad, cells, delta, h, limit):
         The mean; `limit` if it is near.
     """
     expected, found = expected_twist(pad, h), (delta[0] / h, delta[1] / h, delta[2] / h)
-    away = math.sqrt(
-        (found[0] - expected[0]) ** 2 + (found[1] - expected[1]) ** 2 + (found[2] - expected[2]) ** 2
-    )
+    away = length((found[0] - expected[0], found[1] - expected[1], found[2] - expected[2]))
     near = kernel.LEVEL_TOLERANCE * pad.mu_c
     fast = limit - pad.mu_c < near and math.hypot(found[0], found[1]) > FLAT * pad.stribeck_velocity
     if fast or (pad.mu_s - pad.mu_c) * away < near * pad.stribeck_velocity:
@@ -199,14 +209,19 @@ def commit(pad, cells, delta, h):
     for a in range(3):
         pad.twist_rate[a] = (delta[a] / h - pad.twist[a]) / between
         pad.twist[a] = delta[a] / h
-    fx, fy, ft = advance(pad, cells, delta, (pad.twist[0], pad.twist[1], pad.twist[2]), h)
-    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -fx, -fy, -pad.r * ft
+    twist = pad.twist[0], pad.twist[1], pad.twist[2]
+    force, slipping = advance(pad, cells, delta, twist, h)
+    speed = length(twist)
+    pad.slip_rate = (speed - pad.slip_speed) / between if slipping > MOSTLY else 0.0
+    pad.slip_speed = speed
+    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
 
 
 @compiled
 def release(pad, cells, twist):
     """Forget the bristle states of a patch without normal force."""
     pad.wrench[:] = 0.0
+    pad.slip_speed, pad.slip_rate = length(twist), 0.0
     for a in range(3):
         pad.twist[a] = twist[a]
         pad.twist_rate[a] = 0.0

@@ -125,6 +125,8 @@ def longest_substep(world, pad, cells, finger, ticks):
         finger: FINGER record; no command falls due within `ticks`.
         ticks: How many are asked for.
     """
+    if pad.slip_rate != 0.0 and cells is not None:
+        return world.substep_ticks
     if pad.slip_rate != 0.0:  # slips
         change = world.calm_ticks * world.tick_length * pad.slip_rate
         flat = pad.slip_speed + min(change, 0.0) > FLAT * pad.stribeck_velocity
