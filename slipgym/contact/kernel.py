@@ -54,7 +54,19 @@ def stribeck(pad, slip_speed):
 @compiled
 def friction_level(pad, h):
     """Friction level g at the slip speed expected in the middle of a sub-step of h [-]."""
-    return stribeck(pad, max(0.0, pad.slip_speed + (pad.half_step + 0.5 * h) * pad.slip_rate))
+    return stribeck(pad, expected_speed(pad, h))
+
+
+@compiled
+def expected_speed(pad, h):
+    """Slip speed expected in the middle of a sub-step of h [m/s]."""
+    return max(0.0, pad.slip_speed + (pad.half_step + 0.5 * h) * pad.slip_rate)
+
+
+@compiled
+def near(pad, speed_change):
+    """Whether a change of slip speed hardly changes the friction level: the curve's slope is below 1 / v_s."""
+    return (pad.mu_s - pad.mu_c) * abs(speed_change) <= LEVEL_TOLERANCE * pad.mu_c * pad.stribeck_velocity
 
 
 @compiled
@@ -131,11 +143,17 @@ def revise(pad, before, delta, h, limit):
     Returns:
         The level; `limit` if it is near.
     """
+    expected = expected_speed(pad, h)
     x, y, t = pad.z[0] + delta[0], pad.z[1] + delta[1], pad.z[2] + delta[2]
     reach = limit / pad.sigma_0
+    stuck = x * x + y * y + t * t <= reach * reach
+    if stuck and near(pad, max(expected, pad.slip_speed)):
+        return limit
     speed = math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h
-    if x * x + y * y + t * t <= reach * reach:
+    if stuck:
         speed = min(speed, pad.slip_speed)
+    if near(pad, speed - expected):
+        return limit
     found = stribeck(pad, speed)
     if abs(found - limit) <= LEVEL_TOLERANCE * limit:
         return limit

@@ -96,8 +96,10 @@ def substep(world, pads, cells, fingers, chips, h, share):
     # from where Newton's iteration may not find back
     firm = h > 1.001 * world.calm_ticks * world.tick_length
     guess = (0.0, 0.0, 0.0) if firm else drift
-    motion = step_pads(pads, cells, (world.mass / lead, world.inertia / lead), centre, free, guess, h)
-    per_lead = rate / lead
+    per_lead = 1.0 if held else 2.0
+    inertia = per_lead * world.mass, per_lead * world.inertia
+    motion = step_pads(pads, cells, inertia, centre, free, guess, h)
+    per_lead *= rate
     braking_x = (motion[0] - free[0]) * per_lead
     braking_y = (motion[1] - free[1]) * per_lead
     gained_x = h * ax + cos * braking_x - sin * braking_y
