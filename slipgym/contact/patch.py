@@ -194,7 +194,10 @@ def revise(pad, cells, delta, h, limit):
     """
     expected, found = expected_twist(pad, h), (delta[0] / h, delta[1] / h, delta[2] / h)
     away = length((found[0] - expected[0], found[1] - expected[1], found[2] - expected[2]))
-    fast = limit - pad.mu_c < kernel.LEVEL_TOLERANCE * pad.mu_c and math.hypot(found[0], found[1]) > FLAT * pad.stribeck_velocity
+    fast = (
+        limit - pad.mu_c < kernel.LEVEL_TOLERANCE * pad.mu_c
+        and math.hypot(found[0], found[1]) > FLAT * pad.stribeck_velocity
+    )
     if fast or kernel.near(pad, away):
         return limit  # without a look at the cells
     mean = prepare(pad, cells, found)
