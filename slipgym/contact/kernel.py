@@ -19,7 +19,7 @@ which counts as loss and not as dz/dt: elastic force and damping then take at le
 the energy that they store, whatever the twist.
 
 The step is backward Euler in the object's momentum, so it knows mass and inertia
-and has no stiffness limit. g is that of the speed expected at the sub-step's end,
+and has no stiffness limit. g is that of the speed expected in the sub-step's middle,
 extrapolated from the last two; with g so fixed each pad's force is the gradient of a
 convex function of the twist: the coupled problem of both pads has one solution,
 which a semi-smooth Newton iteration finds. If its speed says another g, as in a
@@ -65,13 +65,13 @@ def expected_speed(pad, h):
 
 @compiled
 def near(pad, speed_change):
-    """Whether a change of slip speed hardly changes the friction level: the curve's slope is below 1 / v_s."""
+    """Whether a change of slip speed hardly changes the friction level, a curve of slope below 1 / v_s."""
     return (pad.mu_s - pad.mu_c) * abs(speed_change) <= LEVEL_TOLERANCE * pad.mu_c * pad.stribeck_velocity
 
 
 @compiled
 def kept(z, reach):
-    """Share of its deflection that a bristle keeps in the ball of a friction level, which may have fallen [-]."""
+    """Share of its deflection that a bristle keeps in the ball of a friction level that may have fallen [-]."""
     squared = z[0] * z[0] + z[1] * z[1] + z[2] * z[2]
     return reach / math.sqrt(squared) if squared > reach * reach else 1.0
 
