@@ -71,7 +71,7 @@ def near(pad, speed_change):
 
 @compiled
 def kept(z, reach):
-    """Share of its deflection that a bristle keeps in the ball of a friction level that may have fallen [-]."""
+    """Share of its deflection that a bristle keeps within a reach that may have become shorter [-]."""
     squared = z[0] * z[0] + z[1] * z[1] + z[2] * z[2]
     return reach / math.sqrt(squared) if squared > reach * reach else 1.0
 

@@ -84,6 +84,25 @@ def test_a_slide_under_a_closing_grip_has_the_exact_momentum():
     np.testing.assert_allclose(trace.velocity[:, 1], expected, rtol=1e-9)
 
 
+@pytest.mark.parametrize(("engine", "exact"), [("bullet", 5e-7), ("planar", 1e-12)])
+def test_a_slide_under_a_constant_grip_is_a_parabola(engine, exact):
+    """At mu_s = mu_c and without viscosity; one that is half a sub-step ahead of itself is 0.14 mm off.
+
+    PyBullet's normal force is the actuator's to some 1e-5.
+    """
+    mu, force, mass = 0.4, 1.0, 0.2
+    overrides = {"contact": {"sigma_2": 0.0}}
+    friction = Friction(mu_s=mu, mu_c=mu)
+    with Bench(overrides, friction, force=force, mass=mass, engine=engine, size=(0.08, 0.03, 0.4)) as bench:
+        acceleration = bench.config.physics.gravity - 2.0 * mu * force / mass
+        start = bench.run(0.1)
+        speed = -start.velocity[-1, 1] + acceleration * bench.velocity_age
+        trace = bench.run(0.1)
+    t = trace.time - start.time[-1]
+    expected = start.position[-1, 1] - speed * t - 0.5 * acceleration * t**2
+    np.testing.assert_allclose(trace.position[:, 1], expected, atol=exact)
+
+
 def test_a_long_sub_step_holds_what_a_short_one_holds():
     """A wrist that jerks at 80 % of the limit: both stay within the bristles' reach and end alike."""
     ends = []
