@@ -17,11 +17,11 @@ from slipgym.compiled import unlocked
 from slipgym.contact.coupled import step_pads
 from slipgym.envs.actions import interpret
 from slipgym.envs.observation import combine, observe
-from slipgym.envs.rows import move
 from slipgym.envs.vector import SlipVectorEnv
 from slipgym.sensors.measure import measure
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import begin_step
+from slipgym.world.alone import move
 
 SIZES = 1, 16, 256, 4096
 EVERY_ACTION = -1.0, 1.0
@@ -192,8 +192,8 @@ def _contacts(worlds, pads, cells, fingers):
         vx, vy, omega = world.relative_velocity
         motion = (h * vx, h * vy, h * omega)
         free = (motion[0], motion[1] - h * h * world.gravity, motion[2])
-        for f in range(2):
-            pads[i, f].normal = fingers[i, f].force
+        pads[i, 0].normal = fingers[i, 0].force
         centre = (world.relative[0], world.relative[1])
         patch = None if cells is None else cells[i]
-        step_pads((pads[i, 0], pads[i, 1]), patch, (world.mass, world.inertia), centre, free, motion, h)
+        half = 0.5 * world.mass, 0.5 * world.inertia  # pads that are alike are solved as one
+        step_pads((pads[i, 0],), patch, half, centre, free, motion, h)

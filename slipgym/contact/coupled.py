@@ -229,19 +229,17 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
     Returns:
         Motion (x, y, theta) with friction [m, m, rad].
     """
-    # one pad is prepared twice, to the same end
     before = bristles(pads[0]), bristles(pads[-1])
-    limits = prepare(pads[0], cells, 0, h), prepare(pads[-1], cells, -1, h)
+    first = prepare(pads[0], cells, 0, h)
+    limits = first, first if len(pads) == 1 else prepare(pads[-1], cells, -1, h)
     held = pads[0].normal > 0.0 or pads[-1].normal > 0.0
     motion = solve_motion(pads, cells, limits, inertia, centre, free, guess, h) if held else free
     slips = slip_of(pads, centre, motion)
     if held:
-        found = (
-            revise(pads[0], cells, 0, limits[0], before[0], slips[0], h),
-            revise(pads[-1], cells, -1, limits[1], before[1], slips[1], h),
-        )
-        if found[0] != limits[0] or found[1] != limits[1]:
-            limits = found
+        first = revise(pads[0], cells, 0, limits[0], before[0], slips[0], h)
+        last = first if len(pads) == 1 else revise(pads[-1], cells, -1, limits[1], before[1], slips[1], h)
+        if first != limits[0] or last != limits[1]:
+            limits = first, last
             motion = solve_motion(pads, cells, limits, inertia, centre, free, motion, h)
             slips = slip_of(pads, centre, motion)
     for i in range(len(pads)):

@@ -32,7 +32,7 @@ from __future__ import annotations
 import math
 
 from slipgym.compiled import compiled
-from slipgym.contact.decay import LARGEST
+from slipgym.contact.decay import decay
 
 LEVEL_TOLERANCE = 1e-3  # of the friction level, between what was expected and what was found
 
@@ -48,7 +48,7 @@ def stribeck(pad, slip_speed):
     """Friction level g(v) with power = (v / v_s)^gamma [-]."""
     ratio = slip_speed / pad.stribeck_velocity
     power = ratio * ratio if pad.stribeck_exponent == 2.0 else ratio**pad.stribeck_exponent
-    return level(pad.mu_c, pad.mu_s, math.exp(-power) if power < LARGEST else 0.0)
+    return level(pad.mu_c, pad.mu_s, decay(power))
 
 
 @compiled

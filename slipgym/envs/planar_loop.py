@@ -51,10 +51,8 @@ class PlanarLoop(SlipLoop):
         self.rewards, (self.dropped, self.finished) = np.zeros(n), np.zeros((2, n), bool)
         kind, plant = specification(self.estimator_choice["name"]), self.plant
         batch = self.estimator
-        patches = plant.cells is not None
-        self._drive = driver(
-            task, kind.update_batch, batch.states.dtype, batch.parameters_array.dtype, patches
-        )
+        dtypes = batch.states.dtype, batch.parameters_array.dtype, plant.force_torque.dtype
+        self._drive = driver(task, kind.update_batch, *dtypes, plant.cells is not None)
         self._arguments = (
             plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips,
             batch.parameters_array, batch.states, batch.estimates,

@@ -18,13 +18,11 @@ from slipgym.contact.records import PAD
 from slipgym.envs.actions import COMPONENT, interpret
 from slipgym.envs.guard import sound
 from slipgym.envs.observation import combine, observe
-from slipgym.sensors.force_torque import FORCE_TORQUE
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import EPISODE, begin_step
-from slipgym.world.actuator import command
-from slipgym.world.alone import advance_alone
+from slipgym.world.alone import move
 from slipgym.world.records import FINGER, WORLD
 
 BLOCK = 256
@@ -39,22 +37,6 @@ def settle(worlds, pads, cells, fingers, force_torque, chips, wrenches, twists, 
         move(worlds, pads, cells, fingers, force_torque, chips, force, i)
         here = slice(i, i + 1)
         measure(worlds[here], force_torque[here], chips[here], wrenches[here], twists[here])
-
-
-@unlocked
-def move(worlds, pads, cells, fingers, force_torque, chips, force, i):
-    """A control step of world i under a commanded force; returns its number of sub-steps."""
-    for f in range(2):
-        command(fingers[i, f], worlds[i].tick, force)
-    patch = None if cells is None else cells[i]
-    return advance_alone(
-        worlds[i],
-        (pads[i, 0], pads[i, 1]),
-        patch,
-        (fingers[i, 0], fingers[i, 1]),
-        (force_torque[i, 0], force_torque[i, 1]),
-        (chips[i, 0], chips[i, 1]),
-    )
 
 
 @unlocked
@@ -169,7 +151,9 @@ def _row(dtype: Any, ndim: int = 1) -> Any:
 
 
 @cache
-def driver(task: Any, update: Any, states: np.dtype, parameters: np.dtype, patches: bool) -> Any:
+def driver(
+    task: Any, update: Any, states: np.dtype, parameters: np.dtype, force_torque: np.dtype, patches: bool
+) -> Any:
     """The compiled step for a task, an estimator and a kind of contact.
 
     The first call on a machine compiles it, which takes about half a minute; the result is kept beside the
@@ -180,6 +164,7 @@ def driver(task: Any, update: Any, states: np.dtype, parameters: np.dtype, patch
         update: The estimator's compiled `update_batch`.
         states: Dtype of its state.
         parameters: Dtype of its parameters.
+        force_torque: Dtype of the force/torque sensors.
         patches: Whether pads have cells.
 
     Returns:
@@ -198,7 +183,7 @@ def driver(task: Any, update: Any, states: np.dtype, parameters: np.dtype, patch
     cells = types.Array(types.float64, 4, "C") if patches else types.none
     signature = types.int64(
         *(types.FunctionType(kind) for kind in (plan, judge, learn)),
-        world, _row(PAD, 2), cells, finger, _row(FORCE_TORQUE, 2), _row(SLIP_SENSOR, 2),
+        world, _row(PAD, 2), cells, finger, _row(force_torque, 2), _row(SLIP_SENSOR, 2),
         parameter, state, estimate,
         episode, f2, f3, f3, f3, f2, f2, f2,
         types.Array(types.int64, 1, "C"), f2, f1, f1, types.Array(types.float32, 2, "C"),

@@ -15,24 +15,33 @@ from slipgym.compiled import compiled
 from slipgym.sensors.noise import standard_normal
 
 HISTORY = 64
+"""Loads that a sensor can keep at most, for its latency."""
 
-FORCE_TORQUE = np.dtype(
-    [
-        ("period", "i8"),  # ticks between samples
-        ("delay", "i8"),  # latency in ticks
-        ("mirror", "f8"),  # +1 finger 1, -1 finger 2
-        ("noise", "f8", 6),  # standard deviation per sample [N, N m]
-        ("drift", "f8", 6),  # standard deviation of the bias step per control step
-        ("bias", "f8", 6),
-        ("resolution", "f8", 6),  # one count, 0 = continuous
-        ("range", "f8", 6),  # saturation
-        ("key", "u8"),  # of the noise
-        ("drift_key", "u8"),  # of the bias's random walk
-        ("read", "i8"),  # readings since reset
-        ("kept", "i8"),  # loads that `history` keeps, at most HISTORY
-        ("history", "f8", (HISTORY, 6)),  # loads at the newest samples, in turn
-    ]
-)
+
+def force_torque(kept: int) -> np.dtype:
+    """FORCE_TORQUE, the record of a sensor that keeps some loads.
+
+    It has room for 4, 8, 16, ... of them, not for `HISTORY`: among thousands of records space costs time, and
+    every other dtype has to be compiled for.
+    """
+    room = max(4, 1 << (kept - 1).bit_length())
+    return np.dtype(
+        [
+            ("period", "i8"),  # ticks between samples
+            ("delay", "i8"),  # latency in ticks
+            ("mirror", "f8"),  # +1 finger 1, -1 finger 2
+            ("noise", "f8", 6),  # standard deviation per sample [N, N m]
+            ("drift", "f8", 6),  # standard deviation of the bias step per control step
+            ("bias", "f8", 6),
+            ("resolution", "f8", 6),  # one count, 0 = continuous
+            ("range", "f8", 6),  # saturation
+            ("key", "u8"),  # of the noise
+            ("drift_key", "u8"),  # of the bias's random walk
+            ("read", "i8"),  # readings since reset
+            ("kept", "i8"),  # loads that `history` keeps
+            ("history", "f8", (room, 6)),  # loads at the newest samples, in turn
+        ]
+    )
 
 
 @compiled

@@ -34,9 +34,10 @@ SLIP_SENSOR = np.dtype(
         ("key", "u8"),  # of the noise
         ("moved", "f8", 3),  # slip displacement since the last sample, pad frame [m, m, rad]
         ("carry", "f8", AXES),  # displacement not yet counted [m]
-        ("counted", "f8", (HISTORY, AXES)),  # counted displacement per sample [m]
+        ("counted", "f8", AXES),  # displacement counted in the newest sample [m]
         ("taken", "i8"),  # samples since reset
         ("travel", "f8", 3),  # delivered slip displacement since reset
+        ("history", "f8", (HISTORY, 3)),  # slip displacement counted in the newest samples, in turn
     ]
 )
 
@@ -71,7 +72,6 @@ def sample_slip(sensor):
     Counting truncates towards zero and keeps the rest, so a surface that trembles by less
     than one count gives none.
     """
-    row = sensor.taken % HISTORY
     x, y, theta = sensor.moved[0], sensor.moved[1], sensor.mirror * sensor.moved[2]
     sensor.moved[:] = 0.0
     for a in range(2 * sensor.chips):
@@ -82,7 +82,9 @@ def sample_slip(sensor):
         seen = min(max(seen, -sensor.range), sensor.range)
         counted = sensor.count * math.trunc(seen / sensor.count) if sensor.count > 0.0 else seen
         sensor.carry[a] = seen - counted
-        sensor.counted[row, a] = counted
+        sensor.counted[a] = counted
+    row = sensor.history[sensor.taken % HISTORY]
+    row[0], row[1], row[2] = displacement(sensor)
     sensor.taken += 1
 
 
@@ -96,7 +98,7 @@ def read_slip(sensor, twist):
     twist[:] = 0.0
     newest = sensor.taken - 1 - sensor.delay
     for number in range(max(newest - sensor.window + 1, 0), newest + 1):
-        x, y, theta = displacement(sensor, number)
+        x, y, theta = sensor.history[number % HISTORY]
         twist[0] += x
         twist[1] += y
         twist[2] += theta
@@ -109,13 +111,13 @@ def read_slip(sensor, twist):
 
 
 @compiled
-def displacement(sensor, number):
-    """Slip displacement (x, y, theta) counted in a sample: least squares over the axes of all chips.
+def displacement(sensor):
+    """Slip displacement (x, y, theta) counted in the newest sample: least squares over the axes of all chips.
 
     As the chips' mean is the pad centre, its three equations are independent of each other.
     """
     x, y, moment = 0.0, 0.0, 0.0
-    counted = sensor.counted[number % HISTORY]
+    counted = sensor.counted
     for k in range(sensor.chips):
         x += counted[2 * k]
         y += counted[2 * k + 1]

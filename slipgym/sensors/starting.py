@@ -31,6 +31,7 @@ def _start(force_torque, chips, keys, carries):
         wrench.read = 0
         wrench.key, wrench.drift_key, slip.key = keys[0, i], keys[1, i], keys[2, i]
         slip.counted[:] = 0.0
+        slip.history[:] = 0.0
         slip.moved[:] = 0.0
         slip.travel[:] = 0.0
         slip.taken = 0

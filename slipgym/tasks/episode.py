@@ -49,7 +49,8 @@ EPISODE = np.dtype(
         ("settle", "f8"),  # [s]
         ("own", "f8", OWN_MAX),  # whatever else a task keeps, zero before its start
         *FIELDS,
-    ]
+    ],
+    align=True,
 )
 """One episode: clock, reference, reward terms, outcome and the tasks' own parameters."""
 

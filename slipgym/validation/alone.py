@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.world.actuator import command
-from slipgym.world.alone import advance_alone
+from slipgym.world.alone import move
 from slipgym.world.placing import place
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box
@@ -30,16 +29,16 @@ class AloneWorld:
     """There is no engine to differ from [m]."""
 
     def __init__(self, config: Config, plant: Plant) -> None:
-        self._gripper, self._plant = config.gripper, plant
+        self._gripper, self._plant, self._force = config.gripper, plant, 0.0
 
     def reset(self, box: Box, force: float, wrist: tuple[float, float, float]) -> None:
         """The box held still by both fingers."""
+        self._force = force
         place(self._plant, 0, box, force, wrist)
 
     def command(self, force: float) -> None:
         """Command a grip force per finger [N]."""
-        for f in range(2):
-            command(self._plant.fingers[0, f], self._plant.world["tick"][0], force)
+        self._force = force
 
     def command_wrist(self, velocity: np.ndarray, duration: float) -> None:
         """Ramp the wrist velocity to a target within `duration` [s]."""
@@ -53,9 +52,8 @@ class AloneWorld:
     def step(self) -> None:
         """Advance by one control step."""
         plant = self._plant
-        cells = None if plant.cells is None else plant.cells[0]
-        rows = plant.pads[0], cells, plant.fingers[0], plant.force_torque[0], plant.chips[0]
-        advance_alone(plant.world[0], *rows)
+        bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips
+        move(*bodies, self._force, 0)
 
     @property
     def reading(self) -> tuple[Any, ...]:

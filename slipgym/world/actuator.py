@@ -36,20 +36,37 @@ def ticks_to_next(finger, tick, horizon):
 
 
 @compiled
-def relaxed(finger, h):
-    """Force of the first-order lag after h, and its mean over h [N]."""
-    gap = finger.force - finger.command
-    if finger.lag <= 0.0:
-        return finger.command, finger.command
-    ratio = h / finger.lag
-    if ratio != finger.relaxed:  # the exponential is slow, and steps take few lengths
-        finger.relaxed, finger.decay = ratio, math.exp(-ratio)
-        finger.mean_decay = (1.0 - finger.decay) / ratio
-    return finger.command + gap * finger.decay, finger.command + gap * finger.mean_decay
+def least_force(finger, tick):
+    """Least force until a tick [N]: the lag goes from the present one towards one command after the other."""
+    least = min(finger.force, finger.command)
+    for k in range(finger.served, finger.queued):
+        if finger.queue_tick[k % QUEUE] < tick:
+            least = min(least, finger.queue_force[k % QUEUE])
+    return least
 
 
 @compiled
 def relax(finger, h):
     """Advance the first-order lag by h; returns the mean force over h [N]."""
-    finger.force, mean = relaxed(finger, h)
-    return mean
+    gap = finger.force - finger.command
+    if finger.lag <= 0.0:
+        finger.force = finger.command
+        return finger.command
+    ratio = h / finger.lag
+    if ratio != finger.relaxed:  # the exponential is slow, and steps take few lengths
+        finger.relaxed, finger.decay = ratio, math.exp(-ratio)
+        finger.mean_decay = (1.0 - finger.decay) / ratio
+    finger.force = finger.command + gap * finger.decay
+    return finger.command + gap * finger.mean_decay
+
+
+@compiled
+def relax_through(finger, tick, ticks, tick_length):
+    """Advance the lag by some ticks, through the commands that fall due; returns the mean force [N]."""
+    total, end = 0.0, tick + ticks
+    while tick < end:
+        take_up(finger, tick)
+        piece = ticks_to_next(finger, tick, end - tick)
+        total += piece * relax(finger, piece * tick_length)
+        tick += piece
+    return total / ticks

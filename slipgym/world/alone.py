@@ -7,13 +7,53 @@ import math
 from slipgym.compiled import compiled
 from slipgym.contact.patch import FLAT
 from slipgym.sensors.force_torque import sample_force_torque, sample_read_next
-from slipgym.world.actuator import relaxed, take_up, ticks_to_next
-from slipgym.world.planar import HOLDING, locate, pad_axes, substep
+from slipgym.world.actuator import command, least_force, relax_through, take_up, ticks_to_next
+from slipgym.world.planar import HOLDING, locate, pad_axes, slide
 
 CHANGE = 0.1  # of slip speed or v_s within a sub-step
 FIRM = 0.95  # of the friction limit; more of it is left for a load that changes
 FAST = 0.7  # the same for as long as no command falls due
 PATCH_FIRM, PATCH_FAST = 0.5, 0.4  # the rim of a uniform disc slips from 0.75 on
+
+
+@compiled
+def move(worlds, pads, cells, fingers, force_torque, chips, force, i):
+    """Advance world i by one control step under a commanded grip force.
+
+    Its fingers press alike on pads that are alike. If their centres of pressure are, too, one pad is solved
+    for, with half of the object, and the other takes over what became of it.
+
+    Args:
+        worlds: WORLD (n,).
+        pads: PAD (n, 2).
+        cells: Patches (n, 2, CELL_FIELDS, m); None for ellipsoids.
+        fingers: FINGER (n, 2).
+        force_torque: FORCE_TORQUE (n, 2).
+        chips: SLIP_SENSOR (n, 2).
+        force: Grip force per finger [N].
+        i: Which world.
+
+    Returns:
+        Number of sub-steps.
+    """
+    world, patches = worlds[i], None if cells is None else cells[i]
+    first, second = fingers[i, 0], fingers[i, 1]
+    sensors = force_torque[i, 0], force_torque[i, 1]
+    command(first, world.tick, force)
+    command(second, world.tick, force)
+    here, there = pads[i, 0].cop, pads[i, 1].cop
+    if here[0] != there[0] or here[1] != there[1]:
+        both, eyes = (pads[i, 0], pads[i, 1]), (chips[i, 0], chips[i, 1])
+        return advance_alone(world, both, patches, (first, second), sensors, eyes)
+    done = advance_alone(world, (pads[i, 0],), patches, (first,), sensors, (chips[i, 0],))
+    pads[i, 1] = pads[i, 0]
+    if cells is not None:
+        cells[i, 1] = cells[i, 0]
+    second.served, second.command = first.served, first.command
+    second.force, second.contact_force = first.force, first.contact_force
+    for k in range(3):
+        chips[i, 1].moved[k] = chips[i, 0].moved[k]
+    return done
 
 
 @compiled
@@ -25,11 +65,11 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
 
     Args:
         world: WORLD record.
-        pads: Two PAD records, as an array or, faster (`step_pads` says why), as a tuple.
-        cells: Patches (2, CELL_FIELDS, m); None for ellipsoids.
-        fingers: Two FINGER records, likewise.
-        force_torque: Two FORCE_TORQUE records, likewise.
-        chips: Two SLIP_SENSOR records, likewise.
+        pads: Two PAD records, or one that stands for both, as a tuple (`step_pads` says why).
+        cells: Their patches, as in `move`.
+        fingers: As many FINGER records.
+        force_torque: Two FORCE_TORQUE records.
+        chips: As many SLIP_SENSOR records as pads.
 
     Returns:
         Number of sub-steps.
@@ -37,32 +77,30 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
     done = 0
     end = world.tick + world.control_ticks
     sample = sample_read_next(force_torque[0], world.tick, world.control_ticks)
-    for f in range(2):
-        fingers[f].mean_force = 0.0
-        fingers[f].reaction[:] = 0.0
     while world.tick < end:
-        stop = min(end, sample)
-        for f in range(2):
+        for f in range(len(pads)):
             take_up(fingers[f], world.tick)
-            stop = world.tick + ticks_to_next(fingers[f], world.tick, stop - world.tick)
-        ticks = stop - world.tick
-        for f in range(2):
-            ticks = min(ticks, longest_substep(world, pads[f], cells, fingers[f], ticks))
+        stop = min(end, sample)
+        ticks = longest_of_all(world, pads, cells, fingers, stop)
+        if ticks < stop - world.tick:  # then a command that falls due ends a sub-step, too
+            for f in range(len(pads)):
+                stop = world.tick + ticks_to_next(fingers[f], world.tick, stop - world.tick)
+            ticks = longest_of_all(world, pads, cells, fingers, stop)
         steps = -(-(stop - world.tick) // ticks)
         ticks = -(-(stop - world.tick) // steps)
         h = ticks * world.tick_length
-        for f in range(2):
-            press(fingers[f], h)
-        if sticks(pads[0]) or sticks(pads[1]):
+        if sticks(pads[0]) or sticks(pads[-1]):
             carry(world, h)
-        substep(world, pads, cells, fingers, chips, h, ticks / world.control_ticks)
+        for f in range(len(pads)):
+            press(world, pads[f], fingers[f], ticks)
+        slide(world, pads, cells, chips, h)
         world.tick += ticks
         done += 1
         if world.tick == sample:
             for f in range(2):
-                sample_force_torque(force_torque[f], pads[f], sample)
+                sample_force_torque(force_torque[f], pads[min(f, len(pads) - 1)], sample)
             sample = sample_read_next(force_torque[0], sample, world.control_ticks)
-    for f in range(2):
+    for f in range(len(pads)):
         fingers[f].contact_force = touching(fingers[f].force)
     locate(world)
     return done
@@ -104,10 +142,22 @@ def touching(force):
 
 
 @compiled
-def press(finger, h):
-    """Press with the actuator's force in a coming sub-step of h."""
-    end, _ = relaxed(finger, h)
-    finger.contact_force, finger.contact_mean_force = touching(end), end
+def press(world, pad, finger, ticks):
+    """Press with the actuator's mean force over a sub-step in slip, with that at its end in stick.
+
+    With the force at the end the momentum of a slide under a closing grip would be wrong in the first order.
+    """
+    mean = relax_through(finger, world.tick, ticks, world.tick_length)
+    pad.normal = finger.contact_force = touching(mean if pad.slip_rate != 0.0 else finger.force)
+
+
+@compiled
+def longest_of_all(world, pads, cells, fingers, stop):
+    """Ticks of the longest sub-step that resolves the contact of every pad, at most those until `stop`."""
+    asked = ticks = stop - world.tick
+    for f in range(len(pads)):
+        ticks = min(ticks, longest_substep(world, pads[f], cells, fingers[f], asked))
+    return ticks
 
 
 @compiled
@@ -122,7 +172,7 @@ def longest_substep(world, pad, cells, finger, ticks):
         world: WORLD record.
         pad: PAD record.
         cells: None for ellipsoids; a patch breaks away in parts, so only stick is calm.
-        finger: FINGER record; no command falls due within `ticks`.
+        finger: FINGER record.
         ticks: How many are asked for.
     """
     if pad.slip_rate != 0.0 and cells is not None:
@@ -132,9 +182,10 @@ def longest_substep(world, pad, cells, finger, ticks):
         flat = pad.slip_speed + min(change, 0.0) > FLAT * pad.stribeck_velocity
         calm = flat or abs(change) < CHANGE * min(pad.slip_speed, pad.stribeck_velocity)
         return world.calm_ticks if calm else world.substep_ticks
-    normal = touching(min(finger.force, finger.command))  # the least within `ticks`
+    normal = touching(least_force(finger, world.tick + ticks))
     if normal <= 0.0:
-        return ticks if finger.contact_force <= 0.0 else world.substep_ticks
+        free = finger.contact_force <= 0.0
+        return ticks_to_next(finger, world.tick, ticks) if free else world.substep_ticks
     fx, fy, rim = pad.wrench[0], pad.wrench[1], pad.wrench[2] / pad.r
     share = math.sqrt(fx * fx + fy * fy + rim * rim) / (pad.mu_s * normal)
     firm, fast = (FIRM, FAST) if cells is None else (PATCH_FIRM, PATCH_FAST)

@@ -72,6 +72,26 @@ def substep(world, pads, cells, fingers, chips, h, share):
         fingers[f].mean_force += share * mean
         # in slip momentum counts, the mean force's over the sub-step; in stick what holds at its end
         pads[f].normal = normal_force(fingers[f], mean if pads[f].slip_rate != 0.0 else fingers[f].force)
+    slide(world, pads, cells, chips, h)
+    cos, sin = pad_axes(world)
+    for f in range(2):
+        fx, fy, tau = pads[f].wrench
+        fingers[f].reaction[0] += share * (cos * fx - sin * fy)
+        fingers[f].reaction[1] += share * (sin * fx + cos * fy)
+        fingers[f].reaction[2] += share * tau
+
+
+@compiled
+def slide(world, pads, cells, chips, h):
+    """Advance wrist, friction and object by h under the pads' normal forces.
+
+    Args:
+        world: WORLD record.
+        pads: Two PAD records, or one that stands for both, as an array or a tuple.
+        cells: As in `advance`.
+        chips: As many SLIP_SENSOR records, likewise.
+        h: Time [s].
+    """
     move_wrist(world, h)
     cos, sin = pad_axes(world)
     rate, per_mass = 1.0 / h, 1.0 / world.mass  # a product costs less than a quotient
@@ -80,7 +100,7 @@ def substep(world, pads, cells, fingers, chips, h, share):
     at = world.external[2] / world.inertia
     # held: backward Euler, as sticking needs; in slip or let go: the mean of the velocities at both ends, of
     # second order. What it says of a sub-step in which slip ends would be the velocity turned round
-    held = holds(pads[0], h) or holds(pads[1], h)
+    held = holds(pads[0], h) or holds(pads[-1], h)
     lead = 1.0 if held else 0.5
     late = 1.0 - lead
     drift = drifting(world, cos, sin, h)
@@ -97,8 +117,8 @@ def substep(world, pads, cells, fingers, chips, h, share):
     firm = h > 1.001 * world.calm_ticks * world.tick_length
     guess = (0.0, 0.0, 0.0) if firm else drift
     per_lead = 1.0 if held else 2.0
-    inertia = per_lead * world.mass, per_lead * world.inertia
-    motion = step_pads(pads, cells, inertia, centre, free, guess, h)
+    part = 0.5 * len(pads) * per_lead  # one pad has half of the object to hold
+    motion = step_pads(pads, cells, (part * world.mass, part * world.inertia), centre, free, guess, h)
     per_lead *= rate
     braking_x = (motion[0] - free[0]) * per_lead
     braking_y = (motion[1] - free[1]) * per_lead
@@ -115,12 +135,8 @@ def substep(world, pads, cells, fingers, chips, h, share):
         world.relative[a] += motion[a]
         world.relative_velocity[a] = motion[a] * rate
     slip = (motion[0] + motion[2] * centre[1], motion[1] - motion[2] * centre[0], motion[2])
-    for f in range(2):
+    for f in range(len(pads)):
         accumulate_slip(chips[f], slip)
-        fx, fy, tau = pads[f].wrench
-        fingers[f].reaction[0] += share * (cos * fx - sin * fy)
-        fingers[f].reaction[1] += share * (sin * fx + cos * fy)
-        fingers[f].reaction[2] += share * tau
 
 
 @compiled

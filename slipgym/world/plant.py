@@ -10,8 +10,8 @@ import numpy as np
 from slipgym.config import Config
 from slipgym.contact.pressure import patch_cells
 from slipgym.contact.records import pads, patch
-from slipgym.sensors.force_torque import FORCE_TORQUE
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
+from slipgym.sensors.force_torque import force_torque
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
 from slipgym.sensors.slip_velocity import SLIP_SENSOR, chip_positions
 from slipgym.world.records import FINGER, QUEUE, WORLD
@@ -144,7 +144,7 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     def six(tangential: float, normal: float, torque: float) -> tuple[float, ...]:
         return (tangential, tangential, normal, torque, torque, torque)
 
-    array = np.zeros((n, 2), FORCE_TORQUE)
+    array = np.zeros((n, 2), force_torque(kept))
     array["period"] = tick_rate // sensor.rate
     array["delay"] = delay
     array["kept"] = kept

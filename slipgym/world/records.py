@@ -43,8 +43,6 @@ FINGER = np.dtype(
         ("dead_ticks", "i8"),  # dead time in ticks
         ("force_limit", "f8"),  # hard limit of the actuator [N]
         ("open_below", "f8"),  # commands below it open the force loop [N]
-        ("queue_tick", "i8", QUEUE),  # when a command takes effect
-        ("queue_force", "f8", QUEUE),  # its value [N]
         ("queued", "i8"),  # commands ever queued
         ("served", "i8"),  # commands ever taken up
         ("command", "f8"),  # command in effect [N]
@@ -56,6 +54,8 @@ FINGER = np.dtype(
         ("contact_mean_force", "f8"),  # actuator force, mean over the step of `contact_force` [N]
         ("contact_force", "f8"),  # normal force of the engine, mean over its last step [N]
         ("reaction", "f8", 3),  # friction on the object, world, mean over the engine step
+        ("queue_tick", "i8", QUEUE),  # when a command takes effect
+        ("queue_force", "f8", QUEUE),  # its value [N]
     ]
 )
 """One finger: force loop, normal contact and the friction impulse it passes on."""

@@ -8,11 +8,10 @@ import pytest
 
 import policies
 from slipgym.config import load
-from slipgym.envs.rows import move
 from slipgym.sensors.measure import measure
 from slipgym.validation.bench import Bench, Friction
 from slipgym.validation.planar import slides
-from slipgym.world.alone import CHANGE, FAST, FIRM, FLAT, longest_substep
+from slipgym.world.alone import CHANGE, FAST, FIRM, FLAT, longest_substep, move
 from slipgym.world.placing import place
 from slipgym.world.plant import build
 from slipgym.world.scene import Box
@@ -115,15 +114,35 @@ def test_a_long_sub_step_holds_what_a_short_one_holds():
     np.testing.assert_allclose(*ends, atol=1e-8)
 
 
+@pytest.mark.parametrize("model", ["ellipsoid", "distributed"])
+def test_alike_pads_are_solved_as_one(model):
+    """Against pads whose centres of pressure lie a picometre apart, which are solved as two."""
+    found = []
+    for apart in (0.0, 1e-12):
+        overrides = {"contact": {"cells": 7, "cop_offset": [[0.0, 0.0], [apart, 0.0]]}}
+        box = {"force": 5.0, "com_offset": (0.01, 0.0)}
+        with Bench(overrides, contact=model, engine="planar", **box) as bench:
+            bench.settle()
+            trace = bench.run(0.4, force=lambda t: 1.5 + math.cos(40.0 * t))
+            plant = bench.plant
+            found.append([trace.slip, plant.pads["wrench"], plant.pads["z"], plant.fingers["force"]])
+            found[-1] += [plant.force_torque["history"][..., :5], plant.chips["travel"]]
+            assert np.abs(trace.slip[-1]).min() > 1e-3
+    for one, two in zip(*found, strict=True):
+        np.testing.assert_allclose(one, two, rtol=1e-6, atol=1e-9)
+    for array in found[0][1:4]:
+        np.testing.assert_array_equal(array[0, 0], array[0, 1])
+
+
 def test_slides_of_both_engines_agree():
     figures = list(slides(5))
     assert len(figures) == 4
     assert [figure for figure in figures if not figure.ok] == []
 
 
-@pytest.mark.parametrize("dead_ticks", [10, 97, 99])
+@pytest.mark.parametrize("period", [10, 97, 99])
 @pytest.mark.parametrize("pitching", [False, True])
-def test_friction_carries_the_object_however_uneven_sub_steps_are(dead_ticks, pitching):
+def test_friction_carries_the_object_however_uneven_sub_steps_are(period, pitching):
     """A firm grip on a wrist with constant acceleration: friction is weight and inertia, also after one tick.
 
     The pads' own vibration decays within a few of the implicit sub-steps.
@@ -132,7 +151,7 @@ def test_friction_carries_the_object_however_uneven_sub_steps_are(dead_ticks, pi
     plant, acceleration = build(config), np.array([1.0, -0.5, 3.0 if pitching else 0.0])
     box = Box((0.08, 0.03, 0.16), (0.02, -0.01), (0.0, 0.0), 0.2, 1e-3)
     plant.pads["mu_s"], plant.pads["mu_c"] = 0.6, 0.4
-    plant.fingers["dead_ticks"] = dead_ticks
+    plant.force_torque["period"] = period  # a sub-step ends with the last sample of a control step
     place(plant, 0, box, 20.0, (0.0, 0.0, 0.0))
     wrenches, twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
     for _ in range(12):
