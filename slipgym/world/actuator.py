@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
 from slipgym.compiled import compiled
+from slipgym.contact.decay import decay
 from slipgym.world.records import QUEUE
 
 
@@ -53,8 +52,8 @@ def relax(finger, h):
         finger.force = finger.command
         return finger.command
     ratio = h / finger.lag
-    if ratio != finger.relaxed:  # the exponential is slow, and steps take few lengths
-        finger.relaxed, finger.decay = ratio, math.exp(-ratio)
+    if ratio != finger.relaxed:  # sub-steps take few lengths
+        finger.relaxed, finger.decay = ratio, decay(ratio)
         finger.mean_decay = (1.0 - finger.decay) / ratio
     finger.force = finger.command + gap * finger.decay
     return finger.command + gap * finger.mean_decay
