@@ -118,15 +118,17 @@ def respond(pad, z, normal, delta, h, reach):
 def prepare(pad, h):
     """Fix the friction level of a sub-step and bring the bristles into it; returns the level [-]."""
     limit = friction_level(pad, h)
-    bring_in(pad, (pad.z[0], pad.z[1], pad.z[2]), limit)
+    bring_in(pad, limit)
     return limit
 
 
 @compiled
-def bring_in(pad, z, limit):
-    """Give a pad the bristles z, brought into a friction level."""
-    share = kept(z, limit / pad.sigma_0)
-    pad.z[0], pad.z[1], pad.z[2] = share * z[0], share * z[1], share * z[2]
+def bring_in(pad, limit):
+    """Bring the bristles into a friction level."""
+    share = kept((pad.z[0], pad.z[1], pad.z[2]), limit / pad.sigma_0)
+    if share < 1.0:  # a product with 1 would have stick wait for root and quotient, a fifth of a sub-step
+        for a in range(3):
+            pad.z[a] *= share
 
 
 @compiled
@@ -149,7 +151,7 @@ def revise(pad, before, delta, h, limit):
     stuck = x * x + y * y + t * t <= reach * reach
     if stuck and near(pad, max(expected, pad.slip_speed)):
         return limit
-    speed = math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h
+    speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) * (1.0 / h)
     if stuck:
         speed = min(speed, pad.slip_speed)
     if near(pad, speed - expected):
@@ -157,7 +159,9 @@ def revise(pad, before, delta, h, limit):
     found = stribeck(pad, speed)
     if abs(found - limit) <= LEVEL_TOLERANCE * limit:
         return limit
-    bring_in(pad, before, found)
+    for a in range(3):
+        pad.z[a] = before[a]
+    bring_in(pad, found)
     return found
 
 
