@@ -11,6 +11,7 @@ from slipgym.world.actuator import command, least_force, relax_through, take_up,
 from slipgym.world.planar import HOLDING, locate, pad_axes, slide
 
 CHANGE = 0.1  # of slip speed or v_s within a sub-step
+STILL = 0.01  # of v_s: a pad's vibration with this speed is half a percent of its limit
 FIRM = 0.95  # of the friction limit; more of it is left for a load that changes
 FAST = 0.7  # the same for as long as no command falls due
 PATCH_FIRM, PATCH_FAST = 0.5, 0.4  # the rim of a uniform disc slips from 0.75 on
@@ -166,7 +167,7 @@ def longest_substep(world, pad, cells, finger, ticks):
 
     Quick are break-away and what the Stribeck curve does to slow slip. Calm is a pad that slips where the
     curve is flat or whose slip speed hardly changes, and one that sticks within the limit; one that sticks
-    well within it, or is let go, has nothing to resolve.
+    well within it and still, or is let go, has nothing to resolve.
 
     Args:
         world: WORLD record.
@@ -189,6 +190,14 @@ def longest_substep(world, pad, cells, finger, ticks):
     fx, fy, rim = pad.wrench[0], pad.wrench[1], pad.wrench[2] / pad.r
     share = math.sqrt(fx * fx + fy * fy + rim * rim) / (pad.mu_s * normal)
     firm, fast = (FIRM, FAST) if cells is None else (PATCH_FIRM, PATCH_FAST)
-    if share > firm or pad.slip_speed > CHANGE * pad.stribeck_velocity:
+    if share > firm or vibrates(world, pad):
         return world.substep_ticks
     return world.calm_ticks if share > fast else ticks
+
+
+@compiled
+def vibrates(world, pad):
+    """Whether the object that a pad holds moves in its bristles, as after slip; long steps would damp it."""
+    vx, vy, omega = world.relative_velocity
+    rim = pad.r * omega
+    return math.sqrt(vx * vx + vy * vy + rim * rim) > STILL * pad.stribeck_velocity

@@ -122,6 +122,8 @@ def slide(world, pads, cells, chips, h):
     per_lead *= rate
     braking_x = (motion[0] - free[0]) * per_lead
     braking_y = (motion[1] - free[1]) * per_lead
+    back = late * h * (world.wrist_velocity[2] - 0.5 * h * world.wrist_acceleration[2])
+    cos, sin = cos + back * sin, sin - back * cos  # friction turns with the pads: that of the middle
     gained_x = h * ax + cos * braking_x - sin * braking_y
     gained_z = h * az + sin * braking_x + cos * braking_y
     gained_t = h * at + (motion[2] - free[2]) * per_lead

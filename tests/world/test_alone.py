@@ -11,7 +11,7 @@ from slipgym.config import load
 from slipgym.sensors.measure import measure
 from slipgym.validation.bench import Bench, Friction
 from slipgym.validation.planar import slides
-from slipgym.world.alone import CHANGE, FAST, FIRM, FLAT, longest_substep, move
+from slipgym.world.alone import CHANGE, FAST, FIRM, FLAT, STILL, longest_substep, move
 from slipgym.world.placing import place
 from slipgym.world.plant import build
 from slipgym.world.scene import Box
@@ -29,13 +29,13 @@ def contact():
 
     def make(**fields):
         plant = build(load())
-        pad, finger = plant.pads[0, 0], plant.fingers[0, 0]
+        world, pad, finger = plant.world[0], plant.pads[0, 0], plant.fingers[0, 0]
         pad["mu_s"], pad["mu_c"] = 0.6, 0.4
         finger["force"] = finger["command"] = finger["contact_force"] = 5.0
         for name, value in fields.items():
-            record = pad if name in pad.dtype.names else finger
+            record = next(row for row in (world, pad, finger) if name in row.dtype.names)
             record[name] = value
-        return plant.world[0], pad, finger
+        return world, pad, finger
 
     return make
 
@@ -52,7 +52,9 @@ LIMIT = 3.0  # of the fixture's pad [N]
         ({"wrench": (0.0, 0.0, 1.01 * FIRM * LIMIT * 0.01)}, SHORT),
         ({"wrench": (0.0, 0.9 * FIRM * LIMIT, 0.0), "command": 4.0}, SHORT),
         ({"wrench": (0.0, 0.9 * FIRM * LIMIT, 0.0), "command": 8.0}, CALM),
-        ({"wrench": (0.0, 0.5, 0.0), "slip_speed": 2 * CHANGE * V_S}, SHORT),
+        ({"wrench": (0.0, 0.5, 0.0), "relative_velocity": (0.9 * STILL * V_S, 0.0, 0.0)}, ASKED),
+        ({"wrench": (0.0, 0.5, 0.0), "relative_velocity": (0.0, 1.1 * STILL * V_S, 0.0)}, SHORT),
+        ({"wrench": (0.0, 0.5, 0.0), "relative_velocity": (0.0, 0.0, 110 * STILL * V_S)}, SHORT),
         ({"slip_speed": 2 * FLAT * V_S, "slip_rate": 1.0}, CALM),
         ({"slip_speed": FLAT * V_S + 0.9 * H, "slip_rate": -1.0}, SHORT),
         ({"slip_speed": FLAT * V_S + 1.1 * H, "slip_rate": -1.0}, CALM),
