@@ -11,7 +11,7 @@ from slipgym.world.actuator import command, least_force, relax_through, take_up,
 from slipgym.world.planar import HOLDING, locate, pad_axes, slide
 
 CHANGE = 0.1  # of slip speed or v_s within a sub-step
-STILL = 0.01  # of v_s: a pad's vibration with this speed is half a percent of its limit
+STILL = 0.03  # of v_s: a pad's vibration with this speed is one to two percent of its limit
 FIRM = 0.95  # of the friction limit; more of it is left for a load that changes
 FAST = 0.7  # the same for as long as no command falls due
 PATCH_FIRM, PATCH_FAST = 0.5, 0.4  # the rim of a uniform disc slips from 0.75 on
