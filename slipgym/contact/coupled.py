@@ -189,6 +189,29 @@ def iterate(pads, cells, limits, inertia, centre, free, motion, h, tolerance):
 
 
 @compiled
+def slip_of(pads, centre, motion):
+    """Scaled slip displacements of the first and the last pad."""
+    return (
+        scaled(pads[0], lever(pads[0], centre), motion),
+        scaled(pads[-1], lever(pads[-1], centre), motion),
+    )
+
+
+@compiled
+def bristles(pad):
+    """Bristle deflection as a tuple of 3 [m]."""
+    return pad.z[0], pad.z[1], pad.z[2]
+
+
+@compiled
+def revise(pad, cells, i, limit, before, delta, h):
+    """Fix the friction levels anew if a scaled slip displacement means others; returns their mean [-]."""
+    if cells is None:
+        return kernel.revise(pad, before, delta, h, limit)
+    return patch.revise(pad, cells[i], delta, h, limit)
+
+
+@compiled
 def step_pads(pads, cells, inertia, centre, free, guess, h):
     """Advance all pads and the object's motion relative to them by one sub-step.
 
@@ -206,14 +229,22 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
     Returns:
         Motion (x, y, theta) with friction [m, m, rad].
     """
+    before = bristles(pads[0]), bristles(pads[-1])
     first = prepare(pads[0], cells, 0, h)
     limits = first, first if len(pads) == 1 else prepare(pads[-1], cells, -1, h)
     held = pads[0].normal > 0.0 or pads[-1].normal > 0.0
     motion = solve_motion(pads, cells, limits, inertia, centre, free, guess, h) if held else free
+    slips = slip_of(pads, centre, motion)
+    if held:
+        first = revise(pads[0], cells, 0, limits[0], before[0], slips[0], h)
+        last = first if len(pads) == 1 else revise(pads[-1], cells, -1, limits[1], before[1], slips[1], h)
+        if first != limits[0] or last != limits[1]:
+            limits = first, last
+            motion = solve_motion(pads, cells, limits, inertia, centre, free, motion, h)
+            slips = slip_of(pads, centre, motion)
     for i in range(len(pads)):
-        delta = scaled(pads[i], lever(pads[i], centre), motion)
         if pads[i].normal > 0.0:
-            commit(pads[i], cells, i, limits[i], delta, h)
+            commit(pads[i], cells, i, limits[i], slips[i], h)
         else:
-            release(pads[i], cells, i, delta, h)
+            release(pads[i], cells, i, slips[i], h)
     return motion

@@ -19,10 +19,12 @@ which counts as loss and not as dz/dt: elastic force and damping then take at le
 the energy that they store, whatever the twist.
 
 The step is backward Euler in the object's momentum, so it knows mass and inertia
-and has no stiffness limit. g is that of the speed expected at the sub-step's end,
+and has no stiffness limit. g is that of the speed expected in the sub-step's middle,
 extrapolated from the last two; with g so fixed each pad's force is the gradient of a
 convex function of the twist: the coupled problem of both pads has one solution,
-which a semi-smooth Newton iteration finds.
+which a semi-smooth Newton iteration finds. If its speed says another g, as in a
+break-away, where slip grows within a sub-step, that one is fixed and the problem solved
+once more.
 """
 
 from __future__ import annotations
@@ -31,6 +33,8 @@ import math
 
 from slipgym.compiled import compiled
 from slipgym.contact.decay import decay
+
+LEVEL_TOLERANCE = 1e-3  # of the friction level, between what was expected and what was found
 
 
 @compiled
@@ -49,18 +53,27 @@ def stribeck(pad, slip_speed):
 
 @compiled
 def friction_level(pad, h):
-    """Friction level g at the slip speed expected after a sub-step of h [-]."""
-    return stribeck(pad, max(0.0, pad.slip_speed + h * pad.slip_rate))
+    """Friction level g at the slip speed expected in the middle of a sub-step of h [-]."""
+    return stribeck(pad, expected_speed(pad, h))
 
 
 @compiled
-def brought_in(z, reach):
-    """Bristles brought back into the ball of a friction level that has fallen."""
+def expected_speed(pad, h):
+    """Slip speed expected in the middle of a sub-step of h [m/s]."""
+    return max(0.0, pad.slip_speed + (pad.half_step + 0.5 * h) * pad.slip_rate)
+
+
+@compiled
+def near(pad, speed_change):
+    """Whether a change of slip speed hardly changes the friction level, a curve of slope below 1 / v_s."""
+    return (pad.mu_s - pad.mu_c) * abs(speed_change) <= LEVEL_TOLERANCE * pad.mu_c * pad.stribeck_velocity
+
+
+@compiled
+def kept(z, reach):
+    """Share of its deflection that a bristle keeps within a reach that may have become shorter [-]."""
     squared = z[0] * z[0] + z[1] * z[1] + z[2] * z[2]
-    if squared > reach * reach:
-        shortening = reach / math.sqrt(squared)
-        return z[0] * shortening, z[1] * shortening, z[2] * shortening
-    return z
+    return reach / math.sqrt(squared) if squared > reach * reach else 1.0
 
 
 @compiled
@@ -105,9 +118,51 @@ def respond(pad, z, normal, delta, h, reach):
 def prepare(pad, h):
     """Fix the friction level of a sub-step and bring the bristles into it; returns the level [-]."""
     limit = friction_level(pad, h)
-    z = brought_in((pad.z[0], pad.z[1], pad.z[2]), limit / pad.sigma_0)
-    pad.z[0], pad.z[1], pad.z[2] = z
+    bring_in(pad, limit)
     return limit
+
+
+@compiled
+def bring_in(pad, limit):
+    """Bring the bristles into a friction level."""
+    share = kept((pad.z[0], pad.z[1], pad.z[2]), limit / pad.sigma_0)
+    if share < 1.0:  # a product with 1 would have stick wait for root and quotient, a fifth of a sub-step
+        for a in range(3):
+            pad.z[a] *= share
+
+
+@compiled
+def revise(pad, before, delta, h, limit):
+    """Fix the level anew that the slip speed of a sub-step turns out to mean, if it is another.
+
+    Args:
+        pad: PAD record.
+        before: Bristles at the start of the sub-step, tuple of 3 [m].
+        delta: Scaled slip displacement under `limit`, tuple of 3 [m].
+        h: Sub-step [s].
+        limit: The level so far [-].
+
+    Returns:
+        The level; `limit` if it is near.
+    """
+    expected = expected_speed(pad, h)
+    x, y, t = pad.z[0] + delta[0], pad.z[1] + delta[1], pad.z[2] + delta[2]
+    reach = limit / pad.sigma_0
+    stuck = x * x + y * y + t * t <= reach * reach
+    if stuck and near(pad, max(expected, pad.slip_speed)):
+        return limit
+    speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) * (1.0 / h)
+    if stuck:
+        speed = min(speed, pad.slip_speed)
+    if near(pad, speed - expected):
+        return limit
+    found = stribeck(pad, speed)
+    if abs(found - limit) <= LEVEL_TOLERANCE * limit:
+        return limit
+    for a in range(3):
+        pad.z[a] = before[a]
+    bring_in(pad, found)
+    return found
 
 
 @compiled
@@ -119,8 +174,9 @@ def commit(pad, delta, h, limit):
         pad.z[a] = shortening * trial[a]
     rate = 1.0 / h
     speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) * rate
+    between, pad.half_step = pad.half_step + 0.5 * h, 0.5 * h
     if shortening < 1.0:
-        pad.slip_rate = (speed - pad.slip_speed) * rate
+        pad.slip_rate = (speed - pad.slip_speed) / between
         pad.slip_speed = speed
     else:
         pad.slip_rate = 0.0

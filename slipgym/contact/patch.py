@@ -34,7 +34,16 @@ import math
 from slipgym.compiled import compiled, compiled_sum
 from slipgym.contact import kernel
 from slipgym.contact.decay import LARGEST, decay
-from slipgym.contact.records import CAP, REACH, SHARE, Z_X, Z_Y, X, Y
+from slipgym.contact.records import CAP, KEPT, REACH, SHARE, Z_X, Z_Y, X, Y
+
+FLAT = 3.0  # slip speed over v_s from which the Stribeck curve has decayed, to exp(-9)
+MOSTLY = 0.5  # of the load, on cells that slip: the patch does
+
+
+@compiled
+def length(vector):
+    """Length of a tuple of 3."""
+    return math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
 
 
 @compiled
@@ -52,11 +61,12 @@ def speed_at(x, y, cap, twist):
 
 @compiled
 def expected_twist(pad, h):
-    """Scaled slip twist expected after a sub-step of h [m/s]."""
+    """Scaled slip twist expected in the middle of a sub-step of h [m/s]."""
+    ahead = pad.half_step + 0.5 * h
     return (
-        pad.twist[0] + h * pad.twist_rate[0],
-        pad.twist[1] + h * pad.twist_rate[1],
-        pad.twist[2] + h * pad.twist_rate[2],
+        pad.twist[0] + ahead * pad.twist_rate[0],
+        pad.twist[1] + ahead * pad.twist_rate[1],
+        pad.twist[2] + ahead * pad.twist_rate[2],
     )
 
 
@@ -79,7 +89,7 @@ def set_powers(pad, cells, twist):
 
 @compiled_sum
 def prepare(pad, cells, twist):
-    """Fix every cell's friction level and bring its bristle into it.
+    """Fix every cell's friction level and bring its bristle into it; once more in a step is the same as once.
 
     Args:
         pad: PAD record with the parameters.
@@ -89,7 +99,7 @@ def prepare(pad, cells, twist):
     Returns:
         Friction level, mean over the load [-].
     """
-    share, z_x, z_y, reach = cells[SHARE], cells[Z_X], cells[Z_Y], cells[REACH]
+    share, z_x, z_y, reach, kept = cells[SHARE], cells[Z_X], cells[Z_Y], cells[REACH], cells[KEPT]
     mu_c, mu_s, compliance, mean = pad.mu_c, pad.mu_s, 1.0 / pad.sigma_0, 0.0
     if set_powers(pad, cells, twist) > 0:
         for i in range(cells.shape[1]):
@@ -99,7 +109,9 @@ def prepare(pad, cells, twist):
     for i in range(cells.shape[1]):
         mean += share[i] * reach[i]
         reach[i] *= compliance
-        z_x[i], z_y[i], _ = kernel.brought_in((z_x[i], z_y[i], 0.0), reach[i])
+        x, y = z_x[i] / kept[i], z_y[i] / kept[i]
+        kept[i] = kernel.kept((x, y, 0.0), reach[i])
+        z_x[i], z_y[i] = kept[i] * x, kept[i] * y
     return mean
 
 
@@ -143,10 +155,14 @@ def respond(pad, cells, delta, h):
 
 @compiled_sum
 def advance(pad, cells, delta, twist, h):
-    """Store bristles and caps after a scaled slip displacement; returns the friction opposing it [N]."""
+    """Store bristles and caps after a scaled slip displacement.
+
+    Returns:
+        Friction opposing it, tuple of 3 [N], and the share of the load on cells that slip [-].
+    """
     xs, ys, share, cap = cells[X], cells[Y], cells[SHARE], cells[CAP]
-    z_x, z_y, reach = cells[Z_X], cells[Z_Y], cells[REACH]
-    fx, fy, ft = 0.0, 0.0, 0.0
+    z_x, z_y, reach, kept = cells[Z_X], cells[Z_Y], cells[REACH], cells[KEPT]
+    fx, fy, ft, slipping = 0.0, 0.0, 0.0, 0.0
     for i in range(cells.shape[1]):
         x, y = xs[i], ys[i]
         stuck = speed_at(x, y, cap[i], twist)
@@ -157,27 +173,61 @@ def advance(pad, cells, delta, twist, h):
         fx, fy, ft = fx + f_x, fy + f_y, ft + (x * f_y - y * f_x)
         z_x[i], z_y[i] = shortening * trial[0], shortening * trial[1]
         cap[i] = math.inf if shortening < 1.0 else stuck
-    return fx, fy, ft
+        slipping += share[i] if shortening < 1.0 else 0.0
+        kept[i] = 1.0
+    return (fx, fy, ft), slipping
+
+
+@compiled
+def revise(pad, cells, delta, h, limit):
+    """Fix the friction levels anew that a scaled slip displacement turns out to mean, if they are others.
+
+    Args:
+        pad: PAD record.
+        cells: Patch (CELL_FIELDS, n) from `prepare`; updated.
+        delta: Scaled slip displacement under these levels, tuple of 3 [m].
+        h: Sub-step [s].
+        limit: Their mean over the load [-].
+
+    Returns:
+        The mean; `limit` if it is near.
+    """
+    expected, found = expected_twist(pad, h), (delta[0] / h, delta[1] / h, delta[2] / h)
+    away = length((found[0] - expected[0], found[1] - expected[1], found[2] - expected[2]))
+    fast = (
+        limit - pad.mu_c < kernel.LEVEL_TOLERANCE * pad.mu_c
+        and math.hypot(found[0], found[1]) > FLAT * pad.stribeck_velocity
+    )
+    if fast or kernel.near(pad, away):
+        return limit  # without a look at the cells
+    mean = prepare(pad, cells, found)
+    return mean if abs(mean - limit) > kernel.LEVEL_TOLERANCE * limit else prepare(pad, cells, expected)
 
 
 @compiled
 def commit(pad, cells, delta, h):
     """Store bristle states, slip twist and wrench after a scaled slip displacement."""
+    between, pad.half_step = pad.half_step + 0.5 * h, 0.5 * h
     for a in range(3):
-        pad.twist_rate[a] = (delta[a] / h - pad.twist[a]) / h
+        pad.twist_rate[a] = (delta[a] / h - pad.twist[a]) / between
         pad.twist[a] = delta[a] / h
-    fx, fy, ft = advance(pad, cells, delta, (pad.twist[0], pad.twist[1], pad.twist[2]), h)
-    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -fx, -fy, -pad.r * ft
+    twist = pad.twist[0], pad.twist[1], pad.twist[2]
+    force, slipping = advance(pad, cells, delta, twist, h)
+    speed = length(twist)
+    pad.slip_rate = (speed - pad.slip_speed) / between if slipping > MOSTLY else 0.0
+    pad.slip_speed = speed
+    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
 
 
 @compiled
 def release(pad, cells, twist):
     """Forget the bristle states of a patch without normal force."""
     pad.wrench[:] = 0.0
+    pad.slip_speed, pad.slip_rate = length(twist), 0.0
     for a in range(3):
         pad.twist[a] = twist[a]
         pad.twist_rate[a] = 0.0
-    cells[Z_X], cells[Z_Y], cells[CAP] = 0.0, 0.0, math.inf
+    cells[Z_X], cells[Z_Y], cells[KEPT], cells[CAP] = 0.0, 0.0, 1.0, math.inf
 
 
 @compiled

@@ -20,6 +20,7 @@ PAD = np.dtype(
         ("z", "f8", 3),  # bristle state in the scaled displacement (x, y, r theta) [m]
         ("slip_speed", "f8"),  # scaled slip speed; does not rise in stick [m/s]
         ("slip_rate", "f8"),  # its rate of change [m/s^2]
+        ("half_step", "f8"),  # half of the last sub-step: speed and twist are means, those of its middle [s]
         ("twist", "f8", 3),  # scaled slip twist of a patch [m/s]
         ("twist_rate", "f8", 3),  # its rate of change [m/s^2]
         ("normal", "f8"),  # normal force [N]
@@ -38,7 +39,9 @@ CAP = 5
 """Slip speed of a cell that stick does not exceed; infinite in slip [m/s]."""
 REACH = 6
 """Longest deflection of a cell's bristle in this step [m]."""
-CELL_FIELDS = 7
+KEPT = 7
+"""Share of its deflection that a cell's bristle has kept in this step's friction level [-]."""
+CELL_FIELDS = 8
 """Rows of a patch, an array (CELL_FIELDS, n): one quantity in a row lets loops over n cells vectorise."""
 
 
@@ -65,6 +68,7 @@ def patch(positions: np.ndarray, shares: np.ndarray) -> np.ndarray:
     cells = np.zeros((CELL_FIELDS, len(shares)))
     cells[X], cells[Y] = positions.T
     cells[SHARE] = shares
+    cells[KEPT] = 1.0
     return cells
 
 
@@ -74,7 +78,7 @@ def rest(pads):
     for i in range(pads.shape[0]):
         pad = pads[i]
         pad.z[:] = 0.0
-        pad.slip_speed = pad.slip_rate = 0.0
+        pad.slip_speed = pad.slip_rate = pad.half_step = 0.0
         pad.twist[:] = 0.0
         pad.twist_rate[:] = 0.0
         pad.wrench[:] = 0.0

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 
 from slipgym.compiled import compiled
+from slipgym.contact.patch import FLAT
 from slipgym.sensors.force_torque import sample_force_torque, sample_read_next
 from slipgym.world.actuator import command, least_force, relax_through, take_up, ticks_to_next
 from slipgym.world.planar import HOLDING, locate, pad_axes, slide
 
-FLAT = 3.0  # slip speed over v_s from which the Stribeck curve has decayed, to exp(-9)
 CHANGE = 0.1  # of slip speed or v_s within a sub-step
+STILL = 0.03  # of v_s: a pad's vibration with this speed is one to two percent of its limit
 FIRM = 0.95  # of the friction limit; more of it is left for a load that changes
 FAST = 0.7  # the same for as long as no command falls due
 PATCH_FIRM, PATCH_FAST = 0.5, 0.4  # the rim of a uniform disc slips from 0.75 on
@@ -166,7 +167,7 @@ def longest_substep(world, pad, cells, finger, ticks):
 
     Quick are break-away and what the Stribeck curve does to slow slip. Calm is a pad that slips where the
     curve is flat or whose slip speed hardly changes, and one that sticks within the limit; one that sticks
-    well within it, or is let go, has nothing to resolve.
+    well within it and still, or is let go, has nothing to resolve.
 
     Args:
         world: WORLD record.
@@ -175,6 +176,8 @@ def longest_substep(world, pad, cells, finger, ticks):
         finger: FINGER record.
         ticks: How many are asked for.
     """
+    if pad.slip_rate != 0.0 and cells is not None:
+        return world.substep_ticks
     if pad.slip_rate != 0.0:  # slips
         change = world.calm_ticks * world.tick_length * pad.slip_rate
         flat = pad.slip_speed + min(change, 0.0) > FLAT * pad.stribeck_velocity
@@ -187,6 +190,14 @@ def longest_substep(world, pad, cells, finger, ticks):
     fx, fy, rim = pad.wrench[0], pad.wrench[1], pad.wrench[2] / pad.r
     share = math.sqrt(fx * fx + fy * fy + rim * rim) / (pad.mu_s * normal)
     firm, fast = (FIRM, FAST) if cells is None else (PATCH_FIRM, PATCH_FAST)
-    if share > firm or pad.slip_speed > CHANGE * pad.stribeck_velocity:
+    if share > firm or vibrates(world, pad):
         return world.substep_ticks
     return world.calm_ticks if share > fast else ticks
+
+
+@compiled
+def vibrates(world, pad):
+    """Whether the object that a pad holds moves in its bristles, as after slip; long steps would damp it."""
+    vx, vy, omega = world.relative_velocity
+    rim = pad.r * omega
+    return math.sqrt(vx * vx + vy * vy + rim * rim) > STILL * pad.stribeck_velocity

@@ -70,7 +70,8 @@ def substep(world, pads, cells, fingers, chips, h, share):
     for f in range(2):
         mean = relax(fingers[f], h)
         fingers[f].mean_force += share * mean
-        pads[f].normal = normal_force(fingers[f])
+        # in slip momentum counts, the mean force's over the sub-step; in stick what holds at its end
+        pads[f].normal = normal_force(fingers[f], mean if pads[f].slip_rate != 0.0 else fingers[f].force)
     slide(world, pads, cells, chips, h)
     cos, sin = pad_axes(world)
     for f in range(2):
@@ -97,10 +98,11 @@ def slide(world, pads, cells, chips, h):
     ax = world.external[0] * per_mass
     az = world.external[1] * per_mass - world.gravity
     at = world.external[2] / world.inertia
-    # held: backward Euler, as sticking needs; let go: the parabola itself
-    held = pads[0].normal > HOLDING or pads[-1].normal > HOLDING
+    # held: backward Euler, as sticking needs; in slip or let go: the mean of the velocities at both ends, of
+    # second order. What it says of a sub-step in which slip ends would be the velocity turned round
+    held = holds(pads[0], h) or holds(pads[-1], h)
     lead = 1.0 if held else 0.5
-    late = h * (1.0 - lead)
+    late = 1.0 - lead
     drift = drifting(world, cos, sin, h)
     gain = lead * h * h
     free = (
@@ -108,21 +110,29 @@ def slide(world, pads, cells, chips, h):
         drift[1] + gain * (cos * az - sin * ax),
         drift[2] + gain * at,
     )
-    centre = (world.relative[0], world.relative[1])
+    # the levers are those of the time that the accelerations stand for
+    centre = (world.relative[0] + late * drift[0], world.relative[1] + late * drift[1])
     # a sub-step this long is one of firm stick: what the object would drift in it lies far beyond break-away,
     # from where Newton's iteration may not find back
     firm = h > 1.001 * world.calm_ticks * world.tick_length
     guess = (0.0, 0.0, 0.0) if firm else drift
-    part = 0.5 * len(pads)  # of the object: one pad has half of it to hold
+    per_lead = 1.0 if held else 2.0
+    part = 0.5 * len(pads) * per_lead  # one pad has half of the object to hold
     motion = step_pads(pads, cells, (part * world.mass, part * world.inertia), centre, free, guess, h)
-    braking_x = (motion[0] - free[0]) * rate
-    braking_y = (motion[1] - free[1]) * rate
-    world.velocity[0] += h * ax + cos * braking_x - sin * braking_y
-    world.velocity[1] += h * az + sin * braking_x + cos * braking_y
-    world.velocity[2] += h * at + (motion[2] - free[2]) * rate
-    world.com[0] += h * (world.velocity[0] - late * ax)
-    world.com[1] += h * (world.velocity[1] - late * az)
-    world.angle += h * (world.velocity[2] - late * at)
+    per_lead *= rate
+    braking_x = (motion[0] - free[0]) * per_lead
+    braking_y = (motion[1] - free[1]) * per_lead
+    back = late * h * (world.wrist_velocity[2] - 0.5 * h * world.wrist_acceleration[2])
+    cos, sin = cos + back * sin, sin - back * cos  # friction turns with the pads: that of the middle
+    gained_x = h * ax + cos * braking_x - sin * braking_y
+    gained_z = h * az + sin * braking_x + cos * braking_y
+    gained_t = h * at + (motion[2] - free[2]) * per_lead
+    world.velocity[0] += gained_x
+    world.velocity[1] += gained_z
+    world.velocity[2] += gained_t
+    world.com[0] += h * (world.velocity[0] - late * gained_x)
+    world.com[1] += h * (world.velocity[1] - late * gained_z)
+    world.angle += h * (world.velocity[2] - late * gained_t)
     for a in range(3):
         world.relative[a] += motion[a]
         world.relative_velocity[a] = motion[a] * rate
@@ -132,11 +142,18 @@ def slide(world, pads, cells, chips, h):
 
 
 @compiled
-def normal_force(finger):
-    """Normal force now [N]: the engine's last mean, moved on by the actuator's change since."""
+def normal_force(finger, force):
+    """Normal force at an actuator's force [N]: the engine's last mean, moved on by the change since."""
     if finger.contact_force <= 0.0:
         return 0.0
-    return max(0.0, finger.contact_force + finger.force - finger.contact_mean_force)
+    return max(0.0, finger.contact_force + force - finger.contact_mean_force)
+
+
+@compiled
+def holds(pad, h):
+    """Whether a pad sticks, or its slip is expected to end within h."""
+    slip = pad.slip_rate != 0.0 and pad.slip_speed + (pad.half_step + h) * pad.slip_rate > 0.0
+    return pad.normal > HOLDING and not slip
 
 
 @compiled

@@ -143,3 +143,16 @@ def test_bad_arguments_are_named_and_change_nothing(arguments, name):
     with pytest.raises(ValueError, match=name):
         contact.step(*arguments)
     np.testing.assert_array_equal(contact.bristles, before)
+
+
+def test_the_friction_level_is_that_of_the_middle_of_a_step_however_uneven_steps_are():
+    """Slip that gains 0.5 m/s^2: the speed of every step is known from those before."""
+    law = {"mu_c": 0.4, "mu_s": 0.6, "stribeck_velocity": 1e-3, "sigma_1": 80.0, "sigma_2": 0.2}
+    contact, time, normal = EllipsoidContact(r=0.01, sigma_0=1e6, **law), 2e-3, 2.0
+    for k, dt in enumerate([3e-4, 1e-4, 1e-4, 3e-4, 2e-4, 1e-4, 3e-4, 1e-4]):
+        speed = 0.5 * (time + 0.5 * dt)
+        time += dt
+        f_x, _, _ = contact.step((speed, 0.0, 0.0), normal, dt)
+        level = 0.4 + 0.2 * math.exp(-((speed / 1e-3) ** 2)) + 0.2 * speed
+        if k > 5:  # by then it has slipped for three steps
+            assert f_x == pytest.approx(-normal * level, rel=1e-9)
