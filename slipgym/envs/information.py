@@ -33,6 +33,7 @@ class Information:
             "is_success": episode["success"],
             "dropped": episode["dropped"],
         }
+        self._room: dict[str, Any] = {}
 
     def one(self, i: int) -> dict[str, Any]:
         """That of one environment, as `gymnasium.Env` gives it: the caller's own arrays, plain numbers."""
@@ -44,27 +45,32 @@ class Information:
         info["time"] = self._steps.item(i) * loop.step_time
         return info
 
+    def prepare(self) -> None:
+        """Make room for the next infos of several environments: with thousands of them zeros take time."""
+        if not self._room:
+            loop = self._loop
+            self._room = {name: np.zeros(view.shape, view.dtype) for name, view in self._views.items()}
+            self._room["reward_terms"] = {name: np.zeros(loop.n) for name in loop.task.terms}
+            self._room["time"] = np.zeros(loop.n)
+
     def of(self, mask: np.ndarray) -> dict[str, Any]:
         """Those of the environments of a mask (n,), as `gymnasium.vector.VectorEnv` gives them.
 
         Returns:
-            Arrays (n, ...), zero where the mask is False; nothing at all without one that is True.
+            Arrays (n, ...), the caller's own, zero where the mask is False; nothing at all without one that
+            is True.
         """
         if not mask.any():
             return {}
+        self.prepare()
         loop, rows = self._loop, slice(None) if mask.all() else np.flatnonzero(mask)
-        infos: dict[str, Any] = {name: _taken(view, rows) for name, view in self._views.items()}
-        infos["reward_terms"] = {
-            name: _taken(loop.terms[:, k], rows) for k, name in enumerate(loop.task.terms)
-        }
-        infos["time"] = _taken(self._steps, rows) * loop.step_time
+        infos, self._room = self._room, {}
+        for name, view in self._views.items():
+            infos[name][rows] = view[rows]
+        for k, values in enumerate(infos["reward_terms"].values()):
+            values[rows] = loop.terms[rows, k]
+        infos["time"][rows] = self._steps[rows] * loop.step_time
         return infos
-
-
-def _taken(view: np.ndarray, rows: Any) -> np.ndarray:
-    taken = np.zeros(view.shape, view.dtype)
-    taken[rows] = view[rows]
-    return taken
 
 
 def masked(infos: dict[str, Any], mask: np.ndarray) -> dict[str, Any]:

@@ -186,8 +186,14 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         loop.rewards[begins] = loop.terms[begins] = 0.0
         rows = np.flatnonzero(begins)
         ready, self._ready = self._ready, np.zeros_like(self._ready)
-        sight, begin = self._observer.sight, partial(self._begin, rows)  # while the others take their step
-        loop.step(chosen, self._actions.table, self._frame_skip, active, sight, begin)
+        loop.step(
+            chosen,
+            self._actions.table,
+            self._frame_skip,
+            active,
+            self._observer.sight,
+            partial(self._meanwhile, rows),
+        )
         self._ready = ready
         self._observer.next(active)
         rewards = loop.rewards.copy()
@@ -260,6 +266,11 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             self._observer.begin(i)
             self._pictures.begin(i)
             self._ready[i], self._over[i] = True, False
+
+    def _meanwhile(self, rows: np.ndarray) -> None:
+        """What is done while other threads take the step of the other environments."""
+        self._begin(rows)
+        self._information.prepare()
 
     def _add_drawn(self, infos: dict[str, Any], rows: np.ndarray) -> dict[str, Any]:
         """Infos with what the randomization drew for episodes that begin."""
