@@ -189,25 +189,6 @@ def test_planar_slip_arrives(source, heading, turn):
     assert info["is_success"]
 
 
-def test_planar_slip_runs_ahead_of_a_force_that_does_not_follow_only_so_far():
-    index = ObservationIndex("PlanarSlip", load(), "grip_force_pitch")
-    row = np.zeros((1, 30))
-    for name, value in {"f_y_1": -1.0, "f_y_2": -1.0, "target_y": -0.015, "time_left": 9.0}.items():
-        row[0, index[name]] = value
-    row[0, [index["mu_c"], index["r"], index["support_mu_c"], index["support_r"]]] = 0.4, 0.005, 1.0, 1.0
-    row[0, index["command"]] = 2.3  # just under f_slip = 2.5 N: the box sticks, and nobody lets go
-    forces = {}
-    for lead in (0.1, np.inf):
-        policy = policies.make("planar_slip", lead=lead)
-        state = policy.initial_state(1)
-        for _ in range(240):
-            command, state = policy.control(Columns(row, index), state)
-        forces[lead] = command[0, 0]
-    step = policy.k_e[0] * 0.1 * policy.speeds[0] * 2.5
-    assert forces[0.1] == pytest.approx(2.3 - step, abs=1e-9)
-    assert forces[np.inf] < 0.6
-
-
 def test_planar_slip_follows_the_grasped_point():
     """Travel is the sum of velocities at the pad centre; what it has slid turns with the object."""
     index = ObservationIndex("PlanarSlip", load(), "grip_force_pitch")

@@ -150,8 +150,13 @@ def test_truth_of_a_closed_loop_trial_is_its_own_friction_law(leap):
     sliding = speed > 0.02
     assert sliding.sum() > 20
     ratio = np.hypot(*leap.wrench[:, :2].T) / leap.normal
-    # the force is of a sub-step, the speed of its end
-    np.testing.assert_allclose(ratio[sliding], leap.mu_c[0] + 0.2 * speed[sliding], rtol=2e-3)
+    off = np.abs(ratio / (leap.mu_c[0] + 0.2 * speed) - 1.0)
+    # friction is of the middle of a sub-step of 0.25 ms, grip of its end; its rate there is at most the
+    # larger of the mean ones before and after the sample
+    rate = np.abs(np.diff(leap.normal) / np.diff(leap.t))
+    rate = np.maximum(np.append(0.0, rate), np.append(rate, 0.0))
+    assert (off <= 1.25e-4 * rate / leap.normal + 2e-4)[sliding].all()
+    assert np.median(off[sliding]) < 3e-3
 
 
 def test_stick_slip_tells_the_estimators_apart():
