@@ -46,12 +46,14 @@ def record_sensors(
 
     Raises:
         FileNotFoundError: There is no policy at the path.
-        ValueError: The task, the policy, the finger or an option is unknown or not allowed, or a learned
-            policy was trained for another environment.
+        ValueError: The task, the policy, the finger, the engine or an option is unknown or not allowed, or a
+            learned policy was trained for another environment.
     """
     env_id = find(task).id
     if finger not in (1, 2):
         raise ValueError(f"finger = {finger!r} must be 1 or 2")
+    if keywords.get("engine") == "planar":
+        raise ValueError("engine = 'planar' takes only the samples that are read: record with 'bullet'")
     actor = policies.load(policy)
     env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **{**policies.modes(actor), **keywords})
     try:

@@ -43,6 +43,11 @@ def test_more_samples_than_a_sensor_keeps_are_refused():
     assert frame["f_n"].notna().sum() == 720
 
 
+def test_an_engine_that_leaves_samples_out_is_refused():
+    with pytest.raises(ValueError, match="engine = 'planar' takes only the samples that are read"):
+        record_sensors("Hold", "hold", engine="planar")
+
+
 def test_a_policy_of_another_environment_is_refused(policy_folder):
     with pytest.raises(ValueError, match="the policy was trained for another observation"):
         record_sensors("LinearSlip", str(policy_folder()))
