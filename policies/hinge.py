@@ -20,11 +20,13 @@ class HingePolicy(ForcePolicy):
 
     The gripper's public controller holds k at 1.4 (arXiv 2410.19660). Until the object first turns in the
     grip it holds by static friction, which is larger: with the same k the wrist would take it along
-    beyond what is allowed, and it would swing when it breaks away. So k is then k_stick, below 1, and the
-    first degrees of the turn show when friction lets go.
+    beyond what is allowed, and it would swing when it breaks away. So k is then k_stick, between 1 and
+    mu_s / mu_c, and the first degrees of the turn show when friction lets go. Where friction is not known
+    yet it is k_blind, by a cautious mu_c: friction up to twice as large still lets go in time.
 
     Args:
         k_stick: Ratio k before the object first turns in the grip [-].
+        k_blind: The same by the cautious mu_c [-].
         k_slip: Ratio k at the target tilt [-].
         k_min: Least ratio k while the object turns in the grip [-].
         k_max: Largest ratio k [-].
@@ -44,7 +46,8 @@ class HingePolicy(ForcePolicy):
 
     def __init__(
         self,
-        k_stick: float = 0.95,
+        k_stick: float = 1.2,
+        k_blind: float = 0.95,
         k_slip: float = 2.0,
         k_min: float = 1.1,
         k_max: float = 3.0,
@@ -61,7 +64,8 @@ class HingePolicy(ForcePolicy):
             raise ValueError(f"smoothing = {smoothing!r} must lie in [0, 1)")
         if not 0.0 < k_min <= k_max:
             raise ValueError(f"needs 0 < k_min <= k_max, got k_min = {k_min!r}, k_max = {k_max!r}")
-        self.k_stick, self.k_slip, self.k_min, self.k_max = k_stick, k_slip, k_min, k_max
+        self.k_stick, self.k_blind = k_stick, k_blind
+        self.k_slip, self.k_min, self.k_max = k_slip, k_min, k_max
         self.k_a, self.k_w, self.target, self.onset = k_a, k_w, target, onset
         self.smoothing = smoothing
         self.caution = caution or Caution()
@@ -79,5 +83,7 @@ class HingePolicy(ForcePolicy):
         rate = side * (columns["wrist_pitch_rate"] + both(columns, "omega"))
         k = self.k_slip + self.k_a * (self.target - tilt) - self.k_w * rate
         k = np.clip(k, self.k_min, self.k_max)
-        k = np.where(np.abs(turned) > self.onset, k, self.k_stick)
+        trust = self.caution.trust(columns, "mu_c")
+        start = trust * self.k_stick + (1.0 - trust) * self.k_blind
+        k = np.where(np.abs(turned) > self.onset, k, start)
         return k * load / self.caution.blend(columns, "mu_c"), load[:, np.newaxis]

@@ -45,8 +45,8 @@ class Caution:
     """Coulomb friction to assume without support [-]; below that of the materials at hand."""
     r: float = 0.008
     """Radius of the rim contact to assume without support [m]."""
-    support: float = 0.5
-    """Support from which an estimate is taken as it is, in (0, 1]."""
+    support: float = 0.1
+    """Support from which an estimate is taken as it is, in (0, 1]; an update is worth 0.02."""
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -57,9 +57,13 @@ class Caution:
         if self.support > 1.0:
             raise ValueError(f"cautious support = {self.support!r} must be at most 1")
 
+    def trust(self, columns: Columns, name: str) -> np.ndarray:
+        """How far the friction value `name` is taken from the estimate, in [0, 1], (n,)."""
+        return np.minimum(1.0, columns[f"support_{name}"] / self.support)
+
     def blend(self, columns: Columns, name: str) -> np.ndarray:
         """The friction value `name` of the observation ("mu_c" or "r"), with caution, (n,)."""
-        trust = np.minimum(1.0, columns[f"support_{name}"] / self.support)
+        trust = self.trust(columns, name)
         return trust * columns[name] + (1.0 - trust) * getattr(self, name)
 
     def blend_lever(self, columns: Columns) -> np.ndarray:
@@ -67,5 +71,5 @@ class Caution:
 
         An estimate of r goes with the mu_c that it was found with, so r's support counts for both.
         """
-        trust, cautious = np.minimum(1.0, columns["support_r"] / self.support), self.mu_c * self.r
+        trust, cautious = self.trust(columns, "r"), self.mu_c * self.r
         return np.maximum(cautious, trust * columns["mu_c"] * columns["r"] + (1.0 - trust) * cautious)

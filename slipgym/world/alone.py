@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from slipgym.compiled import compiled
 from slipgym.contact.patch import FLAT
 from slipgym.sensors.force_torque import sample_force_torque, sample_read_next
@@ -77,16 +75,17 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
     """
     done = 0
     end = world.tick + world.control_ticks
+    load = load_to_carry(world)
     sample = sample_read_next(force_torque[0], world.tick, world.control_ticks)
     while world.tick < end:
         for f in range(len(pads)):
             take_up(fingers[f], world.tick)
         stop = min(end, sample)
-        ticks = longest_of_all(world, pads, cells, fingers, stop)
+        ticks = longest_of_all(world, pads, cells, fingers, load, stop)
         if ticks < stop - world.tick:  # then a command that falls due ends a sub-step, too
             for f in range(len(pads)):
                 stop = world.tick + ticks_to_next(fingers[f], world.tick, stop - world.tick)
-            ticks = longest_of_all(world, pads, cells, fingers, stop)
+            ticks = longest_of_all(world, pads, cells, fingers, load, stop)
         steps = -(-(stop - world.tick) // ticks)
         ticks = -(-(stop - world.tick) // steps)
         h = ticks * world.tick_length
@@ -128,12 +127,36 @@ def carry(world, h):
     cos, sin = pad_axes(world)
     x, z = world.com[0] - world.wrist[0], world.com[1] - world.wrist[1]
     vx, vz, omega = world.wrist_velocity
-    ax, az, alpha = world.wrist_acceleration
+    ax, az, alpha = carrying(world, x, z)
     rx, rz, turning = world.relative_velocity
     ago = 0.5 * h
-    world.velocity[0] = vx - omega * z - ago * (ax - alpha * z - omega * omega * x) + cos * rx - sin * rz
-    world.velocity[1] = vz + omega * x - ago * (az + alpha * x - omega * omega * z) + sin * rx + cos * rz
+    world.velocity[0] = vx - omega * z - ago * ax + cos * rx - sin * rz
+    world.velocity[1] = vz + omega * x - ago * az + sin * rx + cos * rz
     world.velocity[2] = omega - ago * alpha + turning
+
+
+@compiled
+def carrying(world, x, z):
+    """Acceleration of an object at rest on the pads, its centre of mass (x, z) from theirs in the world."""
+    ax, az, alpha = world.wrist_acceleration
+    square = world.wrist_velocity[2] ** 2
+    return ax - alpha * z - square * x, az + alpha * x - square * z, alpha
+
+
+@compiled
+def load_to_carry(world):
+    """Wrench about the pads' centre, in the pad frame, that keeps an object at rest on them [N, N, N m].
+
+    What pushes the object and how the wrist accelerates change with a control step, and the last wrench
+    does not know of it: a poke may break away what was held firmly.
+    """
+    x, z = world.com[0] - world.wrist[0], world.com[1] - world.wrist[1]
+    ax, az, alpha = carrying(world, x, z)
+    fx = world.mass * ax - world.external[0]
+    fz = world.mass * (az + world.gravity) - world.external[1]
+    torque = world.inertia * alpha - world.external[2] + x * fz - z * fx
+    cos, sin = pad_axes(world)
+    return cos * fx + sin * fz, cos * fz - sin * fx, torque
 
 
 @compiled
@@ -153,16 +176,16 @@ def press(world, pad, finger, ticks):
 
 
 @compiled
-def longest_of_all(world, pads, cells, fingers, stop):
+def longest_of_all(world, pads, cells, fingers, load, stop):
     """Ticks of the longest sub-step that resolves the contact of every pad, at most those until `stop`."""
     asked = ticks = stop - world.tick
     for f in range(len(pads)):
-        ticks = min(ticks, longest_substep(world, pads[f], cells, fingers[f], asked))
+        ticks = min(ticks, longest_substep(world, pads[f], cells, fingers[f], load, asked))
     return ticks
 
 
 @compiled
-def longest_substep(world, pad, cells, finger, ticks):
+def longest_substep(world, pad, cells, finger, load, ticks):
     """Ticks of the longest sub-step that resolves a pad's contact, at most `ticks`, or more.
 
     Quick are break-away and what the Stribeck curve does to slow slip. Calm is a pad that slips where the
@@ -174,6 +197,7 @@ def longest_substep(world, pad, cells, finger, ticks):
         pad: PAD record.
         cells: None for ellipsoids; a patch breaks away in parts, so only stick is calm.
         finger: FINGER record.
+        load: Wrench that both pads are to carry, see `load_to_carry`.
         ticks: How many are asked for.
     """
     if pad.slip_rate != 0.0 and cells is not None:
@@ -187,12 +211,21 @@ def longest_substep(world, pad, cells, finger, ticks):
     if normal <= 0.0:
         free = finger.contact_force <= 0.0
         return ticks_to_next(finger, world.tick, ticks) if free else world.substep_ticks
-    fx, fy, rim = pad.wrench[0], pad.wrench[1], pad.wrench[2] / pad.r
-    share = math.sqrt(fx * fx + fy * fy + rim * rim) / (pad.mu_s * normal)
+    fx, fy, torque = pad.wrench
+    present = size(pad, fx, fy, torque)
+    fx, fy = 0.5 * load[0], 0.5 * load[1]
+    coming = size(pad, fx, fy, 0.5 * load[2] - pad.cop[0] * fy + pad.cop[1] * fx)
+    share = max(present, coming) / (pad.r * pad.mu_s * normal) ** 2
     firm, fast = (FIRM, FAST) if cells is None else (PATCH_FIRM, PATCH_FAST)
-    if share > firm or vibrates(world, pad):
+    if share > firm * firm or vibrates(world, pad):
         return world.substep_ticks
-    return world.calm_ticks if share > fast else ticks
+    return world.calm_ticks if share > fast * fast else ticks
+
+
+@compiled
+def size(pad, fx, fy, torque):
+    """Square of a wrench in the norm of the limit surface, times r [N^2 m^2]."""
+    return pad.r * pad.r * (fx * fx + fy * fy) + torque * torque
 
 
 @compiled
@@ -200,4 +233,4 @@ def vibrates(world, pad):
     """Whether the object that a pad holds moves in its bristles, as after slip; long steps would damp it."""
     vx, vy, omega = world.relative_velocity
     rim = pad.r * omega
-    return math.sqrt(vx * vx + vy * vy + rim * rim) > STILL * pad.stribeck_velocity
+    return vx * vx + vy * vy + rim * rim > (STILL * pad.stribeck_velocity) ** 2

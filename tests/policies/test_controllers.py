@@ -173,7 +173,7 @@ def test_hinge_hangs(source, turn, direction, duration):
 
 
 def test_hinge_without_its_loose_start_swings_up():
-    """Why k_stick is below 1: static friction takes the object along."""
+    """Why k_stick is below mu_s / mu_c: static friction takes the object along."""
     env = HingeEnv(friction_source="true", material="plastic")
     info, _ = play(env, policies.make("hinge", k_stick=2.0), 0, duration=2.0)
     env.close()

@@ -25,7 +25,7 @@ V_S = load().contact.stribeck_velocity
 
 @pytest.fixture
 def contact():
-    """Makes a world, one of its pads and the finger that presses it with 5 N; fields can be set."""
+    """Makes a world that asks nothing of its pads, one of them and the finger that presses it with 5 N."""
 
     def make(**fields):
         plant = build(load())
@@ -67,7 +67,38 @@ LIMIT = 3.0  # of the fixture's pad [N]
 )
 def test_long_sub_steps_are_for_a_calm_contact(contact, fields, expected):
     world, pad, finger = contact(**fields)
-    assert longest_substep(world, pad, None, finger, ASKED) == expected
+    assert longest_substep(world, pad, None, finger, (0.0, 0.0, 0.0), ASKED) == expected
+
+
+@pytest.mark.parametrize(
+    ("load", "expected"),
+    [
+        ((0.0, 1.9 * FAST * LIMIT, 0.0), ASKED),
+        ((0.0, 0.0, 1.9 * FIRM * LIMIT * 0.01), CALM),
+        ((0.0, 2.1 * FIRM * LIMIT, 0.0), SHORT),
+        ((0.0, 0.0, 2.1 * FIRM * LIMIT * 0.01), SHORT),
+    ],
+)
+def test_so_does_a_load_that_both_pads_are_about_to_carry(contact, load, expected):
+    world, pad, finger = contact()
+    assert longest_substep(world, pad, None, finger, load, ASKED) == expected
+
+
+def test_a_poke_breaks_a_firm_hold_away_as_on_pybullet():
+    """Within what a break-away late by half a friction sub-step would be worth.
+
+    The planar engine stands in a sub-step of 8 ms when the poke comes.
+    """
+    poke, begin, end = (4.0, -3.0, 0.02), 0.05, 0.07
+    ends = []
+    for engine in ("bullet", "planar"):
+        with Bench(force=5.0, engine=engine) as bench:
+            bench.settle()
+            trace = bench.run(0.2, load=lambda t: poke if begin <= t < end else (0.0, 0.0, 0.0))
+            ends.append(trace.slip[-1, :2])
+            speed = 0.5 * bench.config.physics.substep_max * np.linalg.norm(poke[:2]) / bench.box.mass
+    assert np.linalg.norm(ends[0]) > 5e-3
+    np.testing.assert_allclose(*ends, atol=speed * (end - begin))
 
 
 def test_a_slide_under_a_closing_grip_has_the_exact_momentum():
