@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
+from threading import Semaphore
 
 LEAST = 32
 """Rows from which another thread is worth waking."""
@@ -48,14 +49,21 @@ class Threads:
             meanwhile: What this thread does first, while the others begin.
         """
         left, results = iter(enumerate(self._parts)), [0] * len(self._parts)
+        begun = Semaphore(0)
 
         def work() -> None:
             for k, part in left:
                 results[k] = function(*part)
 
-        others = [self._threads().submit(work) for _ in range(self.count - 1)]
+        def begin() -> None:
+            begun.release()
+            work()
+
+        others = [self._threads().submit(begin) for _ in range(self.count - 1)]
         try:
             if meanwhile is not None:
+                for _ in others:  # the interpreter is theirs until they have begun
+                    begun.acquire()
                 meanwhile()
             work()
         finally:
