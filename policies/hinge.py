@@ -22,11 +22,13 @@ class HingePolicy(ForcePolicy):
     grip it holds by static friction, which is larger: with the same k the wrist would take it along
     beyond what is allowed, and it would swing when it breaks away. So k is then k_stick, between 1 and
     mu_s / mu_c, and the first degrees of the turn show when friction lets go. Where friction is not known
-    yet it is k_blind, by a cautious mu_c: friction up to twice as large still lets go in time.
+    yet it is k_blind, by a cautious mu_c. What then still holds at the tilt `release` has a larger friction,
+    and the grip falls with the tilt from there, so that it lets go in time.
 
     Args:
         k_stick: Ratio k before the object first turns in the grip [-].
         k_blind: The same by the cautious mu_c [-].
+        release: Tilt from which that falls [rad].
         k_slip: Ratio k at the target tilt [-].
         k_min: Least ratio k while the object turns in the grip [-].
         k_max: Largest ratio k [-].
@@ -48,6 +50,7 @@ class HingePolicy(ForcePolicy):
         self,
         k_stick: float = 1.2,
         k_blind: float = 0.95,
+        release: float = 0.05,
         k_slip: float = 2.0,
         k_min: float = 1.1,
         k_max: float = 3.0,
@@ -64,7 +67,9 @@ class HingePolicy(ForcePolicy):
             raise ValueError(f"smoothing = {smoothing!r} must lie in [0, 1)")
         if not 0.0 < k_min <= k_max:
             raise ValueError(f"needs 0 < k_min <= k_max, got k_min = {k_min!r}, k_max = {k_max!r}")
-        self.k_stick, self.k_blind = k_stick, k_blind
+        if not 0.0 < release < np.inf:
+            raise ValueError(f"release = {release!r} must be finite and > 0")
+        self.k_stick, self.k_blind, self.release = k_stick, k_blind, release
         self.k_slip, self.k_min, self.k_max = k_slip, k_min, k_max
         self.k_a, self.k_w, self.target, self.onset = k_a, k_w, target, onset
         self.smoothing = smoothing
@@ -84,6 +89,7 @@ class HingePolicy(ForcePolicy):
         k = self.k_slip + self.k_a * (self.target - tilt) - self.k_w * rate
         k = np.clip(k, self.k_min, self.k_max)
         trust = self.caution.trust(columns, "mu_c")
-        start = trust * self.k_stick + (1.0 - trust) * self.k_blind
+        blind = self.k_blind * self.release / np.maximum(np.abs(tilt), self.release)
+        start = trust * self.k_stick + (1.0 - trust) * blind
         k = np.where(np.abs(turned) > self.onset, k, start)
         return k * load / self.caution.blend(columns, "mu_c"), load[:, np.newaxis]
