@@ -8,6 +8,7 @@ from policies.base import Columns, ObservationIndex
 from policies.sensing import Caution
 from slipgym.config import load
 from slipgym.envs import HingeEnv, HoldEnv, LinearSlipEnv, PlanarSlipEnv, RotationalSlipEnv
+from slipgym.tasks import find
 
 SOURCES = ("estimated", "true", "nominal")
 CONTROLLERS = [
@@ -80,10 +81,9 @@ def test_joint_knows_the_latency_of_the_slip_sensor(sensors):
     assert info["estimated"][1] == pytest.approx(info["true"][1], rel=0.05)
 
 
-def observation(**values):
-    config = load()
-    index = ObservationIndex("Hold", config)
-    row = np.zeros((1, 18 + 4 + 6))
+def observation(task="Hold", **values):
+    index = ObservationIndex(task, load())
+    row = np.zeros((1, 18 + len(find(task).columns) + 6))
     for name, value in values.items():
         row[0, index[name]] = value
     return Columns(row, index)
@@ -178,6 +178,18 @@ def test_hinge_without_its_loose_start_swings_up():
     info, _ = play(env, policies.make("hinge", k_stick=2.0), 0, duration=2.0)
     env.close()
     assert not info["is_success"]
+
+
+@pytest.mark.parametrize(
+    ("support", "tilt", "k"), [(0.0, 0.01, 0.95), (0.0, 0.05, 0.95), (0.0, 0.1, 0.475), (1.0, 0.1, 1.2)]
+)
+def test_hinge_lets_go_with_the_tilt_while_friction_is_unknown(support, tilt, k):
+    load, mu_c = 1.0, 0.5
+    seen = {"wrist_pitch": -tilt, "wrist_pitch_goal": -1.0, "mu_c": mu_c, "support_mu_c": support}
+    columns = observation("Hinge", f_y_1=load, f_y_2=load, **seen)
+    policy = policies.make("hinge")
+    force, _ = policy.control(columns, policy.initial_state(1))
+    assert force == pytest.approx(k * load / (mu_c if support else policy.caution.mu_c))
 
 
 @pytest.mark.parametrize("source", ["estimated", "true"])
