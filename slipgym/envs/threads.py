@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
-from threading import Semaphore
+from itertools import islice, pairwise
 
 LEAST = 32
 """Rows from which another thread is worth waking."""
-MOST = 512
-"""Rows of a part: who is done early takes another."""
+SMALL = 128
+"""Rows of the smallest part."""
 
 
 class Threads:
@@ -34,8 +33,7 @@ class Threads:
         elif isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
             raise ValueError(f"threads = {threads!r} must be None or a whole number >= 1")
         self.count = min(threads, n)
-        parts = self.count if self.count == 1 else max(self.count, -(-n // MOST))
-        self._parts = list(pairwise(n * k // parts for k in range(parts + 1)))
+        self._parts = list(pairwise(_ends(n, self.count)))
         self._pool: ThreadPoolExecutor | None = None
         self._process = -1
 
@@ -46,26 +44,20 @@ class Threads:
 
         Args:
             function: What is done with a part.
-            meanwhile: What this thread does first, while the others begin.
+            meanwhile: What this thread does between its first parts, while the others are at theirs.
         """
         left, results = iter(enumerate(self._parts)), [0] * len(self._parts)
-        begun = Semaphore(0)
 
-        def work() -> None:
-            for k, part in left:
+        def work(parts: Iterable[tuple[int, tuple[int, int]]]) -> None:
+            for k, part in parts:
                 results[k] = function(*part)
 
-        def begin() -> None:
-            begun.release()
-            work()
-
-        others = [self._threads().submit(begin) for _ in range(self.count - 1)]
+        others = [self._threads().submit(work, left) for _ in range(self.count - 1)]
         try:
+            work(islice(left, 1))  # it needs no lock: the others get it, and begin
             if meanwhile is not None:
-                for _ in others:  # the interpreter is theirs until they have begun
-                    begun.acquire()
                 meanwhile()
-            work()
+            work(left)
         finally:
             for other in others:
                 other.result()
@@ -81,6 +73,21 @@ class Threads:
         if self._pool is None or self._process != os.getpid():
             self._pool, self._process = ThreadPoolExecutor(self.count - 1, "slipgym"), os.getpid()
         return self._pool
+
+
+def _ends(n: int, threads: int) -> list[int]:
+    """0 and where the parts of n rows end: a small one, then large ones, then smaller and smaller ones.
+
+    The first keeps this thread busy while the others wake up, the large ones keep them busy while this thread
+    has the interpreter's lock, and for the last ones the threads wait for each other.
+    """
+    if threads == 1:
+        return [0, n]
+    small = min(SMALL, -(-n // threads))
+    ends = [0, small]
+    while ends[-1] < n:
+        ends.append(min(n, ends[-1] + max(small, (n - ends[-1]) // (2 * threads))))
+    return ends
 
 
 def processors() -> int:
