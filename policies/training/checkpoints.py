@@ -16,7 +16,7 @@ def folder(run: Path) -> Path:
 
 
 def best(run: Path) -> Path:
-    """The best one of a run, by share of success, then by reward."""
+    """The best one of a run, see `policies.training.curve.best`."""
     return folder(run) / f"best{_SUFFIX}"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -32,6 +33,33 @@ class Row:
     """Sum of rewards of an episode."""
     length: float
     """Steps of an episode."""
+
+
+def best(rows: Sequence[Row], episodes: int) -> Row:
+    """The evaluation with the largest sum of rewards of those that solve as many episodes as any, to noise.
+
+    Noise is a standard error of the largest share solved so far (the one-standard-error rule of Breiman et
+    al., Classification and Regression Trees, 1984): more is luck of one among many evaluations. What is the
+    best of the first k evaluations is found without the later ones.
+
+    Args:
+        rows: At least one, in order.
+        episodes: Episodes of each.
+    """
+    chosen, most = rows[0], 0.0
+    for row in rows:
+        most = max(most, row.success)
+        least = most - _standard_error(most, episodes)
+        if chosen.success < least or (row.success >= least and row.reward > chosen.reward):
+            chosen = row
+    return chosen
+
+
+def _standard_error(share: float, episodes: int) -> float:
+    """Of a share, after Agresti and Coull: two episodes of either kind more, so that 1 has one, too."""
+    n = episodes + 4
+    middle = (share * episodes + 2) / n
+    return math.sqrt(middle * (1.0 - middle) / n)
 
 
 def plot(curves: Mapping[str, Sequence[Sequence[Row]]]) -> Figure:

@@ -14,7 +14,7 @@ from tqdm import tqdm
 from policies.training import checkpoints, folder, plain
 from policies.training import model as learners
 from policies.training.config import Training
-from policies.training.curve import Row
+from policies.training.curve import Row, best
 from policies.training.evaluate import evaluate
 
 
@@ -43,11 +43,6 @@ class Keeper(BaseCallback):
         self.ended, self.seconds = "", 0.0
         self._next_evaluation, self._next_checkpoint = 0, config.checkpoints.every
         self._since = time.perf_counter()
-
-    @property
-    def best(self) -> Row:
-        """The best evaluation so far; the first of equals."""
-        return max(self.curve, key=_rank)
 
     def get_state(self) -> dict[str, Any]:
         """The record as plain data."""
@@ -92,9 +87,8 @@ class Keeper(BaseCallback):
 
     def _evaluate(self) -> None:
         row = evaluate(self._config, self.model, self._envs)
-        better = not self.curve or _rank(row) > _rank(self.best)
         self.curve.append(row)
-        if better:
+        if best(self.curve, self._config.evaluation.episodes) is row:
             state = {"row": asdict(row), "learner": learners.get_state(self.model, replay=False)}
             plain.write(checkpoints.best(self._path), state)
         folder.write_curve(self._path, self.curve)
@@ -107,10 +101,6 @@ class Keeper(BaseCallback):
         reached = [stop.success is not None and one.success >= stop.success for one in last]
         if len(last) == stop.evaluations and all(reached):
             self.ended = "success"
-
-
-def _rank(row: Row) -> tuple[float, float]:
-    return row.success, row.reward
 
 
 def _after(steps: int, every: int) -> int:

@@ -30,6 +30,8 @@ class Run(NamedTuple):
     """What it was told about friction."""
     seed: int
     curve: list[Row]
+    episodes: int
+    """Episodes of an evaluation."""
     policy: Path
     """The folder of its policy."""
 
@@ -40,8 +42,8 @@ class Run(NamedTuple):
 
     @property
     def best(self) -> Row:
-        """Its best evaluation, which its policy is of: by the share of episodes solved, then by rewards."""
-        return max(self.curve, key=lambda row: (row.success, row.reward))
+        """Its best evaluation, which its policy is of."""
+        return curve.best(self.curve, self.episodes)
 
 
 def ship(studies: Sequence[Path], shelf: Path = SHELF, pages: Path = CURVES) -> list[Path]:
@@ -67,15 +69,18 @@ def ship(studies: Sequence[Path], shelf: Path = SHELF, pages: Path = CURVES) -> 
     for key in sorted({run.key for run in found}):
         runs = sorted(run for run in found if run.key == key)
         conditions = {run.source: [other for other in runs if other.source == run.source] for run in runs}
-        shipped += [
-            _put(max(same, key=lambda run: (run.best.success, run.best.reward)), shelf)
-            for same in conditions.values()
-        ]
+        shipped += [_put(_best(same), shelf) for same in conditions.values()]
         (pages / f"{key}.csv").write_text(_table(runs), encoding="utf-8")
         with styled():
             curves = {source: [run.curve for run in same] for source, same in conditions.items()}
             curve.plot(curves).savefig(pages / f"{key}.png", dpi=STYLE.dpi)
     return shipped
+
+
+def _best(seeds: Sequence[Run]) -> Run:
+    """The seed whose best evaluation is the best of all of them."""
+    ends = [run.best for run in seeds]
+    return seeds[ends.index(curve.best(ends, seeds[0].episodes))]
 
 
 def _finished(path: Path) -> Run:
@@ -85,7 +90,7 @@ def _finished(path: Path) -> Run:
     key, source = TASKS[config.task].key, config.environment.friction_source
     if config != files.load(key, {"environment.friction_source": source}):
         raise ValueError(f"{path} was not trained as configs/training/{key}.yaml says")
-    return Run(key, source, seed, folder.read_curve(path), path / export.POLICY)
+    return Run(key, source, seed, folder.read_curve(path), config.evaluation.episodes, path / export.POLICY)
 
 
 def _put(run: Run, shelf: Path) -> Path:
