@@ -1,6 +1,7 @@
 """Finished studies become policies on the shelf and pages of curves."""
 
 import csv
+from dataclasses import fields
 
 import pytest
 
@@ -8,6 +9,7 @@ pytest.importorskip("stable_baselines3")
 import policies
 from policies.learned import LearnedPolicy
 from policies.training import files, shipping, study
+from policies.training.curve import Row, best
 
 
 @pytest.fixture
@@ -16,6 +18,11 @@ def configured(small, monkeypatch):
     config = small(engine_threads=1)
     monkeypatch.setattr(shipping.files, "load", lambda _, others: files.changed(config, others))
     return config
+
+
+def curve_of(rows, seed):
+    names = [field.name for field in fields(Row)]
+    return [Row(**{name: float(row[name]) for name in names}) for row in rows if row["seed"] == seed]
 
 
 def test_the_best_seed_goes_to_the_shelf_and_all_curves_to_the_pages(configured, tmp_path):
@@ -37,10 +44,11 @@ def test_the_best_seed_goes_to_the_shelf_and_all_curves_to_the_pages(configured,
         assert {file.name for file in path.iterdir()} == {"policy.json", "weights.safetensors"}
         assert isinstance(policy, LearnedPolicy)
         origin, of_source = policy.description.origin, [row for row in rows if row["source"] == source]
-        best = max(of_source, key=lambda row: (float(row["success"]), float(row["reward"]), row["seed"]))
-        top = (best["success"], best["reward"])
-        ties = [row["seed"] for row in of_source if (row["success"], row["reward"]) == top]
-        assert str(origin.seeds[0]) in ties
+        curves = [curve_of(of_source, seed) for seed in "01"]
+        ends = [best(rows, configured.evaluation.episodes) for rows in curves]
+        chosen = best(ends, configured.evaluation.episodes)
+        assert ends[origin.seeds[0]] == chosen
+        assert origin.steps == chosen.steps
         assert origin.command.endswith(f"linear_slip --friction-source {source} --seeds {origin.seeds[0]}")
 
 
