@@ -37,7 +37,8 @@ class HingePolicy(ForcePolicy):
         target: Tilt to hold [rad].
         onset: Travel from which the object counts as turning in the grip [rad].
         smoothing: Share of the old tangential force kept per sample, in [0, 1).
-        caution: Friction assumed until the estimate has support.
+        caution: Friction assumed until the estimate has support; more than elsewhere, as the first samples after
+            the break-away, near static friction, say too much.
         config: Overrides of the environment's configuration.
 
     Raises:
@@ -73,7 +74,7 @@ class HingePolicy(ForcePolicy):
         self.k_slip, self.k_min, self.k_max = k_slip, k_min, k_max
         self.k_a, self.k_w, self.target, self.onset = k_a, k_w, target, onset
         self.smoothing = smoothing
-        self.caution = caution or Caution()
+        self.caution = caution or Caution(support=0.2)
 
     def initial_state(self, n: int) -> np.ndarray:
         """Filtered tangential force, (n, 1) [N]; a negative one has no sample yet."""
