@@ -37,8 +37,8 @@ class HingePolicy(ForcePolicy):
         target: Tilt to hold [rad].
         onset: Travel from which the object counts as turning in the grip [rad].
         smoothing: Share of the old tangential force kept per sample, in [0, 1).
-        caution: Friction assumed until the estimate has support; more than elsewhere, as the first samples after
-            the break-away, near static friction, say too much.
+        caution: Friction assumed until the estimate has support; more than elsewhere, as the first samples
+            after the break-away, near static friction, say too much.
         config: Overrides of the environment's configuration.
 
     Raises:
