@@ -63,7 +63,7 @@ class PhysicsConfig(Frozen):
     engine_steps: Count = Field(description="Rigid-body engine steps per control step [-]")
     substep_max: Positive = Field(description="Longest friction sub-step [s]")
     planar_substep_max: Positive = Field(
-        description="Longest friction sub-step without an engine while the contact is calm [s]"
+        description="Longest friction sub-step without an engine near the friction limit [s]"
     )
     solver_iterations: Count = Field(description="Iterations of the engine's contact solver per step [-]")
 

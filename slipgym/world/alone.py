@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from slipgym.compiled import compiled
-from slipgym.contact.patch import FLAT
 from slipgym.sensors.force_torque import sample_force_torque, sample_read_next
 from slipgym.world.actuator import command, least_force, relax_through, take_up, ticks_to_next
-from slipgym.world.planar import HOLDING, locate, pad_axes, slide
+from slipgym.world.planar import HOLDING, locate, pad_axes, resolving_ticks, slide
 
-CHANGE = 0.1  # of slip speed or v_s within a sub-step
-STILL = 0.03  # of v_s: a pad's vibration with this speed is one to two percent of its limit
 FIRM = 0.95  # of the friction limit; more of it is left for a load that changes
 FAST = 0.7  # the same for as long as no command falls due
 PATCH_FIRM, PATCH_FAST = 0.5, 0.4  # the rim of a uniform disc slips from 0.75 on
+STILL = 1e-3  # of the friction limit; a weaker vibration of what sticks may be damped
 
 
 @compiled
@@ -59,8 +57,9 @@ def move(worlds, pads, cells, fingers, force_torque, chips, force, i):
 def advance_alone(world, pads, cells, fingers, force_torque, chips):
     """Advance one world by one control step.
 
-    Only the force/torque samples that a reading needs are taken, so that sub-steps can be long
-    while the contact is calm.
+    While the contact is calm sub-steps are long: only the force/torque samples that a reading needs are
+    taken. What must be resolved is, in the very sub-steps of a world with an engine: friction that falls with
+    speed amplifies any difference.
 
     Args:
         world: WORLD record.
@@ -86,14 +85,20 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
             for f in range(len(pads)):
                 stop = world.tick + ticks_to_next(fingers[f], world.tick, stop - world.tick)
             ticks = longest_of_all(world, pads, cells, fingers, load, stop)
-        steps = -(-(stop - world.tick) // ticks)
-        ticks = -(-(stop - world.tick) // steps)
+        calm = ticks > world.substep_ticks
+        if calm:
+            steps = -(-(stop - world.tick) // ticks)
+            ticks = -(-(stop - world.tick) // steps)
+        else:
+            ticks = resolving_ticks(world, fingers, force_torque)
         h = ticks * world.tick_length
-        if sticks(pads[0]) or sticks(pads[-1]):
+        if calm and rests(pads):
             carry(world, h)
         for f in range(len(pads)):
             press(world, pads[f], fingers[f], ticks)
         slide(world, pads, cells, chips, h)
+        if calm and rests(pads):
+            carry(world, world.substep_ticks * world.tick_length)
         world.tick += ticks
         done += 1
         if world.tick == sample:
@@ -107,14 +112,15 @@ def advance_alone(world, pads, cells, fingers, force_torque, chips):
 
 
 @compiled
-def sticks(pad):
-    """Whether a pad held the object without slip in the last sub-step."""
-    return pad.normal > HOLDING and pad.slip_rate == 0.0
+def rests(pads):
+    """Whether the pads held the object without slip in the last sub-step."""
+    slip = pads[0].slip_rate != 0.0 or pads[-1].slip_rate != 0.0
+    return not slip and max(pads[0].normal, pads[-1].normal) > HOLDING
 
 
 @compiled
 def carry(world, h):
-    """Give an object that sticks the velocity of the pads half of the coming sub-step ago.
+    """Give an object that rests on the pads their velocity half of the coming sub-step ago.
 
     Backward Euler takes the mean velocity over a sub-step for the one at its end, half a sub-step late. In
     equal sub-steps that cancels, and friction is what the acceleration a asks for; a sub-step of h after one
@@ -124,15 +130,14 @@ def carry(world, h):
         world: WORLD record.
         h: Length of the coming sub-step [s].
     """
-    cos, sin = pad_axes(world)
     x, z = world.com[0] - world.wrist[0], world.com[1] - world.wrist[1]
     vx, vz, omega = world.wrist_velocity
     ax, az, alpha = carrying(world, x, z)
-    rx, rz, turning = world.relative_velocity
     ago = 0.5 * h
-    world.velocity[0] = vx - omega * z - ago * ax + cos * rx - sin * rz
-    world.velocity[1] = vz + omega * x - ago * az + sin * rx + cos * rz
-    world.velocity[2] = omega - ago * alpha + turning
+    world.velocity[0] = vx - omega * z - ago * ax
+    world.velocity[1] = vz + omega * x - ago * az
+    world.velocity[2] = omega - ago * alpha
+    world.relative_velocity[:] = 0.0
 
 
 @compiled
@@ -188,38 +193,33 @@ def longest_of_all(world, pads, cells, fingers, load, stop):
 def longest_substep(world, pad, cells, finger, load, ticks):
     """Ticks of the longest sub-step that resolves a pad's contact, at most `ticks`, or more.
 
-    Quick are break-away and what the Stribeck curve does to slow slip. Calm is a pad that slips where the
-    curve is flat or whose slip speed hardly changes, and one that sticks within the limit; one that sticks
-    well within it and still, or is let go, has nothing to resolve.
+    Slip, break-away and vibration in stick are resolved. A pad that sticks within the limit and rests is
+    calm; one that rests well within it, or is let go, has nothing to resolve.
 
     Args:
         world: WORLD record.
         pad: PAD record.
-        cells: None for ellipsoids; a patch breaks away in parts, so only stick is calm.
+        cells: None for ellipsoids; a patch breaks away in parts.
         finger: FINGER record.
         load: Wrench that both pads are to carry, see `load_to_carry`.
         ticks: How many are asked for.
     """
-    if pad.slip_rate != 0.0 and cells is not None:
+    if pad.slip_rate != 0.0:
         return world.substep_ticks
-    if pad.slip_rate != 0.0:  # slips
-        change = world.calm_ticks * world.tick_length * pad.slip_rate
-        flat = pad.slip_speed + min(change, 0.0) > FLAT * pad.stribeck_velocity
-        calm = flat or abs(change) < CHANGE * min(pad.slip_speed, pad.stribeck_velocity)
-        return world.calm_ticks if calm else world.substep_ticks
     normal = touching(least_force(finger, world.tick + ticks))
     if normal <= 0.0:
         free = finger.contact_force <= 0.0
         return ticks_to_next(finger, world.tick, ticks) if free else world.substep_ticks
     fx, fy, torque = pad.wrench
-    present = size(pad, fx, fy, torque)
-    fx, fy = 0.5 * load[0], 0.5 * load[1]
-    coming = size(pad, fx, fy, 0.5 * load[2] - pad.cop[0] * fy + pad.cop[1] * fx)
-    share = max(present, coming) / (pad.r * pad.mu_s * normal) ** 2
+    gx, gy = 0.5 * load[0], 0.5 * load[1]
+    goal = 0.5 * load[2] - pad.cop[0] * gy + pad.cop[1] * gx
+    most = max(size(pad, fx, fy, torque), size(pad, gx, gy, goal))
+    limit = (pad.r * pad.mu_s * normal) ** 2
+    swing = size(pad, fx - gx, fy - gy, torque - goal) + swinging(world, pad, normal)
     firm, fast = (FIRM, FAST) if cells is None else (PATCH_FIRM, PATCH_FAST)
-    if share > firm * firm or vibrates(world, pad):
+    if most > firm * firm * limit or swing > STILL * STILL * limit:
         return world.substep_ticks
-    return world.calm_ticks if share > fast * fast else ticks
+    return world.calm_ticks if most > fast * fast * limit else ticks
 
 
 @compiled
@@ -229,8 +229,11 @@ def size(pad, fx, fy, torque):
 
 
 @compiled
-def vibrates(world, pad):
-    """Whether the object that a pad holds moves in its bristles, as after slip; long steps would damp it."""
+def swinging(world, pad, normal):
+    """What the motion relative to the pads amounts to in terms of `size` when the bristles have stopped it.
+
+    Their stiffness k turns a kinetic energy E into a force of (2 k E)^0.5; a pad has half of the object.
+    """
     vx, vy, omega = world.relative_velocity
-    rim = pad.r * omega
-    return vx * vx + vy * vy + rim * rim > (STILL * pad.stribeck_velocity) ** 2
+    energy = world.mass * (vx * vx + vy * vy) + world.inertia * omega * omega
+    return 0.5 * pad.r * pad.r * pad.sigma_0 * normal * energy

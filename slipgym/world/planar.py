@@ -41,17 +41,26 @@ def advance(world, pads, cells, fingers, force_torque, chips):
         fingers[f].reaction[:] = 0.0
     both = (pads[0], pads[1]), cells, (fingers[0], fingers[1]), (chips[0], chips[1])
     while world.tick < end:
-        ticks = min(world.substep_ticks, end - world.tick)
         for f in range(2):
             take_up(fingers[f], world.tick)
-            ticks = ticks_to_next(fingers[f], world.tick, ticks)
-            ticks = min(ticks, force_torque[f].period - world.tick % force_torque[f].period)
+        ticks = resolving_ticks(world, fingers, force_torque)
         share = ticks / world.engine_ticks
         substep(world, *both, ticks * world.tick_length, share)
         world.tick += ticks
         for f in range(2):
             if world.tick % force_torque[f].period == 0:
                 sample_force_torque(force_torque[f], pads[f], world.tick)
+
+
+@compiled
+def resolving_ticks(world, fingers, force_torque):
+    """Ticks of a sub-step that resolves all there is: at most to the next command, sample or engine step."""
+    ticks = min(world.substep_ticks, world.engine_ticks - world.tick % world.engine_ticks)
+    for f in range(len(fingers)):
+        ticks = ticks_to_next(fingers[f], world.tick, ticks)
+    for f in range(len(force_torque)):
+        ticks = min(ticks, force_torque[f].period - world.tick % force_torque[f].period)
+    return ticks
 
 
 @compiled
