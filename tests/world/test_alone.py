@@ -121,6 +121,21 @@ def test_a_poke_breaks_a_firm_hold_away_as_on_pybullet():
     np.testing.assert_allclose(*ends, atol=speed * (end - begin))
 
 
+def test_a_long_box_rocks_in_its_bristles_as_on_pybullet():
+    """The wrist begins to turn: for a fifth of a second the box swings, with a sixth of what breaks it away.
+
+    A vibration below STILL of the limit may be damped.
+    """
+    ends = []
+    for engine in ("bullet", "planar"):
+        with Bench(force=3.0, engine=engine, size=(0.08, 0.03, 0.4)) as bench:
+            bench.settle()
+            ends.append(bench.run(0.3, wrist=lambda t: (0.0, 0.0, 0.01 if t > 0.02 else 0.0)).slip[:, 2])
+            limit = bench.friction.mu_s / (bench.config.contact.sigma_0 * bench.friction.r)
+    assert np.abs(ends[0]).max() > 0.15 * limit
+    np.testing.assert_allclose(*ends, atol=STILL * limit)
+
+
 def test_a_slide_under_a_closing_grip_has_the_exact_momentum():
     """Against the integral of the force loop's first-order lag, at mu_s = mu_c and without viscosity."""
     mu, low, high, mass = 0.4, 1.0, 2.0, 0.2
