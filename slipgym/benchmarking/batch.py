@@ -17,6 +17,7 @@ from slipgym.compiled import unlocked
 from slipgym.contact.coupled import step_pads
 from slipgym.envs.actions import interpret
 from slipgym.envs.observation import combine, observe
+from slipgym.envs.threads import Threads
 from slipgym.envs.vector import SlipVectorEnv
 from slipgym.sensors.measure import measure
 from slipgym.tasks.disturbance import disturb
@@ -59,6 +60,11 @@ class VectorPlayer:
             self.env.step(action)
         return perf_counter() - start, turns * self.n
 
+    def shared_block(self, threads: Threads, steps: int) -> tuple[float, int]:
+        """A block by other threads, in the same memory: where that lies changes its speed."""
+        self.env._loop._threads = threads
+        return self.block(steps)
+
     def _scatter(self) -> None:
         """Spread the episodes' ends evenly over time, as they are after a while: their steps differ."""
         episode = self.env._loop.episode
@@ -81,9 +87,13 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
             Figure(f"batch of {n} / environment with PyBullet", ratio, "-", ">= 200" if most else "")
         )
         many.env.close()
-    one, two = (VectorPlayer(env_id, SIZES[-1], EVERY_ACTION, threads=threads) for threads in (1, 2))
-    block = 4 * SIZES[-1]
-    result = compare(partial(two.block, block), partial(one.block, block), pairs)
+    many, block = VectorPlayer(env_id, SIZES[-1], EVERY_ACTION), 4 * SIZES[-1]
+    crews = Threads(SIZES[-1], 2), Threads(SIZES[-1], 1)
+    two, one = (partial(many.shared_block, crew, block) for crew in crews)
+    result = compare(two, one, pairs)
+    for crew in crews:
+        crew.close()
+    many.env.close()
     figures.append(Figure("batch of 4096: two threads / one", result.quartiles[1], "-", ">= 1.8"))
     with Twins(_single, env_id) as twins:
         compare(partial(twins.both, block), partial(twins.alone, block), 2)
@@ -96,8 +106,6 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
     seconds, steps = slipping.block(20 * SIZES[-1])
     figures.append(Figure("batch of 4096 about the slip limit: steps per second", steps / seconds, "1/s"))
     slipping.env.close()
-    one.env.close()
-    two.env.close()
     return figures
 
 
