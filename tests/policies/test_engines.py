@@ -60,9 +60,23 @@ def test_refusals(small):
         small(engine="mujoco")
 
 
+def cases():
+    missed = {
+        ("rotational_slip", "ideal"): "a turn that amplifies what PyBullet's solver leaves (docs/batch.md)",
+        (
+            "planar_slip",
+            "ideal",
+        ): "outcomes change with an iteration of PyBullet's solver, too (docs/batch.md)",
+    }
+    for name in ("linear_slip", "rotational_slip", "hinge", "planar_slip", "hold"):
+        for sensors in ("realistic", "ideal"):
+            why = missed.get((name, sensors))
+            marks = [pytest.mark.xfail(reason=why, strict=True)] if why else []
+            yield pytest.param(name, sensors, marks=marks)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("sensors", ["realistic", "ideal"])
-@pytest.mark.parametrize("name", ["linear_slip", "rotational_slip", "hinge", "planar_slip", "hold"])
+@pytest.mark.parametrize(("name", "sensors"), cases())
 def test_acceptance_of_the_planar_engine(name, sensors):
     """200 episodes of each."""
     experiment = load_experiment(name).model_copy(update={"sensors": sensors})
