@@ -11,7 +11,7 @@ import numpy as np
 
 from slipgym.benchmarking.measure import ACTIONS, Player
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.timing import compare, per_call
+from slipgym.benchmarking.timing import Comparison, compare, per_call
 from slipgym.benchmarking.twins import Twins
 from slipgym.compiled import unlocked
 from slipgym.contact.coupled import step_pads
@@ -94,11 +94,11 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
     for crew in crews:
         crew.close()
     many.env.close()
-    figures.append(Figure("batch of 4096: two threads / one", result.quartiles[1], "-", ">= 1.8"))
+    figures += _scaling("batch of 4096: two threads / one", result, ">= 1.8")
     with Twins(_single, env_id) as twins:
         compare(partial(twins.both, block), partial(twins.alone, block), 2)
         result = compare(partial(twins.both, block), partial(twins.alone, block), pairs)
-    figures.append(Figure("the same: two processes of a thread / one of them", result.quartiles[1], "-"))
+    figures += _scaling("the same: two processes / one", result)
     few = VectorPlayer(env_id, CACHED, EVERY_ACTION, threads=1)
     figures += parts(few)
     few.env.close()
@@ -170,6 +170,15 @@ def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
         Figure("sub-steps per step", counted / (steps * n), "-"),
         Figure("their contact kernel alone", 1e9 * floor, "ns"),
         Figure("batch step / its contact kernel", whole / floor, "-"),
+    ]
+
+
+def _scaling(name: str, result: Comparison, required: str = "") -> list[Figure]:
+    lower, middle, upper = result.quartiles
+    return [
+        Figure(name, middle, "-", required),
+        Figure(f"{name}, lower quartile", lower, "-"),
+        Figure(f"{name}, upper quartile", upper, "-"),
     ]
 
 
