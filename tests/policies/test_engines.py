@@ -76,7 +76,7 @@ def cases():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "sensors"), cases())
+@pytest.mark.parametrize(("name", "sensors"), list(cases()))
 def test_acceptance_of_the_planar_engine(name, sensors):
     """200 episodes of each."""
     experiment = load_experiment(name).model_copy(update={"sensors": sensors})
