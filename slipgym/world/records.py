@@ -13,7 +13,7 @@ WORLD = np.dtype(
         ("control_ticks", "i8"),  # ticks per control step
         ("engine_ticks", "i8"),  # ticks per engine step
         ("substep_ticks", "i8"),  # longest friction sub-step in ticks
-        ("calm_ticks", "i8"),  # the same without an engine, while the contact is calm
+        ("calm_ticks", "i8"),  # the same without an engine, near the friction limit
         ("gravity", "f8"),  # [m/s^2], along -z
         ("mass", "f8"),  # [kg]
         ("inertia", "f8"),  # about the centre of mass and the grip axis [kg m^2]

@@ -69,7 +69,7 @@ def clear(client: int, config: Config) -> None:
     """Empty the world and set its rate and solver.
 
     The solver goes through all its iterations: by default it stops at a residual that leaves normal forces
-    wrong by up to a thousandth. Contacts have no friction of the engine's, so its cone is a waste of time.
+    wrong by 3e-4. Contacts have no friction of the engine's, so its cone is a waste of time.
     """
     p.resetSimulation(physicsClientId=client)
     p.setPhysicsEngineParameter(

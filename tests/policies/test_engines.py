@@ -60,30 +60,23 @@ def test_refusals(small):
         small(engine="mujoco")
 
 
-def cases():
-    missed = {
-        ("rotational_slip", "ideal"): "a turn that amplifies what PyBullet's solver leaves (docs/batch.md)",
-        (
-            "planar_slip",
-            "ideal",
-        ): "outcomes change with an iteration of PyBullet's solver, too (docs/batch.md)",
-    }
-    for name in ("linear_slip", "rotational_slip", "hinge", "planar_slip", "hold"):
-        for sensors in ("realistic", "ideal"):
-            why = missed.get((name, sensors))
-            marks = [pytest.mark.xfail(reason=why, strict=True)] if why else []
-            yield pytest.param(name, sensors, marks=marks)
+MISSED = {
+    ("rotational_slip", "ideal"): {"95 % [deg]"},
+    ("planar_slip", "ideal"): {"success [%]"},
+}
+"""Lines of the acceptance that are not reached (docs/batch.md says why)."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "sensors"), list(cases()))
+@pytest.mark.parametrize("sensors", ["realistic", "ideal"])
+@pytest.mark.parametrize("name", ["linear_slip", "rotational_slip", "hinge", "planar_slip", "hold"])
 def test_acceptance_of_the_planar_engine(name, sensors):
     """200 episodes of each."""
     experiment = load_experiment(name).model_copy(update={"sensors": sensors})
     table = compare(experiment, 200, progress=False).set_index("against PyBullet")
     closed, same = table.loc["planar, same controller"], table.loc["planar, same actions"]
-    assert abs(closed["success [%]"] - closed["success, PyBullet [%]"]) <= 2.0
-    assert same["median [mm]"] < 0.2
-    assert same["median [deg]"] < 0.2
-    assert same["95 % [mm]"] < 0.5
-    assert same["95 % [deg]"] < 0.5
+    bounds = {"median [mm]": 0.2, "median [deg]": 0.2, "95 % [mm]": 0.5, "95 % [deg]": 0.5}
+    missed = {line for line, bound in bounds.items() if not same[line] < bound}
+    if not abs(closed["success [%]"] - closed["success, PyBullet [%]"]) <= 2.0:
+        missed.add("success [%]")
+    assert missed == MISSED.get((name, sensors), set())
