@@ -2,7 +2,7 @@
 
 The same bodies at the same rate and solver settings, and per engine step what no simulation
 of in-hand slip with friction of its own can leave out: load on the object, reactions on two
-fingers, finger efforts, wrist motors, the step, pose, velocity, wrist joints, contact points.
+fingers, finger efforts, wrist motors, the step, pose, velocity, joints.
 No friction, no sensors, no bookkeeping; what is sent is constant and what comes is dropped.
 """
 
@@ -14,7 +14,7 @@ import pybullet as p
 
 from slipgym.config import Config
 from slipgym.world import scene
-from slipgym.world.scene import FINGER_LINKS, WRIST_FORCE, WRIST_JOINTS, Box
+from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
 
 
 class BareLoop:
@@ -33,7 +33,7 @@ class BareLoop:
         self._gripper = scene.add_gripper(self._client, config, box.size[1])
         self._body = scene.add_box(self._client, box)
         scene.settle(self._client, config, self._gripper)
-        scene.weigh(self._client, self._body, box)
+        scene.weigh(self._client, self._body, box.mass, box.inertia)
         self._weight = box.mass * config.physics.gravity
         self._efforts = (force, force)
         self._points = tuple((0.0, side * box.size[1] / 2, 0.0) for side in (1.0, -1.0))
@@ -43,8 +43,7 @@ class BareLoop:
         client, body, gripper = self._client, self._body, self._gripper
         push, twist, advance = p.applyExternalForce, p.applyExternalTorque, p.stepSimulation
         drive, world = p.setJointMotorControlArray, p.WORLD_FRAME
-        pose, velocity = p.getBasePositionAndOrientation, p.getBaseVelocity
-        joints, contacts = p.getJointStates, p.getContactPoints
+        pose, velocity, joints = p.getBasePositionAndOrientation, p.getBaseVelocity, p.getJointStates
         (first, second), (at_first, at_second) = FINGER_LINKS, self._points
         up, down = (0.0, 0.0, self._weight), (0.0, 0.0, -0.5 * self._weight)
         origin = none = (0.0, 0.0, 0.0)
@@ -67,8 +66,7 @@ class BareLoop:
             advance(client)
             origin = pose(body, client)[0]
             velocity(body, client)
-            joints(gripper, WRIST_JOINTS, client)
-            contacts(body, gripper, physicsClientId=client)
+            joints(gripper, JOINTS, client)
 
     def held(self) -> bool:
         """Whether the box is where it was and both fingers touch it."""

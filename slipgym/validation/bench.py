@@ -168,7 +168,7 @@ class Bench:
         return self.run(SETTLE_TIME, force=force)
 
     def _row(self, wrench: np.ndarray) -> tuple[Any, ...]:
-        pose, velocity, wrist, normals = self.world.reading
+        pose, velocity, wrist, normals = self.world.reading[:4]
         plant = self.plant
         return (
             self.time,

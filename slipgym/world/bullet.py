@@ -16,11 +16,11 @@ from slipgym.world.actuator import command
 from slipgym.world.placing import place
 from slipgym.world.planar import locate
 from slipgym.world.plant import Plant
-from slipgym.world.scene import FINGER_LINKS, WRIST_FORCE, WRIST_JOINTS, Box
+from slipgym.world.scene import FINGER_DAMPING, FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
 from slipgym.world.snapshot import EngineState, load_engine, save_engine
 from slipgym.world.wrist import ramp_wrist
 
-_LINK_B, _NORMAL_FORCE = 4, 9  # fields of PyBullet's contact points
+_LEAST_NORMAL = 1e-9  # [N]; less is rounding of a finger that touches nothing
 
 
 @compiled
@@ -70,6 +70,7 @@ class BulletWorld:
         self._client: int | None = scene.connect()
         self._box: Box | None = None
         self._gripper = self._body = self._saved = -1
+        self._weighed: tuple[float, float] | None = None
         self._reading: tuple[Any, ...] = ()
 
     @property
@@ -111,7 +112,10 @@ class BulletWorld:
 
     @property
     def reading(self) -> tuple[Any, ...]:
-        """What the engine said after its last step: pose, velocity, wrist joints, normal forces."""
+        """What the engine said after its last step.
+
+        Pose and velocity of the box, positions of the wrist's joints, normal forces, speeds of all joints.
+        """
         return self._reading
 
     def reset(self, box: Box, force: float, wrist: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
@@ -125,14 +129,14 @@ class BulletWorld:
         client = self.client
         if self._box is None or _geometry(box) != _geometry(self._box):
             self._build(box)
+        self._weigh(box.mass, box.inertia)
         p.restoreState(stateId=self._saved, physicsClientId=client)
-        scene.weigh(client, self._body, box)
         self._box = box
         place(self._plant, 0, box, force, wrist)
         if any(wrist):
             self._place(wrist)
-        pose, velocity, joints, _ = self._read()
-        self._reading = pose, velocity, joints, (force, force)
+        *bodies, speeds = self._read()
+        self._reading = *bodies, (force, force), speeds
 
     def command(self, force: float) -> None:
         """Command a grip force per finger [N]; both fingers get the same."""
@@ -155,7 +159,8 @@ class BulletWorld:
         mass = self._plant.world["mass"].item()
         if mass != self.box.mass:
             self._box = replace(self.box, mass=mass, inertia=self._plant.world["inertia"].item())
-            scene.weigh(self.client, self._body, self._box)
+            self._weigh(mass, self._box.inertia)
+            self._place_links()
 
     def disturb(self, wrench: np.ndarray) -> None:
         """Apply a load (f_x, f_z, torque) to the object's centre of mass until told otherwise."""
@@ -167,7 +172,7 @@ class BulletWorld:
         push, twist, drive = p.applyExternalForce, p.applyExternalTorque, p.setJointMotorControlArray
         (first, second), world = FINGER_LINKS, p.WORLD_FRAME
         for _ in range(self._config.physics.engine_steps):
-            pose, velocity, wrist, normals = self._reading
+            pose, velocity, wrist, normals, before = self._reading
             (force, torque), at_first, at_second, efforts, speeds = _loads(
                 plant.world,
                 plant.pads,
@@ -196,7 +201,8 @@ class BulletWorld:
                 physicsClientId=client,
             )
             p.stepSimulation(client)
-            self._reading = self._read()
+            pose, velocity, wrist, after = self._read()
+            self._reading = pose, velocity, wrist, self._normals(efforts, before, after), after
         self._place_links()
         _observe(plant.world, plant.fingers, self._reading[0], self._reading[2], self._reading[3])
 
@@ -218,8 +224,8 @@ class BulletWorld:
         client = self.client
         if self._box is None or _geometry(state.box) != _geometry(self._box):
             self._build(state.box)
+        self._weigh(state.box.mass, state.box.inertia)
         load_engine(client, state.engine)
-        scene.weigh(client, self._body, state.box)
         self._box, self._reading = state.box, state.reading
         self._place_links()
 
@@ -244,16 +250,34 @@ class BulletWorld:
         )
 
     def _read(self) -> tuple[Any, ...]:
-        client, body, gripper, left = self.client, self._body, self._gripper, FINGER_LINKS[0]
+        """Pose and velocity of the box, positions of the wrist's joints, speeds of all."""
+        client, body = self.client, self._body
         pose = p.getBasePositionAndOrientation(body, client)
         velocity = p.getBaseVelocity(body, client)
-        joints = p.getJointStates(gripper, WRIST_JOINTS, client)
-        first, second = [], []
-        for contact in p.getContactPoints(body, gripper, physicsClientId=client):
-            (first if contact[_LINK_B] == left else second).append(contact[_NORMAL_FORCE])
-        # fsum: the engine may list the points in another order after a restore
-        normals = math.fsum(first), math.fsum(second)
-        return pose, velocity, (joints[0][0], joints[1][0], joints[2][0]), normals
+        x, z, pitch, first, second = p.getJointStates(self._gripper, JOINTS, client)
+        return pose, velocity, (x[0], z[0], pitch[0]), (x[1], z[1], pitch[1], first[1], second[1])
+
+    def _normals(
+        self, efforts: tuple[float, float], before: tuple[float, ...], after: tuple[float, ...]
+    ) -> tuple[float, float]:
+        """Normal forces in the last engine step, by the momentum of the fingers [N].
+
+        They are the sums of the engine's contact points, to rounding, at a fraction of the time.
+
+        Args:
+            efforts: Of the fingers in the step [N].
+            before: Speeds of all joints at its start, with which the engine damps [m/s or rad/s].
+            after: And at its end [m/s or rad/s].
+        """
+        inertia = self._config.gripper.finger_mass * self._config.physics.engine_rate
+        first = efforts[0] - inertia * (after[3] - before[3]) - FINGER_DAMPING * before[3]
+        second = efforts[1] - inertia * (after[4] - before[4]) - FINGER_DAMPING * before[4]
+        return first if first > _LEAST_NORMAL else 0.0, second if second > _LEAST_NORMAL else 0.0
+
+    def _weigh(self, mass: float, inertia: float) -> None:
+        if (mass, inertia) != self._weighed:
+            scene.weigh(self.client, self._body, mass, inertia)
+            self._weighed = mass, inertia
 
     def _place_links(self) -> None:
         """Have the engine place the gripper's links anew from its joints.
@@ -261,13 +285,14 @@ class BulletWorld:
         A step and a restore round the links' transforms differently; placed by the same function after
         both, a restored world goes on bit for bit. Setting any joint to what it is does it.
         """
+        _, _, positions, _, speeds = self._reading
         joint = WRIST_JOINTS[0]
-        position, velocity = p.getJointState(self._gripper, joint, self.client)[:2]
-        p.resetJointState(self._gripper, joint, position, velocity, physicsClientId=self.client)
+        p.resetJointState(self._gripper, joint, positions[0], speeds[0], physicsClientId=self.client)
 
     def _build(self, box: Box) -> None:
         client = self.client
         scene.clear(client, self._config)
+        self._weighed = None
         self._gripper = scene.add_gripper(client, self._config, box.size[1])
         self._body = scene.add_box(client, box)
         self._saved = scene.settle(client, self._config, self._gripper)

@@ -4,7 +4,8 @@ World plane: x to the right, z up; the grip axis n = x × z = -y points at the v
 engine integrates with semi-implicit Euler steps, so its velocity is the mean velocity of a
 step. The wrench sent to it is the one that gives the object the mean velocity of the
 sub-stepped motion (friction's mean over the step, staggered by half of one); it and its
-reactions on the fingers cancel. Whatever else the engine did to the object (normal forces,
+reactions on the fingers cancel, but for the moment that tilts the box out of the plane: the pads'
+pressure carries that. Whatever else the engine did to the object (normal forces,
 collisions) comes back as the difference between the pose expected and the pose found, and is
 taken over.
 """
@@ -94,7 +95,6 @@ def step_loads(
         excess_x -= fingers[f].reaction[0]
         excess_z -= fingers[f].reaction[1]
     cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])
-    tilt_x, tilt_z = 0.0, 0.0
     for f in range(2):
         load = fingers[f].reaction
         load[0] += 0.5 * excess_x
@@ -102,9 +102,6 @@ def step_loads(
         arm_x = world.wrist[0] + cos * pads[f].cop[0] - sin * pads[f].cop[1] - x
         arm_z = world.wrist[1] + sin * pads[f].cop[0] + cos * pads[f].cop[1] - z
         excess_t -= load[2] + arm_x * load[1] - arm_z * load[0]
-        depth = world.half_thickness if f == 0 else -world.half_thickness
-        tilt_x += depth * load[1]
-        tilt_z -= depth * load[0]
     for f in range(2):
         fingers[f].reaction[2] += 0.5 * excess_t
     goal = (
@@ -113,7 +110,7 @@ def step_loads(
         (world.wrist_plan[2] - wrist[2]) / dt,
     )
     return (
-        ((fx, 0.0, fz), (tilt_x, -torque, tilt_z)),
+        ((fx, 0.0, fz), (0.0, -torque, 0.0)),
         reaction(world, pads[0], fingers[0], position[1] + world.half_thickness),
         reaction(world, pads[1], fingers[1], position[1] - world.half_thickness),
         (fingers[0].mean_force, fingers[1].mean_force),

@@ -16,11 +16,12 @@ from slipgym.config.hardware import box_inertia
 
 WRIST_JOINTS = (0, 1, 2)
 FINGER_LINKS = (3, 4)
+JOINTS = (*WRIST_JOINTS, *FINGER_LINKS)
 WRIST_FORCE = (1e4, 1e4, 1e3)
 PAD_THICKNESS = 0.01
 _NO_ROTATION = (0.0, 0.0, 0.0, 1.0)
 _WRIST_MASS = 1.0
-_FINGER_DAMPING = 10.0  # [N s/m]; equal forces leave fingers and box free to drift along the grip axis
+FINGER_DAMPING = 10.0  # [N s/m]; equal forces leave fingers and box free to drift along the grip axis
 _SETTLE_STEPS = 60
 _SETTLE_FORCES = (5.0, 5.0)
 _SETTLE_MASS = 0.2  # whichever mass the first episode has, the saved state is the same
@@ -45,12 +46,6 @@ class Box:
     def grasp_from_com(self) -> tuple[float, float]:
         """Pad centre (x, z) at the grasp from the centre of mass [m]."""
         return self.grasp_offset[0] - self.com_offset[0], self.grasp_offset[1] - self.com_offset[1]
-
-    @property
-    def principal_inertia(self) -> tuple[float, float, float]:
-        """About x, grip axis and z; the out-of-plane ones are those of a uniform box [kg m^2]."""
-        x, y, z = self.size
-        return box_inertia(self.mass, y, z), self.inertia, box_inertia(self.mass, x, y)
 
 
 def connect() -> int:
@@ -114,7 +109,7 @@ def add_gripper(client: int, config: Config, thickness: float) -> int:
     for link in range(-1, 5):
         _frictionless(client, gripper, link)
     for link in FINGER_LINKS:
-        p.changeDynamics(gripper, link, jointDamping=_FINGER_DAMPING, physicsClientId=client)
+        p.changeDynamics(gripper, link, jointDamping=FINGER_DAMPING, physicsClientId=client)
     # Bullet starts every joint with a velocity motor; the fingers' must not resist
     p.setJointMotorControlArray(
         gripper, FINGER_LINKS, p.VELOCITY_CONTROL, forces=[0.0, 0.0], physicsClientId=client
@@ -137,8 +132,11 @@ def add_box(client: int, box: Box) -> int:
         physicsClientId=client,
     )
     x, z = box.grasp_from_com
-    body = p.createMultiBody(_SETTLE_MASS, shape, look, [-x, 0.0, -z], physicsClientId=client)
+    body = p.createMultiBody(
+        _SETTLE_MASS, shape, look, [-x, 0.0, -z], useMaximalCoordinates=1, physicsClientId=client
+    )
     _frictionless(client, body, -1)
+    weigh(client, body, _SETTLE_MASS, box_inertia(_SETTLE_MASS, box.size[0], box.size[2]))
     return body
 
 
@@ -161,11 +159,17 @@ def settle(client: int, config: Config, gripper: int) -> int:
     return p.saveState(physicsClientId=client)
 
 
-def weigh(client: int, body: int, box: Box) -> None:
-    """Give the body the box's mass and inertia."""
-    p.changeDynamics(
-        body, -1, mass=box.mass, localInertiaDiagonal=box.principal_inertia, physicsClientId=client
-    )
+def weigh(client: int, body: int, mass: float, inertia: float) -> None:
+    """Give the body a mass [kg] and a moment of inertia about the grip axis [kg m^2].
+
+    About the other axes it is infinite, for which Bullet takes 0: flat pads do not let a box tilt. Bullet
+    turns a body with a new inertia from the end of a step on: here one is taken, and taken back.
+    """
+    state = p.saveState(physicsClientId=client)
+    p.changeDynamics(body, -1, mass=mass, localInertiaDiagonal=(0.0, inertia, 0.0), physicsClientId=client)
+    p.stepSimulation(physicsClientId=client)
+    p.restoreState(stateId=state, physicsClientId=client)
+    p.removeState(state, physicsClientId=client)
 
 
 def _frictionless(client: int, body: int, link: int) -> None:

@@ -23,7 +23,7 @@ class EngineState:
     box: Box
     """The box of the episode."""
     reading: tuple[Any, ...]
-    """Pose, velocity, wrist joints and normal forces that the engine said last."""
+    """What the engine said last, as `BulletWorld.reading`."""
 
 
 def save_engine(client: int) -> bytes:
