@@ -81,17 +81,20 @@ def test_the_wrist_motor_carries_what_friction_carries(grip, sliding):
     assert effort - gravity * carried == pytest.approx(friction, rel=1e-2 if sliding else 1e-6)
 
 
-def test_pads_press_with_what_the_actuators_give():
-    """Grip and wrist move; the engine's solver stops at an error of 3e-4 where it is left to itself."""
+@pytest.mark.parametrize("mass", [0.02, 0.05, 0.2])
+def test_pads_press_with_what_the_actuators_give(mass):
+    """Grip and wrist move. An iteration of the solver goes from one pad to the other through the box."""
     found, given = [], []
-    with Bench(force=5.0) as bench:
+    with Bench({"object": {"mass": mass}}, force=5.0) as bench:
         bench.settle()
         for k in range(60):
             grip, speed = 5.0 + 3.0 * np.sin(0.5 * k), (0.05 * np.sin(0.25 * k), 0.0, 0.5 * np.sin(0.2 * k))
             bench.run(bench.step_time, force=lambda _, grip=grip: grip, wrist=lambda _, speed=speed: speed)
             found.append(bench.world.reading[3])
             given.append(bench.plant.fingers["mean_force"][0].copy())
-    np.testing.assert_allclose(found, given, rtol=1e-5)
+        finger, iterations = bench.config.gripper.finger_mass, bench.config.physics.solver_iterations
+    left = (finger / (finger + mass)) ** (2 * iterations)
+    np.testing.assert_allclose(found, given, rtol=left + 1e-8)  # 1e-8: a drift along the grip axis is damped
 
 
 def test_normal_forces_are_the_sums_of_the_contact_points():
