@@ -13,6 +13,7 @@ from slipgym.envs.actions import interpret
 from slipgym.envs.guard import Guard
 from slipgym.envs.loop import WARM_UP_STEPS, LoopState, SlipLoop
 from slipgym.envs.observation import Sight, combine, observe
+from slipgym.envs.told import tell
 from slipgym.sensors.measure import measure
 from slipgym.tasks import Task
 from slipgym.tasks.disturbance import disturb
@@ -60,6 +61,16 @@ class BulletLoop(SlipLoop):
                 break
         plant = self.plant
         observe(self.wrenches, self.twists, plant.chips, episode, self.task_part, plant.world, *sight)
+        tell(
+            self.told,
+            plant.world,
+            plant.pads,
+            plant.fingers,
+            episode,
+            self.truth,
+            self.estimated,
+            self.per_finger,
+        )
 
     def sample(self, force: float) -> None:
         """One slip-velocity sample with a grip force per finger [N], the wrist as the task scripts it.

@@ -8,6 +8,10 @@ import numpy as np
 
 from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observer import Observation
+from slipgym.envs.told import TOLD
+
+_NUMBERS = "is_success", "dropped", "time"
+_ARRAYS = tuple(name for name in TOLD.names or () if name not in _NUMBERS)
 
 
 class Information:
@@ -19,39 +23,16 @@ class Information:
 
     def __init__(self, loop: SlipLoop) -> None:
         self._loop = loop
-        plant, episode = loop.plant, loop.episode
-        self._steps = episode["step"]
-        self._views: dict[str, np.ndarray] = {
-            "true": loop.true_friction,
-            "estimated": loop.estimated[:, :3],
-            "estimated_per_finger": loop.per_finger,
-            "slip": plant.world["slip"],
-            "slip_twist": plant.world["slip_twist"],
-            "contact_wrench": plant.pads["wrench"],
-            "grip_force": plant.fingers["force"],
-            "reference": episode["reference"],
-            "is_success": episode["success"],
-            "dropped": episode["dropped"],
-        }
-        self._room: dict[str, Any] = {}
 
     def one(self, i: int) -> dict[str, Any]:
         """That of one environment, as `gymnasium.Env` gives it: the caller's own arrays, plain numbers."""
         loop = self._loop
-        info: dict[str, Any] = {name: view[i].copy() for name, view in self._views.items()}
-        for name in ("is_success", "dropped"):
-            info[name] = info[name].item()
+        record = loop.told[i].copy()
+        info: dict[str, Any] = {name: record[name] for name in _ARRAYS}
+        for name in _NUMBERS:
+            info[name] = record[name].item()
         info["reward_terms"] = dict(zip(loop.task.terms, loop.terms[i].tolist(), strict=True))
-        info["time"] = self._steps.item(i) * loop.step_time
         return info
-
-    def prepare(self) -> None:
-        """Make room for the next infos of several environments: with thousands of them zeros take time."""
-        if not self._room:
-            loop = self._loop
-            self._room = {name: np.zeros(view.shape, view.dtype) for name, view in self._views.items()}
-            self._room["reward_terms"] = {name: np.zeros(loop.n) for name in loop.task.terms}
-            self._room["time"] = np.zeros(loop.n)
 
     def of(self, mask: np.ndarray) -> dict[str, Any]:
         """Those of the environments of a mask (n,), as `gymnasium.vector.VectorEnv` gives them.
@@ -62,14 +43,13 @@ class Information:
         """
         if not mask.any():
             return {}
-        self.prepare()
-        loop, rows = self._loop, slice(None) if mask.all() else np.flatnonzero(mask)
-        infos, self._room = self._room, {}
-        for name, view in self._views.items():
-            infos[name][rows] = view[rows]
-        for k, values in enumerate(infos["reward_terms"].values()):
-            values[rows] = loop.terms[rows, k]
-        infos["time"][rows] = self._steps[rows] * loop.step_time
+        loop = self._loop
+        told, terms = loop.told, loop.terms
+        if not mask.all():
+            told, terms = np.zeros_like(told), np.zeros_like(terms)
+            told[mask], terms[mask] = loop.told[mask], loop.terms[mask]
+        infos: dict[str, Any] = {name: told[name].copy() for name in (*_ARRAYS, *_NUMBERS)}
+        infos["reward_terms"] = {name: terms[:, k].copy() for k, name in enumerate(loop.task.terms)}
         return infos
 
 

@@ -20,6 +20,7 @@ from slipgym.envs.episode import Friction, choose_force, draw_friction, make_box
 from slipgym.envs.equipment import Equipment
 from slipgym.envs.happenings import enter
 from slipgym.envs.observation import FRICTION_COLUMNS, Sight, combine
+from slipgym.envs.told import TOLD, tell
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
@@ -73,6 +74,7 @@ class SlipLoop(ABC):
         truth: (mu_s, mu_c, r) now and full support, (n, 6); columns as `estimated`.
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
         estimated: Estimates of both fingers merged, with their support, (n, 6).
+        told: What infos tell, TOLD (n,).
         estimator_choice: Name and parameters of the estimators; `velocity_delay` only if it was given.
         step_time: Length of a sample [s].
     """
@@ -102,6 +104,7 @@ class SlipLoop(ABC):
         self.task_part = np.zeros((n, len(task.columns)))
         self.truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
         self.per_finger = np.zeros((n, 2, 3))
+        self.told = np.zeros(n, TOLD)
         self.materials: list[str] = [""] * n
         self.boxes: list[Any] = [None] * n
         self.drawn: list[dict[str, Any]] = [{} for _ in range(n)]
@@ -167,6 +170,7 @@ class SlipLoop(ABC):
         self.task.judge(
             self.episode[row], self.plant.world[row], self.plant.fingers[row], self.task_part[row]
         )
+        self._tell(row)
 
     @abstractmethod
     def step(
@@ -229,6 +233,13 @@ class SlipLoop(ABC):
         for name, array in self._arrays().items():
             array[:] = state.arrays[name]
         self.materials[:], self.boxes[:] = state.materials, state.boxes
+        self._tell(slice(None))
+
+    def _tell(self, rows: slice) -> None:
+        """Note what infos tell of some environments."""
+        plant, friction = self.plant, (self.truth, self.estimated, self.per_finger)
+        arrays = plant.world, plant.pads, plant.fingers, self.episode, *friction
+        tell(self.told[rows], *(array[rows] for array in arrays))
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that last from sample to sample."""

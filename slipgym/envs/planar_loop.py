@@ -57,7 +57,7 @@ class PlanarLoop(SlipLoop):
             plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips,
             batch.parameters_array, batch.states, batch.estimates,
             self.episode, self.commands, self.wrenches, self.twists,
-            self.per_finger, self.estimated, self.task_part, self.truth,
+            self.per_finger, self.estimated, self.task_part, self.truth, self.told,
         )  # fmt: skip
         self._results = self.rewards, self.dropped, self.finished
 

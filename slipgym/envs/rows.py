@@ -18,6 +18,7 @@ from slipgym.contact.records import PAD
 from slipgym.envs.actions import COMPONENT, interpret
 from slipgym.envs.guard import sound
 from slipgym.envs.observation import combine, observe
+from slipgym.envs.told import TOLD, tell
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks.disturbance import disturb
@@ -71,13 +72,13 @@ def _drive(
     worlds, pads, cells, fingers, force_torque, chips,
     parameters, states, estimates,
     episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth,
-    wrist, friction, low, high, out,
+    told, wrist, friction, low, high, out,
     actions, components, active, terms, rewards, dropped, finished, skip, lo, hi,
 ):  # fmt: skip
     """A step, that is `skip` samples, of the active rows among lo to hi; an episode that ends stops its row.
 
-    What it was worth and whether the episode ended stands in arrays of their own: gathered later, from the
-    records of thousands of rows, each would be a miss of the cache.
+    What it was worth, whether the episode ended and what infos tell stands in arrays of their own: gathered
+    later, from the records of thousands of rows, each would be a miss of the cache.
 
     Returns:
         The first row with a number that is not finite; -1 without one.
@@ -115,6 +116,10 @@ def _drive(
         observe(
             wrenches[rows], twists[rows], chips[rows], episodes[rows], task_part[rows], worlds[rows],
             wrist, friction[rows], low, high, out[rows],
+        )  # fmt: skip
+        tell(
+            told[rows], worlds[rows], pads[rows], fingers[rows], episodes[rows],
+            truth[rows], estimated[rows], per_finger[rows],
         )  # fmt: skip
         for i in range(start, stop):
             rewards[i] = 0.0
@@ -185,7 +190,7 @@ def driver(
         *(types.FunctionType(kind) for kind in (plan, judge, learn)),
         world, _row(PAD, 2), cells, finger, _row(force_torque, 2), _row(SLIP_SENSOR, 2),
         parameter, state, estimate,
-        episode, f2, f3, f3, f3, f2, f2, f2,
+        episode, f2, f3, f3, f3, f2, f2, f2, _row(TOLD),
         types.Array(types.int64, 1, "C"), f2, f1, f1, types.Array(types.float32, 2, "C"),
         f2, _row(COMPONENT), flags, f2, types.Array(types.float64, 1, "C"), flags, flags,
         types.int64, types.int64, types.int64,

@@ -98,7 +98,7 @@ def test_pads_press_with_what_the_actuators_give(mass):
 
 
 def test_normal_forces_are_the_sums_of_the_contact_points():
-    """They are read off the fingers' momentum: grip, wrist and load change at every step, then the grip opens."""
+    """They are read off the fingers' momentum. Grip, wrist and load change at every step; then it lets go."""
     with Bench(force=5.0) as bench:
         bench.settle()
         world = bench.world
