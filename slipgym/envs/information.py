@@ -11,7 +11,8 @@ from slipgym.envs.observer import Observation
 from slipgym.envs.told import TOLD
 
 _NUMBERS = "is_success", "dropped", "time"
-_ARRAYS = tuple(name for name in TOLD.names or () if name not in _NUMBERS)
+_NAMES = TOLD.names or ()
+_ARRAYS = tuple(name for name in _NAMES if name not in _NUMBERS)
 
 
 class Information:
@@ -23,6 +24,7 @@ class Information:
 
     def __init__(self, loop: SlipLoop) -> None:
         self._loop = loop
+        self._room: dict[str, Any] = {}
 
     def one(self, i: int) -> dict[str, Any]:
         """That of one environment, as `gymnasium.Env` gives it: the caller's own arrays, plain numbers."""
@@ -34,6 +36,13 @@ class Information:
         info["reward_terms"] = dict(zip(loop.task.terms, loop.terms[i].tolist(), strict=True))
         return info
 
+    def prepare(self) -> None:
+        """Make room for the next infos of some environments: with thousands of them zeros take time."""
+        if not self._room:
+            told, terms = self._loop.told, self._loop.terms
+            self._room = {name: np.zeros(told[name].shape, told[name].dtype) for name in _NAMES}
+            self._room["reward_terms"] = {name: np.zeros(len(terms)) for name in self._loop.task.terms}
+
     def of(self, mask: np.ndarray) -> dict[str, Any]:
         """Those of the environments of a mask (n,), as `gymnasium.vector.VectorEnv` gives them.
 
@@ -43,13 +52,17 @@ class Information:
         """
         if not mask.any():
             return {}
-        loop = self._loop
-        told, terms = loop.told, loop.terms
-        if not mask.all():
-            told, terms = np.zeros_like(told), np.zeros_like(terms)
-            told[mask], terms[mask] = loop.told[mask], loop.terms[mask]
-        infos: dict[str, Any] = {name: told[name].copy() for name in (*_ARRAYS, *_NUMBERS)}
-        infos["reward_terms"] = {name: terms[:, k].copy() for k, name in enumerate(loop.task.terms)}
+        told, terms, names = self._loop.told, self._loop.terms, self._loop.task.terms
+        if mask.all():
+            infos: dict[str, Any] = {name: told[name].copy() for name in _NAMES}
+            return {**infos, "reward_terms": {name: terms[:, k].copy() for k, name in enumerate(names)}}
+        self.prepare()
+        infos, self._room = self._room, {}
+        rows = np.flatnonzero(mask)
+        for name in _NAMES:
+            infos[name][rows] = told[name][rows]
+        for k, name in enumerate(names):
+            infos["reward_terms"][name][rows] = terms[rows, k]
         return infos
 
 

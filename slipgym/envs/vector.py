@@ -192,7 +192,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             self._frame_skip,
             active,
             self._observer.sight,
-            partial(self._begin, rows),
+            partial(self._meanwhile, rows),
         )
         self._ready = ready
         self._observer.next(active)
@@ -266,6 +266,12 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             self._observer.begin(i)
             self._pictures.begin(i)
             self._ready[i], self._over[i] = True, False
+
+    def _meanwhile(self, rows: np.ndarray) -> None:
+        """What is done while other threads take the step of the other environments."""
+        self._begin(rows)
+        if not self._all_infos:
+            self._information.prepare()
 
     def _add_drawn(self, infos: dict[str, Any], rows: np.ndarray) -> dict[str, Any]:
         """Infos with what the randomization drew for episodes that begin."""
