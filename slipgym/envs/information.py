@@ -8,11 +8,11 @@ import numpy as np
 
 from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observer import Observation
-from slipgym.envs.told import TOLD
+from slipgym.envs.told import FLAGS, PARTS, SHAPES, field
 
-_NUMBERS = "is_success", "dropped", "time"
-_NAMES = TOLD.names or ()
-_ARRAYS = tuple(name for name in _NAMES if name not in _NUMBERS)
+_VECTORS = tuple(name for name, shape in SHAPES.items() if len(shape) == 1)
+_MATRICES = tuple(name for name, shape in SHAPES.items() if len(shape) == 2)
+_NUMBERS = slice(PARTS["time"].start, PARTS["dropped"].stop)
 
 
 class Information:
@@ -29,19 +29,23 @@ class Information:
     def one(self, i: int) -> dict[str, Any]:
         """That of one environment, as `gymnasium.Env` gives it: the caller's own arrays, plain numbers."""
         loop = self._loop
-        record = loop.told[i].copy()
-        info: dict[str, Any] = {name: record[name] for name in _ARRAYS}
-        for name in _NUMBERS:
-            info[name] = record[name].item()
+        row = loop.told[i].copy()
+        info: dict[str, Any] = {name: row[PARTS[name]] for name in _VECTORS}
+        for name in _MATRICES:
+            info[name] = row[PARTS[name]].reshape(SHAPES[name])
+        time, success, dropped = row[_NUMBERS].tolist()
+        info["is_success"], info["dropped"] = success != 0.0, dropped != 0.0
         info["reward_terms"] = dict(zip(loop.task.terms, loop.terms[i].tolist(), strict=True))
+        info["time"] = time
         return info
 
     def prepare(self) -> None:
         """Make room for the next infos of some environments: with thousands of them zeros take time."""
         if not self._room:
-            told, terms = self._loop.told, self._loop.terms
-            self._room = {name: np.zeros(told[name].shape, told[name].dtype) for name in _NAMES}
-            self._room["reward_terms"] = {name: np.zeros(len(terms)) for name in self._loop.task.terms}
+            n, names = self._loop.n, self._loop.task.terms
+            kinds = {name: bool if name in FLAGS else float for name in SHAPES}
+            self._room = {name: np.zeros((n, *shape), kinds[name]) for name, shape in SHAPES.items()}
+            self._room["reward_terms"] = {name: np.zeros(n) for name in names}
 
     def of(self, mask: np.ndarray) -> dict[str, Any]:
         """Those of the environments of a mask (n,), as `gymnasium.vector.VectorEnv` gives them.
@@ -54,15 +58,16 @@ class Information:
             return {}
         told, terms, names = self._loop.told, self._loop.terms, self._loop.task.terms
         if mask.all():
-            infos: dict[str, Any] = {name: told[name].copy() for name in _NAMES}
+            infos: dict[str, Any] = {name: field(told, name) for name in SHAPES}
             return {**infos, "reward_terms": {name: terms[:, k].copy() for k, name in enumerate(names)}}
         self.prepare()
         infos, self._room = self._room, {}
         rows = np.flatnonzero(mask)
-        for name in _NAMES:
-            infos[name][rows] = told[name][rows]
+        told, terms = told[rows], terms[rows]
+        for name in SHAPES:
+            infos[name][rows] = field(told, name)
         for k, name in enumerate(names):
-            infos["reward_terms"][name][rows] = terms[rows, k]
+            infos["reward_terms"][name][rows] = terms[:, k]
         return infos
 
 

@@ -20,7 +20,7 @@ from slipgym.envs.episode import Friction, choose_force, draw_friction, make_box
 from slipgym.envs.equipment import Equipment
 from slipgym.envs.happenings import enter
 from slipgym.envs.observation import FRICTION_COLUMNS, Sight, combine
-from slipgym.envs.told import TOLD, tell
+from slipgym.envs.told import WIDTH, tell
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
@@ -74,7 +74,7 @@ class SlipLoop(ABC):
         truth: (mu_s, mu_c, r) now and full support, (n, 6); columns as `estimated`.
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
         estimated: Estimates of both fingers merged, with their support, (n, 6).
-        told: What infos tell, TOLD (n,).
+        told: What infos tell, see `slipgym.envs.told`, (n, WIDTH).
         estimator_choice: Name and parameters of the estimators; `velocity_delay` only if it was given.
         step_time: Length of a sample [s].
     """
@@ -104,7 +104,7 @@ class SlipLoop(ABC):
         self.task_part = np.zeros((n, len(task.columns)))
         self.truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
         self.per_finger = np.zeros((n, 2, 3))
-        self.told = np.zeros(n, TOLD)
+        self.told = np.zeros((n, WIDTH))
         self.materials: list[str] = [""] * n
         self.boxes: list[Any] = [None] * n
         self.drawn: list[dict[str, Any]] = [{} for _ in range(n)]

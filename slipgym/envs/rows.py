@@ -18,7 +18,7 @@ from slipgym.contact.records import PAD
 from slipgym.envs.actions import COMPONENT, interpret
 from slipgym.envs.guard import sound
 from slipgym.envs.observation import combine, observe
-from slipgym.envs.told import TOLD, tell
+from slipgym.envs.told import tell
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks.disturbance import disturb
@@ -190,7 +190,7 @@ def driver(
         *(types.FunctionType(kind) for kind in (plan, judge, learn)),
         world, _row(PAD, 2), cells, finger, _row(force_torque, 2), _row(SLIP_SENSOR, 2),
         parameter, state, estimate,
-        episode, f2, f3, f3, f3, f2, f2, f2, _row(TOLD),
+        episode, f2, f3, f3, f3, f2, f2, f2, f2,
         types.Array(types.int64, 1, "C"), f2, f1, f1, types.Array(types.float32, 2, "C"),
         f2, _row(COMPONENT), flags, f2, types.Array(types.float64, 1, "C"), flags, flags,
         types.int64, types.int64, types.int64,

@@ -9,8 +9,8 @@ from itertools import islice, pairwise
 
 LEAST = 32
 """Rows from which another thread is worth waking."""
-SMALL = 128
-"""Rows of the smallest part."""
+SMALL = 256
+"""Rows of the smallest part, if there are enough: with more and smaller ones a second core is worth less."""
 
 
 class Threads:
@@ -76,7 +76,7 @@ class Threads:
 
 
 def _ends(n: int, threads: int) -> list[int]:
-    """0 and where the parts of n rows end: a small one, then large ones, then smaller and smaller ones.
+    """0 and where the parts of n rows end: a smaller one, then a large one, then smaller and smaller ones.
 
     The first keeps this thread busy while the others wake up, the large ones keep them busy while this thread
     has the interpreter's lock, and for the last ones the threads wait for each other.
@@ -84,9 +84,9 @@ def _ends(n: int, threads: int) -> list[int]:
     if threads == 1:
         return [0, n]
     small = min(SMALL, -(-n // threads))
-    ends = [0, small]
+    ends = [0, max(small, n // (4 * threads))]
     while ends[-1] < n:
-        ends.append(min(n, ends[-1] + max(small, (n - ends[-1]) // (2 * threads))))
+        ends.append(min(n, ends[-1] + max(small, 4 * (n - ends[-1]) // (5 * threads))))
     return ends
 
 

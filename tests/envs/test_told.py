@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from slipgym.envs.told import TOLD
+from slipgym.envs.told import SHAPES, field
 
 
 def check(loop):
@@ -23,9 +23,9 @@ def check(loop):
         "dropped": episode["dropped"],
         "time": episode["step"] * loop.step_time,
     }
-    assert set(records) == set(TOLD.names)
+    assert set(records) == set(SHAPES)
     for name, values in records.items():
-        np.testing.assert_array_equal(loop.told[name], values, err_msg=name)
+        np.testing.assert_array_equal(field(loop.told, name), values, err_msg=name)
 
 
 @pytest.mark.parametrize("engine", ["bullet", "planar"])
@@ -53,7 +53,7 @@ def test_of_a_batch(mode):
     for _ in range(40):
         _, _, _, _, infos = envs.step(np.full((5, 1), -0.9, dtype=np.float32))
         check(envs._loop)
-        np.testing.assert_array_equal(infos["slip"], envs._loop.told["slip"])
+        np.testing.assert_array_equal(infos["slip"], field(envs._loop.told, "slip"))
         begun |= infos["time"][0] < infos["time"][1]
     assert begun
     envs.close()
