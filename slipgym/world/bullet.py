@@ -262,7 +262,7 @@ class BulletWorld:
     ) -> tuple[float, float]:
         """Normal forces in the last engine step, by the momentum of the fingers [N].
 
-        They are the sums of the engine's contact points, to rounding, at a fraction of the time.
+        They are the sums of the engine's contact points, to rounding, and take less time to read.
 
         Args:
             efforts: Of the fingers in the step [N].
