@@ -13,14 +13,13 @@ from slipgym.compiled import compiled
 from slipgym.config import Config
 from slipgym.world import coupling, scene
 from slipgym.world.actuator import command
+from slipgym.world.momentum import normal_forces
 from slipgym.world.placing import place
 from slipgym.world.planar import locate
 from slipgym.world.plant import Plant
-from slipgym.world.scene import FINGER_DAMPING, FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
+from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
 from slipgym.world.snapshot import EngineState, load_engine, save_engine
 from slipgym.world.wrist import ramp_wrist
-
-_LEAST_NORMAL = 1e-9  # [N]; less is rounding of a finger that touches nothing
 
 
 @compiled
@@ -171,6 +170,7 @@ class BulletWorld:
         client, body, gripper, plant = self.client, self._body, self._gripper, self._plant
         push, twist, drive = p.applyExternalForce, p.applyExternalTorque, p.setJointMotorControlArray
         (first, second), world = FINGER_LINKS, p.WORLD_FRAME
+        inertia = self._config.gripper.finger_mass * self._config.physics.engine_rate
         for _ in range(self._config.physics.engine_steps):
             pose, velocity, wrist, normals, before = self._reading
             (force, torque), at_first, at_second, efforts, speeds = _loads(
@@ -202,7 +202,8 @@ class BulletWorld:
             )
             p.stepSimulation(client)
             pose, velocity, wrist, after = self._read()
-            self._reading = pose, velocity, wrist, self._normals(efforts, before, after), after
+            normals = normal_forces(efforts, before, after, inertia)
+            self._reading = pose, velocity, wrist, normals, after
         self._place_links()
         _observe(plant.world, plant.fingers, self._reading[0], self._reading[2], self._reading[3])
 
@@ -256,23 +257,6 @@ class BulletWorld:
         velocity = p.getBaseVelocity(body, client)
         x, z, pitch, first, second = p.getJointStates(self._gripper, JOINTS, client)
         return pose, velocity, (x[0], z[0], pitch[0]), (x[1], z[1], pitch[1], first[1], second[1])
-
-    def _normals(
-        self, efforts: tuple[float, float], before: tuple[float, ...], after: tuple[float, ...]
-    ) -> tuple[float, float]:
-        """Normal forces in the last engine step, by the momentum of the fingers [N].
-
-        They are the sums of the engine's contact points, to rounding, and take less time to read.
-
-        Args:
-            efforts: Of the fingers in the step [N].
-            before: Speeds of all joints at its start, with which the engine damps [m/s or rad/s].
-            after: And at its end [m/s or rad/s].
-        """
-        inertia = self._config.gripper.finger_mass * self._config.physics.engine_rate
-        first = efforts[0] - inertia * (after[3] - before[3]) - FINGER_DAMPING * before[3]
-        second = efforts[1] - inertia * (after[4] - before[4]) - FINGER_DAMPING * before[4]
-        return first if first > _LEAST_NORMAL else 0.0, second if second > _LEAST_NORMAL else 0.0
 
     def _weigh(self, mass: float, inertia: float) -> None:
         if (mass, inertia) != self._weighed:
