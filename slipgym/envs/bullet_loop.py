@@ -61,16 +61,7 @@ class BulletLoop(SlipLoop):
                 break
         plant = self.plant
         observe(self.wrenches, self.twists, plant.chips, episode, self.task_part, plant.world, *sight)
-        tell(
-            self.told,
-            plant.world,
-            plant.pads,
-            plant.fingers,
-            episode,
-            self.truth,
-            self.estimated,
-            self.per_finger,
-        )
+        tell(self.told, *self._told_from)
 
     def sample(self, force: float) -> None:
         """One slip-velocity sample with a grip force per finger [N], the wrist as the task scripts it.

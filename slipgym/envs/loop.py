@@ -105,6 +105,8 @@ class SlipLoop(ABC):
         self.truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
         self.per_finger = np.zeros((n, 2, 3))
         self.told = np.zeros((n, WIDTH))
+        bodies = self.plant.world, self.plant.pads, self.plant.fingers
+        self._told_from = *bodies, self.episode, self.truth, self.estimated, self.per_finger
         self.materials: list[str] = [""] * n
         self.boxes: list[Any] = [None] * n
         self.drawn: list[dict[str, Any]] = [{} for _ in range(n)]
@@ -237,9 +239,7 @@ class SlipLoop(ABC):
 
     def _tell(self, rows: slice) -> None:
         """Note what infos tell of some environments."""
-        plant, friction = self.plant, (self.truth, self.estimated, self.per_finger)
-        arrays = plant.world, plant.pads, plant.fingers, self.episode, *friction
-        tell(self.told[rows], *(array[rows] for array in arrays))
+        tell(self.told[rows], *(array[rows] for array in self._told_from))
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that last from sample to sample."""
