@@ -19,6 +19,7 @@ from slipgym.envs.actions import COMPONENT, interpret
 from slipgym.envs.guard import sound
 from slipgym.envs.observation import combine, observe
 from slipgym.envs.told import tell
+from slipgym.prefetch import fetch
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks.disturbance import disturb
@@ -54,6 +55,15 @@ def _sample(
     disturb(episodes[rows], worlds[rows], pads[rows], truth[rows])
     plan(episodes[rows], worlds[rows])
     for i in range(lo, hi):
+        ahead = i + hi - lo  # the same row of the next block
+        fetch(worlds, ahead, ahead + 1)
+        fetch(pads, ahead, ahead + 1)
+        fetch(fingers, ahead, ahead + 1)
+        fetch(force_torque, ahead, ahead + 1)
+        fetch(chips, ahead, ahead + 1)
+        fetch(states, 2 * ahead, 2 * ahead + 2)
+        fetch(estimates, 2 * ahead, 2 * ahead + 2)
+        fetch(episodes, ahead, ahead + 1)
         move(worlds, pads, cells, fingers, force_torque, chips, commands[i, 0], i)
     measure(worlds[rows], force_torque[rows], chips[rows], wrenches[rows], twists[rows])
     for i in range(lo, hi):
