@@ -11,15 +11,15 @@ import numpy as np
 from slipgym.config import Config, Randomization
 from slipgym.envs.actions import interpret
 from slipgym.envs.guard import Guard
-from slipgym.envs.loop import WARM_UP_STEPS, LoopState, SlipLoop
+from slipgym.envs.loop import LoopState, SlipLoop
 from slipgym.envs.observation import Sight, combine, observe
+from slipgym.envs.start import WARM_UP_STEPS, equip, open_episodes
 from slipgym.envs.told import tell
 from slipgym.sensors.measure import measure
 from slipgym.tasks import Task
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import begin_step
 from slipgym.world.bullet import BulletWorld
-from slipgym.world.scene import Box
 
 
 class BulletLoop(SlipLoop):
@@ -93,13 +93,18 @@ class BulletLoop(SlipLoop):
         """Release the physics client; closing twice is harmless."""
         self.world.close()
 
-    def _place(self, i: int, box: Box, force: float, wrist: tuple[float, ...]) -> None:
-        self.world.reset(box, force, (wrist[0], wrist[1], wrist[2]))
+    def _begin(self, starts: np.ndarray) -> None:
+        force, episode = starts["force"].item(), self.episode
+        x, z, pitch = episode["wrist_start"][0].tolist()
+        self.world.reset(self.boxes[0], force, (x, z, pitch))
         self._guard.reset()
-
-    def _settle(self, i: int, force: float) -> None:
+        equip(starts, *self._equipped)
         for _ in range(WARM_UP_STEPS):
             self._advance(force)
+        open_episodes(starts, *self._opened)
+        combine(self.estimator.estimates, self.per_finger, self.estimated)
+        self.task.judge(episode, self.plant.world, self.plant.fingers, self.task_part)
+        tell(self.told, *self._told_from)
 
     def _sample(self) -> None:
         """Act, move, measure, estimate, judge."""

@@ -8,7 +8,6 @@ import numpy as np
 
 from slipgym.config import Config
 from slipgym.contact.records import CELL_FIELDS
-from slipgym.sensors.starting import start_sensors
 from slipgym.world.plant import Plant, check_slip_latency, dead_ticks, patch_of
 
 
@@ -24,12 +23,20 @@ class Equipment:
         config: Configuration of the plant.
         plant: The plant as it was built; its patches make room for the largest one.
         pressures: Pressures that an episode may have.
+
+    Attributes:
+        biases: Spread of the force/torque sensors' biases, and their noise, which a drawn scale multiplies,
+            (6,) each [N, N m].
     """
 
     def __init__(self, config: Config, plant: Plant, pressures: Sequence[str]) -> None:
         self._config, self._plant = config, plant
         self._force_noise = plant.force_torque["noise"][0, 0].copy()
         self._slip_noise = plant.chips["noise"][0, 0].copy()
+        sensor = config.sensors.force_torque
+        tangential, normal, torque = sensor.bias_tangential, sensor.bias_normal, sensor.bias_torque
+        spread = np.array([tangential, tangential, normal, torque, torque, torque], dtype=float)
+        self.biases = spread, self._force_noise
         self._cells: dict[str, np.ndarray] = {}
         if plant.cells is not None:
             patches = {pressure: patch_of(with_pressure(config, pressure)) for pressure in pressures}
@@ -62,19 +69,3 @@ class Equipment:
         plant.force_torque["noise"][i] = values["noise_scale"] * self._force_noise
         plant.chips["noise"][i] = values["noise_scale"] * self._slip_noise
         plant.chips["delay"][i] = values["slip_latency"]
-
-    def start_sensors(self, i: int, bias_scale: float, rng: np.random.Generator) -> None:
-        """Start a world's sensors afresh, with this episode's bias and noise.
-
-        Args:
-            i: Which of the worlds.
-            bias_scale: Spread of the biases beyond the configured one, over the configured noise [-].
-            rng: Source of both.
-        """
-        force_torque = self._plant.force_torque[i]
-        sensor = self._config.sensors.force_torque
-        tangential, normal, torque = sensor.bias_tangential, sensor.bias_normal, sensor.bias_torque
-        spread = np.array([tangential, tangential, normal, torque, torque, torque])
-        spread = spread + bias_scale * self._force_noise
-        force_torque["bias"] = spread * rng.standard_normal(force_torque["bias"].shape)
-        start_sensors(force_torque, self._plant.chips[i], rng)

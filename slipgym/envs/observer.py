@@ -16,7 +16,7 @@ from slipgym.envs.observation import (
     WRIST_COLUMNS,
     Sight,
     columns,
-    observe,
+    observe_some,
     wrist_columns,
 )
 from slipgym.tasks.task import Column
@@ -76,13 +76,13 @@ class Observer:
             truth = gym.spaces.Box(*self._truth_bounds)
             self.space = gym.spaces.Dict({"policy": policy, "privileged": truth})
 
-    def begin(self, i: int = 0) -> None:
-        """Take the first observation of an episode; it stands for those before it, too."""
-        loop, (wrist, friction, low, high, out) = self._loop, self.sight
-        row = slice(i, i + 1)
+    def begin(self, rows: np.ndarray) -> None:
+        """Take the first observations of some environments; they stand for those before them, too."""
+        loop = self._loop
         arrays = loop.wrenches, loop.twists, loop.plant.chips, loop.episode, loop.task_part, loop.plant.world
-        observe(*(array[row] for array in arrays), wrist, friction[row], low, high, out[row])
-        self.frames[i] = out[i]
+        observe_some(rows, *arrays, *self.sight)
+        if self._history:
+            self.frames[rows] = self.sight.out[rows, np.newaxis]
 
     def next(self, active: np.ndarray) -> None:
         """Take what the loop observed after a step.

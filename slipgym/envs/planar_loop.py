@@ -10,13 +10,11 @@ import numpy as np
 from estimator.registry import specification
 from slipgym.config import Config, Randomization
 from slipgym.envs.guard import Guard
-from slipgym.envs.loop import WARM_UP_STEPS, SlipLoop
+from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observation import Sight
-from slipgym.envs.rows import driver, settle
+from slipgym.envs.rows import compiled_batch
 from slipgym.envs.threads import Threads
 from slipgym.tasks import Task
-from slipgym.world.placing import place
-from slipgym.world.scene import Box
 
 
 class PlanarLoop(SlipLoop):
@@ -52,13 +50,14 @@ class PlanarLoop(SlipLoop):
         kind, plant = specification(self.estimator_choice["name"]), self.plant
         batch = self.estimator
         dtypes = batch.states.dtype, batch.parameters_array.dtype, plant.force_torque.dtype
-        self._drive = driver(task, kind.update_batch, *dtypes, plant.cells is not None)
-        self._arguments = (
+        self._drive, self._start = compiled_batch(task, kind.update_batch, *dtypes, plant.cells is not None)
+        self._records = (
             plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips,
             batch.parameters_array, batch.states, batch.estimates,
             self.episode, self.commands, self.wrenches, self.twists,
             self.per_finger, self.estimated, self.task_part, self.truth, self.told,
         )  # fmt: skip
+        self._begun = *self._opened[:2], *self._equipped[:2]
         self._results = self.rewards, self.dropped, self.finished
 
     def step(
@@ -81,10 +80,10 @@ class PlanarLoop(SlipLoop):
             meanwhile: What may be done with the other environments at the same time.
         """
         self.check_open()
-        rest = *sight, actions, components, active, self.terms, *self._results, skip
+        action, results = (actions, components, active), (self.terms, *self._results)
 
         def part(lo: int, hi: int) -> int:
-            return self._drive(*self._arguments, *rest, lo, hi)
+            return self._drive(self._records, sight, action, results, skip, lo, hi)
 
         for bad in self._threads.run(part, meanwhile):
             if bad >= 0:
@@ -100,13 +99,8 @@ class PlanarLoop(SlipLoop):
         self._threads.close()
         self._closed = True
 
-    def _place(self, i: int, box: Box, force: float, wrist: tuple[float, ...]) -> None:
-        place(self.plant, i, box, force, (wrist[0], wrist[1], wrist[2]))
-
-    def _settle(self, i: int, force: float) -> None:
-        plant = self.plant
-        arrays = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips
-        settle(*arrays, self.wrenches, self.twists, force, WARM_UP_STEPS, i)
+    def _begin(self, starts: np.ndarray) -> None:
+        self._start(starts, self._records, self._begun, self.terms)
 
     def _explain(self, bad: int) -> None:
         """Raise FloatingPointError, naming what of an environment is not finite."""

@@ -13,11 +13,13 @@ import numpy as np
 from numba import from_dtype, types
 
 from estimator.estimate import ESTIMATE
+from slipgym.borrowing import borrowed
 from slipgym.compiled import patience, unlocked
 from slipgym.contact.records import PAD
 from slipgym.envs.actions import COMPONENT, interpret
 from slipgym.envs.guard import sound
 from slipgym.envs.observation import combine, observe
+from slipgym.envs.start import START, WARM_UP_STEPS, equip, grip, open_episodes
 from slipgym.envs.told import tell
 from slipgym.prefetch import fetch
 from slipgym.sensors.measure import measure
@@ -27,18 +29,9 @@ from slipgym.tasks.episode import EPISODE, begin_step
 from slipgym.world.alone import move
 from slipgym.world.records import FINGER, WORLD
 
-BLOCK = 256
+BLOCK = 64
 """Rows that go through a control step together: few enough to stay in the processor's caches, and enough
 for it to fetch each array ahead."""
-
-
-@unlocked
-def settle(worlds, pads, cells, fingers, force_torque, chips, wrenches, twists, force, steps, i):
-    """Let world i come to rest in a grip of a constant force, for a number of control steps."""
-    for _ in range(steps):
-        move(worlds, pads, cells, fingers, force_torque, chips, force, i)
-        here = slice(i, i + 1)
-        measure(worlds[here], force_torque[here], chips[here], wrenches[here], twists[here])
 
 
 @unlocked
@@ -78,21 +71,37 @@ def _sample(
 
 @unlocked
 def _drive(
-    plan, judge, update,
-    worlds, pads, cells, fingers, force_torque, chips,
-    parameters, states, estimates,
-    episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth,
-    told, wrist, friction, low, high, out,
-    actions, components, active, terms, rewards, dropped, finished, skip, lo, hi,
+    plan, judge, update, arrays, sight, action, results, skip, lo, hi,
 ):  # fmt: skip
     """A step, that is `skip` samples, of the active rows among lo to hi; an episode that ends stops its row.
 
     What it was worth, whether the episode ended and what infos tell stands in arrays of their own: gathered
     later, from the records of thousands of rows, each would be a miss of the cache.
 
+    Args:
+        plan: The task's.
+        judge: The task's.
+        update: The estimator's.
+        arrays: State of the rows, see `PlanarLoop`.
+        sight: See `Sight`.
+        action: What is done (n, m), COMPONENT (m,), what it means, and which rows are active (n,).
+        results: Output: reward terms (n, k), their sums (n,), whether a row's object was dropped (n,) and
+            whether its time has passed (n,).
+        skip: Samples.
+        lo: First row.
+        hi: Row after the last.
+
     Returns:
         The first row with a number that is not finite; -1 without one.
     """
+    (
+        worlds, pads, cells, fingers, force_torque, chips,
+        parameters, states, estimates,
+        episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth, told,
+    ) = borrowed(arrays)  # fmt: skip
+    wrist, friction, low, high, out = borrowed(sight)
+    actions, components, active = borrowed(action)
+    terms, rewards, dropped, finished = borrowed(results)
     bad = -1
     size = BLOCK if skip == 1 else 1
     start = lo
@@ -140,6 +149,45 @@ def _drive(
     return bad
 
 
+@unlocked
+def _start(
+    judge, starts, arrays, begun, terms,
+):  # fmt: skip
+    """Begin episodes.
+
+    Args:
+        judge: The task's.
+        starts: START (m,).
+        arrays: State of all rows, see `PlanarLoop`.
+        begun: What they begin with: states and estimates of both fingers, spread and noise of `equip`.
+        terms: Reward terms (n, k).
+    """
+    (
+        worlds, pads, cells, fingers, force_torque, chips,
+        _, states, estimates,
+        episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth, told,
+    ) = borrowed(arrays)  # fmt: skip
+    fresh_states, fresh_estimates, spread, noise = begun
+    grip(starts, episodes, worlds, pads, cells, fingers)
+    equip(starts, spread, noise, pads, force_torque, chips, truth)
+    for k in range(starts.shape[0]):
+        i, force = starts[k].row, starts[k].force
+        row = slice(i, i + 1)
+        for _ in range(WARM_UP_STEPS):
+            move(worlds, pads, cells, fingers, force_torque, chips, force, i)
+            measure(worlds[row], force_torque[row], chips[row], wrenches[row], twists[row])
+    open_episodes(starts, fresh_states, fresh_estimates, chips, states, estimates, episodes, commands, terms)
+    for k in range(starts.shape[0]):
+        i = starts[k].row
+        row = slice(i, i + 1)
+        combine(estimates[2 * i : 2 * i + 2], per_finger[row], estimated[row])
+        judge(episodes[row], worlds[row], fingers[row], task_part[row])
+        tell(
+            told[row], worlds[row], pads[row], fingers[row], episodes[row],
+            truth[row], estimated[row], per_finger[row],
+        )  # fmt: skip
+
+
 class Pointer(types.WrapperAddressProtocol):
     """A compiled function as an argument of another, its address looked up once and not at every call.
 
@@ -166,10 +214,10 @@ def _row(dtype: Any, ndim: int = 1) -> Any:
 
 
 @cache
-def driver(
+def compiled_batch(
     task: Any, update: Any, states: np.dtype, parameters: np.dtype, force_torque: np.dtype, patches: bool
-) -> Any:
-    """The compiled step for a task, an estimator and a kind of contact.
+) -> tuple[Any, Any]:
+    """What steps and what starts the environments of a task, an estimator and a kind of contact, compiled.
 
     The first call on a machine compiles it, which takes about half a minute; the result is kept beside the
     sources.
@@ -183,29 +231,37 @@ def driver(
         patches: Whether pads have cells.
 
     Returns:
-        Function of all arguments of `_drive` but the first three.
+        Functions of the arguments of `_drive` but the first three, and of `_start` but the first.
     """
     state, parameter, estimate = _row(states), _row(parameters), _row(ESTIMATE)
     episode, world, finger = _row(EPISODE), _row(WORLD), _row(FINGER, 2)
-    f2, f3 = (types.Array(types.float64, k, "C") for k in (2, 3))
-    f1, flags = types.Array(types.float32, 1, "C"), types.Array(types.boolean, 1, "C")
+    f1, f2, f3 = (types.Array(types.float64, k, "C") for k in (1, 2, 3))
+    single, flags = types.Array(types.float32, 1, "C"), types.Array(types.boolean, 1, "C")
     plan = types.void(episode, world)
     judge = types.void(episode, world, finger, f2)
     learn = types.void(state, parameter, types.float64, f2, f2, estimate)
     for function, signature in ((task.plan, plan), (task.judge, judge)):
         function.compile(signature)
-    own = (task.plan, plan), (task.judge, judge), (update, learn)
     cells = types.Array(types.float64, 4, "C") if patches else types.none
-    signature = types.int64(
-        *(types.FunctionType(kind) for kind in (plan, judge, learn)),
+    arrays = types.Tuple([
         world, _row(PAD, 2), cells, finger, _row(force_torque, 2), _row(SLIP_SENSOR, 2),
         parameter, state, estimate,
         episode, f2, f3, f3, f3, f2, f2, f2, f2,
-        types.Array(types.int64, 1, "C"), f2, f1, f1, types.Array(types.float32, 2, "C"),
-        f2, _row(COMPONENT), flags, f2, types.Array(types.float64, 1, "C"), flags, flags,
-        types.int64, types.int64, types.int64,
-    )  # fmt: skip
+    ])  # fmt: skip
+    kinds = [types.FunctionType(kind) for kind in (plan, judge, learn)]
+    sight = types.Tuple(
+        [types.Array(types.int64, 1, "C"), f2, single, single, types.Array(types.float32, 2, "C")]
+    )
+    action, results = types.Tuple([f2, _row(COMPONENT), flags]), types.Tuple([f2, f1, flags, flags])
+    drive = types.int64(*kinds, arrays, sight, action, results, types.int64, types.int64, types.int64)
+    start = types.void(kinds[1], _row(START), arrays, types.Tuple([state, estimate, f1, f1]), f2)
     with patience(f"the batch of {task.name}"):
-        _drive.compile(signature)
-        pointers = [Pointer(*function) for function in own]
-    return partial(_drive.overloads[signature.args].entry_point, *pointers)
+        _drive.compile(drive)
+        _start.compile(start)
+        pointers = [
+            Pointer(*function) for function in ((task.plan, plan), (task.judge, judge), (update, learn))
+        ]
+    return (
+        partial(_drive.overloads[drive.args].entry_point, *pointers),
+        partial(_start.overloads[start.args].entry_point, pointers[1]),
+    )

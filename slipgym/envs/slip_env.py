@@ -133,7 +133,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             self._renderer.begin()
         self._ready = True
         drawn = self._loop.drawn[0]
-        self._observer.begin()
+        self._observer.begin(_FIRST)
         return first(self._observer.read()), {
             **self._information.one(0),
             **({"drawn": dict(drawn)} if drawn else {}),
@@ -254,6 +254,7 @@ def _rebuild(kind: type[SlipEnv], arguments: Mapping[str, Any], state: EnvState 
 
 
 _ONE = np.ones(1, dtype=bool)
+_FIRST = np.zeros(1, dtype=np.int64)
 _KEYWORDS = [
     name
     for name, parameter in inspect.signature(SlipEnv.__init__).parameters.items()

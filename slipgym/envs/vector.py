@@ -23,6 +23,7 @@ from slipgym.envs.setup import Setup
 from slipgym.envs.state import VectorState, checked
 from slipgym.envs.vector_options import RowOptions, refuse_scalar
 from slipgym.tasks import TASKS, Task
+from slipgym.tasks.options import EpisodeOptions
 
 
 class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
@@ -260,12 +261,19 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._loop.close()
 
     def _begin(self, rows: np.ndarray, asked: RowOptions | None = None) -> None:
+        """Start episodes; environments before the first whose options contradict each other have started."""
+        if asked is not None:
+            for i in rows.tolist():
+                self._begin_together(np.array([i]), asked.of(i))
+        elif rows.size:
+            self._begin_together(rows, self._options)
+
+    def _begin_together(self, rows: np.ndarray, options: EpisodeOptions) -> None:
+        self._loop.reset_rows([(i, options, self._generators[i]) for i in rows.tolist()], self._material)
+        self._observer.begin(rows)
         for i in rows.tolist():
-            options = self._options if asked is None else asked.of(i)
-            self._loop.reset(options, self._material, self._generators[i], i)
-            self._observer.begin(i)
             self._pictures.begin(i)
-            self._ready[i], self._over[i] = True, False
+        self._ready[rows], self._over[rows] = True, False
 
     def _meanwhile(self, rows: np.ndarray) -> None:
         """What is done while other threads take the step of the other environments."""

@@ -7,22 +7,25 @@ import numpy as np
 from slipgym.compiled import compiled
 from slipgym.sensors.slip_velocity import AXES
 
+KEYS = 3
+"""Keys that the noise of a finger's sensors needs."""
 
-def start_sensors(force_torque: np.ndarray, chips: np.ndarray, rng: np.random.Generator) -> None:
-    """Forget all samples, and draw the keys of the noise and what each chip has not counted yet.
 
-    Args:
-        force_torque: FORCE_TORQUE, any shape.
-        chips: SLIP_SENSOR, likewise.
-        rng: Source of the draws.
-    """
-    n = chips.size
-    keys = rng.bit_generator.random_raw(3 * n).reshape(3, n)
-    _start(force_torque.reshape(n), chips.reshape(n), keys, rng.uniform(-1.0, 1.0, (n, AXES)))
+def draw_sensors(n: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Keys of the noise (KEYS, n) and shares in [0, 1) of what each chip has not counted yet (n, AXES)."""
+    return rng.bit_generator.random_raw(KEYS * n).reshape(KEYS, n), rng.random((n, AXES))
 
 
 @compiled
-def _start(force_torque, chips, keys, carries):
+def start_sensors(force_torque, chips, keys, shares):
+    """Forget all samples.
+
+    Args:
+        force_torque: FORCE_TORQUE (n,).
+        chips: SLIP_SENSOR (n,).
+        keys: From `draw_sensors`, like the last.
+        shares: See there.
+    """
     for i in range(chips.shape[0]):
         wrench, slip = force_torque[i], chips[i]
         for k in range(wrench.kept):
@@ -36,4 +39,4 @@ def _start(force_torque, chips, keys, carries):
         slip.travel[:] = 0.0
         slip.taken = 0
         for a in range(AXES):
-            slip.carry[a] = slip.count * carries[i, a]
+            slip.carry[a] = slip.count * (2.0 * shares[i, a] - 1.0)

@@ -12,7 +12,7 @@ from slipgym.contact.records import pads
 from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import accumulate_slip
-from slipgym.sensors.starting import start_sensors
+from slipgym.sensors.starting import draw_sensors, start_sensors
 from slipgym.synthetic.integration import Trace
 from slipgym.world.plant import build
 
@@ -74,7 +74,7 @@ def sense(
     rng = np.random.default_rng(seed)
     force_torque, chips = plant.force_torque, plant.chips
     force_torque["delay"] = 0
-    start_sensors(force_torque, chips, rng)
+    start_sensors(force_torque.reshape(-1), chips.reshape(-1), *draw_sensors(chips.size, rng))
     fingers, n = chips.shape, len(trace.t)
     pad = pads(1)
     wrenches, twists = np.zeros((*fingers, 4)), np.zeros((*fingers, 3))

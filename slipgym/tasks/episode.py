@@ -57,10 +57,10 @@ EPISODE = np.dtype(
 
 def schedule(options: EpisodeOptions, task: Any, episode: np.void) -> None:
     """Fill in settle, duration and length of an episode that settles, follows a reference and holds."""
-    for field in ("settle", "duration"):
-        episode[field] = options.choose(field, task)
-    total = episode["settle"] + episode["duration"] + options.choose("hold", task)
-    episode["steps"] = max(1, round(total / episode["step_time"]))
+    settle, duration = options.choose("settle", task), options.choose("duration", task)
+    episode["settle"], episode["duration"] = settle, duration
+    total = settle + duration + options.choose("hold", task)
+    episode["steps"] = max(1, round(total / episode["step_time"].item()))
 
 
 @compiled

@@ -21,11 +21,12 @@ def place(plant: Plant, i: int, box: Box, force: float, wrist: tuple[float, floa
         wrist: Pad centre (x, z) and pitch [m, m, rad].
     """
     body = box.mass, box.inertia, box.size[1] / 2, *box.grasp_from_com
-    _place(plant.world, plant.pads, plant.cells, plant.fingers, i, body, force, wrist)
+    put(plant.world, plant.pads, plant.cells, plant.fingers, i, body, force, wrist)
 
 
 @compiled
-def _place(worlds, pads, cells, fingers, i, body, force, wrist):
+def put(worlds, pads, cells, fingers, i, body, force, wrist):
+    """`place`, compiled; body is (mass, inertia, half thickness, pad centre from the centre of mass)."""
     world = worlds[i]
     mass, inertia, half_thickness, x, z = body
     cos, sin = math.cos(wrist[2]), math.sin(wrist[2])

@@ -1,0 +1,126 @@
+"""The start of an episode: what is drawn of it in Python, and the rest for many of them at once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from slipgym.compiled import compiled
+from slipgym.sensors.slip_velocity import AXES
+from slipgym.sensors.starting import KEYS, start_sensors
+from slipgym.world.placing import put
+
+WARM_UP_STEPS = 6
+"""Control steps before time 0 in which grip and sensors come to rest."""
+START = np.dtype(
+    [
+        ("row", "i8"),  # which environment
+        ("force", "f8"),  # grip force per finger [N]
+        ("mass", "f8"),  # [kg]
+        ("inertia", "f8"),  # about the centre of mass and the grip axis [kg m^2]
+        ("half_thickness", "f8"),  # of the object along the grip axis [m]
+        ("grasp_point", "f8", 2),  # pad centre (x, z) at the grasp from the centre of mass [m]
+        ("reach", "f8", 2),  # as in EPISODE, like the next one
+        ("object_centre", "f8", 2),
+        ("friction", "f8", 3),  # mu_s, mu_c [-], r [m]
+        ("drift", "f8"),  # relative rate of mu_s and mu_c [1/s]
+        ("bias_scale", "f8"),  # spread of the biases beyond the configured one, over the noise [-]
+        # drawn last
+        ("biases", "f8", (2, 6)),  # standard normal
+        ("keys", "u8", (KEYS, 2)),  # of the sensors' noise
+        ("shares", "f8", (2, AXES)),  # see `slipgym.sensors.starting`, like the keys
+    ]
+)
+"""What an episode begins with, besides what its task and its disturbances write into EPISODE."""
+NUMBERS = [name for name in START.names or () if name not in ("biases", "keys", "shares")]
+"""Its fields but for what is drawn last, for the sensors."""
+
+
+@compiled
+def begin_episode(episodes, blank, starts, k):
+    """Fill in what all tasks have in common.
+
+    Args:
+        episodes: EPISODE (n,).
+        blank: What all episodes begin with, EPISODE (1,).
+        starts: START (m,).
+        k: Which of them.
+    """
+    start = starts[k]
+    episodes[start.row] = blank[0]
+    episode = episodes[start.row]
+    episode.mass, episode.inertia = start.mass, start.inertia
+    episode.mu_s, episode.mu_c, episode.drift = start.friction[0], start.friction[1], start.drift
+    for a in range(2):
+        episode.reach[a], episode.object_centre[a] = start.reach[a], start.object_centre[a]
+
+
+@compiled
+def grip(starts, episodes, worlds, pads, cells, fingers):
+    """Bring worlds to rest, the object held.
+
+    Args:
+        starts: START (m,).
+        episodes: EPISODE (n,), for the wrist.
+        worlds: WORLD (n,).
+        pads: PAD (n, 2).
+        cells: Patches (n, 2, CELL_FIELDS, m); None for ellipsoids.
+        fingers: FINGER (n, 2).
+    """
+    for k in range(starts.shape[0]):
+        start = starts[k]
+        i = start.row
+        wrist = episodes[i].wrist_start
+        grasp = start.grasp_point
+        body = start.mass, start.inertia, start.half_thickness, grasp[0], grasp[1]
+        put(worlds, pads, cells, fingers, i, body, start.force, (wrist[0], wrist[1], wrist[2]))
+
+
+@compiled
+def equip(starts, spread, noise, pads, force_torque, chips, truth):
+    """Give pads their friction and start the sensors.
+
+    Args:
+        starts: START (m,).
+        spread: See `slipgym.envs.equipment.Equipment.biases`, like the next one.
+        noise: See there.
+        pads: PAD (n, 2).
+        force_torque: FORCE_TORQUE (n, 2).
+        chips: SLIP_SENSOR (n, 2).
+        truth: Output (n, 6), of which the first three are mu_s, mu_c, r.
+    """
+    for k in range(starts.shape[0]):
+        start = starts[k]
+        i = start.row
+        for a in range(3):
+            truth[i, a] = start.friction[a]
+        for f in range(2):
+            pads[i, f].mu_s, pads[i, f].mu_c, pads[i, f].r = start.friction
+            for a in range(6):
+                scale = spread[a] + start.bias_scale * noise[a]
+                force_torque[i, f].bias[a] = scale * start.biases[f, a]
+        start_sensors(force_torque[i], chips[i], start.keys, start.shares)
+
+
+@compiled
+def open_episodes(starts, fresh_states, fresh_estimates, chips, states, estimates, episodes, commands, terms):
+    """After grip and sensors have come to rest: nothing has slipped, learned or been commanded yet.
+
+    Args:
+        starts: START (m,).
+        fresh_states: Of both fingers' estimators, (2,).
+        fresh_estimates: ESTIMATE (2,).
+        chips: SLIP_SENSOR (n, 2).
+        states: Of the estimators, (2 n,).
+        estimates: ESTIMATE (2 n,).
+        episodes: EPISODE (n,).
+        commands: (n, 4).
+        terms: (n, k).
+    """
+    for k in range(starts.shape[0]):
+        i = starts[k].row
+        for f in range(2):
+            chips[i, f].travel[:] = 0.0
+            states[2 * i + f], estimates[2 * i + f] = fresh_states[f], fresh_estimates[f]
+        commands[i, :] = 0.0
+        terms[i, :] = 0.0
+        episodes[i].command = episodes[i].last_command = starts[k].force

@@ -1,0 +1,27 @@
+"""Borrowed arrays are the same memory, and nothing counts them."""
+
+import sys
+
+import numpy as np
+
+from slipgym.borrowing import borrowed
+from slipgym.compiled import compiled
+
+
+@compiled
+def double(arrays):
+    first, nothing, second = borrowed(arrays)
+    for i in range(first.shape[0]):
+        part = first[i : i + 1]
+        part[0] *= 2.0
+    second[:] += first[:1]
+    return nothing is None
+
+
+def test_it_is_the_same_memory_and_stays_the_callers():
+    first, second = np.ones(3), np.ones((2, 1))
+    counts = sys.getrefcount(first), sys.getrefcount(second)
+    assert double((first, None, second))
+    np.testing.assert_array_equal(first, 2.0)
+    np.testing.assert_array_equal(second, 3.0)
+    assert (sys.getrefcount(first), sys.getrefcount(second)) == counts
