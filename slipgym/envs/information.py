@@ -8,7 +8,8 @@ import numpy as np
 
 from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observer import Observation
-from slipgym.envs.told import FLAGS, PARTS, SHAPES, field
+from slipgym.envs.rooms import Rooms
+from slipgym.envs.told import FLAGS, PARTS, SHAPES, WIDTH, field
 
 _VECTORS = tuple(name for name, shape in SHAPES.items() if len(shape) == 1)
 _MATRICES = tuple(name for name, shape in SHAPES.items() if len(shape) == 2)
@@ -24,7 +25,7 @@ class Information:
 
     def __init__(self, loop: SlipLoop) -> None:
         self._loop = loop
-        self._room: dict[str, Any] = {}
+        self._rooms = Rooms(loop.n, WIDTH + len(loop.task.terms))
 
     def one(self, i: int) -> dict[str, Any]:
         """That of one environment, as `gymnasium.Env` gives it: the caller's own arrays, plain numbers."""
@@ -39,14 +40,6 @@ class Information:
         info["time"] = time
         return info
 
-    def prepare(self) -> None:
-        """Make room for the next infos of some environments: with thousands of them zeros take time."""
-        if not self._room:
-            n, names = self._loop.n, self._loop.task.terms
-            kinds = {name: bool if name in FLAGS else float for name in SHAPES}
-            self._room = {name: np.zeros((n, *shape), kinds[name]) for name, shape in SHAPES.items()}
-            self._room["reward_terms"] = {name: np.zeros(n) for name in names}
-
     def of(self, mask: np.ndarray) -> dict[str, Any]:
         """Those of the environments of a mask (n,), as `gymnasium.vector.VectorEnv` gives them.
 
@@ -60,15 +53,14 @@ class Information:
         if mask.all():
             infos: dict[str, Any] = {name: field(told, name) for name in SHAPES}
             return {**infos, "reward_terms": {name: terms[:, k].copy() for k, name in enumerate(names)}}
-        self.prepare()
-        infos, self._room = self._room, {}
-        rows = np.flatnonzero(mask)
-        told, terms = told[rows], terms[rows]
-        for name in SHAPES:
+        rows, n = np.flatnonzero(mask), len(mask)
+        told = told[rows]
+        room = self._rooms.fill(rows, np.hstack([told, terms[rows]]))
+        infos = {name: room[:, PARTS[name]].reshape(n, *shape) for name, shape in SHAPES.items()}
+        for name in FLAGS:
+            infos[name] = np.zeros(n, dtype=bool)
             infos[name][rows] = field(told, name)
-        for k, name in enumerate(names):
-            infos["reward_terms"][name][rows] = terms[:, k]
-        return infos
+        return {**infos, "reward_terms": {name: room[:, WIDTH + k] for k, name in enumerate(names)}}
 
 
 def masked(infos: dict[str, Any], mask: np.ndarray) -> dict[str, Any]:

@@ -32,6 +32,7 @@ class PlanarLoop(SlipLoop):
         rewards: Sum of the last step's reward terms, (n,).
         dropped: Whether the object was dropped in it, (n,).
         finished: Whether the episode's time had passed after it, (n,).
+        tells_all: Whether a step fills in `told` of all environments, or only where an episode ends; True.
     """
 
     def __init__(
@@ -45,7 +46,7 @@ class PlanarLoop(SlipLoop):
     ) -> None:
         super().__init__(config, task, estimator, randomization, n)
         self._threads = Threads(n, threads)
-        self._closed = False
+        self._closed, self.tells_all = False, True
         self.rewards, (self.dropped, self.finished) = np.zeros(n), np.zeros((2, n), bool)
         kind, plant = specification(self.estimator_choice["name"]), self.plant
         batch = self.estimator
@@ -83,7 +84,7 @@ class PlanarLoop(SlipLoop):
         action, results = (actions, components, active), (self.terms, *self._results)
 
         def part(lo: int, hi: int) -> int:
-            return self._drive(self._records, sight, action, results, skip, lo, hi)
+            return self._drive(self._records, sight, action, results, self.tells_all, skip, lo, hi)
 
         for bad in self._threads.run(part, meanwhile):
             if bad >= 0:

@@ -71,7 +71,7 @@ def _sample(
 
 @unlocked
 def _drive(
-    plan, judge, update, arrays, sight, action, results, skip, lo, hi,
+    plan, judge, update, arrays, sight, action, results, tells_all, skip, lo, hi,
 ):  # fmt: skip
     """A step, that is `skip` samples, of the active rows among lo to hi; an episode that ends stops its row.
 
@@ -87,6 +87,7 @@ def _drive(
         action: What is done (n, m), COMPONENT (m,), what it means, and which rows are active (n,).
         results: Output: reward terms (n, k), their sums (n,), whether a row's object was dropped (n,) and
             whether its time has passed (n,).
+        tells_all: Whether it is noted of all rows what infos tell, or only of those whose episode ends.
         skip: Samples.
         lo: First row.
         hi: Row after the last.
@@ -136,15 +137,17 @@ def _drive(
             wrenches[rows], twists[rows], chips[rows], episodes[rows], task_part[rows], worlds[rows],
             wrist, friction[rows], low, high, out[rows],
         )  # fmt: skip
-        tell(
-            told[rows], worlds[rows], pads[rows], fingers[rows], episodes[rows],
-            truth[rows], estimated[rows], per_finger[rows],
-        )  # fmt: skip
         for i in range(start, stop):
             rewards[i] = 0.0
             for k in range(terms.shape[1]):
                 rewards[i] += terms[i, k]
             dropped[i], finished[i] = episodes[i].dropped, episodes[i].step >= episodes[i].steps
+            if tells_all or dropped[i] or finished[i]:
+                row = slice(i, i + 1)
+                tell(
+                    told[row], worlds[row], pads[row], fingers[row], episodes[row],
+                    truth[row], estimated[row], per_finger[row],
+                )  # fmt: skip
         start = stop
     return bad
 
@@ -253,7 +256,8 @@ def compiled_batch(
         [types.Array(types.int64, 1, "C"), f2, single, single, types.Array(types.float32, 2, "C")]
     )
     action, results = types.Tuple([f2, _row(COMPONENT), flags]), types.Tuple([f2, f1, flags, flags])
-    drive = types.int64(*kinds, arrays, sight, action, results, types.int64, types.int64, types.int64)
+    whole = types.int64
+    drive = whole(*kinds, arrays, sight, action, results, types.boolean, whole, whole, whole)
     start = types.void(kinds[1], _row(START), arrays, types.Tuple([state, estimate, f1, f1]), f2)
     with patience(f"the batch of {task.name}"):
         _drive.compile(drive)

@@ -129,7 +129,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             "render_rows": render_rows,
         }
         self._information = Information(self._loop)
-        self._all_infos = one_of("infos", infos, ("all", "ends")) == "all"
+        self._loop.tells_all = one_of("infos", infos, ("all", "ends")) == "all"
         self._generators = Generators(num_envs)
         self.render_mode = render_mode
         self._pictures = Pictures(self._loop, render_mode, render_rows)
@@ -184,8 +184,8 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             waiting = np.flatnonzero(~(active | begins)).tolist()
             raise RuntimeError(f"call reset() before step(): environments {waiting[:8]} have no episode")
         loop = self._loop
-        loop.rewards[begins] = loop.terms[begins] = 0.0
         rows = np.flatnonzero(begins)
+        loop.rewards[rows] = loop.terms[rows] = 0.0
         ready, self._ready = self._ready, np.zeros_like(self._ready)
         loop.step(
             chosen,
@@ -193,7 +193,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             self._frame_skip,
             active,
             self._observer.sight,
-            partial(self._meanwhile, rows),
+            partial(self._begin, rows),
         )
         self._ready = ready
         self._observer.next(active)
@@ -207,7 +207,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             ended = final(self._observer.read(), self._information.of(begins), begins)
             rows = np.flatnonzero(begins)
             self._begin(rows)
-        told = np.ones_like(begins) if self._all_infos else self._over | begins
+        told = np.ones_like(begins) if loop.tells_all else self._over | begins
         infos = self._add_drawn({**masked(self._information.of(told), told), **ended}, rows)
         return self._observer.read(), rewards, terminated, truncated, infos
 
@@ -274,12 +274,6 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         for i in rows.tolist():
             self._pictures.begin(i)
         self._ready[rows], self._over[rows] = True, False
-
-    def _meanwhile(self, rows: np.ndarray) -> None:
-        """What is done while other threads take the step of the other environments."""
-        self._begin(rows)
-        if not self._all_infos:
-            self._information.prepare()
 
     def _add_drawn(self, infos: dict[str, Any], rows: np.ndarray) -> dict[str, Any]:
         """Infos with what the randomization drew for episodes that begin."""

@@ -19,6 +19,7 @@ def double(arrays):
 
 
 def test_it_is_the_same_memory_and_stays_the_callers():
+    double((np.ones(3), None, np.ones((2, 1))))  # compiled
     first, second = np.ones(3), np.ones((2, 1))
     counts = sys.getrefcount(first), sys.getrefcount(second)
     assert double((first, None, second))
