@@ -21,6 +21,7 @@ from slipgym.envs.guard import sound
 from slipgym.envs.observation import combine, observe
 from slipgym.envs.start import START, WARM_UP_STEPS, equip, grip, open_episodes
 from slipgym.envs.told import tell
+from slipgym.pointers import Known, Pointer
 from slipgym.prefetch import fetch
 from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
@@ -70,9 +71,7 @@ def _sample(
 
 
 @unlocked
-def _drive(
-    plan, judge, update, arrays, sight, action, results, tells_all, skip, lo, hi,
-):  # fmt: skip
+def _drive(plan, judge, update, arrays, sight, action, results, tells_all, skip, lo, hi):
     """A step, that is `skip` samples, of the active rows among lo to hi; an episode that ends stops its row.
 
     What it was worth, whether the episode ended and what infos tell stands in arrays of their own: gathered
@@ -153,9 +152,7 @@ def _drive(
 
 
 @unlocked
-def _start(
-    judge, starts, arrays, begun, terms,
-):  # fmt: skip
+def _start(judge, starts, arrays, begun, terms):
     """Begin episodes.
 
     Args:
@@ -189,27 +186,6 @@ def _start(
             told[row], worlds[row], pads[row], fingers[row], episodes[row],
             truth[row], estimated[row], per_finger[row],
         )  # fmt: skip
-
-
-class Pointer(types.WrapperAddressProtocol):
-    """A compiled function as an argument of another, its address looked up once and not at every call.
-
-    Args:
-        function: The function.
-        signature: Of its arguments and its result.
-    """
-
-    def __init__(self, function: Any, signature: Any) -> None:
-        self._function, self._signature = function, signature  # the code lives as long as its function
-        compiled = function.get_compile_result(signature)
-        self._address = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
-
-    def __wrapper_address__(self) -> int:
-        return self._address
-
-    def signature(self) -> Any:
-        """Types of its arguments and its result."""
-        return self._signature
 
 
 def _row(dtype: Any, ndim: int = 1) -> Any:
@@ -251,7 +227,7 @@ def compiled_batch(
         parameter, state, estimate,
         episode, f2, f3, f3, f3, f2, f2, f2, f2,
     ])  # fmt: skip
-    kinds = [types.FunctionType(kind) for kind in (plan, judge, learn)]
+    kinds = [Known(kind) for kind in (plan, judge, learn)]
     sight = types.Tuple(
         [types.Array(types.int64, 1, "C"), f2, single, single, types.Array(types.float32, 2, "C")]
     )

@@ -187,14 +187,8 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         rows = np.flatnonzero(begins)
         loop.rewards[rows] = loop.terms[rows] = 0.0
         ready, self._ready = self._ready, np.zeros_like(self._ready)
-        loop.step(
-            chosen,
-            self._actions.table,
-            self._frame_skip,
-            active,
-            self._observer.sight,
-            partial(self._begin, rows),
-        )
+        table, sight, meanwhile = self._actions.table, self._observer.sight, partial(self._begin, rows)
+        loop.step(chosen, table, self._frame_skip, active, sight, meanwhile)
         self._ready = ready
         self._observer.next(active)
         rewards = loop.rewards.copy()

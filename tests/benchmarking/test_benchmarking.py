@@ -136,7 +136,9 @@ def test_figures_are_written_at_once(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-@pytest.mark.parametrize("env_id", ["slipgym/LinearSlip-v0", "slipgym/Hold-v0"])
+@pytest.mark.parametrize(
+    "env_id", ["slipgym/LinearSlip-v0", pytest.param("slipgym/Hold-v0", marks=pytest.mark.slow)]
+)
 def test_the_script_runs(tmp_path, env_id):
     path = tmp_path / "figures.json"
     script = ROOT / "scripts" / "benchmark.py"
