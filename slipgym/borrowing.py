@@ -1,8 +1,7 @@
 """Arrays that compiled code uses without counting who refers to them.
 
-Numba counts every view that compiled code takes of an array, with atomic operations. With thousands of
-environments, of which a step takes dozens of views each, that is a sixth of the time, and threads that share
-the arrays wait for each other's counts.
+Numba counts every view that compiled code takes of an array, with atomic operations. A step takes dozens of
+views of each environment, and threads that share the arrays wait for each other's counts.
 """
 
 from __future__ import annotations
