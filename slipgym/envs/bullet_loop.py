@@ -98,10 +98,10 @@ class BulletLoop(SlipLoop):
         x, z, pitch = episode["wrist_start"][0].tolist()
         self.world.reset(self.boxes[0], force, (x, z, pitch))
         self._guard.reset()
-        equip(starts, *self._equipped)
+        equip(starts, *self._biases, *self._equipped)
         for _ in range(WARM_UP_STEPS):
             self._advance(force)
-        open_episodes(starts, *self._opened)
+        open_episodes(starts, *self._fresh, *self._opened)
         combine(self.estimator.estimates, self.per_finger, self.estimated)
         self.task.judge(episode, self.plant.world, self.plant.fingers, self.task_part)
         tell(self.told, *self._told_from)

@@ -109,10 +109,11 @@ class SlipLoop(ABC):
         self.materials, self.boxes = self._starter.materials, self._starter.boxes
         self.drawn = self._starter.drawn
         plant, learned = self.plant, (self.estimator.states, self.estimator.estimates)
-        self._equipped = *equipment.biases, plant.pads, plant.force_torque, plant.chips, self.truth
+        self._biases = equipment.biases
+        self._equipped = plant.pads, plant.force_torque, plant.chips, self.truth
         # start values are the same for all and do not depend on a latency
-        fresh = [array[:2].copy() for array in learned]
-        self._opened = *fresh, plant.chips, *learned, self.episode, self.commands, self.terms
+        self._fresh = self.estimator.states[:2].copy(), self.estimator.estimates[:2].copy()
+        self._opened = plant.chips, *learned, self.episode, self.commands, self.terms
 
     @property
     def true_friction(self) -> np.ndarray:
@@ -209,11 +210,7 @@ class SlipLoop(ABC):
         for name, array in self._arrays().items():
             array[:] = state.arrays[name]
         self.materials[:], self.boxes[:] = state.materials, state.boxes
-        self._tell(slice(None))
-
-    def _tell(self, rows: slice) -> None:
-        """Note what infos tell of some environments."""
-        tell(self.told[rows], *(array[rows] for array in self._told_from))
+        tell(self.told, *self._told_from)
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that last from sample to sample."""

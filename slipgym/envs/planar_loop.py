@@ -58,7 +58,7 @@ class PlanarLoop(SlipLoop):
             self.episode, self.commands, self.wrenches, self.twists,
             self.per_finger, self.estimated, self.task_part, self.truth, self.told,
         )  # fmt: skip
-        self._begun = *self._opened[:2], *self._equipped[:2]
+        self._begun = *self._fresh, *self._biases
         self._results = self.rewards, self.dropped, self.finished
 
     def step(

@@ -1,6 +1,6 @@
 """What infos tell of every environment, gathered while its records are at hand.
 
-A row of plain numbers: numpy copies one of named fields field by field, which takes 5 us.
+A row of plain numbers: numpy copies one of named fields field by field, which takes longer.
 """
 
 from __future__ import annotations
