@@ -100,14 +100,14 @@ class _Tap:
         self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
     ) -> None:
         """The loop's `step`, one sample after the other."""
-        episode, total = self._loop.episode[0], np.zeros_like(self._loop.terms)
+        episode, total = self._loop.episode[0], np.zeros_like(self._loop.told.terms)
         for _ in range(skip):
             self._step(actions, components, 1, active, sight)
             self._take()
-            total += self._loop.terms
+            total += self._loop.told.terms
             if episode["dropped"] or episode["step"] >= episode["steps"]:
                 break
-        self._loop.terms[:] = total
+        self._loop.told.terms[:] = total
 
     def _take(self) -> None:
         """Keeps what was sampled since the last call."""

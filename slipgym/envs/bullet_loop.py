@@ -14,7 +14,6 @@ from slipgym.envs.guard import Guard
 from slipgym.envs.loop import LoopState, SlipLoop
 from slipgym.envs.observation import Sight, combine, observe
 from slipgym.envs.start import WARM_UP_STEPS, equip, open_episodes
-from slipgym.envs.told import tell
 from slipgym.sensors.measure import measure
 from slipgym.tasks import Task
 from slipgym.tasks.disturbance import disturb
@@ -51,17 +50,17 @@ class BulletLoop(SlipLoop):
         self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
     ) -> None:
         """See `SlipLoop.step`."""
-        self.terms[:] = 0.0
-        episode = self.episode
+        episode, terms = self.episode, self.told.terms
+        terms[:] = 0.0
         for _ in range(skip if active[0] else 0):
             interpret(actions, components, episode, self.commands)
             self._sample()
-            self.terms += episode["terms"][:, : self.terms.shape[1]]
+            terms += episode["terms"][:, : terms.shape[1]]
             if episode["dropped"].item() or episode["step"].item() >= episode["steps"].item():
                 break
         plant = self.plant
         observe(self.wrenches, self.twists, plant.chips, episode, self.task_part, plant.world, *sight)
-        tell(self.told, *self._told_from)
+        self._tell()
 
     def sample(self, force: float) -> None:
         """One slip-velocity sample with a grip force per finger [N], the wrist as the task scripts it.
@@ -101,10 +100,10 @@ class BulletLoop(SlipLoop):
         equip(starts, *self._biases, *self._equipped)
         for _ in range(WARM_UP_STEPS):
             self._advance(force)
-        open_episodes(starts, *self._fresh, *self._opened)
+        open_episodes(starts, *self._fresh, *self._opened, self.told.terms)
         combine(self.estimator.estimates, self.per_finger, self.estimated)
         self.task.judge(episode, self.plant.world, self.plant.fingers, self.task_part)
-        tell(self.told, *self._told_from)
+        self._tell()
 
     def _sample(self) -> None:
         """Act, move, measure, estimate, judge."""

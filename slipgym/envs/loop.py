@@ -18,7 +18,7 @@ from slipgym.envs.draw import Randomizer
 from slipgym.envs.equipment import Equipment
 from slipgym.envs.observation import FRICTION_COLUMNS, Sight
 from slipgym.envs.starter import Row, Starter
-from slipgym.envs.told import WIDTH, tell
+from slipgym.envs.told import Told, tell
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
@@ -60,7 +60,6 @@ class SlipLoop(ABC):
         plant: State of worlds, pads, fingers and sensors.
         episode: EPISODE (n,).
         commands: Grip force and wrist velocity, (n, 4), see `slipgym.envs.actions.COMMANDS`.
-        terms: Reward terms of the last step, summed over its samples, (n, k).
         wrenches: Measured wrench per finger at the centre of pressure, (n, 2, 4) [N, N, N, N m].
         twists: Measured slip twist per finger there, (n, 2, 3) [m/s, m/s, rad/s].
         task_part: The task's part of the observation, (n, k).
@@ -70,7 +69,7 @@ class SlipLoop(ABC):
         truth: (mu_s, mu_c, r) now and full support, (n, 6); columns as `estimated`.
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
         estimated: Estimates of both fingers merged, with their support, (n, 6).
-        told: What infos tell, see `slipgym.envs.told`, (n, WIDTH).
+        told: What infos tell, the last step's reward terms among it.
         estimator_choice: Name and parameters of the estimators; `velocity_delay` only if it was given.
         step_time: Length of a sample [s].
     """
@@ -95,12 +94,12 @@ class SlipLoop(ABC):
         if tells_latency and n > 1 and randomizer.draws("slip_latency"):
             self.estimator.parameters_array = np.repeat(self.estimator.parameters_array, 2 * n)
         self.episode = np.zeros(n, EPISODE)
-        self.commands, self.terms = np.zeros((n, len(COMMANDS))), np.zeros((n, len(task.terms)))
+        self.commands = np.zeros((n, len(COMMANDS)))
         self.wrenches, self.twists = np.zeros((n, 2, 4)), np.zeros((n, 2, 3))
         self.task_part = np.zeros((n, len(task.columns)))
         self.truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
         self.per_finger = np.zeros((n, 2, 3))
-        self.told = np.zeros((n, WIDTH))
+        self.told = Told.zeros(n, len(task.terms))
         bodies = self.plant.world, self.plant.pads, self.plant.fingers
         self._told_from = *bodies, self.episode, self.truth, self.estimated, self.per_finger
         self.step_time = 1.0 / config.physics.control_rate
@@ -113,7 +112,7 @@ class SlipLoop(ABC):
         self._equipped = plant.pads, plant.force_torque, plant.chips, self.truth
         # start values are the same for all and do not depend on a latency
         self._fresh = self.estimator.states[:2].copy(), self.estimator.estimates[:2].copy()
-        self._opened = plant.chips, *learned, self.episode, self.commands, self.terms
+        self._opened = plant.chips, *learned, self.episode, self.commands
 
     @property
     def true_friction(self) -> np.ndarray:
@@ -210,7 +209,16 @@ class SlipLoop(ABC):
         for name, array in self._arrays().items():
             array[:] = state.arrays[name]
         self.materials[:], self.boxes[:] = state.materials, state.boxes
-        tell(self.told, *self._told_from)
+        self._tell()
+
+    def hand_over(self) -> Told:
+        """What is told, the receiver's own from now on; the next step fills in new arrays."""
+        told, self.told = self.told, self.told.empty_like()
+        return told
+
+    def _tell(self) -> None:
+        """Fill in what is told but for the reward terms."""
+        tell(self.told.numbers, self.told.flags, *self._told_from)
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that last from sample to sample."""
@@ -220,7 +228,6 @@ class SlipLoop(ABC):
             "estimates": self.estimator.estimates,
             "episode": self.episode,
             "commands": self.commands,
-            "terms": self.terms,
             "wrenches": self.wrenches,
             "twists": self.twists,
             "task_part": self.task_part,

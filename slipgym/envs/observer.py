@@ -40,7 +40,6 @@ class Observer:
         privileged: Columns of the group "privileged"; empty without one.
         space: The observation space of one environment.
         sight: Where the loop writes what is observed.
-        frames: The last observations (n, history + 1, m) float32, the present one last.
 
     Raises:
         ValueError: The value of an argument is unknown or not allowed.
@@ -63,9 +62,8 @@ class Observer:
             high,
             np.zeros((loop.n, len(self.columns)), dtype=np.float32),
         )
-        self.frames = self.sight.out[:, np.newaxis]
-        if history:
-            self.frames = np.zeros((loop.n, history + 1, len(self.columns)), dtype=np.float32)
+        if history:  # the last observations, the present one last; without it `sight` has all
+            self._frames = np.zeros((loop.n, history + 1, len(self.columns)), dtype=np.float32)
         policy = gym.spaces.Box(np.tile(low, history + 1), np.tile(high, history + 1))
         self.privileged: tuple[Column, ...] = ()
         self.space: gym.Space = policy
@@ -78,11 +76,9 @@ class Observer:
 
     def begin(self, rows: np.ndarray) -> None:
         """Take the first observations of some environments; they stand for those before them, too."""
-        loop = self._loop
-        arrays = loop.wrenches, loop.twists, loop.plant.chips, loop.episode, loop.task_part, loop.plant.world
-        observe_some(rows, *arrays, *self.sight)
+        self._look(rows)
         if self._history:
-            self.frames[rows] = self.sight.out[rows, np.newaxis]
+            self._frames[rows] = self.sight.out[rows, np.newaxis]
 
     def next(self, active: np.ndarray) -> None:
         """Take what the loop observed after a step.
@@ -91,17 +87,50 @@ class Observer:
             active: Which environments took part, (n,).
         """
         if self._history:
-            self.frames[active, :-1] = self.frames[active, 1:]
-            self.frames[active, -1] = self.sight.out[active]
+            self._frames[active, :-1] = self._frames[active, 1:]
+            self._frames[active, -1] = self.sight.out[active]
 
-    def read(self) -> Observation:
-        """Observations of all environments, (n, k) each; the caller's own."""
-        policy = self.frames.reshape(self._loop.n, -1).copy()
+    def again(self) -> None:
+        """Take the present observations of all environments once more, after some were handed over."""
+        self._look(np.arange(self._loop.n))
+
+    def present(self) -> Observation:
+        """Observations of all environments, (n, k) each, for as long as nothing changes."""
+        policy = self._frames if self._history else self.sight.out
+        policy = policy.reshape(self._loop.n, -1)
         if not self.privileged:
             return policy
         plant, (low, high) = self._loop.plant, self._truth_bounds
         privileged.reveal(plant.world, plant.pads, plant.fingers, self._loop.truth, low, high, self._truth)
-        return {"policy": policy, "privileged": self._truth.copy()}
+        return {"policy": policy, "privileged": self._truth}
+
+    def read(self) -> Observation:
+        """Observations of all environments, the receiver's own; the next ones go into another array."""
+        observations = self.present()
+        if self._history:
+            self._frames = self._frames.copy()
+        else:
+            self.sight = self.sight._replace(out=np.empty_like(self.sight.out))
+        if self.privileged:
+            self._truth = np.empty_like(self._truth)
+        return observations
+
+    def get_state(self) -> np.ndarray:
+        """The last observations (n, history + 1, m), the present one last."""
+        if self._history:
+            return self._frames.copy()
+        self.again()
+        return self.sight.out[:, np.newaxis].copy()
+
+    def set_state(self, frames: np.ndarray) -> None:
+        """Go on from the last observations; without history the loop's state has all that is needed."""
+        if self._history:
+            self._frames[:] = frames
+
+    def _look(self, rows: np.ndarray) -> None:
+        loop = self._loop
+        arrays = loop.wrenches, loop.twists, loop.plant.chips, loop.episode, loop.task_part, loop.plant.world
+        observe_some(rows, *arrays, *self.sight)
 
 
 def first(observations: Observation) -> Observation:

@@ -29,9 +29,9 @@ class PlanarLoop(SlipLoop):
         threads: Threads that share them; None: as many as there are processors, if there is work for them.
 
     Attributes:
-        rewards: Sum of the last step's reward terms, (n,).
-        dropped: Whether the object was dropped in it, (n,).
-        finished: Whether the episode's time had passed after it, (n,).
+        rewards: Sum of the last step's reward terms, (n,); 0 without a step.
+        terminated: Whether the object was dropped in it, (n,).
+        truncated: Whether the episode's time had passed after it, and nothing was dropped, (n,).
         tells_all: Whether a step fills in `told` of all environments, or only where an episode ends; True.
     """
 
@@ -47,7 +47,7 @@ class PlanarLoop(SlipLoop):
         super().__init__(config, task, estimator, randomization, n)
         self._threads = Threads(n, threads)
         self._closed, self.tells_all = False, True
-        self.rewards, (self.dropped, self.finished) = np.zeros(n), np.zeros((2, n), bool)
+        self._blank()
         kind, plant = specification(self.estimator_choice["name"]), self.plant
         batch = self.estimator
         dtypes = batch.states.dtype, batch.parameters_array.dtype, plant.force_torque.dtype
@@ -56,10 +56,9 @@ class PlanarLoop(SlipLoop):
             plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips,
             batch.parameters_array, batch.states, batch.estimates,
             self.episode, self.commands, self.wrenches, self.twists,
-            self.per_finger, self.estimated, self.task_part, self.truth, self.told,
+            self.per_finger, self.estimated, self.task_part, self.truth,
         )  # fmt: skip
         self._begun = *self._fresh, *self._biases
-        self._results = self.rewards, self.dropped, self.finished
 
     def step(
         self,
@@ -70,7 +69,7 @@ class PlanarLoop(SlipLoop):
         sight: Sight,
         meanwhile: Callable[[], None] | None = None,
     ) -> None:
-        """See `SlipLoop.step`.
+        """See `SlipLoop.step`; results are written into new arrays.
 
         Args:
             actions: See there, like all but the last.
@@ -81,7 +80,9 @@ class PlanarLoop(SlipLoop):
             meanwhile: What may be done with the other environments at the same time.
         """
         self.check_open()
-        action, results = (actions, components, active), (self.terms, *self._results)
+        self._blank()
+        action = actions, components, active
+        results = *self.told, self.rewards, self.terminated, self.truncated
 
         def part(lo: int, hi: int) -> int:
             return self._drive(self._records, sight, action, results, self.tells_all, skip, lo, hi)
@@ -101,7 +102,11 @@ class PlanarLoop(SlipLoop):
         self._closed = True
 
     def _begin(self, starts: np.ndarray) -> None:
-        self._start(starts, self._records, self._begun, self.terms)
+        self._start(starts, self._records, self._begun, self.told)
+
+    def _blank(self) -> None:
+        """New arrays for a step's results: the former ones belong to whoever has them."""
+        self.rewards, (self.terminated, self.truncated) = np.zeros(self.n), np.zeros((2, self.n), dtype=bool)
 
     def _explain(self, bad: int) -> None:
         """Raise FloatingPointError, naming what of an environment is not finite."""

@@ -1,49 +1,82 @@
-"""Arrays of zeros with some rows filled in, made again and again: thousands of zeros take their time."""
+"""Infos of a few environments out of thousands, whose arrays are made once: so many zeros take their time."""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
+from slipgym.compiled import compiled
+from slipgym.envs.told import Told
+
 KEPT = 4
-"""Arrays that are kept at most: a caller still has the last one, or some, when it gets the next."""
-_OURS = 2
-"""References to an array that nobody else has: the list's and the argument's."""
+"""Rooms that are kept at most: a caller still has the last infos, or some, when it gets the next."""
 
 
-class Rooms:
-    """Arrays (n, width) that are their receiver's own for as long as it keeps them or a view of them.
-
-    One that nobody refers to any more is taken back, and only the rows that were filled in are cleared.
+class Room:
+    """Arrays for what is told of n environments, zero but for some rows.
 
     Args:
-        n: Rows.
-        width: Columns.
+        n: Environments.
+        terms: Names of the reward terms.
     """
 
-    def __init__(self, n: int, width: int) -> None:
-        self._shape = n, width
-        self._rooms: list[np.ndarray] = []
-        self._filled: list[np.ndarray] = []
+    def __init__(self, n: int, terms: Sequence[str]) -> None:
+        self._told, self._rows = Told.zeros(n, len(terms)), np.zeros(0, dtype=np.int64)
+        self._named = self._told.named(terms)
+        self._arrays = *self._told, *self._named.values(), *self._named["reward_terms"].values()
+        self._references = self._count()
 
-    def fill(self, rows: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """An array of zeros but for some rows.
+    @property
+    def free(self) -> bool:
+        """Whether nobody has one of the arrays, or a view of one."""
+        return self._count() == self._references
+
+    def fill(self, rows: np.ndarray, told: Told) -> dict[str, Any]:
+        """What is told of some environments by its names; the receiver's own for as long as it has any of it.
+
+        What is written into other rows is not cleared when the room is filled again.
 
         Args:
             rows: Which, (m,).
-            values: What they hold, (m, width).
+            told: Of all n.
         """
-        free = (k for k in range(len(self._rooms)) if sys.getrefcount(self._rooms[k]) <= _OURS)
-        k = next(free, -1)
-        if k < 0:
-            room = np.zeros(self._shape)
+        _move(self._rows, rows, *told, *self._told)
+        self._rows = rows
+        return {**self._named, "reward_terms": {**self._named["reward_terms"]}}
+
+    def _count(self) -> int:
+        return sum(map(sys.getrefcount, self._arrays))
+
+
+class Rooms:
+    """Rooms that are taken back when nobody refers to them any more; then only filled rows are cleared.
+
+    Args:
+        n: Environments.
+        terms: Names of the reward terms.
+    """
+
+    def __init__(self, n: int, terms: Sequence[str]) -> None:
+        self._made_for = n, terms
+        self._rooms: list[Room] = []
+
+    def fill(self, rows: np.ndarray, told: Told) -> dict[str, Any]:
+        """See `Room.fill`; in a room that is free."""
+        room = next((room for room in self._rooms if room.free), None)
+        if room is None:
+            room = Room(*self._made_for)
             if len(self._rooms) < KEPT:
                 self._rooms.append(room)
-                self._filled.append(rows)
-        else:
-            room = self._rooms[k]
-            room[self._filled[k]] = 0.0
-            self._filled[k] = rows
-        room[rows] = values
-        return room
+        return room.fill(rows, told)
+
+
+@compiled
+def _move(former, rows, told_numbers, told_flags, told_terms, numbers, flags, terms):
+    """Zeros in the former rows (k,) of a room, what is told in others (m,)."""
+    for i in former:
+        numbers[i], flags[i], terms[i] = 0.0, False, 0.0
+    for i in rows:
+        numbers[i], flags[i], terms[i] = told_numbers[i], told_flags[i], told_terms[i]

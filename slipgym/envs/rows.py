@@ -84,8 +84,8 @@ def _drive(plan, judge, update, arrays, sight, action, results, tells_all, skip,
         arrays: State of the rows, see `PlanarLoop`.
         sight: See `Sight`.
         action: What is done (n, m), COMPONENT (m,), what it means, and which rows are active (n,).
-        results: Output: reward terms (n, k), their sums (n,), whether a row's object was dropped (n,) and
-            whether its time has passed (n,).
+        results: Output: what is told, as in `Told`, the sums of the reward terms (n,), and whether an episode
+            was terminated and whether truncated (n,).
         tells_all: Whether it is noted of all rows what infos tell, or only of those whose episode ends.
         skip: Samples.
         lo: First row.
@@ -97,11 +97,11 @@ def _drive(plan, judge, update, arrays, sight, action, results, tells_all, skip,
     (
         worlds, pads, cells, fingers, force_torque, chips,
         parameters, states, estimates,
-        episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth, told,
+        episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth,
     ) = borrowed(arrays)  # fmt: skip
     wrist, friction, low, high, out = borrowed(sight)
     actions, components, active = borrowed(action)
-    terms, rewards, dropped, finished = borrowed(results)
+    numbers, flags, terms, rewards, terminated, truncated = borrowed(results)
     bad = -1
     size = BLOCK if skip == 1 else 1
     start = lo
@@ -140,11 +140,12 @@ def _drive(plan, judge, update, arrays, sight, action, results, tells_all, skip,
             rewards[i] = 0.0
             for k in range(terms.shape[1]):
                 rewards[i] += terms[i, k]
-            dropped[i], finished[i] = episodes[i].dropped, episodes[i].step >= episodes[i].steps
-            if tells_all or dropped[i] or finished[i]:
+            terminated[i] = episodes[i].dropped
+            truncated[i] = episodes[i].step >= episodes[i].steps and not terminated[i]
+            if tells_all or terminated[i] or truncated[i]:
                 row = slice(i, i + 1)
                 tell(
-                    told[row], worlds[row], pads[row], fingers[row], episodes[row],
+                    numbers[row], flags[row], worlds[row], pads[row], fingers[row], episodes[row],
                     truth[row], estimated[row], per_finger[row],
                 )  # fmt: skip
         start = stop
@@ -152,7 +153,7 @@ def _drive(plan, judge, update, arrays, sight, action, results, tells_all, skip,
 
 
 @unlocked
-def _start(judge, starts, arrays, begun, terms):
+def _start(judge, starts, arrays, begun, told):
     """Begin episodes.
 
     Args:
@@ -160,13 +161,14 @@ def _start(judge, starts, arrays, begun, terms):
         starts: START (m,).
         arrays: State of all rows, see `PlanarLoop`.
         begun: What they begin with: states and estimates of both fingers, spread and noise of `equip`.
-        terms: Reward terms (n, k).
+        told: Output, see `Told`.
     """
     (
         worlds, pads, cells, fingers, force_torque, chips,
         _, states, estimates,
-        episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth, told,
+        episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth,
     ) = borrowed(arrays)  # fmt: skip
+    numbers, flags, terms = borrowed(told)
     fresh_states, fresh_estimates, spread, noise = begun
     grip(starts, episodes, worlds, pads, cells, fingers)
     equip(starts, spread, noise, pads, force_torque, chips, truth)
@@ -183,7 +185,7 @@ def _start(judge, starts, arrays, begun, terms):
         combine(estimates[2 * i : 2 * i + 2], per_finger[row], estimated[row])
         judge(episodes[row], worlds[row], fingers[row], task_part[row])
         tell(
-            told[row], worlds[row], pads[row], fingers[row], episodes[row],
+            numbers[row], flags[row], worlds[row], pads[row], fingers[row], episodes[row],
             truth[row], estimated[row], per_finger[row],
         )  # fmt: skip
 
@@ -225,16 +227,19 @@ def compiled_batch(
     arrays = types.Tuple([
         world, _row(PAD, 2), cells, finger, _row(force_torque, 2), _row(SLIP_SENSOR, 2),
         parameter, state, estimate,
-        episode, f2, f3, f3, f3, f2, f2, f2, f2,
+        episode, f2, f3, f3, f3, f2, f2, f2,
     ])  # fmt: skip
     kinds = [Known(kind) for kind in (plan, judge, learn)]
     sight = types.Tuple(
         [types.Array(types.int64, 1, "C"), f2, single, single, types.Array(types.float32, 2, "C")]
     )
-    action, results = types.Tuple([f2, _row(COMPONENT), flags]), types.Tuple([f2, f1, flags, flags])
+    action, told = types.Tuple([f2, _row(COMPONENT), flags]), [f2, types.Array(types.boolean, 2, "C"), f2]
+    results = types.Tuple([*told, f1, flags, flags])
     whole = types.int64
     drive = whole(*kinds, arrays, sight, action, results, types.boolean, whole, whole, whole)
-    start = types.void(kinds[1], _row(START), arrays, types.Tuple([state, estimate, f1, f1]), f2)
+    start = types.void(
+        kinds[1], _row(START), arrays, types.Tuple([state, estimate, f1, f1]), types.Tuple(told)
+    )
     with patience(f"the batch of {task.name}"):
         _drive.compile(drive)
         _start.compile(start)

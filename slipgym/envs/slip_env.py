@@ -155,20 +155,20 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             self._loop.check_open()
             raise RuntimeError("call reset() before step()")
         loop, episode, observer = self._loop, self._loop.episode, self._observer
-        total = np.zeros_like(loop.terms[0])
+        total = np.zeros(len(self.task.terms))
         dropped = finished = self._ready = False
         # a picture's strip shows every sample
         at_once = self._frame_skip if self._renderer is None else 1
         for _ in range(0, self._frame_skip, at_once):
             loop.step(actions, self._actions.table, at_once, _ONE, observer.sight)
-            total += loop.terms[0]
+            total += loop.told.terms[0]
             dropped = episode["dropped"].item()
             finished = episode["step"].item() >= episode["steps"].item()
             if self._renderer is not None:
                 self._renderer.keep()
             if dropped or finished:
                 break
-        loop.terms[0] = total
+        loop.told.terms[0] = total
         observer.next(_ONE)
         self._ready = True
         reward, info = sum(total.tolist()), self._information.one(0)
@@ -203,7 +203,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             generator=self.np_random.bit_generator.state,
             seed=self._np_random_seed,
             loop=self._loop.get_state() if self._ready else None,
-            frames=self._observer.frames.copy(),
+            frames=self._observer.get_state(),
         )
 
     def set_state(self, state: EnvState) -> None:
@@ -225,8 +225,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             self._loop.set_state(state.loop)
             if self._renderer is not None:
                 self._renderer.begin()
-        self._observer.sight.out[:] = state.frames[:, -1]
-        self._observer.frames[:] = state.frames
+        self._observer.set_state(state.frames)
         self._ready = state.loop is not None
 
     def __reduce__(self) -> tuple[Any, ...]:

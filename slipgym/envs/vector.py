@@ -15,7 +15,7 @@ from gymnasium.vector.utils import batch_space
 
 from slipgym.config import Config, Randomization
 from slipgym.envs.choices import DEFAULT_ESTIMATOR, autoreset, one_of, whole
-from slipgym.envs.information import Information, final, masked
+from slipgym.envs.information import Information, final
 from slipgym.envs.pictures import Pictures
 from slipgym.envs.planar_loop import PlanarLoop
 from slipgym.envs.seeds import Generators
@@ -156,9 +156,10 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         asked = RowOptions(options, self.num_envs, self.task.options)
         self._generators.seed(seed, asked.mask)
         rows = np.flatnonzero(asked.mask)
-        self._ready[rows] = False
+        self._ready[rows] = self._over[rows] = False
         self._begin(rows, asked)
-        infos = masked(self._information.of(asked.mask), asked.mask)
+        self._observer.again()
+        infos = self._information.some(rows)
         return self._observer.read(), self._add_drawn(infos, rows)
 
     def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
@@ -178,31 +179,33 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         """
         chosen = self._actions.checked_batch(actions, self.num_envs)
         self._loop.check_open()
-        begins = self._over & (self.autoreset_mode is AutoresetMode.NEXT_STEP)
-        active = self._ready & ~self._over
+        over = self._over
+        begins = over if self.autoreset_mode is AutoresetMode.NEXT_STEP else np.zeros_like(over)
+        active = self._ready & ~over
         if not (active | begins).all():
             waiting = np.flatnonzero(~(active | begins)).tolist()
             raise RuntimeError(f"call reset() before step(): environments {waiting[:8]} have no episode")
-        loop = self._loop
-        rows = np.flatnonzero(begins)
-        loop.rewards[rows] = loop.terms[rows] = 0.0
-        ready, self._ready = self._ready, np.zeros_like(self._ready)
+        loop, rows = self._loop, np.flatnonzero(begins)
+        self._ready, self._over = np.zeros((2, self.num_envs), dtype=bool)
         table, sight, meanwhile = self._actions.table, self._observer.sight, partial(self._begin, rows)
         loop.step(chosen, table, self._frame_skip, active, sight, meanwhile)
-        self._ready = ready
+        self._ready.fill(True)
         self._observer.next(active)
-        rewards = loop.rewards.copy()
-        terminated, truncated = loop.dropped & active, loop.finished & active & ~loop.dropped
+        rewards, terminated, truncated = loop.rewards, loop.terminated, loop.truncated
         self._pictures.keep(active)
-        self._over = terminated | truncated
+        over = terminated | truncated
         ended: dict[str, Any] = {}
         if self.autoreset_mode is AutoresetMode.SAME_STEP:
-            begins, self._over = self._over, np.zeros_like(self._over)
-            ended = final(self._observer.read(), self._information.of(begins), begins)
-            rows = np.flatnonzero(begins)
+            rows = np.flatnonzero(over)
+            ended = final(self._observer.present(), self._information.some(rows), rows, self.num_envs)
             self._begin(rows)
-        told = np.ones_like(begins) if loop.tells_all else self._over | begins
-        infos = self._add_drawn({**masked(self._information.of(told), told), **ended}, rows)
+        else:
+            self._over = over
+        if loop.tells_all:
+            infos = self._information.every()
+        else:
+            infos = self._information.some(np.flatnonzero(over | begins))
+        infos = self._add_drawn({**infos, **ended}, rows)
         return self._observer.read(), rewards, terminated, truncated, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:
@@ -221,7 +224,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             RuntimeError: The environment is closed.
         """
         loop = self._loop.get_state()
-        frames, ready, over = self._observer.frames.copy(), self._ready.copy(), self._over.copy()
+        frames, ready, over = self._observer.get_state(), self._ready.copy(), self._over.copy()
         return VectorState(self._made_of, self._generators.get_state(), loop, frames, ready, over)
 
     def set_state(self, state: VectorState) -> None:
@@ -239,8 +242,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         checked(state, VectorState).check(self._made_of)
         self._loop.set_state(state.loop)
         self._generators.set_state(state.generators)
-        self._observer.sight.out[:] = state.frames[:, -1]
-        self._observer.frames[:] = state.frames
+        self._observer.set_state(state.frames)
         self._ready[:], self._over[:] = state.ready, state.over
         for i in np.flatnonzero(state.ready).tolist():
             self._pictures.begin(i)

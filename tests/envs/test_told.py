@@ -4,13 +4,13 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from slipgym.envs.told import SHAPES, field
+from slipgym.envs.told import FLAGS, SHAPES
 
 
-def check(loop):
-    """Compare all that is told with the arrays it is told from."""
+def records(loop):
+    """Of all environments, from the arrays it is told from."""
     plant, episode = loop.plant, loop.episode
-    records = {
+    return {
         "true": loop.truth[:, :3],
         "estimated": loop.estimated[:, :3],
         "estimated_per_finger": loop.per_finger,
@@ -19,13 +19,25 @@ def check(loop):
         "contact_wrench": plant.pads["wrench"],
         "grip_force": plant.fingers["force"],
         "reference": episode["reference"],
-        "is_success": episode["success"],
-        "dropped": episode["dropped"],
         "time": episode["step"] * loop.step_time,
+        "is_success": episode["success"] != 0,
+        "dropped": episode["dropped"] != 0,
+        **{
+            name: episode["terms"][:, k] * (episode["step"] > 0)  # of no step after a reset
+            for k, name in enumerate(loop.task.terms)
+        },
     }
-    assert set(records) == set(SHAPES)
-    for name, values in records.items():
-        np.testing.assert_array_equal(field(loop.told, name), values, err_msg=name)
+
+
+def check(loop, infos):
+    """Compare all that is told with the arrays it is told from; of one environment or of all."""
+    terms = infos["reward_terms"]
+    wanted = records(loop)
+    assert {*SHAPES, *FLAGS, *loop.task.terms} == set(wanted)
+    for name, values in wanted.items():
+        found = np.asarray(infos[name] if name in infos else terms[name])
+        np.testing.assert_array_equal(found, values.reshape(found.shape), err_msg=name)
+        assert found.dtype == values.dtype, name
 
 
 @pytest.mark.parametrize("engine", ["bullet", "planar"])
@@ -33,27 +45,33 @@ def test_of_one_environment(make, env_id, engine):
     env, other = make(env_id, engine=engine), make(env_id, engine=engine)
     _, info = env.reset(seed=0)
     other.reset(seed=1)
-    check(env._loop)
+    check(env._loop, info)
     kept = info["grip_force"].copy()
     for k in range(5):
         _, _, _, _, later = env.step(np.array([-0.99 + 0.1 * k], dtype=np.float32))
-        check(env._loop)
+        check(env._loop, later)
     np.testing.assert_array_equal(info["grip_force"], kept)
     assert not np.array_equal(later["grip_force"], kept)
     other.set_state(env.get_state())
-    check(other._loop)
+    told = other._information.one(0)
+    for name, values in later.items():
+        if name != "reward_terms":  # of a step that another environment made
+            np.testing.assert_array_equal(told[name], values, err_msg=name)
 
 
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
 def test_of_a_batch(mode):
     envs = gym.make_vec("slipgym/Hold-v0", num_envs=5, autoreset_mode=mode).unwrapped
-    envs.reset(seed=0, options={"rows": [{"duration": 0.1}] + [None] * 4})
-    check(envs._loop)
+    _, infos = envs.reset(seed=0, options={"rows": [{"duration": 0.1}] + [None] * 4})
+    check(envs._loop, infos)
     begun = False
     for _ in range(40):
-        _, _, _, _, infos = envs.step(np.full((5, 1), -0.9, dtype=np.float32))
-        check(envs._loop)
-        np.testing.assert_array_equal(infos["slip"], field(envs._loop.told, "slip"))
-        begun |= infos["time"][0] < infos["time"][1]
+        kept = infos["slip"].copy(), infos["reward_terms"]["effort"].copy()
+        _, _, _, _, later = envs.step(np.full((5, 1), -0.9, dtype=np.float32))
+        check(envs._loop, later)
+        np.testing.assert_array_equal(infos["slip"], kept[0])
+        np.testing.assert_array_equal(infos["reward_terms"]["effort"], kept[1])
+        begun |= later["time"][0] < later["time"][1]
+        infos = later
     assert begun
     envs.close()

@@ -8,7 +8,8 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from slipgym.vector_checker.compare import difference
+from slipgym.vector_checker.compare import difference, spoil
+from slipgym.vector_checker.returned import info_of
 
 ID = "slipgym/LinearSlip-v0"
 MADE = {"num_envs": 5, "randomization": "train", "history": 1, "frame_skip": 4, "threads": 2}
@@ -93,6 +94,39 @@ def test_rows_without_an_episode_stay_without():
         twin.step(np.zeros((2, 1)))
     for each in (env, twin):
         each.close()
+
+
+@pytest.mark.parametrize("arguments", [{}, {"observation_mode": "dict"}, {"history": 2}, {"infos": "ends"}])
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
+def test_what_was_handed_out_is_the_callers_to_write_into(mode, arguments):
+    """Nothing of it is read again, by a step, by a reset of other environments, or for a state."""
+    config = {"tasks": {"linear_slip": {"duration": 0.2, "settle": 0.1, "hold": 0.1}}}
+    envs = [gym.make_vec(ID, num_envs=4, autoreset_mode=mode, config=config, **arguments) for _ in range(2)]
+    plain, spoiled = envs
+    said, over, ends = [env.reset(seed=3) for env in envs], np.zeros(4, dtype=bool), 0
+    for k, action in enumerate(actions(plain, 120)):
+        assert not difference(*map(by_rows, said))
+        spoil(said[1])
+        if k % 20 == 10:
+            state = spoiled.get_state()
+            assert not difference(plain.get_state().frames, state.frames)
+            spoiled.set_state(state)
+        mask = over if mode == "Disabled" else np.array([k % 25 == 20, False, False, False])
+        if mask.any():
+            said = [env.reset(options={"reset_mask": mask}) for env in envs]
+            assert not difference(*map(by_rows, said))
+            spoil(said[1])
+        said = [env.step(action) for env in envs]
+        over = said[0][2] | said[0][3]
+        ends += over.sum()
+    assert ends > 4
+    for env in envs:
+        env.close()
+
+
+def by_rows(said):
+    """What a reset or a step said, with infos of the rows alone that have them."""
+    return *said[:-1], [info_of(said[-1], i) for i in range(4)]
 
 
 def test_refuses_the_state_of_another_kind():
