@@ -10,6 +10,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.benchmarking.measure import ACTIONS, Player
+from slipgym.benchmarking.processors import on_either
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import Comparison, compare, per_call
 from slipgym.benchmarking.twins import Twins
@@ -90,11 +91,12 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
     many, block = VectorPlayer(env_id, SIZES[-1], EVERY_ACTION), 4 * SIZES[-1]
     crews = Threads(SIZES[-1], 2), Threads(SIZES[-1], 1)
     two, one = (partial(many.shared_block, crew, block) for crew in crews)
-    result = compare(two, one, pairs)
+    result, anywhere = compare(two, partial(on_either, one), pairs), compare(two, one, pairs)
     for crew in crews:
         crew.close()
     many.env.close()
     figures += _scaling("batch of 4096: two threads / one", result, ">= 1.8")
+    figures.append(Figure("the same, one where the system puts it", anywhere.quartiles[1], "-"))
     with Twins(_single, env_id) as twins:
         compare(partial(twins.both, block), partial(twins.alone, block), 2)
         result = compare(partial(twins.both, block), partial(twins.alone, block), pairs)

@@ -20,7 +20,7 @@ class Comparison(NamedTuple):
     ratio, the distance of the others says how disturbed the run was."""
 
 
-Block = Callable[[], tuple[float, int]]
+Block = Callable[[], tuple[float, float]]
 """Runs for a short while; returns the time it took [s] and the steps it made."""
 
 

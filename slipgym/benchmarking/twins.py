@@ -7,6 +7,8 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any, Protocol
 
+from slipgym.benchmarking.processors import SECOND, pin, two_processors
+
 
 class Player(Protocol):
     """Plays something when asked to."""
@@ -19,6 +21,8 @@ class Player(Protocol):
 class Twins:
     """Two processes with a player each, alone or at the same time; as a context manager it ends them.
 
+    Each keeps to a processor of its own: these differ in speed, at times.
+
     Args:
         make: Makes a player, in the process that plays; it is pickled.
         *arguments: Its arguments.
@@ -28,22 +32,23 @@ class Twins:
         context = get_context("spawn")
         self._ends: list[Connection] = []
         self._processes = []
-        for _ in range(2):
+        for processor in two_processors():
             here, there = context.Pipe()
-            process = context.Process(target=_play, args=(there, make, arguments), daemon=True)
+            process = context.Process(target=_play, args=(there, processor, make, arguments), daemon=True)
             process.start()
             self._ends.append(here)
             self._processes.append(process)
         for end in self._ends:
             end.recv()  # made
 
-    def alone(self, steps: int) -> tuple[float, int]:
-        """A block of one player while the other rests: its time [s] and steps."""
-        return self._run(self._ends[:1], steps)
+    def alone(self, steps: int) -> tuple[float, float]:
+        """What one does in a second while the other rests: the mean of both, from a block of each in turn."""
+        speeds = [self._speeds([end], steps)[0] for end in self._ends]
+        return SECOND, sum(speeds) / len(speeds)
 
-    def both(self, steps: int) -> tuple[float, int]:
-        """A block of both at once: the longer time [s] and the steps of both."""
-        return self._run(self._ends, steps)
+    def both(self, steps: int) -> tuple[float, float]:
+        """What both together do in a second, from a block of both at once."""
+        return SECOND, sum(self._speeds(self._ends, steps))
 
     def __enter__(self) -> Twins:
         return self
@@ -54,14 +59,17 @@ class Twins:
             process.join()
 
     @staticmethod
-    def _run(ends: list[Connection], steps: int) -> tuple[float, int]:
+    def _speeds(ends: list[Connection], steps: int) -> list[float]:
         for end in ends:
             end.send(steps)
         results = [end.recv() for end in ends]
-        return max(seconds for seconds, _ in results), sum(made for _, made in results)
+        return [made / seconds for seconds, made in results]
 
 
-def _play(end: Connection, make: Callable[..., Player], arguments: tuple[Any, ...]) -> None:
+def _play(
+    end: Connection, processor: set[int], make: Callable[..., Player], arguments: tuple[Any, ...]
+) -> None:
+    pin(processor)
     player = make(*arguments)
     end.send(True)
     while steps := end.recv():

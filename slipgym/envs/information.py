@@ -10,7 +10,10 @@ import numpy as np
 from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observer import Observation
 from slipgym.envs.rooms import Rooms
-from slipgym.envs.told import FLAGS, PARTS, SHAPES
+from slipgym.envs.told import PARTS, SHAPES
+
+_VECTORS = tuple(name for name, shape in SHAPES.items() if len(shape) == 1)
+_MATRICES = tuple(name for name, shape in SHAPES.items() if len(shape) == 2)
 
 
 class Information:
@@ -26,11 +29,14 @@ class Information:
 
     def one(self, i: int) -> dict[str, Any]:
         """That of one environment, as `gymnasium.Env` gives it: the caller's own arrays, plain numbers."""
-        numbers, flags, terms = (array[i].copy() for array in self._loop.told)
-        info: dict[str, Any] = {name: numbers[PARTS[name]].reshape(shape) for name, shape in SHAPES.items()}
-        info |= zip(FLAGS, flags.tolist(), strict=True)
-        info["reward_terms"] = dict(zip(self._terms, terms.tolist(), strict=True))
-        info["time"] = info["time"].item()
+        numbers, flags, terms = self._loop.told
+        row = numbers[i].copy()
+        info: dict[str, Any] = {name: row[PARTS[name]] for name in _VECTORS}
+        for name in _MATRICES:
+            info[name] = row[PARTS[name]].reshape(SHAPES[name])
+        info["time"] = row.item(PARTS["time"].start)
+        info["is_success"], info["dropped"] = flags[i].tolist()
+        info["reward_terms"] = dict(zip(self._terms, terms[i].tolist(), strict=True))
         return info
 
     def every(self) -> dict[str, Any]:

@@ -55,13 +55,9 @@ class Observer:
         self.columns = columns(loop.config, loop.task, friction_source, action_mode, mode)
         wrist = wrist_columns(loop.task, action_mode)
         low, high = _bounds(self.columns)
-        self.sight = Sight(
-            np.array([WRIST_COLUMNS.index(column) for column in wrist], dtype=np.int64),
-            _friction_part(loop, friction_source),
-            low,
-            high,
-            np.zeros((loop.n, len(self.columns)), dtype=np.float32),
-        )
+        placed = np.array([WRIST_COLUMNS.index(column) for column in wrist], dtype=np.int64)
+        self._looks = placed, _friction_part(loop, friction_source), low, high
+        self.sight = Sight(*self._looks, np.zeros((loop.n, len(self.columns)), dtype=np.float32))
         if history:  # the last observations, the present one last; without it `sight` has all
             self._frames = np.zeros((loop.n, history + 1, len(self.columns)), dtype=np.float32)
         policy = gym.spaces.Box(np.tile(low, history + 1), np.tile(high, history + 1))
@@ -96,8 +92,7 @@ class Observer:
 
     def present(self) -> Observation:
         """Observations of all environments, (n, k) each, for as long as nothing changes."""
-        policy = self._frames if self._history else self.sight.out
-        policy = policy.reshape(self._loop.n, -1)
+        policy = self._frames.reshape(self._loop.n, -1) if self._history else self.sight.out
         if not self.privileged:
             return policy
         plant, (low, high) = self._loop.plant, self._truth_bounds
@@ -110,7 +105,7 @@ class Observer:
         if self._history:
             self._frames = self._frames.copy()
         else:
-            self.sight = self.sight._replace(out=np.empty_like(self.sight.out))
+            self.sight = Sight(*self._looks, np.empty_like(self.sight.out))
         if self.privileged:
             self._truth = np.empty_like(self._truth)
         return observations

@@ -1,22 +1,62 @@
-"""Two processes that play alone or at the same time."""
+"""Two processes play alone and at once, each on its processor, and end."""
 
+import os
+
+import pytest
+
+from slipgym.benchmarking import processors
+from slipgym.benchmarking.processors import on_either, two_processors
 from slipgym.benchmarking.twins import Twins
 
 
 class Sleeper:
-    """Plays by pretending: the second block takes three times as long as the first."""
+    """Takes as long as it says, and longer from block to block."""
 
-    def __init__(self, cost: float) -> None:
-        self._cost = cost
+    def __init__(self, second):
+        self.seconds = 0.0
+        self.second = second
 
-    def block(self, steps: int) -> tuple[float, int]:
-        self._cost *= 3.0
-        return self._cost * steps / 3.0, steps
+    def block(self, steps):
+        self.seconds += self.second
+        return self.seconds * steps, steps
 
 
-def test_one_plays_while_the_other_rests_and_both_at_once():
+def test_alone_and_both():
     with Twins(Sleeper, 0.5) as twins:
-        assert twins.alone(4) == (2.0, 4)
-        assert twins.both(4) == (6.0, 8)  # the first player's second block is the longer one
+        assert twins.alone(4) == (1.0, 2.0)  # a step in half a second, on either
+        assert twins.both(4) == (1.0, 2.0)  # a step in a second, on both
         assert not any(process.exitcode is not None for process in twins._processes)
     assert [process.exitcode for process in twins._processes] == [0, 0]
+
+
+class Allowed:
+    """Says on how many processors it runs."""
+
+    def block(self, steps):
+        return 1.0, len(os.sched_getaffinity(0))
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="threads cannot be kept to a processor")
+def test_each_keeps_to_one_processor():
+    before = os.sched_getaffinity(0)
+    with Twins(Allowed) as twins:
+        assert twins.both(1) == (1.0, 2.0)
+    seen = []
+
+    def block():
+        seen.append(os.sched_getaffinity(0))
+        return 0.5, 1
+
+    assert on_either(block) == (1.0, 2.0)
+    assert seen == two_processors()
+    assert os.sched_getaffinity(0) == before
+
+
+def test_the_mean_is_that_of_speeds_and_not_of_times():
+    times = iter([1.0, 0.25])
+    assert on_either(lambda: (next(times), 1)) == (1.0, 2.5)
+
+
+def test_systems_that_cannot_choose_run_all_the_same(monkeypatch):
+    monkeypatch.delattr(processors.os, "sched_getaffinity", raising=False)
+    assert on_either(lambda: (0.5, 3)) == (1.0, 6.0)
