@@ -4,11 +4,15 @@ from pathlib import Path
 
 import numpy as np
 
+from slipgym.registration import ENVIRONMENTS
+
 SCRIPT = str(Path(__file__).with_name("rollout.py"))
 
 
-def test_same_bits_in_another_process_and_after_other_episodes(python, env_id):
-    assert python(SCRIPT, env_id) == python(SCRIPT, env_id, "--disturbed")
+def test_same_bits_in_another_process_and_after_other_episodes(python):
+    plain = python(SCRIPT, *ENVIRONMENTS)
+    assert len(plain.splitlines()) == len(set(plain.split()[1::2])) == len(ENVIRONMENTS)
+    assert plain == python(SCRIPT, *ENVIRONMENTS, "--disturbed")
 
 
 def test_same_bits_after_other_episodes(make, env_id, play):

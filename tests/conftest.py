@@ -1,0 +1,17 @@
+"""Compiles what takes longest first, in each process something else, when all tests run in several."""
+
+import gymnasium as gym
+import pytest
+
+import slipgym  # noqa: F401
+
+MANY = 1000
+"""Tests from which it pays: a few may need none of it."""
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    worker = getattr(session.config, "workerinput", {}).get("workerid")
+    if len(session.items) < MANY or worker not in ("gw0", "gw1"):
+        return
+    contact = {"gw0": "ellipsoid", "gw1": "distributed"}[worker]
+    gym.make_vec("slipgym/LinearSlip-v0", num_envs=1, contact=contact).close()
