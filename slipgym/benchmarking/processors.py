@@ -13,7 +13,10 @@ SECOND = 1.0
 
 
 def two_processors() -> list[set[int]]:
-    """Two processors that this process may use, each by itself; twice all of them if there is no choice."""
+    """The first two processors that this process may use; twice all of them if there is no choice.
+
+    Whether they are of one core is not looked at.
+    """
     if not hasattr(os, "sched_getaffinity"):  # not on macOS and Windows
         return [set(), set()]
     allowed = sorted(os.sched_getaffinity(0))

@@ -47,7 +47,7 @@ class Twins:
         return SECOND, sum(speeds) / len(speeds)
 
     def both(self, steps: int) -> tuple[float, float]:
-        """What both together do in a second, from a block of both at once."""
+        """What both together do in a second, from a block of both at once; at its end the slower is alone."""
         return SECOND, sum(self._speeds(self._ends, steps))
 
     def __enter__(self) -> Twins:

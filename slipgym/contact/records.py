@@ -89,3 +89,4 @@ def rest_cells(cells):
     """Bring cells (..., CELL_FIELDS, n) to rest: no deflection, no speed."""
     for row in (Z_X, Z_Y, CAP):
         cells[..., row, :] = 0.0
+    cells[..., KEPT, :] = 1.0

@@ -26,7 +26,7 @@ class Room:
     def __init__(self, n: int, terms: Sequence[str]) -> None:
         self._told, self._rows = Told.zeros(n, len(terms)), np.zeros(0, dtype=np.int64)
         self._named = self._told.named(terms)
-        self._arrays = *self._told, *self._named.values(), *self._named["reward_terms"].values()
+        self._terms = self._named.pop("reward_terms")
         self._references = self._count()
 
     @property
@@ -37,18 +37,20 @@ class Room:
     def fill(self, rows: np.ndarray, told: Told) -> dict[str, Any]:
         """What is told of some environments by its names; the receiver's own for as long as it has any of it.
 
-        What is written into other rows is not cleared when the room is filled again.
+        What the receiver writes into numbers of other rows, which mean nothing, is not cleared.
 
         Args:
             rows: Which, (m,).
             told: Of all n.
         """
+        self._told.flags.fill(False)
         _move(self._rows, rows, *told, *self._told)
         self._rows = rows
-        return {**self._named, "reward_terms": {**self._named["reward_terms"]}}
+        views = {name: array[:] for name, array in self._named.items()}
+        return {**views, "reward_terms": {name: array[:] for name, array in self._terms.items()}}
 
     def _count(self) -> int:
-        return sum(map(sys.getrefcount, self._arrays))
+        return sum(map(sys.getrefcount, self._told))
 
 
 class Rooms:

@@ -50,8 +50,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         threads: Threads that share the environments; None: as many as processors, if there is work for them.
         render_mode: None, "rgb_array" or "depth_array".
         render_rows: Environments that `render` shows.
-        infos: Of which environments a step's infos tell: "all", or "ends": those whose episode ends or begins
-            in it, which spares a learner that reads no others the copies.
+        infos: Of which environments a step tells: "all", or "ends": those whose episode ends or begins in it.
         config: See the scalar environment.
 
     Raises:
@@ -188,7 +187,11 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         loop, rows = self._loop, np.flatnonzero(begins)
         self._ready, self._over = np.zeros((2, self.num_envs), dtype=bool)
         table, sight, meanwhile = self._actions.table, self._observer.sight, partial(self._begin, rows)
-        loop.step(chosen, table, self._frame_skip, active, sight, meanwhile)
+        try:
+            loop.step(chosen, table, self._frame_skip, active, sight, meanwhile)
+        except BaseException:
+            self._ready.fill(False)  # those that began, too
+            raise
         self._ready.fill(True)
         self._observer.next(active)
         rewards, terminated, truncated = loop.rewards, loop.terminated, loop.truncated

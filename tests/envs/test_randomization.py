@@ -258,6 +258,23 @@ def test_spec_survives_json(env_id):
     again.close()
 
 
+@pytest.mark.parametrize("engine", ["bullet", "planar"])
+def test_a_pressure_of_fewer_cells_than_another(make, engine):
+    """Its patch has cells without share, in the room of the other's."""
+    arguments = {"contact": "distributed", "engine": engine, "sensors": "ideal"}
+    drawn = make(randomization={"pressure": ["rim"]}, config={"contact": {"cells": 7}}, **arguments)
+    fixed = make(config={"contact": {"cells": 7, "pressure": "rim"}}, **arguments)
+    rooms = [env._loop.plant.cells.shape[-1] for env in (drawn, fixed)]
+    assert rooms[0] > rooms[1]
+    for k in range(2):
+        (first, _), (other, _) = (env.reset(seed=k, options={"material": "wood"}) for env in (drawn, fixed))
+        np.testing.assert_allclose(first, other, rtol=1e-5, atol=1e-6)
+        for _ in range(30):
+            observation, *_ = drawn.step(np.float32([-0.8]))
+            expected, *_ = fixed.step(np.float32([-0.8]))
+            np.testing.assert_allclose(observation, expected, rtol=1e-5, atol=1e-6)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("contact", ["ellipsoid", "distributed"])
 def test_random_actions_under_eval_ood(make, env_id, contact):

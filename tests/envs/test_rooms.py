@@ -16,6 +16,7 @@ def told():
     told.numbers[:] = 1.0 + np.arange(told.numbers.size).reshape(told.numbers.shape)
     told.terms[:] = -1.0 - np.arange(told.terms.size).reshape(told.terms.shape)
     told.flags[:] = True
+    Rooms(N, TERMS).fill(np.array([0]), told)  # while it compiles, Numba keeps arguments for longer
     return told
 
 
@@ -67,6 +68,23 @@ def test_there_is_room_for_all_that_are_kept(told):
     whole = [rooms.fill(np.array([k]), told) for k in range(KEPT + 2)]
     for k, infos in enumerate(whole):
         check(infos, told, [k])
+
+
+def test_shape_type_and_flags_of_what_was_handed_out_are_the_receivers(told):
+    rooms = Rooms(N, TERMS)
+    infos = rooms.fill(np.array([0]), told)
+    infos["time"].shape = (N, 1)
+    infos["grip_force"].setflags(write=False)
+    infos["slip"].dtype = np.int64
+    infos["reward_terms"]["one"].setflags(write=False)
+    np.logical_not(infos["dropped"], out=infos["dropped"])
+    where = address(infos)
+    del infos
+    again = rooms.fill(np.array([2]), told)
+    assert address(again) == where
+    check(again, told, [2])
+    assert again["grip_force"].flags.writeable
+    assert again["reward_terms"]["one"].flags.writeable
 
 
 def test_names_that_are_added_or_removed_do_not_come_back(told):

@@ -177,3 +177,20 @@ def test_a_number_that_is_not_finite_is_named_with_its_row(threads):
     env.reset(seed=0)
     env.step(zero)
     env.close()
+
+
+def test_rows_that_began_in_a_step_that_failed_need_a_reset_too():
+    env = gym.make_vec(ID, num_envs=3, threads=1).unwrapped
+    env.reset(seed=0, options={"rows": [{"duration": 0.1, "settle": 0.0, "hold": 0.0}, None, None]})
+    over = False
+    while not over:
+        _, _, terminated, truncated, _ = env.step(ZERO)
+        over = (terminated | truncated)[0]
+    episode = env._loop.episode
+    episode["pushes"][2], episode["push_end"][2, 0] = 1, episode["steps"][2]
+    episode["push_wrench"][2, 0] = np.nan, 0.0, 0.0
+    with pytest.raises(FloatingPointError, match="environment 2"):
+        env.step(ZERO)
+    with pytest.raises(RuntimeError, match=r"environments \[0, 1, 2\] have no episode"):
+        env.step(ZERO)
+    env.close()
