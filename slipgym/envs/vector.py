@@ -272,7 +272,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._observer.begin(rows)
         for i in rows.tolist():
             self._pictures.begin(i)
-        self._ready[rows], self._over[rows] = True, False
+        self._ready[rows] = True
 
     def _add_drawn(self, infos: dict[str, Any], rows: np.ndarray) -> dict[str, Any]:
         """Infos with what the randomization drew for episodes that begin."""
