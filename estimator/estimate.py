@@ -22,11 +22,11 @@ class Estimate(NamedTuple):
     """Share of translation in this sample: v_t / v or, at low speed, from the force [-]; 0 out of contact."""
     gamma_tau: float
     """Share of rotation in this sample: |r omega| / v or, at low speed, from the torque [-]."""
-    support_mu_s: float
+    confidence_mu_s: float
     """events_mu_s / (events_mu_s + 1) [-]."""
-    support_mu_c: float
+    confidence_mu_c: float
     """Share of mu_c's fading memory that is filled by data, 1 - forgetting**updates_mu_c [-]."""
-    support_r: float
+    confidence_r: float
     """Share of r's fading memory that is filled by data, 1 - forgetting**updates_r [-]."""
     events_mu_s: int
     """Stick-slip events that set mu_s."""

@@ -8,7 +8,7 @@ action, state = policy.predict(observation, state=None)
 
 from typing import TYPE_CHECKING, Any
 
-from policies.controllers import is_controller
+from policies.controllers.table import is_controller
 from policies.registry import Policy, find, load, make, modes, names
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from estimator.reference import is_reference
-from policies import controllers
+from policies.controllers import table as controllers
 from policies.learned import LearnedPolicy, shipped
 
 

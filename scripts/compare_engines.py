@@ -20,7 +20,7 @@ def main(
     """Prints how far apart the episodes of both engines end, and how often they succeed."""
     from policies.evaluation import load_experiment
     from policies.evaluation.engines import compare
-    from policies.leaderboard.tables import markdown
+    from policies.research.leaderboard.tables import markdown
 
     try:
         chosen = [

@@ -19,8 +19,8 @@ def main(
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core.")] = 1,
 ) -> None:
     """Prints what each policy achieves in the same episodes, what learning adds, what friction adds."""
-    from policies.evaluation import shelf
-    from policies.leaderboard.tables import markdown
+    from policies.evaluation import compare_learned as shelf
+    from policies.research.leaderboard.tables import markdown
 
     try:
         for task in tasks or TASKS:

@@ -17,12 +17,12 @@ def main(
 ) -> None:
     """Runs all estimators on all scenarios; writes a folder with tables and a picture."""
     if costs:
-        from policies.leaderboard import cost
-        from policies.leaderboard.tables import markdown
+        from policies.research.leaderboard import cost
+        from policies.research.leaderboard.tables import markdown
 
         typer.echo(markdown(cost.costs(), 1))
         return
-    from policies.leaderboard import run_leaderboard
+    from policies.research.leaderboard import run_leaderboard
 
     folder = run_leaderboard(output, quick, seed)
     typer.echo((folder / "leaderboard.md").read_text(encoding="utf-8").partition("\n## mu_c")[0])

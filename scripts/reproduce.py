@@ -22,7 +22,7 @@ def main() -> None:
 @app.command()
 def coupling(output: Output = Path("runs")) -> None:
     """The coupling of mu_c and r: fixed-point map, explicit iteration, lock-out from start values."""
-    from policies.reproduction import reproduce_coupling
+    from policies.research.reproduction import reproduce_coupling
 
     folder = reproduce_coupling(output)
     for name in ("slopes.csv", "lock_out.csv"):
@@ -37,7 +37,7 @@ def profile(
     seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 0,
 ) -> None:
     """The simulation figure: a uniform disc under a velocity profile, exact and with realistic sensors."""
-    from policies.reproduction import reproduce_profile
+    from policies.research.reproduction import reproduce_profile
 
     folder = reproduce_profile(output, seeds, seed)
     for name in ("phases.md", "events.md"):
@@ -48,7 +48,7 @@ def profile(
 @app.command()
 def surface(output: Output = Path("runs")) -> None:
     """Limit surfaces of a disc by its pressure, the cells against them, and what the ellipsoid gets wrong."""
-    from policies.reproduction import reproduce_surface
+    from policies.research.reproduction import reproduce_surface
 
     folder = reproduce_surface(output)
     for name in ("cells.md", "bias.md"):
@@ -68,7 +68,7 @@ def linear(
     output: Output = Path("runs"),
 ) -> None:
     """Linear slip, 160 trials: every estimator on the same records, beside the paper's table."""
-    from policies.reproduction import reproduce_linear
+    from policies.research.reproduction import reproduce_linear
 
     _report(reproduce_linear, output, trials, jobs, seed, friction_source, contact)
 
@@ -82,7 +82,7 @@ def planar(
     output: Output = Path("runs"),
 ) -> None:
     """Planar motion, 40 trials: the gripper turns round a hanging object; beside the paper's table."""
-    from policies.reproduction import reproduce_planar
+    from policies.research.reproduction import reproduce_planar
 
     _report(reproduce_planar, output, trials, jobs, seed, contact)
 

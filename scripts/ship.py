@@ -10,7 +10,8 @@ Examples:\n
 \b
   python scripts/ship.py runs/linear_slip__ppo__20260101-120000-000
 \n
-The best seed of each friction source goes to policies/learned/shipped/, the curves of all to docs/learned/.
+The best seed of each friction source goes to policies/learned/pretrained_policies/, the curves of all
+to docs/learned/.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 

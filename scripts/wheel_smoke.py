@@ -12,7 +12,7 @@ import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-SHIPPED = ROOT / "policies" / "learned" / "shipped"
+SHIPPED = ROOT / "policies" / "learned" / "pretrained_policies"
 PACKAGES = {"slipgym", "estimator", "policies"}
 EPISODE = """
 import sys

@@ -36,7 +36,7 @@ def register() -> None:
 
 def register_id(name: str, entry_point: str) -> None:
     """Register an id with its environment and its batch."""
-    batch = f"slipgym.envs.vector:{parse_env_id(name)[1]}VectorEnv"
+    batch = f"slipgym.envs.vector_env:{parse_env_id(name)[1]}VectorEnv"
     gym.register(id=name, entry_point=entry_point, vector_entry_point=batch)
 
 

@@ -124,7 +124,7 @@ def _radius(axes: Any, result: Result) -> None:
 def _estimate(axes: Any, result: Result, name: str, scale: float, colour: str) -> bool:
     """Draws one value, pale while it is the start value; says whether data stands behind the last."""
     t, value = result.samples.t, scale * result.estimates[name]
-    known = result.estimates[f"support_{name}"] > 0.0
+    known = result.estimates[f"confidence_{name}"] > 0.0
     _line(axes, t, np.where(known, np.nan, value), color=colour, alpha=0.35, drawstyle="steps-post")
     _line(axes, t, np.where(known, value, np.nan), color=colour, drawstyle="steps-post")
     return bool(known[-1])
@@ -158,7 +158,7 @@ def _shade_halts(axes: Any, result: Result) -> None:
 
 def _name_halts(axes: Any, result: Result) -> None:
     words = ["shaded: halted by the heuristic"] if result.estimates["halted"].any() else []
-    started = any((result.estimates[f"support_{name}"] == 0.0).any() for name in ("mu_s", "mu_c", "r"))
+    started = any((result.estimates[f"confidence_{name}"] == 0.0).any() for name in ("mu_s", "mu_c", "r"))
     words += ["pale: start value"] if started else []
     words += ["dashed: truth"] if result.samples.truth is not None else []
     axes.set_title("   ·   ".join(words), loc="right", fontsize=8.0, color=_MUTED)

@@ -64,7 +64,7 @@ def final_rows(result: Result) -> list[list[str]]:
         cells = [
             "r [mm]" if name == "r" else name,
             f"{value:.{digits}f}",
-            f"{last[f'support_{name}']:.2f}",
+            f"{last[f'confidence_{name}']:.2f}",
             data,
         ]
         if known and truth is not None:
@@ -82,7 +82,7 @@ def not_observable(result: Result) -> list[str]:
     if not (result.samples.wrench[:, 2] >= CONTACT).any():
         return [f"f_n never reaches {CONTACT} N: there was no contact."]
     for name in _NAMES:
-        count, support = int(last[_COUNTS[name]]), float(last[f"support_{name}"])
+        count, support = int(last[_COUNTS[name]]), float(last[f"confidence_{name}"])
         if support >= _LITTLE:
             continue
         seen = (

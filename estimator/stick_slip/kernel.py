@@ -115,7 +115,7 @@ def learn_mu_s(state, value, gain, jumps):
     state.mu_s = (1.0 - gain) * state.mu_s + gain * value
     state.gain_mu_s = gain
     state.events_mu_s += 1
-    state.support_mu_s = state.events_mu_s / (state.events_mu_s + 1.0)
+    state.confidence_mu_s = state.events_mu_s / (state.events_mu_s + 1.0)
     state.sd_mu_s = math.sqrt(gain * state.scatter_mu_s) if state.changes_mu_s > 0 else state.mu_s
 
 
@@ -123,14 +123,14 @@ def learn_mu_s(state, value, gain, jumps):
 def count_mu_c(state, p):
     """Notes an update of mu_c: the share of its memory that data fill grows to 1 - forgetting**updates."""
     state.updates_mu_c += 1
-    state.support_mu_c += (1.0 - p.forgetting) * (1.0 - state.support_mu_c)
+    state.confidence_mu_c += (1.0 - p.forgetting) * (1.0 - state.confidence_mu_c)
 
 
 @njit
 def count_r(state, p):
     """Notes an update of r, like `count_mu_c`."""
     state.updates_r += 1
-    state.support_r += (1.0 - p.forgetting) * (1.0 - state.support_r)
+    state.confidence_r += (1.0 - p.forgetting) * (1.0 - state.confidence_r)
 
 
 @njit
@@ -160,9 +160,9 @@ def publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate
     estimate.r = state.r
     estimate.gamma_t = gamma_t
     estimate.gamma_tau = gamma_tau
-    estimate.support_mu_s = state.support_mu_s
-    estimate.support_mu_c = state.support_mu_c
-    estimate.support_r = state.support_r
+    estimate.confidence_mu_s = state.confidence_mu_s
+    estimate.confidence_mu_c = state.confidence_mu_c
+    estimate.confidence_r = state.confidence_r
     estimate.events_mu_s = state.events_mu_s
     estimate.updates_mu_c = state.updates_mu_c
     estimate.updates_r = state.updates_r

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import yaml
 
+from policies.atomic_io import filled_in_place as filled_in_place
 from policies.evaluation.experiment import Experiment
-from policies.whole import filled_in_place as filled_in_place
 
 _PACKAGES = (
     "slipgym",

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from policies.base import ObservationIndex
+from policies.controllers.base import ObservationIndex
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ import pandas as pd
 
 import policies
 from policies.learned import LearnedPolicy
-from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observation import Sight
+from slipgym.envs.simulation import Simulation
 from slipgym.sensors.force_torque import HISTORY, roomier, sensed
 from slipgym.sensors.slip_velocity import read_slip
 from slipgym.tasks import find
@@ -60,7 +60,7 @@ def record_sensors(
         if isinstance(actor, LearnedPolicy):
             actor.check(env)
         observation, _ = env.reset(seed=seed, options=dict(options or {}))
-        tap = _Tap(env.unwrapped._loop, finger - 1)  # type: ignore[attr-defined]
+        tap = _Tap(env.unwrapped.simulation, finger - 1)  # type: ignore[attr-defined]
         state, over = None, False
         while not over:
             action, state = actor.predict(observation, state=state)
@@ -75,43 +75,43 @@ class _Tap:
     """Collects the samples of one finger, also those within a step of the environment.
 
     Args:
-        loop: The environment's loop, just reset.
+        simulation: The environment's simulation, just reset.
         finger: 0 or 1.
     """
 
-    def __init__(self, loop: SlipLoop, finger: int) -> None:
-        self._loop, self._finger = loop, finger
-        self._start = int(loop.plant.world["tick"][0])
-        force, world = loop.plant.force_torque[0, finger], loop.plant.world[0]
+    def __init__(self, simulation: Simulation, finger: int) -> None:
+        self.simulation, self._finger = simulation, finger
+        self._start = int(simulation.plant.world["tick"][0])
+        force, world = simulation.plant.force_torque[0, finger], simulation.plant.world[0]
         needed = int((world["control_ticks"] + force["delay"]) // force["period"]) + 2
         if needed > HISTORY:
-            rate = loop.config.sensors.force_torque.rate
+            rate = simulation.config.sensors.force_torque.rate
             raise ValueError(
                 f"sensors.force_torque.rate = {rate} Hz: {needed} samples, a control step and the latency, "
                 f"would have to be kept; at most {HISTORY} are"
             )
-        loop.plant.force_torque = roomier(loop.plant.force_torque, needed)
+        simulation.plant.force_torque = roomier(simulation.plant.force_torque, needed)
         self._taken = self._start // int(force["period"])
         self._forces: list[tuple[float, ...]] = []
         self._twists: list[tuple[float, ...]] = []
-        self._step, loop.step = loop.step, self._one_by_one
+        self._step, simulation.step = simulation.step, self._one_by_one
 
     def _one_by_one(
         self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
     ) -> None:
         """The loop's `step`, one sample after the other."""
-        episode, total = self._loop.episode[0], np.zeros_like(self._loop.told.terms)
+        episode, total = self.simulation.episode[0], np.zeros_like(self.simulation.told.terms)
         for _ in range(skip):
             self._step(actions, components, 1, active, sight)
             self._take()
-            total += self._loop.told.terms
+            total += self.simulation.told.terms
             if episode["dropped"] or episode["step"] >= episode["steps"]:
                 break
-        self._loop.told.terms[:] = total
+        self.simulation.told.terms[:] = total
 
     def _take(self) -> None:
         """Keeps what was sampled since the last call."""
-        plant, finger = self._loop.plant, self._finger
+        plant, finger = self.simulation.plant, self._finger
         force = plant.force_torque[0, finger]
         tick_length = float(plant.world["tick_length"][0])
         taken, load = int(plant.world["tick"][0]) // int(force["period"]), np.empty(6)
@@ -120,9 +120,9 @@ class _Tap:
             sensed(force, number, load)
             self._forces.append((ticks * tick_length, *load[:5], force["mirror"] * load[5]))
         self._taken = taken
-        twist, chips = np.empty(3), plant.chips.copy()  # reading moves the chips' travel
-        read_slip(chips[0, finger], twist)
-        self._twists.append((self._loop.time, *twist))
+        twist, slip_sensors = np.empty(3), plant.slip_sensors.copy()  # reading moves the chips' travel
+        read_slip(slip_sensors[0, finger], twist)
+        self._twists.append((self.simulation.time, *twist))
 
     def frame(self) -> pd.DataFrame:
         """All samples in order of time; times to the microsecond, so that those of both sensors compare."""
@@ -132,4 +132,4 @@ class _Tap:
             stream["t"] = stream["t"].round(6)
         last = twists["t"].iloc[-1]
         frame = forces.loc[forces["t"] <= last].merge(twists, how="outer", on="t", sort=True)
-        return frame.assign(**dict(zip(TRUTH, self._loop.true_friction[0], strict=True)))
+        return frame.assign(**dict(zip(TRUTH, self.simulation.true_friction[0], strict=True)))

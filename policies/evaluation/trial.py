@@ -12,7 +12,7 @@ import numpy as np
 from tqdm import tqdm
 
 import policies
-from policies.base import ObservationIndex
+from policies.controllers.base import ObservationIndex
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.metrics import measure, measures
 from policies.evaluation.plan import Trial

@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, JsonValue, field_validator, model_validator
 
-from policies.controllers import CLASSES
+from policies.controllers.table import CLASSES
 from slipgym.config import names
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.errors import unknown

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from policies.atomic_io import filled_in_place, write_durably
 from policies.learned import tensors
 from policies.learned.description import FORMAT, TRAINING, WEIGHTS, Description
-from policies.whole import filled_in_place, write_durably
 from slipgym.config.errors import explain, unknown
 
 DESCRIPTION = "policy.json"

@@ -12,10 +12,10 @@ import numpy as np
 import onnx
 from onnx import TensorProto, helper, numpy_helper
 
+from policies.atomic_io import replace_durably
 from policies.learned import files
 from policies.learned.description import Description, Normalisation
-from policies.learned.shelf import located
-from policies.whole import replace_durably
+from policies.learned.pretrained import located
 
 OPSET, IR_VERSION = 17, 8
 """Of 2022, so that runtimes on robots know them."""

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from policies import controllers
+from policies.controllers import table as controllers
+from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.learned.description import Residual
-from policies.unaware import Unaware
 
 
 def at_rate(rate: float, config: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -35,7 +35,7 @@ class Underlying:
 
     Args:
         residual: The controller, and how far its actions may be changed.
-        arguments: Keyword arguments of the environment; told no friction, the controller is `Unaware`.
+        arguments: Keyword arguments of the environment; told no friction, the controller is `NoFrictionInfo`.
         columns: Numbers in one observation, without the earlier ones.
         rate: Actions per second.
 
@@ -47,7 +47,7 @@ class Underlying:
         name, config = residual.controller, at_rate(rate, arguments.get("config"))
         self._columns, self._reach = columns, np.float32(residual.reach)
         if arguments.get("friction_source") == "none":
-            self._controller: Any = Unaware(name, config, **residual.parameters)
+            self._controller: Any = NoFrictionInfo(name, config, **residual.parameters)
         else:
             self._controller = controllers.make(name, {**residual.parameters, "config": config})
 

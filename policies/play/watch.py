@@ -16,8 +16,8 @@ from tqdm import tqdm
 
 import policies
 from policies.learned import LearnedPolicy
-from policies.play.film import Film
-from policies.play.portrait import own_policy
+from policies.play.screenshot import own_policy
+from policies.play.video import Film
 from policies.registry import Policy
 from slipgym.config import Config
 from slipgym.config.errors import unknown
@@ -175,7 +175,7 @@ def _episode(
     """One episode, a picture each interval [s] and at the end; None if it was broken off."""
     observation, info = env.reset(seed=seed, options=dict(options or {}))
     state, over, shown, reward = None, False, 0, 0.0
-    steps = int(env._loop.episode["steps"][0])
+    steps = int(env.simulation.episode["steps"][0])
     with tqdm(total=steps, desc=f"{env.task.name}, seed {seed}", unit="sample", disable=not progress) as bar:
         while not over:
             while info["time"] >= shown * interval - 1e-9:
@@ -185,7 +185,7 @@ def _episode(
             action, state = policy.predict(observation, state=state)
             observation, gained, terminated, truncated, info = env.step(action)
             reward, over = reward + gained, terminated or truncated
-            bar.update(int(env._loop.episode["step"][0]) - bar.n)
+            bar.update(int(env.simulation.episode["step"][0]) - bar.n)
     show(env.render())  # type: ignore[arg-type]
     slip = tuple(info["slip"].tolist())
     return Outcome(seed, info["time"], info["is_success"], info["dropped"], slip, reward)

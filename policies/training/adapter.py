@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode
 from stable_baselines3.common.vec_env import VecEnv, VecMonitor, VecNormalize
 from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
 
-from slipgym.envs.vector import SlipVectorEnv
+from slipgym.envs.vector_env import SlipVectorEnv
 
 _AUTORESET = {False: AutoresetMode.SAME_STEP, True: AutoresetMode.DISABLED}
 """Whether there are scenarios -> the mode that a batch needs."""

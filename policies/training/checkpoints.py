@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from policies.training import plain
+from policies.training import checkpoint_io as plain
 
 _SUFFIX = ".checkpoint"
 

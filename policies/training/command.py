@@ -64,7 +64,7 @@ def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Calla
         FileNotFoundError: The folder holds no run.
         ValueError: Another option is given.
     """
-    from policies.training import study
+    from policies.training import run_set as study
 
     for name, value in others.items():
         if value:
@@ -97,7 +97,9 @@ def begun(
         ModuleNotFoundError: Ray is asked for and not installed.
         ValueError: A seed or source is wrong, or a sweep has several.
     """
-    from policies.training import scatter, study, sweep
+    from policies.training import parallel as scatter
+    from policies.training import run_set as study
+    from policies.training import sweep
 
     scatter.check(ray)
     if not trials:

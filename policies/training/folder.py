@@ -13,7 +13,8 @@ from typing import Any
 import yaml
 
 from policies.evaluation.folder import versions
-from policies.training import checkpoints, plain, seeds
+from policies.training import checkpoint_io as plain
+from policies.training import checkpoints, seeds
 from policies.training.config import Training
 from policies.training.curve import Row
 from policies.training.files import checked

@@ -9,11 +9,12 @@ from stable_baselines3.common.logger import Logger
 from tqdm import tqdm
 
 from policies.evaluation.plots.style import STYLE, styled
-from policies.training import checkpoints, curve, export, folder, plain, seeds, vector
+from policies.training import checkpoint_io as plain
+from policies.training import checkpoints, curve, export, folder, seeds, vector
 from policies.training import model as learners
-from policies.training.board import Board
+from policies.training.callback import Keeper
 from policies.training.config import Training
-from policies.training.keeper import Keeper
+from policies.training.tensorboard_writer import Board
 
 _COMMAND = "python scripts/train.py --resume {}"
 """What a policy's file says of its origin: the run's folder holds the rest."""

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from policies.evaluation.plots.style import STYLE, styled
 from policies.learned import files as policy_files
-from policies.learned.shelf import SHELF
+from policies.learned.pretrained import FOLDER
 from policies.training import curve, export, files, folder
 from policies.training.curve import Row
 from slipgym.tasks import TASKS
@@ -46,7 +46,7 @@ class Run(NamedTuple):
         return curve.best(self.curve, self.episodes)
 
 
-def ship(studies: Sequence[Path], shelf: Path = SHELF, pages: Path = CURVES) -> list[Path]:
+def ship(studies: Sequence[Path], shelf: Path = FOLDER, pages: Path = CURVES) -> list[Path]:
     """Puts the best seed of each task and friction source on the shelf, and the curves of all into the pages.
 
     Policies and curves of the same tasks and sources give way.

@@ -12,7 +12,9 @@ from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
 
 from policies.evaluation.folder import stamped
-from policies.training import files, folder, plain, scatter
+from policies.training import checkpoint_io as plain
+from policies.training import files, folder
+from policies.training import parallel as scatter
 from policies.training.config import Dimension, Training
 from policies.training.curve import Row
 from policies.training.run import train

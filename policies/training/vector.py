@@ -11,9 +11,9 @@ from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv,
 
 from policies.learned.residual import Underlying
 from policies.training.adapter import SlipVecEnv, make_vec_env
-from policies.training.bonus import BonusVecEnv
 from policies.training.config import Training
 from policies.training.residual import ResidualVecEnv
+from policies.training.success_bonus import BonusVecEnv
 
 
 class Scenario(gym.Wrapper):

@@ -9,21 +9,21 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
+from slipgym._numba.compiled import unlocked
 from slipgym.benchmarking.measure import ACTIONS, Player
 from slipgym.benchmarking.processors import on_either
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import Comparison, compare, per_call
 from slipgym.benchmarking.twins import Twins
-from slipgym.compiled import unlocked
 from slipgym.contact.coupled import step_pads
 from slipgym.envs.actions import interpret
 from slipgym.envs.observation import combine, observe
 from slipgym.envs.threads import Threads
-from slipgym.envs.vector import SlipVectorEnv
+from slipgym.envs.vector_env import SlipVectorEnv
 from slipgym.sensors.measure import measure
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import begin_step
-from slipgym.world.alone import move
+from slipgym.world.planar_engine import move
 
 SIZES = 1, 16, 256, 4096
 EVERY_ACTION = -1.0, 1.0
@@ -63,12 +63,12 @@ class VectorPlayer:
 
     def shared_block(self, threads: Threads, steps: int) -> tuple[float, int]:
         """A block by other threads, in the same memory: where that lies changes its speed."""
-        self.env._loop._threads = threads
+        self.env.simulation._threads = threads
         return self.block(steps)
 
     def _scatter(self) -> None:
         """Spread the episodes' ends evenly over time, as they are after a while: their steps differ."""
-        episode = self.env._loop.episode
+        episode = self.env.simulation.episode
         episode["step"] = np.arange(self.n) * episode["steps"] // self.n
 
 
@@ -114,38 +114,45 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
 def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
     """Time of the parts of a step, taken one after the other over all environments, in one thread."""
     env = player.env
-    loop, look = env._loop, env._observer.sight
-    plant, n = loop.plant, player.n
-    bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips
+    simulation, look = env.simulation, env._observer.sight
+    plant, n = simulation.plant, player.n
+    bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
     actions = np.random.default_rng(0).uniform(*EVERY_ACTION, (steps, n, 1))
-    time, counted = loop.episode["step"].max() * loop.step_time, 0
+    time, counted = simulation.episode["step"].max() * simulation.step_time, 0
 
     def task(k: int) -> None:
-        interpret(actions[k], env._actions.table, loop.episode, loop.commands)
-        begin_step(loop.episode, loop.commands)
-        disturb(loop.episode, plant.world, plant.pads, loop.truth)
-        loop.task.plan(loop.episode, plant.world)
+        interpret(actions[k], env._actions.table, simulation.episode, simulation.commands)
+        begin_step(simulation.episode, simulation.commands)
+        disturb(simulation.episode, plant.world, plant.pads, simulation.truth)
+        simulation.task.plan(simulation.episode, plant.world)
 
     def advance(_: int) -> None:
         nonlocal counted
-        counted += _advance(*bodies, loop.commands)
+        counted += _advance(*bodies, simulation.commands)
 
     def sense(_: int) -> None:
-        measure(plant.world, plant.force_torque, plant.chips, loop.wrenches, loop.twists)
+        measure(plant.world, plant.force_torque, plant.slip_sensors, simulation.wrenches, simulation.twists)
 
     def learn(k: int) -> None:
-        loop.estimator.update(time + (k + 1) * loop.step_time, *rows)
-        combine(loop.estimator.estimates, loop.per_finger, loop.estimated)
+        simulation.estimator.update(time + (k + 1) * simulation.step_time, *rows)
+        combine(simulation.estimator.estimates, simulation.per_finger, simulation.estimated)
 
     def judge(_: int) -> None:
-        loop.episode["step"] += 1
-        loop.task.judge(loop.episode, plant.world, plant.fingers, loop.task_part)
+        simulation.episode["step"] += 1
+        simulation.task.judge(simulation.episode, plant.world, plant.fingers, simulation.task_part)
 
     def see(_: int) -> None:
-        arrays = loop.wrenches, loop.twists, plant.chips, loop.episode, loop.task_part, plant.world
+        arrays = (
+            simulation.wrenches,
+            simulation.twists,
+            plant.slip_sensors,
+            simulation.episode,
+            simulation.task_part,
+            plant.world,
+        )
         observe(*arrays, *look)
 
-    rows = loop.wrenches.reshape(-1, 4), loop.twists.reshape(-1, 3)
+    rows = simulation.wrenches.reshape(-1, 4), simulation.twists.reshape(-1, 3)
     stages = [
         ("actions, plan", task),
         ("world, contact and force loop", advance),
@@ -156,7 +163,7 @@ def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
     ]
     whole = min(player.block(20 * n)[0] / 20 for _ in range(5)) / n
     spent = dict.fromkeys((name for name, _ in stages), 0.0)
-    _advance(*bodies, loop.commands)
+    _advance(*bodies, simulation.commands)
     for k in range(steps):
         for name, stage in stages:
             start = perf_counter()
@@ -194,11 +201,11 @@ def _samples(player: Player) -> tuple[float, int]:
 
 
 @unlocked
-def _advance(worlds, pads, cells, fingers, force_torque, chips, commands):
+def _advance(worlds, pads, cells, fingers, force_torque, slip_sensors, commands):
     """A control step of all worlds; sub-steps that it took."""
     done = 0
     for i in range(worlds.shape[0]):
-        done += move(worlds, pads, cells, fingers, force_torque, chips, commands[i, 0], i)
+        done += move(worlds, pads, cells, fingers, force_torque, slip_sensors, commands[i, 0], i)
     return done
 
 

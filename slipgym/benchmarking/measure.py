@@ -18,9 +18,9 @@ from slipgym.benchmarking.numpy_patch import NumpyPatch
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import Stopwatches, compare, per_call
 from slipgym.contact import DistributedContact, EllipsoidContact
-from slipgym.envs import bullet_loop as loops
+from slipgym.envs import bullet_simulation as loops
 from slipgym.envs.slip_env import SlipEnv
-from slipgym.world import bullet
+from slipgym.world import bullet_engine as bullet
 from slipgym.world.plant import Plant
 
 BLOCK = 50  # control steps
@@ -45,7 +45,7 @@ class Player:
     def rest(self) -> Plant:
         """State of a newly gripped box."""
         self.env.reset(seed=0)
-        return self.env._loop.plant
+        return self.env.simulation.plant
 
     def begin(self) -> None:
         """Start an episode if the last one is over."""
@@ -85,11 +85,11 @@ def against_bare(player: Player, pairs: int) -> list[Figure]:
     lower, middle, upper = result.quartiles
     real_time = 1.0 / (config.physics.engine_rate * result.second)
     return [
-        Figure("bare Bullet loop, per engine step", 1e6 * result.first, "us"),
+        Figure("bare Bullet simulation, per engine step", 1e6 * result.first, "us"),
         Figure("environment, per engine step", 1e6 * result.second, "us"),
         Figure("environment / bare loop", middle, "-", "<= 1.4"),
-        Figure("environment / bare loop, lower quartile", lower, "-"),
-        Figure("environment / bare loop, upper quartile", upper, "-"),
+        Figure("environment / bare simulation, lower quartile", lower, "-"),
+        Figure("environment / bare simulation, upper quartile", upper, "-"),
         Figure("real-time factor of env.step", real_time, "-", ">= 40"),
     ]
 
@@ -97,22 +97,22 @@ def against_bare(player: Player, pairs: int) -> list[Figure]:
 def breakdown(player: Player, blocks: int) -> list[Figure]:
     """Shares of one env.step, with stopwatches around its parts."""
     env = player.env
-    loop = env._loop
-    assert isinstance(loop, loops.BulletLoop)
+    simulation = env.simulation
+    assert isinstance(simulation, loops.BulletSimulation)
     rows: list[list[float]] = []
     with Stopwatches() as watches:
         for name in ("_loads", "_observe", "_command"):
             watches.watch("kernel", bullet, name)
-        watches.watch("Bullet and its calls", loop.world, "step")
+        watches.watch("Bullet and its calls", simulation.world, "step")
         watches.watch("sensors", loops, "measure")
-        watches.watch("estimator", loop.estimator, "update")
+        watches.watch("estimator", simulation.estimator, "update")
         watches.watch("estimator", loops, "combine")
         watches.watch("observation", loops, "observe")
         watches.watch("observation", env._observer, "read")
         watches.watch("info", env._information, "one")
-        task = loop.task
+        task = simulation.task
         timed = {name: watches.timed("task", getattr(task, name)) for name in ("plan", "judge")}
-        loop.task = dataclasses.replace(task, **timed)
+        simulation.task = dataclasses.replace(task, **timed)
         for _ in range(blocks):
             watches.running = False
             player.begin()
@@ -122,7 +122,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
             parts = [watches.spent[label] for label in PARTS]
             samples = steps / env.config.physics.engine_steps
             rows.append([part / samples for part in (*parts, seconds - sum(parts))])
-        loop.task = task
+        simulation.task = task
     shares = (median(column) for column in zip(*rows, strict=True))
     return [
         Figure(f"env.step: {label}", 1e6 * share, "us")

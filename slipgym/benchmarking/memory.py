@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 
-from slipgym.envs.vector import SlipVectorEnv
+from slipgym.envs.vector_env import SlipVectorEnv
 
 
 def bytes_per_environment(env: SlipVectorEnv) -> float:
@@ -14,6 +14,6 @@ def bytes_per_environment(env: SlipVectorEnv) -> float:
     material and what the randomization drew.
     """
     state = env.get_state()
-    plant = [getattr(state.loop.plant, field.name) for field in fields(state.loop.plant)]
-    arrays = [*plant, *state.loop.arrays.values(), state.frames]
+    plant = [getattr(state.simulation.plant, field.name) for field in fields(state.simulation.plant)]
+    arrays = [*plant, *state.simulation.arrays.values(), state.frames]
     return sum(array.nbytes for array in arrays if array is not None) / env.num_envs

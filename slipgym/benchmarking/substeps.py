@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from slipgym._numba.compiled import compiled
 from slipgym.benchmarking.report import Figure
-from slipgym.compiled import compiled
-from slipgym.world.planar import substep
 from slipgym.world.plant import Plant
+from slipgym.world.substep import substep
 
 STEPS = 4000  # sub-steps in a block
 STICK, SLIDE = 15.0, 1.2  # grip force [N]
@@ -27,11 +27,11 @@ MODULATION, PERIOD = 0.5, 0.1  # of the grip force about the sliding limit [-, s
 
 
 @compiled
-def repeat(world, pads, cells, fingers, chips, forces, steps):
+def repeat(world, pads, cells, fingers, slip_sensors, forces, steps):
     """Sub-steps of the longest length; the commanded grip forces [N] come round and round."""
     h = world.substep_ticks * world.tick_length
     share = world.substep_ticks / world.engine_ticks
-    gripper = (pads[0], pads[1]), cells, (fingers[0], fingers[1]), (chips[0], chips[1])
+    gripper = (pads[0], pads[1]), cells, (fingers[0], fingers[1]), (slip_sensors[0], slip_sensors[1])
     for k in range(steps):
         for f in range(2):
             fingers[f].command = forces[k % forces.shape[0]]
@@ -74,7 +74,7 @@ def block(start: Plant, forces: np.ndarray, run: Any = repeat) -> tuple[float, i
     plant = deepcopy(start)
     cells = None if plant.cells is None else plant.cells[0]
     before = process_time()
-    run(plant.world[0], plant.pads[0], cells, plant.fingers[0], plant.chips[0], forces, STEPS)
+    run(plant.world[0], plant.pads[0], cells, plant.fingers[0], plant.slip_sensors[0], forces, STEPS)
     return process_time() - before, STEPS
 
 

@@ -6,8 +6,8 @@ to the pads within the sub-step. It solves the momentum balance
     M (q - q_free) / h^2 + sum_i S_i^T f_i(S_i q) = 0,
 
 with S_i the map from q to the scaled slip displacement at pad i's centre of pressure
-and f_i its friction. Pads are ellipsoids (`slipgym.contact.kernel`) or, if they have cells,
-patches (`slipgym.contact.patch`): `prepare`, `respond`, `commit` and `release` of pad i know
+and f_i its friction. Pads are ellipsoids (`slipgym.contact.ellipsoid_kernel`) or, if they have cells,
+patches (`slipgym.contact.distributed_kernel`): `prepare`, `respond`, `commit` and `release` of pad i know
 which. `cells` is None for ellipsoids, so that either kind is compiled for itself.
 The derivative of a bristle's friction is a multiple of the identity less a dyad, so an
 ellipsoid's pull-back needs no matrix products.
@@ -17,8 +17,9 @@ from __future__ import annotations
 
 import math
 
-from slipgym.compiled import compiled
-from slipgym.contact import kernel, patch
+from slipgym._numba.compiled import compiled
+from slipgym.contact import distributed_kernel as patch
+from slipgym.contact import ellipsoid_kernel as kernel
 
 MAX_NEWTON = 30
 MAX_HALVINGS = 8

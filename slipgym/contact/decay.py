@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 
 LARGEST = 40.0  # exp(-40) is below the rounding of 1
 PER_LN_2 = 1.0 / math.log(2.0)

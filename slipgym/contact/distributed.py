@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from slipgym.contact.patch import prescribed_step
+from slipgym.contact.distributed_kernel import prescribed_step
 from slipgym.contact.pressure import MAX_CELLS, patch_cells
 from slipgym.contact.records import SHARE, Z_X, Z_Y, X, Y, pads, patch, rest, rest_cells
 from slipgym.contact.validation import check_friction, finite_vector, positive
@@ -17,7 +17,7 @@ from slipgym.contact.validation import check_friction, finite_vector, positive
 class DistributedContact:
     """Friction of a patch of cells, each a bristle with Stribeck effect and true stick.
 
-    The limit surface is the pressure's own, not an ellipsoid; see `slipgym.contact.patch`
+    The limit surface is the pressure's own, not an ellipsoid; see `slipgym.contact.distributed_kernel`
     for the equations and sources, `slipgym.contact.pressure` for the cells.
 
     Args:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from slipgym.contact.kernel import prescribed_step
+from slipgym.contact.ellipsoid_kernel import prescribed_step
 from slipgym.contact.records import pads, rest
 from slipgym.contact.validation import check_friction, finite_vector, positive
 
@@ -15,7 +15,7 @@ class EllipsoidContact:
     """Friction of one pad with an ellipsoidal limit surface, Stribeck effect and true stick.
 
     The scaled twist (v_x, v_y, r omega) drives three bristle states; see
-    `slipgym.contact.kernel` for the equations and sources.
+    `slipgym.contact.ellipsoid_kernel` for the equations and sources.
 
     Args:
         r: Radius of the equivalent rim contact [m], > 0.

@@ -13,7 +13,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 
 STILL = 1e-12
 """Speed of a point over that of the patch below which it does not move, but for rounding."""

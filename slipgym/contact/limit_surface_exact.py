@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipkm1
 
 from estimator.limit_surface import disc_friction
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 
 GAUSS = np.polynomial.legendre.leggauss(64)
 """Nodes and weights for Hertz."""

@@ -7,15 +7,15 @@ from typing import Any
 
 from slipgym.config import Config, Randomization
 from slipgym.envs.choices import one_of
-from slipgym.envs.loop import SlipLoop
+from slipgym.envs.simulation import Simulation
 from slipgym.tasks import Task
 
 ENGINES = ("bullet", "planar")
 
 
-def make_loop(
+def make_simulation(
     engine: str, config: Config, task: Task, estimator: str | Mapping[str, Any], randomization: Randomization
-) -> SlipLoop:
+) -> Simulation:
     """The loop of one environment.
 
     Raises:
@@ -23,9 +23,9 @@ def make_loop(
     """
     arguments = config, task, estimator, randomization
     if one_of("engine", engine, ENGINES) == "planar":
-        from slipgym.envs.planar_loop import PlanarLoop
+        from slipgym.envs.planar_simulation import PlanarSimulation
 
-        return PlanarLoop(*arguments)
-    from slipgym.envs.bullet_loop import BulletLoop
+        return PlanarSimulation(*arguments)
+    from slipgym.envs.bullet_simulation import BulletSimulation
 
-    return BulletLoop(*arguments)
+    return BulletSimulation(*arguments)

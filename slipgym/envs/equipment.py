@@ -32,7 +32,7 @@ class Equipment:
     def __init__(self, config: Config, plant: Plant, pressures: Sequence[str]) -> None:
         self._config, self._plant = config, plant
         self._force_noise = plant.force_torque["noise"][0, 0].copy()
-        self._slip_noise = plant.chips["noise"][0, 0].copy()
+        self._slip_noise = plant.slip_sensors["noise"][0, 0].copy()
         sensor = config.sensors.force_torque
         tangential, normal, torque = sensor.bias_tangential, sensor.bias_normal, sensor.bias_torque
         spread = np.array([tangential, tangential, normal, torque, torque, torque], dtype=float)
@@ -67,5 +67,5 @@ class Equipment:
         plant.fingers["lag"][i] = values["lag"]
         plant.fingers["dead_ticks"][i] = dead_ticks(self._config, values["dead_time"])
         plant.force_torque["noise"][i] = values["noise_scale"] * self._force_noise
-        plant.chips["noise"][i] = values["noise_scale"] * self._slip_noise
-        plant.chips["delay"][i] = values["slip_latency"]
+        plant.slip_sensors["noise"][i] = values["noise_scale"] * self._slip_noise
+        plant.slip_sensors["delay"][i] = values["slip_latency"]

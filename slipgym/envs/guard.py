@@ -10,7 +10,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 
 KEPT = 120
 """Samples whose quantities are kept: the last second."""

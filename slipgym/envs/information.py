@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observer import Observation
 from slipgym.envs.rooms import Rooms
+from slipgym.envs.simulation import Simulation
 from slipgym.envs.told import PARTS, SHAPES
 
 _VECTORS = tuple(name for name, shape in SHAPES.items() if len(shape) == 1)
@@ -17,19 +17,19 @@ _MATRICES = tuple(name for name, shape in SHAPES.items() if len(shape) == 2)
 
 
 class Information:
-    """Reads the infos of all environments out of a loop.
+    """Reads the infos of all environments out of a simulation.
 
     Args:
-        loop: What is reported.
+        simulation: What is reported.
     """
 
-    def __init__(self, loop: SlipLoop) -> None:
-        self._loop, self._terms = loop, loop.task.terms
-        self._rooms = Rooms(loop.n, self._terms)
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation, self._terms = simulation, simulation.task.terms
+        self._rooms = Rooms(simulation.n, self._terms)
 
     def one(self, i: int) -> dict[str, Any]:
         """That of one environment, as `gymnasium.Env` gives it: the caller's own arrays, plain numbers."""
-        numbers, flags, terms = self._loop.told
+        numbers, flags, terms = self._simulation.told
         row = numbers[i].copy()
         info: dict[str, Any] = {name: row[PARTS[name]] for name in _VECTORS}
         for name in _MATRICES:
@@ -45,15 +45,15 @@ class Information:
         Returns:
             Arrays (n, ...), with masks; the caller's own, as the loop goes on with others.
         """
-        return self._masked(self._loop.hand_over().named(self._terms), slice(None))
+        return self._masked(self._simulation.hand_over().named(self._terms), slice(None))
 
     def some(self, rows: np.ndarray) -> dict[str, Any]:
         """Those of some environments (m,); elsewhere masks are False. Nothing of none."""
-        return self._masked(self._rooms.fill(rows, self._loop.told), rows) if rows.size else {}
+        return self._masked(self._rooms.fill(rows, self._simulation.told), rows) if rows.size else {}
 
     def _masked(self, infos: dict[str, Any], rows: np.ndarray | slice) -> dict[str, Any]:
         """Each info with a mask beside it that says which environments have it, as Gymnasium asks for."""
-        masks = np.zeros((len(infos) + len(self._terms), self._loop.n), dtype=bool)
+        masks = np.zeros((len(infos) + len(self._terms), self._simulation.n), dtype=bool)
         masks[:, rows] = True
         left = iter(masks)
         terms = _beside(infos["reward_terms"], left)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.envs.actions import ACTION_MODES
 from slipgym.tasks.task import Column, Task
@@ -17,9 +17,9 @@ FRICTION_COLUMNS = (
     Column("mu_s", 0.0, 10.0, "-", "static friction"),
     Column("mu_c", 0.0, 10.0, "-", "Coulomb friction"),
     Column("r", 0.0, 1.0, "m", "radius of the equivalent rim contact"),
-    Column("support_mu_s", 0.0, 1.0, "-", "how much data stands behind mu_s"),
-    Column("support_mu_c", 0.0, 1.0, "-", "how much data stands behind mu_c"),
-    Column("support_r", 0.0, 1.0, "-", "how much data stands behind r"),
+    Column("confidence_mu_s", 0.0, 1.0, "-", "how much data stands behind mu_s"),
+    Column("confidence_mu_c", 0.0, 1.0, "-", "how much data stands behind mu_c"),
+    Column("confidence_r", 0.0, 1.0, "-", "how much data stands behind r"),
 )
 WRIST_COLUMNS = (
     Column("wrist_velocity_x", -2.0, 2.0, "m/s", "commanded wrist velocity along world x"),
@@ -61,10 +61,14 @@ def sensor_columns(config: Config) -> tuple[Column, ...]:
         ]
     return (
         *fingers,
-        Column("travel_x", -1.0, 1.0, "m", "slip displacement, summed from the counts of both fingers"),
-        Column("travel_y", -1.0, 1.0, "m", "the same along the pads' y axis"),
-        Column("travel_theta", -10.0, 10.0, "rad", "the same about the grip axis"),
-        Column("command", 0.0, config.gripper.force_limit, "N", "grip force commanded in the last step"),
+        Column(
+            "measured_slip_x", -1.0, 1.0, "m", "slip displacement, summed from the counts of both fingers"
+        ),
+        Column("measured_slip_y", -1.0, 1.0, "m", "the same along the pads' y axis"),
+        Column("measured_slip_theta", -10.0, 10.0, "rad", "the same about the grip axis"),
+        Column(
+            "commanded_force", 0.0, config.gripper.force_limit, "N", "grip force commanded in the last step"
+        ),
     )
 
 
@@ -104,12 +108,12 @@ def combine(estimates, per_finger, friction):
         for f in range(2):
             finger = estimates[2 * i + f]
             per_finger[i, f, 0], per_finger[i, f, 1], per_finger[i, f, 2] = finger.mu_s, finger.mu_c, finger.r
-        friction[i, 0] = weigh(a.mu_s, b.mu_s, a.support_mu_s, b.support_mu_s)
-        friction[i, 1] = weigh(a.mu_c, b.mu_c, a.support_mu_c, b.support_mu_c)
-        friction[i, 2] = weigh(a.r, b.r, a.support_r, b.support_r)
-        friction[i, 3] = max(a.support_mu_s, b.support_mu_s)
-        friction[i, 4] = max(a.support_mu_c, b.support_mu_c)
-        friction[i, 5] = max(a.support_r, b.support_r)
+        friction[i, 0] = weigh(a.mu_s, b.mu_s, a.confidence_mu_s, b.confidence_mu_s)
+        friction[i, 1] = weigh(a.mu_c, b.mu_c, a.confidence_mu_c, b.confidence_mu_c)
+        friction[i, 2] = weigh(a.r, b.r, a.confidence_r, b.confidence_r)
+        friction[i, 3] = max(a.confidence_mu_s, b.confidence_mu_s)
+        friction[i, 4] = max(a.confidence_mu_c, b.confidence_mu_c)
+        friction[i, 5] = max(a.confidence_r, b.confidence_r)
 
 
 @compiled
@@ -120,13 +124,13 @@ def weigh(a, b, support_a, support_b):
 
 
 @compiled
-def observe(wrenches, twists, chips, episodes, task_part, worlds, wrist, friction, low, high, out):
+def observe(wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, friction, low, high, out):
     """Write the observation, clipped to its bounds.
 
     Args:
         wrenches: As from `measure`, (n, 2, 4).
         twists: As from `measure`, (n, 2, 3).
-        chips: SLIP_SENSOR (n, 2), for the travel.
+        slip_sensors: SLIP_SENSOR (n, 2), for the travel.
         episodes: EPISODE (n,), for the command.
         task_part: (n, k).
         worlds: WORLD (n,), for the wrist.
@@ -145,7 +149,7 @@ def observe(wrenches, twists, chips, episodes, task_part, worlds, wrist, frictio
                 out[i, at + 4 + k] = twists[i, f, k]
             at += 7
         for k in range(3):
-            out[i, at + k] = 0.5 * (chips[i, 0].travel[k] + chips[i, 1].travel[k])
+            out[i, at + k] = 0.5 * (slip_sensors[i, 0].measured_slip[k] + slip_sensors[i, 1].measured_slip[k])
         out[i, at + 3] = episodes[i].command
         at += 4
         for k in range(task_part.shape[1]):
@@ -162,11 +166,13 @@ def observe(wrenches, twists, chips, episodes, task_part, worlds, wrist, frictio
 
 
 @compiled
-def observe_some(rows, wrenches, twists, chips, episodes, task_part, worlds, wrist, friction, low, high, out):
+def observe_some(
+    rows, wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, friction, low, high, out
+):
     """`observe` for some environments, rows (m,)."""
     for i in rows:
         row = slice(i, i + 1)
         observe(
-            wrenches[row], twists[row], chips[row], episodes[row], task_part[row], worlds[row],
+            wrenches[row], twists[row], slip_sensors[row], episodes[row], task_part[row], worlds[row],
             wrist, friction[row], low, high, out[row],
         )  # fmt: skip

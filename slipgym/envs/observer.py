@@ -9,7 +9,6 @@ import numpy as np
 
 from slipgym.envs import privileged
 from slipgym.envs.choices import one_of, whole
-from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observation import (
     FRICTION_SOURCES,
     OBSERVATION_MODES,
@@ -19,6 +18,7 @@ from slipgym.envs.observation import (
     observe_some,
     wrist_columns,
 )
+from slipgym.envs.simulation import Simulation
 from slipgym.tasks.task import Column
 
 Observation: TypeAlias = np.ndarray | dict[str, np.ndarray]
@@ -26,10 +26,10 @@ Observation: TypeAlias = np.ndarray | dict[str, np.ndarray]
 
 
 class Observer:
-    """Reads the observations out of a loop.
+    """Reads the observations out of a simulation.
 
     Args:
-        loop: What is observed.
+        simulation: What is observed.
         friction_source: What the friction part holds.
         action_mode: What actions mean; decides about the wrist part.
         mode: "flat", "sensor" or "dict".
@@ -46,27 +46,27 @@ class Observer:
     """
 
     def __init__(
-        self, loop: SlipLoop, friction_source: str, action_mode: str, mode: str, history: int
+        self, simulation: Simulation, friction_source: str, action_mode: str, mode: str, history: int
     ) -> None:
         one_of("friction_source", friction_source, FRICTION_SOURCES)
         one_of("observation_mode", mode, OBSERVATION_MODES)
-        self._loop = loop
+        self._simulation = simulation
         self._history = whole("history", history, 0)
-        self.columns = columns(loop.config, loop.task, friction_source, action_mode, mode)
-        wrist = wrist_columns(loop.task, action_mode)
+        self.columns = columns(simulation.config, simulation.task, friction_source, action_mode, mode)
+        wrist = wrist_columns(simulation.task, action_mode)
         low, high = _bounds(self.columns)
         placed = np.array([WRIST_COLUMNS.index(column) for column in wrist], dtype=np.int64)
-        self._looks = placed, _friction_part(loop, friction_source), low, high
-        self.sight = Sight(*self._looks, np.zeros((loop.n, len(self.columns)), dtype=np.float32))
+        self._looks = placed, _friction_part(simulation, friction_source), low, high
+        self.sight = Sight(*self._looks, np.zeros((simulation.n, len(self.columns)), dtype=np.float32))
         if history:  # the last observations, the present one last; without it `sight` has all
-            self._frames = np.zeros((loop.n, history + 1, len(self.columns)), dtype=np.float32)
+            self._frames = np.zeros((simulation.n, history + 1, len(self.columns)), dtype=np.float32)
         policy = gym.spaces.Box(np.tile(low, history + 1), np.tile(high, history + 1))
         self.privileged: tuple[Column, ...] = ()
         self.space: gym.Space = policy
         if mode == "dict":
-            self.privileged = privileged.columns(loop.config)
+            self.privileged = privileged.columns(simulation.config)
             self._truth_bounds = _bounds(self.privileged)
-            self._truth = np.zeros((loop.n, len(self.privileged)), dtype=np.float32)
+            self._truth = np.zeros((simulation.n, len(self.privileged)), dtype=np.float32)
             truth = gym.spaces.Box(*self._truth_bounds)
             self.space = gym.spaces.Dict({"policy": policy, "privileged": truth})
 
@@ -88,15 +88,17 @@ class Observer:
 
     def again(self) -> None:
         """Take the present observations of all environments once more, after some were handed over."""
-        self._look(np.arange(self._loop.n))
+        self._look(np.arange(self._simulation.n))
 
     def present(self) -> Observation:
         """Observations of all environments, (n, k) each, for as long as nothing changes."""
-        policy = self._frames.reshape(self._loop.n, -1) if self._history else self.sight.out
+        policy = self._frames.reshape(self._simulation.n, -1) if self._history else self.sight.out
         if not self.privileged:
             return policy
-        plant, (low, high) = self._loop.plant, self._truth_bounds
-        privileged.reveal(plant.world, plant.pads, plant.fingers, self._loop.truth, low, high, self._truth)
+        plant, (low, high) = self._simulation.plant, self._truth_bounds
+        privileged.reveal(
+            plant.world, plant.pads, plant.fingers, self._simulation.truth, low, high, self._truth
+        )
         return {"policy": policy, "privileged": self._truth}
 
     def read(self) -> Observation:
@@ -123,8 +125,15 @@ class Observer:
             self._frames[:] = frames
 
     def _look(self, rows: np.ndarray) -> None:
-        loop = self._loop
-        arrays = loop.wrenches, loop.twists, loop.plant.chips, loop.episode, loop.task_part, loop.plant.world
+        simulation = self._simulation
+        arrays = (
+            simulation.wrenches,
+            simulation.twists,
+            simulation.plant.slip_sensors,
+            simulation.episode,
+            simulation.task_part,
+            simulation.plant.world,
+        )
         observe_some(rows, *arrays, *self.sight)
 
 
@@ -135,13 +144,13 @@ def first(observations: Observation) -> Observation:
     return observations[0]
 
 
-def _friction_part(loop: SlipLoop, source: str) -> np.ndarray:
+def _friction_part(simulation: Simulation, source: str) -> np.ndarray:
     """What the friction part holds, (n, 6): an array of the loop's, or values that never change."""
     if source in ("estimated", "true"):
-        return loop.estimated if source == "estimated" else loop.truth
-    nominal = loop.config.nominal
-    radius = getattr(loop.config.tasks, loop.task.key).radius or nominal.r
-    return np.tile([nominal.mu_s, nominal.mu_c, radius, 1.0, 1.0, 1.0], (loop.n, 1))
+        return simulation.estimated if source == "estimated" else simulation.truth
+    nominal = simulation.config.nominal
+    radius = getattr(simulation.config.tasks, simulation.task.key).radius or nominal.r
+    return np.tile([nominal.mu_s, nominal.mu_c, radius, 1.0, 1.0, 1.0], (simulation.n, 1))
 
 
 def _bounds(named: tuple[Column, ...]) -> tuple[np.ndarray, np.ndarray]:

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from slipgym.envs.choices import one_of
-from slipgym.envs.loop import SlipLoop
+from slipgym.envs.simulation import Simulation
 
 
 class Pictures:
     """Renderers of the chosen environments.
 
     Args:
-        loop: The environments' loop.
+        simulation: The environments' simulation.
         mode: None, "rgb_array" or "depth_array".
         rows: Which environments.
 
@@ -23,7 +23,7 @@ class Pictures:
         ValueError: The mode is unknown, or the rows are no list of environments.
     """
 
-    def __init__(self, loop: SlipLoop, mode: str | None, rows: Sequence[int]) -> None:
+    def __init__(self, simulation: Simulation, mode: str | None, rows: Sequence[int]) -> None:
         self._renderers: dict[int, Any] = {}
         self._mode, self._begun = mode, set[int]()
         if mode is None:
@@ -34,9 +34,9 @@ class Pictures:
         if not isinstance(rows, Sequence) or not rows:
             raise ValueError(f"render_rows = {rows!r} must be a list of at least one row")
         for row in rows:
-            if isinstance(row, bool) or not isinstance(row, int) or not 0 <= row < loop.n:
-                raise ValueError(f"render_rows: {row!r} must be a whole number from 0 to {loop.n - 1}")
-            self._renderers[row] = Renderer(mode, loop, row)
+            if isinstance(row, bool) or not isinstance(row, int) or not 0 <= row < simulation.n:
+                raise ValueError(f"render_rows: {row!r} must be a whole number from 0 to {simulation.n - 1}")
+            self._renderers[row] = Renderer(mode, simulation, row)
 
     def begin(self, i: int) -> None:
         """Environment i has begun an episode."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.envs.observation import FRICTION_COLUMNS
 from slipgym.tasks.task import Column

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.envs.told import Told
 
 KEPT = 4

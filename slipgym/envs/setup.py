@@ -9,11 +9,11 @@ from typing import Any
 from slipgym.config import Config, Randomization, load, load_randomization
 from slipgym.envs.actions import ACTION_MODES, Actions
 from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, whole
-from slipgym.envs.loop import SlipLoop
 from slipgym.envs.observer import Observer
+from slipgym.envs.simulation import Simulation
 from slipgym.tasks import Task
 
-MakeLoop = Callable[[Config, Task, Any, Randomization], SlipLoop]
+MakeSimulation = Callable[[Config, Task, Any, Randomization], Simulation]
 
 
 class Setup:
@@ -21,7 +21,7 @@ class Setup:
 
     Args:
         task: The task.
-        make_loop: Makes the loop from configuration, task, estimator and randomization.
+        make_simulation: Makes the loop from configuration, task, estimator and randomization.
         friction_source: See `slipgym.envs.slip_env.SlipEnv`, like all that follow.
         estimator: See there.
         contact: See there.
@@ -38,7 +38,7 @@ class Setup:
         config: The configuration.
         randomization: What is drawn.
         actions: What actions mean.
-        loop: The loop.
+        simulation: The simulation.
         observer: What is observed.
         arguments: JSON-able; the same environment can be made of them.
 
@@ -49,7 +49,7 @@ class Setup:
     def __init__(
         self,
         task: Task,
-        make_loop: MakeLoop,
+        make_simulation: MakeSimulation,
         friction_source: str = "estimated",
         estimator: str | Mapping[str, Any] = DEFAULT_ESTIMATOR,
         contact: str = "ellipsoid",
@@ -69,11 +69,11 @@ class Setup:
         self.material = one_of("material", material, ("random", *self.config.materials))
         self.frame_skip = whole("frame_skip", frame_skip, 1)
         self.actions = Actions(action_mode, self.config)
-        self.loop = make_loop(self.config, task, estimator, self.randomization)
-        self.observer = Observer(self.loop, friction_source, action_mode, observation_mode, history)
+        self.simulation = make_simulation(self.config, task, estimator, self.randomization)
+        self.observer = Observer(self.simulation, friction_source, action_mode, observation_mode, history)
         self.arguments: dict[str, Any] = {
             "friction_source": friction_source,
-            "estimator": self.loop.estimator_choice,
+            "estimator": self.simulation.estimator_choice,
             "contact": contact,
             "sensors": sensors,
             "material": material,

@@ -12,7 +12,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, refuse_unknown
-from slipgym.envs.engines import make_loop
+from slipgym.envs.engines import make_simulation
 from slipgym.envs.information import Information
 from slipgym.envs.observer import first
 from slipgym.envs.setup import Setup
@@ -82,7 +82,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             one_of("render_mode", render_mode, self.metadata["render_modes"])
         setup = Setup(
             self.task,
-            partial(make_loop, engine),
+            partial(make_simulation, engine),
             friction_source,
             estimator,
             contact,
@@ -100,17 +100,17 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         modes = [mode for mode in self.metadata["render_modes"] if mode != "human" or not obstacle()]
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_modes": modes, "render_fps": rate}
-        self._loop, self._actions, self._observer = setup.loop, setup.actions, setup.observer
+        self.simulation, self._actions, self._observer = setup.simulation, setup.actions, setup.observer
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns
         self.action_space, self.observation_space = self._actions.space, self._observer.space
-        self._information = Information(self._loop)
+        self._information = Information(self.simulation)
         self._arguments = {**setup.arguments, "engine": engine}
         self._renderer: Any = None
         if render_mode is not None:
             from slipgym.rendering import Renderer
 
-            self._renderer = Renderer(render_mode, self._loop)
+            self._renderer = Renderer(render_mode, self.simulation)
         self._ready = False
 
     def reset(
@@ -128,11 +128,11 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         """
         super().reset(seed=seed)
         self._ready = False
-        self._loop.reset(self.task.options.parse(options), self.material, self.np_random)
+        self.simulation.reset(self.task.options.parse(options), self.material, self.np_random)
         if self._renderer is not None:
             self._renderer.begin()
         self._ready = True
-        drawn = self._loop.drawn[0]
+        drawn = self.simulation.drawn[0]
         self._observer.begin(_FIRST)
         return first(self._observer.read()), {
             **self._information.one(0),
@@ -152,23 +152,23 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         """
         actions = self._actions.checked(action)
         if not self._ready:
-            self._loop.check_open()
+            self.simulation.check_open()
             raise RuntimeError("call reset() before step()")
-        loop, episode, observer = self._loop, self._loop.episode, self._observer
+        simulation, episode, observer = self.simulation, self.simulation.episode, self._observer
         total = np.zeros(len(self.task.terms))
         dropped = finished = self._ready = False
         # a picture's strip shows every sample
         at_once = self._frame_skip if self._renderer is None else 1
         for _ in range(0, self._frame_skip, at_once):
-            loop.step(actions, self._actions.table, at_once, _ONE, observer.sight)
-            total += loop.told.terms[0]
+            simulation.step(actions, self._actions.table, at_once, _ONE, observer.sight)
+            total += simulation.told.terms[0]
             dropped = episode["dropped"].item()
             finished = episode["step"].item() >= episode["steps"].item()
             if self._renderer is not None:
                 self._renderer.keep()
             if dropped or finished:
                 break
-        loop.told.terms[0] = total
+        simulation.told.terms[0] = total
         observer.next(_ONE)
         self._ready = True
         reward, info = sum(total.tolist()), self._information.one(0)
@@ -184,10 +184,10 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         Raises:
             RuntimeError: The environment is closed or was never reset.
         """
-        self._loop.check_open()
+        self.simulation.check_open()
         if self._renderer is None:
             return None
-        if self._loop.boxes[0] is None:
+        if self.simulation.boxes[0] is None:
             raise RuntimeError("call reset() first: there is no object yet")
         return self._renderer.render()
 
@@ -197,12 +197,12 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         Raises:
             RuntimeError: The environment is closed.
         """
-        self._loop.check_open()
+        self.simulation.check_open()
         return EnvState(
             made_of={"task": self.task.name, **self._arguments},
             generator=self.np_random.bit_generator.state,
             seed=self._np_random_seed,
-            loop=self._loop.get_state() if self._ready else None,
+            simulation=self.simulation.get_state() if self._ready else None,
             frames=self._observer.get_state(),
         )
 
@@ -218,25 +218,25 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             RuntimeError: This environment is closed.
         """
         checked(state, EnvState).check({"task": self.task.name, **self._arguments})
-        self._loop.check_open()
+        self.simulation.check_open()
         self._np_random = restored_generator(state.generator)
         self._np_random_seed = state.seed
-        if state.loop is not None:
-            self._loop.set_state(state.loop)
+        if state.simulation is not None:
+            self.simulation.set_state(state.simulation)
             if self._renderer is not None:
                 self._renderer.begin()
         self._observer.set_state(state.frames)
-        self._ready = state.loop is not None
+        self._ready = state.simulation is not None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make a new environment with a world of its own, in the same state."""
-        state = None if self._loop.closed else self.get_state()
+        state = None if self.simulation.closed else self.get_state()
         arguments = {**self._arguments, "render_mode": self.render_mode}
         return _rebuild, (type(self), arguments, state, self.spec)
 
     def close(self) -> None:
         """Release the physics client; closing twice is harmless."""
-        self._loop.close()
+        self.simulation.close()
         if self._renderer is not None:
             self._renderer.close()
         self._ready = False

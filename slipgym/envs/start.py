@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
 from slipgym.world.placing import put
@@ -76,7 +76,7 @@ def grip(starts, episodes, worlds, pads, cells, fingers):
 
 
 @compiled
-def equip(starts, spread, noise, pads, force_torque, chips, truth):
+def equip(starts, spread, noise, pads, force_torque, slip_sensors, truth):
     """Give pads their friction and start the sensors.
 
     Args:
@@ -85,7 +85,7 @@ def equip(starts, spread, noise, pads, force_torque, chips, truth):
         noise: See there.
         pads: PAD (n, 2).
         force_torque: FORCE_TORQUE (n, 2).
-        chips: SLIP_SENSOR (n, 2).
+        slip_sensors: SLIP_SENSOR (n, 2).
         truth: Output (n, 6), of which the first three are mu_s, mu_c, r.
     """
     for k in range(starts.shape[0]):
@@ -98,18 +98,20 @@ def equip(starts, spread, noise, pads, force_torque, chips, truth):
             for a in range(6):
                 scale = spread[a] + start.bias_scale * noise[a]
                 force_torque[i, f].bias[a] = scale * start.biases[f, a]
-        start_sensors(force_torque[i], chips[i], start.keys, start.shares)
+        start_sensors(force_torque[i], slip_sensors[i], start.keys, start.shares)
 
 
 @compiled
-def open_episodes(starts, fresh_states, fresh_estimates, chips, states, estimates, episodes, commands, terms):
+def open_episodes(
+    starts, fresh_states, fresh_estimates, slip_sensors, states, estimates, episodes, commands, terms
+):
     """After grip and sensors have come to rest: nothing has slipped, learned or been commanded yet.
 
     Args:
         starts: START (m,).
         fresh_states: Of both fingers' estimators, (2,).
         fresh_estimates: ESTIMATE (2,).
-        chips: SLIP_SENSOR (n, 2).
+        slip_sensors: SLIP_SENSOR (n, 2).
         states: Of the estimators, (2 n,).
         estimates: ESTIMATE (2 n,).
         episodes: EPISODE (n,).
@@ -119,7 +121,7 @@ def open_episodes(starts, fresh_states, fresh_estimates, chips, states, estimate
     for k in range(starts.shape[0]):
         i = starts[k].row
         for f in range(2):
-            chips[i, f].travel[:] = 0.0
+            slip_sensors[i, f].measured_slip[:] = 0.0
             states[2 * i + f], estimates[2 * i + f] = fresh_states[f], fresh_estimates[f]
         commands[i, :] = 0.0
         terms[i, :] = 0.0

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from slipgym.config.errors import unknown
-from slipgym.envs.loop import LoopState
+from slipgym.envs.simulation import SimulationState
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class EnvState(State):
     """State of the environment's random generator."""
     seed: int | None
     """Seed that the generator was last given."""
-    loop: LoopState | None
+    simulation: SimulationState | None
     """Bodies, contacts, sensors, estimators and task; None before the first reset."""
     frames: np.ndarray
     """The last observations, the present one last, (1, history + 1, m)."""
@@ -61,7 +61,7 @@ class VectorState(State):
 
     generators: Sequence[Mapping[str, Any]]
     """States of the environments' random generators."""
-    loop: LoopState
+    simulation: SimulationState
     """Bodies, contacts, sensors, estimators and task."""
     frames: np.ndarray
     """The last observations, the present one last, (n, history + 1, m)."""

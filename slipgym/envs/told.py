@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 
 SHAPES: dict[str, tuple[int, ...]] = {
     "true": (3,),  # mu_s, mu_c [-], r [m] now

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from slipgym.envs.loop import SlipLoop
+from slipgym.envs.simulation import Simulation
 from slipgym.tasks.motion import Motion
 
 COLUMNS = ("grip_1", "grip_2", "path", "reference", "mu_c", "mu_s")
@@ -16,21 +16,21 @@ class History:
     """A row for each slip-velocity sample of an episode, from the start on; NaN where nothing was kept.
 
     Args:
-        loop: The environment's loop, just reset.
+        simulation: The environment's simulation, just reset.
         row: Which of its environments.
         motion: What path and reference are.
     """
 
-    def __init__(self, loop: SlipLoop, row: int, motion: Motion) -> None:
-        self._loop, self._row, self._motion = loop, row, motion
-        self.rows = np.full((int(loop.episode["steps"][row]) + 1, len(COLUMNS)), math.nan)
-        self.step_time = float(loop.episode["step_time"][row])
+    def __init__(self, simulation: Simulation, row: int, motion: Motion) -> None:
+        self._simulation, self._row, self._motion = simulation, row, motion
+        self.rows = np.full((int(simulation.episode["steps"][row]) + 1, len(COLUMNS)), math.nan)
+        self.step_time = float(simulation.episode["step_time"][row])
         self.keep()
 
     @property
     def step(self) -> int:
         """Samples since the start."""
-        return int(self._loop.episode["step"][self._row])
+        return int(self._simulation.episode["step"][self._row])
 
     @property
     def time(self) -> float:
@@ -48,11 +48,14 @@ class History:
 
     def keep(self) -> None:
         """Keep the present."""
-        loop, i = self._loop, self._row
-        mu_s, mu_c, _, support_s, support_c, _ = loop.estimated[i]
-        slip, reference = loop.plant.world["slip"][i], loop.episode["reference"][i, self._motion.entry]
+        simulation, i = self._simulation, self._row
+        mu_s, mu_c, _, support_s, support_c, _ = simulation.estimated[i]
+        slip, reference = (
+            simulation.plant.world["slip"][i],
+            simulation.episode["reference"][i, self._motion.entry],
+        )
         row = self.rows[self.step]
-        row[:2] = loop.plant.fingers["force"][i]
+        row[:2] = simulation.plant.fingers["force"][i]
         row[2], row[3] = self._motion.path(slip), self._motion.target(reference)
         row[4] = mu_c if support_c > 0.0 else math.nan
         row[5] = mu_s if support_s > 0.0 else math.nan

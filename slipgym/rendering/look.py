@@ -6,21 +6,21 @@ import math
 
 import numpy as np
 
-from slipgym.envs.loop import SlipLoop
+from slipgym.envs.simulation import Simulation
 from slipgym.rendering.stage import View
 
 
-def look(loop: SlipLoop, row: int) -> View:
+def look(simulation: Simulation, row: int) -> View:
     """Where everything is in a world.
 
     Args:
-        loop: The environments' loop.
+        simulation: The environments' simulation.
         row: Which of them.
     """
-    world = loop.plant.world[row]
+    world = simulation.plant.world[row]
     cos, sin = math.cos(world["angle"]), math.sin(world["angle"])
     rotation = np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
     x, z, pitch = world["wrist"].tolist()
     centre = np.array([world["com"][0], 0.0, world["com"][1]])
-    pad = loop.config.gripper.pad_radius
-    return View(loop.boxes[row], loop.materials[row], centre, rotation, (x, z, pitch), pad)
+    pad = simulation.config.gripper.pad_radius
+    return View(simulation.boxes[row], simulation.materials[row], centre, rotation, (x, z, pitch), pad)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipgym.envs.loop import SlipLoop
+from slipgym.envs.simulation import Simulation
 from slipgym.rendering import camera, strip
 from slipgym.rendering.caption import caption
 from slipgym.rendering.forces import Contact
@@ -26,20 +26,20 @@ class Renderer:
 
     Args:
         mode: "rgb_array", "depth_array" or "human".
-        loop: The environment's loop.
+        simulation: The environment's simulation.
         row: Which of its environments.
     """
 
-    def __init__(self, mode: str, loop: SlipLoop, row: int = 0) -> None:
-        self._mode, self._loop, self._row = mode, loop, row
-        self._motion = loop.task.motion
-        self._window = Window(f"slipgym {loop.task.name}", (WIDTH, HEIGHT)) if mode == "human" else None
+    def __init__(self, mode: str, simulation: Simulation, row: int = 0) -> None:
+        self._mode, self._simulation, self._row = mode, simulation, row
+        self._motion = simulation.task.motion
+        self._window = Window(f"slipgym {simulation.task.name}", (WIDTH, HEIGHT)) if mode == "human" else None
 
     def begin(self) -> None:
         """Start an episode, or go on from a restored state: the strip begins anew."""
-        self._history = History(self._loop, self._row, self._motion)
-        names = [column.name for column in self._loop.task.columns]
-        told = dict(zip(names, self._loop.task_part[self._row].tolist(), strict=True))
+        self._history = History(self._simulation, self._row, self._motion)
+        names = [column.name for column in self._simulation.task.columns]
+        told = dict(zip(names, self._simulation.task_part[self._row].tolist(), strict=True))
         self._goal = self._motion.target(told.get(self._motion.goal, 0.0))
         self._camera = camera.framing(footprint(self._view(), told.get("wrist_pitch_goal", 0.0)))
         self._show()
@@ -63,16 +63,16 @@ class Renderer:
 
     def picture(self) -> np.ndarray:
         """Picture (HEIGHT, WIDTH, 3) uint8; the caller's own."""
-        loop = self._loop
+        simulation = self._simulation
         picture = np.empty((HEIGHT, WIDTH, 3), np.uint8)
         view, beside = picture[:, : camera.WIDTH], picture[:, camera.WIDTH :]
         contact = self._contact()
         draw_scene(view, self._view(), contact, self._camera)
-        row, world = self._row, loop.plant.world[self._row]
-        about = f"{loop.materials[row]}, {1e3 * world['mass']:.0f} g"
+        row, world = self._row, simulation.plant.world[self._row]
+        about = f"{simulation.materials[row]}, {1e3 * world['mass']:.0f} g"
         slip = world["slip"]
-        caption(view, loop.task.name, about, self._history.time, self._state(), contact, slip)
-        true = float(loop.truth[row, 0]), float(loop.truth[row, 1])
+        caption(view, simulation.task.name, about, self._history.time, self._state(), contact, slip)
+        true = float(simulation.truth[row, 0]), float(simulation.truth[row, 1])
         strip.draw_strip(beside, self._history, self._motion, self._goal, true)
         return picture
 
@@ -86,19 +86,19 @@ class Renderer:
             self._window.show(self.picture(), WINDOW_RATE)
 
     def _view(self) -> View:
-        return look(self._loop, self._row)
+        return look(self._simulation, self._row)
 
     def _contact(self) -> Contact:
-        x, y, torque = self._loop.plant.pads["wrench"][self._row].sum(axis=0).tolist()
-        first, second = self._loop.plant.fingers["contact_force"][self._row].tolist()
+        x, y, torque = self._simulation.plant.pads["wrench"][self._row].sum(axis=0).tolist()
+        first, second = self._simulation.plant.fingers["contact_force"][self._row].tolist()
         return Contact((x, y), torque, (first, second))
 
     def _state(self) -> str:
-        loop, row = self._loop, self._row
-        if loop.episode["dropped"][row]:
+        simulation, row = self._simulation, self._row
+        if simulation.episode["dropped"][row]:
             return "dropped"
-        if loop.episode["success"][row]:
+        if simulation.episode["success"][row]:
             return "success"
-        x, y, rate = loop.plant.world["slip_twist"][row]
+        x, y, rate = simulation.plant.world["slip_twist"][row]
         slips = np.hypot(x, y) > _SLIPPING[0] or abs(rate) > _SLIPPING[1]
         return "slips" if slips else "sticks"

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.sensors.noise import standard_normal
 
 HISTORY = 64

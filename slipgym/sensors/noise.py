@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _MIX_1, _MIX_2 = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.sensors.noise import standard_normal
 
 HISTORY = 16
@@ -36,7 +36,7 @@ SLIP_SENSOR = np.dtype(
         ("carry", "f8", AXES),  # displacement not yet counted [m]
         ("counted", "f8", AXES),  # displacement counted in the newest sample [m]
         ("taken", "i8"),  # samples since reset
-        ("travel", "f8", 3),  # delivered slip displacement since reset
+        ("measured_slip", "f8", 3),  # delivered slip displacement since reset
         ("history", "f8", (HISTORY, 3)),  # slip displacement counted in the newest samples, in turn
     ]
 )
@@ -103,9 +103,9 @@ def read_slip(sensor, twist):
         twist[1] += y
         twist[2] += theta
         if number == newest:
-            sensor.travel[0] += x
-            sensor.travel[1] += y
-            sensor.travel[2] += theta
+            sensor.measured_slip[0] += x
+            sensor.measured_slip[1] += y
+            sensor.measured_slip[2] += theta
     for a in range(3):
         twist[a] /= sensor.window * sensor.sample_time
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.sensors.slip_velocity import AXES
 
 KEYS = 3
@@ -17,17 +17,17 @@ def draw_sensors(n: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarr
 
 
 @compiled
-def start_sensors(force_torque, chips, keys, shares):
+def start_sensors(force_torque, slip_sensors, keys, shares):
     """Forget all samples.
 
     Args:
         force_torque: FORCE_TORQUE (n,).
-        chips: SLIP_SENSOR (n,).
+        slip_sensors: SLIP_SENSOR (n,).
         keys: From `draw_sensors`, like the last.
         shares: See there.
     """
-    for i in range(chips.shape[0]):
-        wrench, slip = force_torque[i], chips[i]
+    for i in range(slip_sensors.shape[0]):
+        wrench, slip = force_torque[i], slip_sensors[i]
         for k in range(wrench.kept):
             for a in range(6):
                 wrench.history[k, a] = 0.0
@@ -36,7 +36,7 @@ def start_sensors(force_torque, chips, keys, shares):
         slip.counted[:] = 0.0
         slip.history[:] = 0.0
         slip.moved[:] = 0.0
-        slip.travel[:] = 0.0
+        slip.measured_slip[:] = 0.0
         slip.taken = 0
         for a in range(AXES):
             slip.carry[a] = slip.count * (2.0 * shares[i, a] - 1.0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.config import Overrides, load
 from slipgym.contact.records import pads
 from slipgym.sensors.force_torque import sample_force_torque
@@ -72,29 +72,29 @@ def sense(
         raise ValueError(f"m = {m!r} must be at least 1")
     plant = build(load(config, sensors), -(-m // 2))  # both fingers of a gripper have noise of their own
     rng = np.random.default_rng(seed)
-    force_torque, chips = plant.force_torque, plant.chips
+    force_torque, slip_sensors = plant.force_torque, plant.slip_sensors
     force_torque["delay"] = 0
-    start_sensors(force_torque.reshape(-1), chips.reshape(-1), *draw_sensors(chips.size, rng))
-    fingers, n = chips.shape, len(trace.t)
+    start_sensors(force_torque.reshape(-1), slip_sensors.reshape(-1), *draw_sensors(slip_sensors.size, rng))
+    fingers, n = slip_sensors.shape, len(trace.t)
     pad = pads(1)
     wrenches, twists = np.zeros((*fingers, 4)), np.zeros((*fingers, 3))
     every_wrench, every_twist = np.zeros((m, n, 4)), np.zeros((m, n, 3))
     for k in range(n):
         plant.world["tick"] += force_torque["period"][:, 0]
         pad["wrench"], pad["normal"] = trace.wrench[k], trace.normal[k]
-        _expose(plant.world, force_torque, chips, pad, trace.motion[k])
-        measure(plant.world, force_torque, chips, wrenches, twists)
+        _expose(plant.world, force_torque, slip_sensors, pad, trace.motion[k])
+        measure(plant.world, force_torque, slip_sensors, wrenches, twists)
         every_wrench[:, k] = wrenches.reshape(-1, 4)[:m]
         every_twist[:, k] = twists.reshape(-1, 3)[:m]
     return _record(trace, every_wrench, every_twist)
 
 
 @compiled
-def _expose(worlds, force_torque, chips, pad, motion):
+def _expose(worlds, force_torque, slip_sensors, pad, motion):
     """Lets all fingers feel the pad's load and see its slip since the last sample."""
-    for i in range(chips.shape[0]):
+    for i in range(slip_sensors.shape[0]):
         for f in range(2):
-            accumulate_slip(chips[i, f], motion)
+            accumulate_slip(slip_sensors[i, f], motion)
             sample_force_torque(force_torque[i, f], pad[0], worlds[i].tick)
 
 

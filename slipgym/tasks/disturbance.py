@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 
 SHAKES = 2
 """Shakings of the wrist that add up: the task's own and a drawn one."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.tasks.disturbance import FIELDS, shake_velocity
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.world.wrist import ramp_wrist

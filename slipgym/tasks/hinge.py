@@ -57,7 +57,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.disturbance import shake_velocity

@@ -41,7 +41,7 @@ import math
 import numpy as np
 from pydantic import Field
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.config import Config, TaskConfig
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval
 from slipgym.tasks.disturbance import POKES_MAX

@@ -54,7 +54,7 @@ import math
 import numpy as np
 from pydantic import Field
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness, schedule, trapezoid

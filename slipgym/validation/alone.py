@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.world.alone import move
 from slipgym.world.placing import place
+from slipgym.world.planar_engine import move
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box
 from slipgym.world.wrist import ramp_wrist
@@ -18,7 +18,7 @@ from slipgym.world.wrist import ramp_wrist
 class AloneWorld:
     """One world that friction and the planar equations of motion alone move.
 
-    Its methods are those of `slipgym.world.bullet.BulletWorld`.
+    Its methods are those of `slipgym.world.bullet_engine.BulletWorld`.
 
     Args:
         config: Configuration; the gripper's limits are read.
@@ -52,7 +52,7 @@ class AloneWorld:
     def step(self) -> None:
         """Advance by one control step."""
         plant = self._plant
-        bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.chips
+        bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
         move(*bodies, self._force, 0)
 
     @property

@@ -12,7 +12,7 @@ import numpy as np
 from slipgym.config import Config, load
 from slipgym.validation.alone import AloneWorld
 from slipgym.validation.trace import Trace
-from slipgym.world.bullet import BulletWorld
+from slipgym.world.bullet_engine import BulletWorld
 from slipgym.world.plant import build
 from slipgym.world.scene import Box
 

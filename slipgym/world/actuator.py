@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.contact.decay import decay
 from slipgym.world.records import QUEUE
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.contact.records import rest, rest_cells
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box

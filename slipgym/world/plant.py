@@ -36,7 +36,7 @@ class Plant:
     """FINGER (n, 2)."""
     force_torque: np.ndarray
     """FORCE_TORQUE (n, 2)."""
-    chips: np.ndarray
+    slip_sensors: np.ndarray
     """SLIP_SENSOR (n, 2)."""
 
     def restore(self, other: Plant) -> None:
@@ -56,7 +56,7 @@ def build(config: Config, n: int = 1) -> Plant:
         cells=_cells(config, n),
         fingers=_fingers(config, n),
         force_torque=_force_torque(config, n, tick_rate),
-        chips=_chips(config, n),
+        slip_sensors=_slip_sensors(config, n),
     )
 
 
@@ -157,19 +157,19 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     return array
 
 
-def _chips(config: Config, n: int) -> np.ndarray:
+def _slip_sensors(config: Config, n: int) -> np.ndarray:
     sensor = config.sensors.slip
     check_slip_latency(config, sensor.latency_samples)
     positions = chip_positions(sensor.chip_radius, sensor.chips)
-    chips = np.zeros((n, 2), SLIP_SENSOR)
-    chips["mirror"] = MIRROR
-    chips["sample_time"] = 1.0 / sensor.rate
-    chips["count"] = sensor.count if sensor.counts else 0.0
-    chips["noise"] = sensor.noise * sensor.count
-    chips["range"] = sensor.speed_max / sensor.rate
-    chips["window"] = sensor.window
-    chips["delay"] = sensor.latency_samples
-    chips["chips"] = sensor.chips
-    chips["at"] = positions
-    chips["spread"] = np.sum(positions**2)
-    return chips
+    slip_sensors = np.zeros((n, 2), SLIP_SENSOR)
+    slip_sensors["mirror"] = MIRROR
+    slip_sensors["sample_time"] = 1.0 / sensor.rate
+    slip_sensors["count"] = sensor.count if sensor.counts else 0.0
+    slip_sensors["noise"] = sensor.noise * sensor.count
+    slip_sensors["range"] = sensor.speed_max / sensor.rate
+    slip_sensors["window"] = sensor.window
+    slip_sensors["delay"] = sensor.latency_samples
+    slip_sensors["chips"] = sensor.chips
+    slip_sensors["at"] = positions
+    slip_sensors["spread"] = np.sum(positions**2)
+    return slip_sensors

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 
 
 @compiled

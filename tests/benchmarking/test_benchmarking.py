@@ -20,9 +20,9 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture
 def bare():
-    loop = BareLoop(load())
-    yield loop
-    loop.close()
+    simulation = BareLoop(load())
+    yield simulation
+    simulation.close()
 
 
 def test_the_bare_loop_simulates_the_environments_scene(bare):
@@ -30,14 +30,14 @@ def test_the_bare_loop_simulates_the_environments_scene(bare):
     assert bare.held()
     env = measure.Player("slipgym/LinearSlip-v0").env
     env.reset(seed=0)
-    ours, theirs = bare._client, env._loop.world.client
+    ours, theirs = bare._client, env.simulation.world.client
     for client in (ours, theirs):
         assert pybullet.getNumBodies(physicsClientId=client) == 2
     parameters = [pybullet.getPhysicsEngineParameters(physicsClientId=client) for client in (ours, theirs)]
     assert parameters[0] == parameters[1]
     dynamics = [
         pybullet.getDynamicsInfo(world, -1, physicsClientId=client)[:3]
-        for world, client in ((bare._body, ours), (env._loop.world.body, theirs))
+        for world, client in ((bare._body, ours), (env.simulation.world.body, theirs))
     ]
     assert dynamics[0] == dynamics[1]
     counts = [len(pybullet.getContactPoints(physicsClientId=client)) for client in (ours, theirs)]
@@ -52,17 +52,17 @@ def test_the_player_lets_the_box_slip_and_goes_on():
         seconds, steps = player.block()
         assert seconds > 0.0
         assert 0 < steps <= 4 * measure.BLOCK
-        slips += abs(player.env._loop.plant.world["slip"][0, 1]) > 1e-3
+        slips += abs(player.env.simulation.plant.world["slip"][0, 1]) > 1e-3
     assert slips > 5
     player.env.close()
 
 
 def test_every_part_of_a_step_is_found_and_put_back():
     player = measure.Player("slipgym/Hold-v0")
-    env, loop, task = player.env, player.env._loop, player.env._loop.task
+    env, simulation, task = player.env, player.env.simulation, player.env.simulation.task
     figures = measure.breakdown(player, 4)
-    assert loop.task is task
-    for owner in (env, loop, loop.world, loop.estimator, measure.loops, measure.bullet):
+    assert simulation.task is task
+    for owner in (env, simulation, simulation.world, simulation.estimator, measure.loops, measure.bullet):
         left = [name for name, value in vars(owner).items() if getattr(value, "__name__", "") == "timed"]
         assert left == []
     assert all(figure.value > 0.0 for figure in figures)

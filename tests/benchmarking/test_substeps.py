@@ -20,7 +20,7 @@ def speeds(plant, forces, blocks=60, steps=50) -> np.ndarray:
     """Slip speed after every few sub-steps."""
     plant, speed = deepcopy(plant), np.empty(blocks)
     for i in range(blocks):
-        rows = plant.world[0], plant.pads[0], None, plant.fingers[0], plant.chips[0]
+        rows = plant.world[0], plant.pads[0], None, plant.fingers[0], plant.slip_sensors[0]
         substeps.repeat(*rows, np.roll(forces, -i * steps), steps)
         speed[i] = np.hypot(*plant.world["relative_velocity"][0, :2])
     return speed

@@ -6,7 +6,7 @@ from decimal import Decimal, localcontext
 import numpy as np
 import pytest
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.contact import DistributedContact
 from slipgym.contact.decay import decay
 

@@ -63,7 +63,7 @@ def test_an_increment_counts_for_every_sample(make, frame_skip):
     env.reset(seed=0, options={"initial_force": 10.0})
     for steps in (1, 2):
         observation, *_ = env.step([0.5])
-        assert observation[column(env, "command")] == 10.0 + 0.5 * steps * frame_skip
+        assert observation[column(env, "commanded_force")] == 10.0 + 0.5 * steps * frame_skip
 
 
 @pytest.mark.parametrize("mode", ["grip_force_pitch", WRIST])
@@ -82,10 +82,13 @@ def test_a_wrist_left_alone_is_the_default_mode(make, env_id, mode):
 def test_the_wrist_goes_where_it_is_told(make, env_id):
     env = make(env_id, action_mode=WRIST)
     start = env.reset(seed=0)[0][column(env, "wrist_pitch")]
-    x, z = env._loop.plant.world["wrist"][0, :2].copy()
+    x, z = env.simulation.plant.world["wrist"][0, :2].copy()
     for _ in range(30):  # before anything is scripted but Hold's shaking
         observation, *_ = env.step([1.0, 0.1, -0.04, 0.02])
-    moved = *(env._loop.plant.world["wrist"][0, :2] - (x, z)), observation[column(env, "wrist_pitch")] - start
+    moved = (
+        *(env.simulation.plant.world["wrist"][0, :2] - (x, z)),
+        observation[column(env, "wrist_pitch")] - start,
+    )
     shaken = (0.01, 0.01, 0.06) if env_id == HOLD else 0.0
     # a ramp of one sample, then a quarter of a second less half a sample
     np.testing.assert_array_less(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from slipgym.envs.vector import SlipVectorEnv
+from slipgym.envs.vector_env import SlipVectorEnv
 
 PAGE = (Path(__file__).parents[2] / "docs" / "batch.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)

@@ -7,8 +7,8 @@ import pytest
 from numba import njit
 from numba.core.unsafe.refcount import get_refcount
 
-from slipgym.borrowing import borrowed
-from slipgym.compiled import compiled
+from slipgym._numba.borrowing import borrowed
+from slipgym._numba.compiled import compiled
 
 
 @compiled

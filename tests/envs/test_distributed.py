@@ -36,10 +36,10 @@ def test_the_true_r_is_that_of_the_pressure_on_the_pad(make, env_id, model, cont
 def spin_torque(env, **options) -> float:
     """Torque of both pads over mu_c sum f_n while the box spins between them, weight aside [m]."""
     env.reset(seed=0, options={"com_offset": (0.0, 0.0), **options})
-    world, plant = env._loop.world, env._loop.plant
+    world, plant = env.simulation.world, env.simulation.plant
     world.disturb(np.array([0.0, 0.2 * 9.81, 0.5]))
-    env._loop._advance(10.0)
-    env._loop._advance(10.0)
+    env.simulation._advance(10.0)
+    env.simulation._advance(10.0)
     assert abs(plant.world["slip_twist"][0, 2]) > 3.0
     return float(-plant.pads["wrench"][0, :, 2].sum() / (plant.pads["mu_c"] * plant.pads["normal"]).sum())
 
@@ -51,7 +51,7 @@ def test_a_spinning_box_feels_the_r_asked_for(make, pressure, r):
     env = make(**PATCH, config={"contact": contact, "object": {"mass": 0.2}})
     torque = spin_torque(env, object_mass=0.2, **({} if r is None else {"r": r}))
     # of the cells near the centre of rotation, which is off by the rest of the weight, one may differ: 1/81
-    assert torque == pytest.approx(env._loop.true_friction[0, 2], rel=1.5e-2)
+    assert torque == pytest.approx(env.simulation.true_friction[0, 2], rel=1.5e-2)
 
 
 def test_an_r_for_which_the_pad_has_no_room_is_refused(make, env_id):
@@ -66,12 +66,14 @@ def test_an_r_for_which_the_pad_has_no_room_is_refused(make, env_id):
 
 
 def test_a_configuration_may_choose_the_model(make, env_id):
-    assert make(env_id, config={"contact": {"model": "distributed"}})._loop.plant.cells is not None
-    assert make(env_id)._loop.plant.cells is None
+    assert make(env_id, config={"contact": {"model": "distributed"}}).simulation.plant.cells is not None
+    assert make(env_id).simulation.plant.cells is None
 
 
 def test_the_number_of_cells_is_the_configured_one(make):
-    sizes = [make(**PATCH, config={"contact": {"cells": n}})._loop.plant.cells.shape[-1] for n in (5, 21)]
+    sizes = [
+        make(**PATCH, config={"contact": {"cells": n}}).simulation.plant.cells.shape[-1] for n in (5, 21)
+    ]
     assert sizes[0] <= 25 < 21**2 / 2 < sizes[1] <= 21**2
 
 

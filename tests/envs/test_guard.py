@@ -11,7 +11,7 @@ from slipgym.envs.guard import KEPT, QUANTITIES
 
 def stopped(env) -> str:
     """Pushes the object with a force that is no number, and returns what the environment says to it."""
-    episode = env._loop.episode
+    episode = env.simulation.episode
     episode["pushes"], episode["push_end"][0, 0] = 1, episode["steps"][0]
     episode["push_wrench"][0, 0] = np.nan, 0.0, 0.0
     with pytest.raises(FloatingPointError) as caught:

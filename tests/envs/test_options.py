@@ -129,5 +129,5 @@ def test_a_poke_carries_its_impulse(make):
     impulse = np.zeros(2)
     for _ in range(60):
         env.step(FIRM)
-        impulse += env._loop.plant.world["external"][0, :2] / 120
+        impulse += env.simulation.plant.world["external"][0, :2] / 120
     assert np.linalg.norm(impulse) == pytest.approx(0.2)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from slipgym.prefetch import fetch
+from slipgym._numba.prefetch import fetch
 from slipgym.world.records import FINGER, WORLD
 
 

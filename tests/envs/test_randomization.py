@@ -29,9 +29,9 @@ def sure(kind: str, **values: float) -> dict:
 
 
 def fitted(env) -> list:
-    plant = env._loop.plant
+    plant = env.simulation.plant
     arrays = plant.pads["sigma_0"], plant.fingers["lag"], plant.fingers["dead_ticks"]
-    return [array.tolist() for array in (*arrays, plant.force_torque["noise"], plant.chips["delay"])]
+    return [array.tolist() for array in (*arrays, plant.force_torque["noise"], plant.slip_sensors["delay"])]
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -130,7 +130,7 @@ def test_a_patch_has_the_drawn_pressure(make):
     for seed in range(4):
         _, info = env.reset(seed=seed)
         seen[info["drawn"]["pressure"]] = info["true"][2]
-        cells = env._loop.plant.cells[0, 0]
+        cells = env.simulation.plant.cells[0, 0]
         assert cells[SHARE].sum() == pytest.approx(1.0)
         assert cells[SHARE] @ np.hypot(cells[X], cells[Y]) == pytest.approx(1.0)
     assert seen == {name: pytest.approx(0.015 / OUTER_RADII[name]) for name in ("hertz", "rim")}
@@ -140,18 +140,18 @@ def test_a_patch_has_the_drawn_pressure(make):
 def test_an_estimator_that_asks_is_told_the_latency(make, estimator):
     env = make(randomization={"slip_latency": at(3)}, estimator=estimator)
     env.reset(seed=0)
-    assert (env._loop.plant.chips["delay"] == 3).all()
-    parameters = env._loop.estimator.parameters_array
+    assert (env.simulation.plant.slip_sensors["delay"] == 3).all()
+    parameters = env.simulation.estimator.parameters_array
     assert ("velocity_delay" in parameters.dtype.names) == (estimator == "joint")
     if estimator == "joint":
         assert parameters["velocity_delay"] == 3
         twin = pickle.loads(pickle.dumps(env))
         twin.reset(seed=1, options={"randomization_scale": 0.0})
-        assert twin._loop.estimator.parameters_array["velocity_delay"] == 1
+        assert twin.simulation.estimator.parameters_array["velocity_delay"] == 1
         twin.close()
         env = make(randomization={"slip_latency": at(3)}, estimator={"name": "joint", "velocity_delay": 2})
         env.reset(seed=0)
-        assert env._loop.estimator.parameters_array["velocity_delay"] == 2
+        assert env.simulation.estimator.parameters_array["velocity_delay"] == 2
 
 
 def test_biases_spread_as_drawn(make):
@@ -159,9 +159,9 @@ def test_biases_spread_as_drawn(make):
     biases = []
     for seed in range(100):
         env.reset(seed=seed)
-        biases.append(env._loop.plant.force_torque["bias"].copy())
+        biases.append(env.simulation.plant.force_torque["bias"].copy())
     spread = np.reshape(biases, (-1, 6)).std(axis=0)
-    np.testing.assert_allclose(spread, 2.0 * env._loop.plant.force_torque["noise"][0, 0], rtol=0.25)
+    np.testing.assert_allclose(spread, 2.0 * env.simulation.plant.force_torque["noise"][0, 0], rtol=0.25)
 
 
 def test_friction_drifts_and_jumps(make, env_id):
@@ -200,14 +200,14 @@ def test_a_heavier_object_is_carried_and_weighs_so_in_the_engine(make, env_id):
     for _ in range(85):
         observation, *_ = env.step(np.float32([0.8]))
         loads.append(np.hypot(*(observation[[0, 1]] + observation[[7, 8]])))
-        world = env._loop.world
+        world = env.simulation.world
         masses.append(pybullet.getDynamicsInfo(world.body, -1, world.client)[0])
     assert masses == [0.1] * 60 + [pytest.approx(0.15)] * 25
     if "Hinge" not in env_id:
         assert loads[55] == pytest.approx(0.981, rel=0.02)
         assert loads[-1] == pytest.approx(1.5 * 0.981, rel=0.02)
     env.reset(seed=0, options={"object_mass": 0.1})
-    assert pybullet.getDynamicsInfo(env._loop.world.body, -1, env._loop.world.client)[0] == 0.1
+    assert pybullet.getDynamicsInfo(env.simulation.world.body, -1, env.simulation.world.client)[0] == 0.1
 
 
 def test_a_push_carries_its_impulse_in_its_direction(make, env_id):
@@ -217,7 +217,7 @@ def test_a_push_carries_its_impulse_in_its_direction(make, env_id):
     impulse = np.zeros(3)
     for _ in range(60):
         env.step(FIRM)
-        impulse += env._loop.plant.world["external"][0] / 120
+        impulse += env.simulation.plant.world["external"][0] / 120
     np.testing.assert_allclose(impulse, [0.0, 0.01, 0.0002], atol=1e-12)
 
 
@@ -228,12 +228,12 @@ def test_a_drawn_shake_moves_the_wrist_as_far_as_it_says(make, env_id):
     wrist = []
     for _ in range(300):
         env.step(np.float32([0.5]))
-        wrist.append(env._loop.plant.world["wrist"][0].copy())
+        wrist.append(env.simulation.plant.world["wrist"][0].copy())
     swing = np.ptp(wrist[60:], axis=0)
     np.testing.assert_allclose(swing[:2], 0.004, rtol=0.05)
     assert swing[2] == pytest.approx(0.02, rel=0.05 if "Hinge" not in env_id else 0.6)
     if "Hinge" in env_id:  # a drawn shake is not the agent straying from the script
-        assert env._loop.episode["own"][0, 0] == pytest.approx(wrist[-1][2], abs=1e-3)
+        assert env.simulation.episode["own"][0, 0] == pytest.approx(wrist[-1][2], abs=1e-3)
 
 
 def test_a_state_goes_on_through_what_happens(make, env_id, play):
@@ -264,7 +264,7 @@ def test_a_pressure_of_fewer_cells_than_another(make, engine):
     arguments = {"contact": "distributed", "engine": engine, "sensors": "ideal"}
     drawn = make(randomization={"pressure": ["rim"]}, config={"contact": {"cells": 7}}, **arguments)
     fixed = make(config={"contact": {"cells": 7, "pressure": "rim"}}, **arguments)
-    rooms = [env._loop.plant.cells.shape[-1] for env in (drawn, fixed)]
+    rooms = [env.simulation.plant.cells.shape[-1] for env in (drawn, fixed)]
     assert rooms[0] > rooms[1]
     for k in range(2):
         (first, _), (other, _) = (env.reset(seed=k, options={"material": "wood"}) for env in (drawn, fixed))

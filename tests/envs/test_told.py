@@ -7,33 +7,33 @@ import pytest
 from slipgym.envs.told import FLAGS, SHAPES
 
 
-def records(loop):
+def records(simulation):
     """Of all environments, from the arrays it is told from."""
-    plant, episode = loop.plant, loop.episode
+    plant, episode = simulation.plant, simulation.episode
     return {
-        "true": loop.truth[:, :3],
-        "estimated": loop.estimated[:, :3],
-        "estimated_per_finger": loop.per_finger,
+        "true": simulation.truth[:, :3],
+        "estimated": simulation.estimated[:, :3],
+        "estimated_per_finger": simulation.per_finger,
         "slip": plant.world["slip"],
         "slip_twist": plant.world["slip_twist"],
         "contact_wrench": plant.pads["wrench"],
         "grip_force": plant.fingers["force"],
         "reference": episode["reference"],
-        "time": episode["step"] * loop.step_time,
+        "time": episode["step"] * simulation.step_time,
         "is_success": episode["success"] != 0,
         "dropped": episode["dropped"] != 0,
         **{
             name: episode["terms"][:, k] * (episode["step"] > 0)  # of no step after a reset
-            for k, name in enumerate(loop.task.terms)
+            for k, name in enumerate(simulation.task.terms)
         },
     }
 
 
-def check(loop, infos):
+def check(simulation, infos):
     """Compare all that is told with the arrays it is told from; of one environment or of all."""
     terms = infos["reward_terms"]
-    wanted = records(loop)
-    assert {*SHAPES, *FLAGS, *loop.task.terms} == set(wanted)
+    wanted = records(simulation)
+    assert {*SHAPES, *FLAGS, *simulation.task.terms} == set(wanted)
     for name, values in wanted.items():
         found = np.asarray(infos[name] if name in infos else terms[name])
         np.testing.assert_array_equal(found, values.reshape(found.shape), err_msg=name)
@@ -45,11 +45,11 @@ def test_of_one_environment(make, env_id, engine):
     env, other = make(env_id, engine=engine), make(env_id, engine=engine)
     _, info = env.reset(seed=0)
     other.reset(seed=1)
-    check(env._loop, info)
+    check(env.simulation, info)
     kept = info["grip_force"].copy()
     for k in range(5):
         _, _, _, _, later = env.step(np.array([-0.99 + 0.1 * k], dtype=np.float32))
-        check(env._loop, later)
+        check(env.simulation, later)
     np.testing.assert_array_equal(info["grip_force"], kept)
     assert not np.array_equal(later["grip_force"], kept)
     other.set_state(env.get_state())
@@ -63,12 +63,12 @@ def test_of_one_environment(make, env_id, engine):
 def test_of_a_batch(mode):
     envs = gym.make_vec("slipgym/Hold-v0", num_envs=5, autoreset_mode=mode).unwrapped
     _, infos = envs.reset(seed=0, options={"rows": [{"duration": 0.1}] + [None] * 4})
-    check(envs._loop, infos)
+    check(envs.simulation, infos)
     begun = False
     for _ in range(40):
         kept = infos["slip"].copy(), infos["reward_terms"]["effort"].copy()
         _, _, _, _, later = envs.step(np.full((5, 1), -0.9, dtype=np.float32))
-        check(envs._loop, later)
+        check(envs.simulation, later)
         np.testing.assert_array_equal(infos["slip"], kept[0])
         np.testing.assert_array_equal(infos["reward_terms"]["effort"], kept[1])
         begun |= later["time"][0] < later["time"][1]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
-from slipgym.envs.vector import SlipVectorEnv
+from slipgym.envs.vector_env import SlipVectorEnv
 
 ID = "slipgym/LinearSlip-v0"
 ZERO = np.zeros((3, 1), np.float32)
@@ -167,7 +167,7 @@ def test_a_number_that_is_not_finite_is_named_with_its_row(threads):
     env.reset(seed=0)
     zero = np.zeros((5, 1), np.float32)
     env.step(zero)
-    episode = env._loop.episode
+    episode = env.simulation.episode
     episode["pushes"][3], episode["push_end"][3, 0] = 1, episode["steps"][3]
     episode["push_wrench"][3, 0] = np.nan, 0.0, 0.0
     with pytest.raises(FloatingPointError, match=r"^environment 3: object_x is nan at t = 0\.0166667 s; "):
@@ -186,7 +186,7 @@ def test_rows_that_began_in_a_step_that_failed_need_a_reset_too():
     while not over:
         _, _, terminated, truncated, _ = env.step(ZERO)
         over = (terminated | truncated)[0]
-    episode = env._loop.episode
+    episode = env.simulation.episode
     episode["pushes"][2], episode["push_end"][2, 0] = 1, episode["steps"][2]
     episode["push_wrench"][2, 0] = np.nan, 0.0, 0.0
     with pytest.raises(FloatingPointError, match="environment 2"):

@@ -35,7 +35,7 @@ def test_spin_alone_learns_nothing_and_says_so():
     start = est.estimate
     last = run(est, ellipsoid(SAMPLES, 0.0, 2.0, MU_C, R))[-1]
     assert last[:3] == start[:3]
-    assert last.support_mu_c == last.support_r == 0.0
+    assert last.confidence_mu_c == last.confidence_r == 0.0
     assert (last.observable_mu_c, last.observable_r) == (False, False)
 
 

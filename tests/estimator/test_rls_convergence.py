@@ -35,7 +35,7 @@ def test_spin_alone_finds_only_the_product():
     last = run(estimator.make("rls"), ellipsoid(SAMPLES, 0.0, 2.0, MU_C, R))[-1]
     assert last.mu_c * last.r == pytest.approx(MU_C * R, rel=TOLERANCE)
     assert last.mu_c == estimator.RlsParameters().mu_c0
-    assert last.support_mu_c == 0.0
+    assert last.confidence_mu_c == 0.0
 
 
 @pytest.mark.parametrize("gamma_t", [0.4, 0.5, 0.6, 0.707, 0.8])
@@ -84,6 +84,6 @@ def test_support_counts_the_data_behind_each_value():
     estimates = run(est, ellipsoid(50, *planar(0.707, R), MU_C, R))
     for n, e in enumerate(estimates, start=1):
         assert (e.updates_mu_c, e.updates_r) == (n, n)
-        assert e.support_mu_c == e.support_r == pytest.approx(1.0 - 0.98**n)
+        assert e.confidence_mu_c == e.confidence_r == pytest.approx(1.0 - 0.98**n)
     for e in run(est, ellipsoid(9, 0.001, 0.0, MU_C, R, start=51)):  # below eps_v: no motion regime
         assert (e.updates_mu_c, e.updates_r) == (50, 50)

@@ -43,7 +43,7 @@ def test_estimates_stay_finite_positive_and_in_bounds(rows):
         assert limits.r_min <= e.r <= limits.r_max
         assert 0.0 <= e.gamma_t <= 1.0
         assert 0.0 <= e.gamma_tau <= 1.0
-        for support in (e.support_mu_s, e.support_mu_c, e.support_r):
+        for support in (e.confidence_mu_s, e.confidence_mu_c, e.confidence_r):
             assert 0.0 <= support <= 1.0
 
 

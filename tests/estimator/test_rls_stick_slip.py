@@ -75,7 +75,7 @@ def test_mu_s_is_the_mean_of_the_largest_ratios():
     assert estimates[0].mu_s == 1.5
     counts = [estimates[i].events_mu_s for i in sorted(starts + stops)]
     assert counts == [1, 2, 3, 4]
-    assert [estimates[i].support_mu_s for i in sorted(starts + stops)] == [1 / 2, 2 / 3, 3 / 4, 4 / 5]
+    assert [estimates[i].confidence_mu_s for i in sorted(starts + stops)] == [1 / 2, 2 / 3, 3 / 4, 4 / 5]
 
 
 @pytest.mark.parametrize(("n_a", "n_b"), [(1, 16), (2, 16), (5, 16), (5, 5), (20, 64)])

@@ -20,7 +20,7 @@ def test_what_is_not_there_or_of_another_kind_is_refused(make, name):
 def test_only_a_class_with_predict_is_a_policy():
     with pytest.raises(ValueError, match="a class with a method predict"):
         policies.make("subprocess:Popen", args=["true"])
-    assert policies.find("policies.hold:HoldPolicy") is policies.find("hold")
+    assert policies.find("policies.controllers.hold:HoldPolicy") is policies.find("hold")
 
 
 def test_a_specification_has_the_name_it_is_asked_by():

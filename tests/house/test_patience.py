@@ -1,6 +1,6 @@
 import time
 
-from slipgym.compiled import patience
+from slipgym._numba.compiled import patience
 
 
 def test_only_what_takes_long_is_explained(capsys):

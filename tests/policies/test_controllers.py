@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import policies
-from policies.base import Columns, ObservationIndex
-from policies.sensing import Caution
+from policies.controllers.base import Columns, ObservationIndex
+from policies.controllers.sensing import Caution
 from slipgym.config import load
 from slipgym.envs import HingeEnv, HoldEnv, LinearSlipEnv, PlanarSlipEnv, RotationalSlipEnv
 from slipgym.tasks import find
@@ -91,7 +91,7 @@ def observation(task="Hold", **values):
 
 @pytest.mark.parametrize(("support", "expected"), [(0.0, 0.3), (0.25, 0.35), (0.5, 0.4), (1.0, 0.4)])
 def test_caution_blends_with_support(support, expected):
-    columns = observation(mu_c=0.4, support_mu_c=support)
+    columns = observation(mu_c=0.4, confidence_mu_c=support)
     assert Caution(mu_c=0.3, support=0.5).blend(columns, "mu_c") == pytest.approx(expected)
 
 
@@ -105,7 +105,7 @@ def test_caution_refuses_bad_values(bad):
 
 def test_hold_force_is_load_and_reserve_over_friction():
     columns = observation(
-        f_y_1=-1.0, f_y_2=-1.0, tau_1=0.01, tau_2=0.01, mu_c=0.5, r=0.01, support_mu_c=1, support_r=1
+        f_y_1=-1.0, f_y_2=-1.0, tau_1=0.01, tau_2=0.01, mu_c=0.5, r=0.01, confidence_mu_c=1, confidence_r=1
     )
     policy = policies.make("hold", reserve=0.5, margin=1.2)
     force, _ = policy.control(columns, policy.initial_state(1))
@@ -185,7 +185,7 @@ def test_hinge_without_its_loose_start_swings_up():
 )
 def test_hinge_lets_go_with_the_tilt_while_friction_is_unknown(support, tilt, k):
     load, mu_c = 1.0, 0.5
-    seen = {"wrist_pitch": -tilt, "wrist_pitch_goal": -1.0, "mu_c": mu_c, "support_mu_c": support}
+    seen = {"wrist_pitch": -tilt, "wrist_pitch_goal": -1.0, "mu_c": mu_c, "confidence_mu_c": support}
     columns = observation("Hinge", f_y_1=load, f_y_2=load, **seen)
     policy = policies.make("hinge")
     force, _ = policy.control(columns, policy.initial_state(1))
@@ -208,8 +208,15 @@ def test_planar_slip_follows_the_grasped_point():
     state = policy.initial_state(1)
     for travel in [(0.0, -0.01, 0.0), *((0.0, -0.01, angle) for angle in np.linspace(0.0, 0.5, 200))]:
         row = np.zeros((1, 30))
-        for name, value in zip(("travel_x", "travel_y", "travel_theta"), travel, strict=True):
+        for name, value in zip(
+            ("measured_slip_x", "measured_slip_y", "measured_slip_theta"), travel, strict=True
+        ):
             row[0, index[name]] = value
-        row[0, [index["mu_c"], index["r"], index["support_mu_c"], index["support_r"]]] = 0.4, 0.005, 1.0, 1.0
+        row[0, [index["mu_c"], index["r"], index["confidence_mu_c"], index["confidence_r"]]] = (
+            0.4,
+            0.005,
+            1.0,
+            1.0,
+        )
         _, state = policy.control(Columns(row, index), state)
     np.testing.assert_allclose(state[0, :2], [0.01 * np.sin(0.5), -0.01 * np.cos(0.5)], rtol=2e-3)

@@ -8,13 +8,13 @@ import pytest
 
 import estimator
 from estimator.estimate import ESTIMATE
-from policies.leaderboard import run_leaderboard
-from policies.leaderboard.ranking import ranked, winners
-from policies.leaderboard.replay import replay
-from policies.leaderboard.run import entrants, judge
-from policies.leaderboard.scenario import FIELDS, Run, Scenario, ends
-from policies.leaderboard.scenarios import GROUPS, MU_C, QUICK, R, closed_loop, mixed, patch
-from policies.leaderboard.score import score
+from policies.research.leaderboard import run_leaderboard
+from policies.research.leaderboard.ranking import ranked, winners
+from policies.research.leaderboard.replay import replay
+from policies.research.leaderboard.run import entrants, judge
+from policies.research.leaderboard.scenario import FIELDS, Run, Scenario, ends
+from policies.research.leaderboard.scenarios import GROUPS, MU_C, QUICK, R, closed_loop, mixed, patch
+from policies.research.leaderboard.score import score
 from slipgym.synthetic import Record, sense
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import estimator
-from policies.leaderboard.cost import costs
-from policies.leaderboard.yardsticks import FilterpyUkf, NumpyRls
+from policies.research.leaderboard.cost import costs
+from policies.research.leaderboard.yardsticks import FilterpyUkf, NumpyRls
 from slipgym.validation.records import ellipsoid, planar
 
 SLIP = [

@@ -4,7 +4,7 @@ import pytest
 
 import policies
 import slipgym  # noqa: F401
-from policies.base import Columns, ForcePolicy, ObservationIndex
+from policies.controllers.base import Columns, ForcePolicy, ObservationIndex
 from slipgym.config import load
 from slipgym.envs import observation
 from slipgym.envs.actions import ACTION_MODES
@@ -154,7 +154,7 @@ def test_a_policy_can_command_the_wrist():
     np.testing.assert_array_equal(batch, np.tile(action, (3, 1)))
     index = ObservationIndex("LinearSlip", CONFIG, "grip_force_wrist")
     obs = env.step(action)[0]
-    assert obs[index["command"]] == pytest.approx(10.0)
+    assert obs[index["commanded_force"]] == pytest.approx(10.0)
     assert obs[index["wrist_velocity_x"]] == pytest.approx(0.25)
     env.close()
 
@@ -174,7 +174,7 @@ def test_a_policy_can_command_by_increments():
     commanded = []
     for _ in range(7):
         obs = env.step(Nudge().predict(obs)[0])[0]
-        commanded.append(obs[Nudge().index["command"]])
+        commanded.append(obs[Nudge().index["commanded_force"]])
     np.testing.assert_allclose(commanded, [14.0, 13.0, 12.0, 11.0, 10.0, 10.0, 10.0], rtol=1e-6)
     env.close()
 

@@ -7,9 +7,9 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from policies.base import Columns
-from policies.hold import HoldPolicy
-from policies.probe import Probe
+from policies.controllers.base import Columns
+from policies.controllers.exploration import Probe
+from policies.controllers.hold import HoldPolicy
 from slipgym.envs import HoldEnv
 
 CALM = {"shake_amplitude": 0.0, "shake_pitch": 0.0, "poke_impulse": [0.0, 0.0], "duration": 1.0}
@@ -22,7 +22,7 @@ def play(env, policy, seed=0, **options):
     while not over:
         action, state = policy.predict(observation, state=state)
         observation, _, terminated, truncated, info = env.step(action)
-        support, mu_c = (observation[policy.index[name]] for name in ("support_mu_c", "mu_c"))
+        support, mu_c = (observation[policy.index[name]] for name in ("confidence_mu_c", "mu_c"))
         slips = state[0, 2]
         rows.append((support, mu_c, np.mean(info["grip_force"]), np.hypot(*info["slip"][:2]), slips))
         over = terminated or truncated

@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 
 import estimator
-from policies.reproduction import coupling, reproduce_coupling
-from policies.reproduction.fixed_point import (
+from policies.research.reproduction import coupling, reproduce_coupling
+from policies.research.reproduction.fixed_point import (
     Slip,
     explicit_iteration,
     paper_map,
@@ -14,7 +14,7 @@ from policies.reproduction.fixed_point import (
     slope,
     slope_closed_form,
 )
-from policies.reproduction.lock_out import errors
+from policies.research.reproduction.lock_out import errors
 
 
 @pytest.mark.parametrize("gamma_t", [0.1, 0.3, 0.5, 0.7, 0.9, 0.99])

@@ -9,15 +9,15 @@ import pandas as pd
 import pytest
 
 import estimator
-from policies.reproduction import mechanism, reproduce_linear
-from policies.reproduction.hanging import TASK, Options
-from policies.reproduction.linear import record_linear
-from policies.reproduction.published import TABLES
-from policies.reproduction.records import Record, RecordKeeper
-from policies.reproduction.rerun import Variant, estimates, explorations, rows, variants
-from policies.reproduction.tables import nine_columns
+from policies.research.reproduction import mechanism, reproduce_linear
+from policies.research.reproduction.hanging import TASK, Options
+from policies.research.reproduction.linear import record_linear
+from policies.research.reproduction.published import TABLES
+from policies.research.reproduction.records import Record, RecordKeeper
+from policies.research.reproduction.rerun import Variant, estimates, explorations, rows, variants
+from policies.research.reproduction.tables import nine_columns
 from slipgym.config import load
-from slipgym.envs.bullet_loop import BulletLoop
+from slipgym.envs.bullet_simulation import BulletSimulation
 
 SCENARIO = {"material": "plastic", "distance": 0.02, "duration": 2.0, "trial": 0, "seed": 3}
 
@@ -57,16 +57,16 @@ def test_the_same_seed_gives_the_same_record(record):
 
 
 def test_the_estimator_on_a_record_ends_where_it_ended_in_the_loop():
-    loop, rng = BulletLoop(load(), TASK, "rls"), np.random.default_rng(1)
-    loop.reset(Options(duration=1.0, initial_force=10.0), "wood", rng)
-    keeper = RecordKeeper(loop)
+    simulation, rng = BulletSimulation(load(), TASK, "rls"), np.random.default_rng(1)
+    simulation.reset(Options(duration=1.0, initial_force=10.0), "wood", rng)
+    keeper = RecordKeeper(simulation)
     for _ in range(150):
-        loop.sample(3.2)
+        simulation.sample(3.2)
         keeper.take()
-    loop.world.close()
+    simulation.world.close()
     found = estimates(keeper.finish({}), Variant("rls", "rls"))
     assert found["updates_mu_c"][-1].min() > 0
-    np.testing.assert_array_equal(found[-1], loop.estimator.estimates)
+    np.testing.assert_array_equal(found[-1], simulation.estimator.estimates)
 
 
 def test_every_estimator_is_run_and_the_one_that_halts_also_without(record):
@@ -154,9 +154,9 @@ def test_the_published_tables_cover_the_materials():
 
 
 def test_a_run_writes_what_it_names(tmp_path, monkeypatch):
-    monkeypatch.setattr("policies.reproduction.linear.DISTANCES", (0.04,))
-    monkeypatch.setattr("policies.reproduction.linear.DURATIONS", (5.0,))
-    monkeypatch.setattr("policies.reproduction.linear.TABLES", {"linear": ["plastic"]})
+    monkeypatch.setattr("policies.research.reproduction.linear.DISTANCES", (0.04,))
+    monkeypatch.setattr("policies.research.reproduction.linear.DURATIONS", (5.0,))
+    monkeypatch.setattr("policies.research.reproduction.linear.TABLES", {"linear": ["plastic"]})
     folder = reproduce_linear(tmp_path, trials=1, contact="ellipsoid", progress=False)
     names = {path.name for path in folder.iterdir()}
     origin = {"settings.yaml", "environment.yaml", "versions.json"}

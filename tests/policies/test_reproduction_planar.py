@@ -6,12 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.reproduction import mechanism, reproduce_planar
-from policies.reproduction.hanging import TASK, Options
-from policies.reproduction.planar import hinge_force, record_planar
-from policies.reproduction.rerun import Variant, rows
+from policies.research.reproduction import mechanism, reproduce_planar
+from policies.research.reproduction.hanging import TASK, Options
+from policies.research.reproduction.planar import hinge_force, record_planar
+from policies.research.reproduction.rerun import Variant, rows
 from slipgym.config import load
-from slipgym.envs.bullet_loop import BulletLoop
+from slipgym.envs.bullet_simulation import BulletSimulation
 
 SCENARIO = {"material": "wood", "trial": 0, "seed": 5}
 
@@ -22,14 +22,14 @@ def record():
 
 
 def test_the_wrist_turns_by_the_angle_and_a_firmly_held_object_with_it():
-    loop, rng = BulletLoop(load(sensors="ideal"), TASK, "rls"), np.random.default_rng(0)
-    loop.reset(Options(turn=0.3, duration=1.0, initial_force=20.0), "wood", rng)
-    for _ in range(int(loop.episode["steps"][0])):
-        loop.sample(20.0)
-    assert loop.time == pytest.approx(2.0)
-    assert loop.plant.world["wrist"][0] == pytest.approx([0.0, 0.0, 0.3], abs=1e-6)
-    assert loop.plant.world["angle"][0] == pytest.approx(0.3, abs=1e-4)
-    loop.world.close()
+    simulation, rng = BulletSimulation(load(sensors="ideal"), TASK, "rls"), np.random.default_rng(0)
+    simulation.reset(Options(turn=0.3, duration=1.0, initial_force=20.0), "wood", rng)
+    for _ in range(int(simulation.episode["steps"][0])):
+        simulation.sample(20.0)
+    assert simulation.time == pytest.approx(2.0)
+    assert simulation.plant.world["wrist"][0] == pytest.approx([0.0, 0.0, 0.3], abs=1e-6)
+    assert simulation.plant.world["angle"][0] == pytest.approx(0.3, abs=1e-4)
+    simulation.world.close()
 
 
 def test_the_controller_is_the_papers():
@@ -73,7 +73,7 @@ def test_the_grip_rises_too_slowly_for_the_heuristic(record):
 
 
 def test_a_run_does_not_depend_on_the_number_of_processes(tmp_path, monkeypatch):
-    monkeypatch.setattr("policies.reproduction.planar.TABLES", {"planar": ["plastic"]})
+    monkeypatch.setattr("policies.research.reproduction.planar.TABLES", {"planar": ["plastic"]})
     one, two = (
         reproduce_planar(tmp_path / str(jobs), trials=2, jobs=jobs, contact="ellipsoid", progress=False)
         for jobs in (1, 2)

@@ -5,13 +5,13 @@ import pandas as pd
 import pytest
 
 import estimator
-from policies.leaderboard.replay import replay
-from policies.leaderboard.tables import markdown
-from policies.reproduction import profile as module
-from policies.reproduction import reproduce_profile
-from policies.reproduction.fixed_point import disc_bias
-from policies.reproduction.profile_course import STEADY, disc, slip, start
-from policies.reproduction.profile_course import profile as profile_course
+from policies.research.leaderboard.replay import replay
+from policies.research.leaderboard.tables import markdown
+from policies.research.reproduction import profile as module
+from policies.research.reproduction import reproduce_profile
+from policies.research.reproduction.fixed_point import disc_bias
+from policies.research.reproduction.profile_course import STEADY, disc, slip, start
+from policies.research.reproduction.profile_course import profile as profile_course
 from slipgym.contact import DistributedContact, EllipsoidContact
 from slipgym.synthetic import Course, ideal, integrate
 

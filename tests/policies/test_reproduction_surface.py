@@ -3,8 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from policies.reproduction import reproduce_surface, surface
-from policies.reproduction.fixed_point import disc_bias
+from policies.research.reproduction import reproduce_surface, surface
+from policies.research.reproduction.fixed_point import disc_bias
 
 
 def test_the_command_writes_what_it_names(tmp_path, monkeypatch):

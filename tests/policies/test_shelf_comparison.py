@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.evaluation import shelf
+from policies.evaluation import compare_learned as shelf
 
 
 def table(true, estimated, none):

@@ -47,7 +47,7 @@ def test_the_plotted_path_follows_the_reference(make):
         env = make(env_id)
         policy = policies.make(own_policy(env.task.name))
         (observation, _), state = env.reset(seed=0, options={"duration": 3.0}), None
-        while env._loop.time < 2.5:
+        while env.simulation.time < 2.5:
             action, state = policy.predict(observation, state=state)
             observation = env.step(action)[0]
         history = env._renderer._history

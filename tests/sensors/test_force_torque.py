@@ -79,9 +79,9 @@ def test_the_twist_is_moved_to_the_centre_of_pressure():
     motion = np.array([1e-4, -2e-4, 5e-3])
     for f in range(2):
         sample_force_torque(plant.force_torque[0, f], plant.pads[0, f], 12)
-    plant.chips["moved"] = motion
+    plant.slip_sensors["moved"] = motion
     wrenches, twists = np.zeros((1, 2, 4)), np.zeros((1, 2, 3))
-    measure(plant.world, plant.force_torque, plant.chips, wrenches, twists)
+    measure(plant.world, plant.force_torque, plant.slip_sensors, wrenches, twists)
     v_x, v_y, omega = 120 * motion
     expected = [v_x - omega * 0.001, v_y + omega * 0.002, omega]
     np.testing.assert_allclose(twists[0], [expected, expected], rtol=1e-9)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from slipgym.compiled import compiled
+from slipgym._numba.compiled import compiled
 from slipgym.sensors.noise import CELLS, TAIL, interpolated, quantile, standard_normal, uniform
 
 KEYS = np.random.default_rng(0).integers(2**64, size=4, dtype=np.uint64)

@@ -6,7 +6,7 @@ import pytest
 
 from slipgym.validation.agreement import shake
 from slipgym.validation.bench import Bench
-from slipgym.world import bullet
+from slipgym.world import bullet_engine as bullet
 from slipgym.world.scene import FINGER_LINKS, WRIST_JOINTS
 
 

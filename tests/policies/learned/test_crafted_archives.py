@@ -17,7 +17,8 @@ from estimator import records
 from policies import command
 from policies.episodes import episodes
 from policies.learned import files as policy_files
-from policies.training import checkpoints, plain
+from policies.training import checkpoint_io as plain
+from policies.training import checkpoints
 
 
 class Payload:

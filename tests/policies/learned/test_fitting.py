@@ -8,7 +8,8 @@ import policies
 import slipgym  # noqa: F401
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import run_trial, run_trials
-from policies.learned import LearnedPolicy, shelf
+from policies.learned import LearnedPolicy
+from policies.learned import pretrained as shelf
 
 
 def refused(policy, message, task="Hold", **arguments):
@@ -47,7 +48,7 @@ def test_an_environment_with_the_same_columns_fits(policy_folder, arguments):
 def test_by_path_and_by_name_it_is_the_same(policy_folder, tmp_path, monkeypatch):
     before = set(policies.names()) - set(shelf.shipped())
     folder = policy_folder("shelf/hold_ppo")
-    monkeypatch.setattr(shelf, "SHELF", tmp_path / "shelf")
+    monkeypatch.setattr(shelf, "FOLDER", tmp_path / "shelf")
     assert set(policies.names()) == {*before, "hold_ppo"}
     observation = np.linspace(-1.0, 1.0, 28, dtype=np.float32)
     wanted, _ = policies.load(folder).predict(observation)
@@ -133,6 +134,6 @@ def test_load_knows_the_controllers_too():
 
 
 def test_no_shipped_policy_takes_a_controllers_name():
-    from policies.controllers import CLASSES
+    from policies.controllers.table import CLASSES
 
     assert not set(shelf.shipped()) & set(CLASSES)

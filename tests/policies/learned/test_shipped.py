@@ -9,7 +9,8 @@ import pytest
 
 import policies
 import slipgym  # noqa: F401
-from policies.learned import LearnedPolicy, shelf
+from policies.learned import LearnedPolicy
+from policies.learned import pretrained as shelf
 from policies.training import files
 from policies.training.curve import Row, best
 from slipgym.tasks import TASKS

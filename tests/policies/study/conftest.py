@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.study.files import checked
+from policies.research.study.files import checked
 
 BULLET, CORE = "PyBullet, ellipsoid", "core"
 

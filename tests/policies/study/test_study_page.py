@@ -10,11 +10,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.play.film import Film
-from policies.study.films import Film as Clip
-from policies.study.films import Scene
-from policies.study.page import render
-from policies.study.tables import outcomes, shares, transfer
+from policies.play.video import Film
+from policies.research.study.films import Film as Clip
+from policies.research.study.films import Scene
+from policies.research.study.page import render
+from policies.research.study.tables import outcomes, shares, transfer
 from slipgym.rendering import HEIGHT, WIDTH
 
 CLEAR = {"none": 0, "nominal": 5, "estimated": 9, "true": 10}

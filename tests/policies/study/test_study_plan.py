@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 
 import policies
+from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.evaluation.plan import plan
-from policies.study import load_study, narrowed, study_names
-from policies.study.cells import cells
-from policies.study.changes import Change
-from policies.study.learned import missing, policies_of
-from policies.unaware import Unaware
+from policies.research.study import load_study, narrowed, study_names
+from policies.research.study.cells import cells
+from policies.research.study.changes import Change
+from policies.research.study.learned import missing, policies_of
 from slipgym.config import load, load_randomization
 from slipgym.envs.observation import columns
 from slipgym.tasks import find
@@ -123,7 +123,7 @@ def test_one_thing_is_changed_and_the_rest_is_as_it_was(task):
 
 
 def test_a_controller_that_learns_nothing_acts_as_before_the_first_slip():
-    controller, unaware = policies.make("hold", probe=None), Unaware("hold")
+    controller, unaware = policies.make("hold", probe=None), NoFrictionInfo("hold")
     width = len(columns(load(), find("Hold"), "true"))
     observations = np.random.default_rng(0).normal(0.0, 0.01, (5, width)).astype(np.float32)
     observations[:, -3:] = 0.0  # no support: what the estimate is does not count

@@ -2,10 +2,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.study import run_study, words
-from policies.study.cells import cells
-from policies.study.files import load_study
-from policies.study.store import Store, fingerprint, sources
+from policies.research.study import run_study, words
+from policies.research.study.cells import cells
+from policies.research.study.files import load_study
+from policies.research.study.store import Store, fingerprint, sources
 
 FILES = {
     "cells",
@@ -48,7 +48,7 @@ def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
     def fail(*_):
         raise AssertionError("planted")
 
-    monkeypatch.setattr("policies.study.episodes.run_trial", fail)
+    monkeypatch.setattr("policies.research.study.episodes.run_trial", fail)
     assert run_study(small(), output, 1, progress=False) == run
     assert (run / "episodes.parquet").read_bytes() == before
     with pytest.raises(AssertionError, match="planted"):
@@ -56,7 +56,7 @@ def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
 
 
 def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monkeypatch):
-    from policies.study import episodes
+    from policies.research.study import episodes
 
     study, count = small(), [0]
     actual = episodes.run_trial
@@ -84,7 +84,7 @@ def test_a_cell_is_known_by_all_that_decides_its_result(small, monkeypatch):
     assert len(marks) == 1 + len(others)
     assert fingerprint(one, small(seed=1)) not in marks
     assert fingerprint(one, small(name="other", episodes=1)) in marks
-    monkeypatch.setattr("policies.study.store.sources", lambda: sources() + "changed")
+    monkeypatch.setattr("policies.research.study.store.sources", lambda: sources() + "changed")
     assert fingerprint(one, study) not in marks
 
 

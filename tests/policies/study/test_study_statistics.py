@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from policies.study.statistics import Bootstrap, Drawn, iqm, mean
+from policies.research.study.statistics import Bootstrap, Drawn, iqm, mean
 
 
 def test_the_interquartile_mean_is_that_of_the_middle_half():

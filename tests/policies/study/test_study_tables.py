@@ -4,7 +4,7 @@ import pytest
 
 from policies.evaluation.frames import where
 from policies.evaluation.statistics import share_interval
-from policies.study.tables import ALL, outcomes, shares, transfer
+from policies.research.study.tables import ALL, outcomes, shares, transfer
 
 BULLET, CORE = "PyBullet, ellipsoid", "core"
 CLEAR = {"none": 2, "estimated": 9, "true": 10}

@@ -101,9 +101,9 @@ def test_options_and_seeds_are_used_once(make):
     for envs in (ours, theirs):
         envs.set_options([{"object_mass": 0.35}, {}])
     assert equal(ours.reset(), theirs.reset())
-    assert [box.mass == 0.35 for box in ours.env._loop.boxes] == [True, False]
+    assert [box.mass == 0.35 for box in ours.env.simulation.boxes] == [True, False]
     assert equal(ours.reset(), theirs.reset())
-    assert [box.mass == 0.35 for box in ours.env._loop.boxes] == [False, False]
+    assert [box.mass == 0.35 for box in ours.env.simulation.boxes] == [False, False]
     theirs.close()
 
 

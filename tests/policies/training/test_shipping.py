@@ -8,7 +8,8 @@ import pytest
 pytest.importorskip("stable_baselines3")
 import policies
 from policies.learned import LearnedPolicy
-from policies.training import files, shipping, study
+from policies.training import files, shipping
+from policies.training import run_set as study
 from policies.training.curve import Row, best
 
 

@@ -5,7 +5,8 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from policies.training import checkpoints, plain
+from policies.training import checkpoint_io as plain
+from policies.training import checkpoints
 
 
 def test_a_tree_comes_back_as_it_was(tmp_path):

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 pytest.importorskip("stable_baselines3")
-from policies.training import checkpoints, files, folder, plain, run
+from policies.training import checkpoint_io as plain
+from policies.training import checkpoints, files, folder, run
 from policies.training.files import changed
 
 ROOT = Path(__file__).resolve().parents[3]

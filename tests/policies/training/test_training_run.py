@@ -9,8 +9,11 @@ import pytest
 
 pytest.importorskip("stable_baselines3")
 import policies
-from policies.training import checkpoints, export, folder, plain, run, scatter, seeds, study, sweep, vector
+from policies.training import checkpoint_io as plain
+from policies.training import checkpoints, export, folder, run, seeds, sweep, vector
 from policies.training import model as learners
+from policies.training import parallel as scatter
+from policies.training import run_set as study
 from policies.training.curve import Row
 from policies.training.evaluate import evaluate
 
@@ -77,7 +80,7 @@ def test_evaluation_disturbs_nothing_and_repeats_itself(small):
 def test_a_run_stops_when_it_succeeds_twice(small, tmp_path, monkeypatch):
     shares = iter([1.0, 0.0, 1.0, 1.0, 1.0])
     monkeypatch.setattr(
-        "policies.training.keeper.evaluate",
+        "policies.training.callback.evaluate",
         lambda config, model, envs: Row(model.num_timesteps, next(shares), 0.0, 0.0, 1.0),
     )
     path = tmp_path / "run"

@@ -1,0 +1,1 @@
+"""Classic controllers, one file each."""

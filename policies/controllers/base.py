@@ -1,0 +1,216 @@
+"""What the controllers share: columns by name, memory by row, newtons to actions."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+
+from slipgym.config import Config, Overrides, load
+from slipgym.config.errors import unknown
+from slipgym.envs import observation as layout
+from slipgym.envs.actions import COMMANDS, Actions
+from slipgym.tasks import find
+
+State: TypeAlias = np.ndarray | tuple[np.ndarray, ...]
+"""A policy's memory: one or several arrays, each with a leading batch axis."""
+
+
+class ObservationIndex:
+    """Where each column of an observation is.
+
+    Args:
+        task_name: As `slipgym.tasks.find` takes it; None for the sensor part that all tasks share.
+        config: The environment's configuration.
+        action_mode: The environment's, None for the task's own; those that command the wrist observe it.
+
+    Raises:
+        ValueError: There is no such task.
+    """
+
+    def __init__(self, task_name: str | None, config: Config, action_mode: str | None = None) -> None:
+        self.task_name, self.action_mode = task_name, action_mode
+        if task_name is None:
+            columns = layout.sensor_columns(config)
+        else:
+            self.action_mode = action_mode or find(task_name).action_mode
+            columns = layout.columns(config, find(task_name), "true", self.action_mode)
+        self._at = {column.name: k for k, column in enumerate(columns)}
+
+    def __getitem__(self, name: str) -> int:
+        if name not in self._at:
+            raise ValueError(unknown("observation column", name, self._at))
+        return self._at[name]
+
+    def get(self, name: str) -> int | None:
+        """Where a column is; None if there is none."""
+        return self._at.get(name)
+
+    def check(self, width: int) -> None:
+        """Refuse observations of another task or mode.
+
+        Args:
+            width: Length of one observation.
+
+        Raises:
+            ValueError: No observation of the task has this length.
+        """
+        full = len(self._at)
+        if self.task_name is None and width < full:
+            raise ValueError(f"observation has {width} columns; every task has at least {full}")
+        bare = full - len(layout.FRICTION_COLUMNS)
+        if self.task_name is not None and width not in (full, bare):
+            raise ValueError(
+                f"observation has {width} columns; {self.task_name} has {full}, or {bare} without friction, "
+                f"with action_mode={self.action_mode!r} and history=0"
+            )
+
+
+class Columns:
+    """A batch of observations whose columns are read by name.
+
+    Args:
+        observations: (n, m).
+        index: Where each column is.
+
+    Raises:
+        ValueError: m does not fit the index.
+    """
+
+    def __init__(self, observations: np.ndarray, index: ObservationIndex) -> None:
+        index.check(observations.shape[1])
+        self._observations, self._index = observations, index
+
+    def __len__(self) -> int:
+        return len(self._observations)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """One column, (n,) float64.
+
+        Raises:
+            ValueError: The task has no such column, or the environment leaves the friction part out.
+        """
+        at = self._index[name]
+        if at >= self._observations.shape[1]:
+            raise ValueError(
+                f"the policy needs the column {name!r}, which friction_source='none' and "
+                "observation_mode='sensor' leave out; "
+                "choose friction_source 'estimated', 'true' or 'nominal' and observation_mode 'flat'"
+            )
+        return self._observations[:, at].astype(np.float64)
+
+
+class ForcePolicy(ABC):
+    """A controller that computes a grip force from the present observation and its memory.
+
+    Subclasses name their task and implement `control`, and `initial_state` if they have a memory. One that
+    commands the wrist as well, or steps of force, names the action mode of the environments it acts in. The
+    object itself never changes: all memory travels in the state, so one policy serves many episodes.
+
+    Args:
+        config: Overrides of the environment's configuration: a mapping or the path of a YAML file.
+
+    Raises:
+        ValueError: The configuration is not valid.
+    """
+
+    task: ClassVar[str | None] = None
+    """Task whose observations it reads; None for one that runs in every task."""
+    action_mode: ClassVar[str] = "grip_force"
+    """Action mode of the environments it acts in, one of `slipgym.envs.actions.ACTION_MODES`."""
+    unaware: ClassVar[Mapping[str, Any]] = {}
+    """Arguments of the controller without friction information (`policies.controllers.no_friction_info`)."""
+
+    def __init__(self, config: Overrides | None = None) -> None:
+        self.config = load(config)
+        self.index = ObservationIndex(self.task, self.config, self.action_mode)
+        self._components = Actions(self.action_mode, self.config).table
+
+    @abstractmethod
+    def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
+        """Grip force per finger for each row, and the wrist's velocity where the policy commands it.
+
+        Args:
+            columns: n observations.
+            state: Memory of n rows; must not be changed in place.
+
+        Returns:
+            Force (n,) [N], or force and wrist velocity along x, along z and in pitch (n, 4) [N, m/s, m/s,
+            rad/s], clipped to the action's range by the caller; and the new memory.
+        """
+
+    def initial_state(self, n: int) -> State:
+        """Memory of n rows at the start of an episode; by default there is none, (n, 0)."""
+        return np.zeros((n, 0))
+
+    def predict(
+        self,
+        observation: np.ndarray,
+        state: State | None = None,
+        episode_start: np.ndarray | None = None,
+        deterministic: bool = True,
+    ) -> tuple[np.ndarray, State]:
+        """Action for an observation (m,) or for a batch of them (n, m).
+
+        Args:
+            observation: From the environment.
+            state: As returned by the last call; None before the first.
+            episode_start: Rows that begin a new episode and forget their memory, (n,) bool.
+            deterministic: Without effect: controllers do not explore.
+
+        Returns:
+            Action (m,) or (n, m), float32 within [-1, 1], m = 1 unless the policy commands the wrist, and
+            the memory, whose arrays always have a leading axis of n (of 1 for a single observation).
+
+        Raises:
+            ValueError: The observation, the memory or `episode_start` does not fit.
+        """
+        if isinstance(observation, Mapping):
+            raise ValueError(
+                f"observation has the groups {', '.join(observation)}; the policy reads one array: pass the "
+                "group 'policy', or make the environment with observation_mode='flat'"
+            )
+        observations = np.asarray(observation)
+        if observations.ndim not in (1, 2):
+            raise ValueError(f"observation must have shape (m,) or (n, m), got {observations.shape}")
+        columns = Columns(np.atleast_2d(observations), self.index)
+        commands, state = self.control(columns, self._memory(state, episode_start, len(columns)))
+        actions = self._action(commands, columns)
+        return (actions if observations.ndim == 2 else actions[0]), state
+
+    def _memory(self, state: State | None, episode_start: np.ndarray | None, n: int) -> State:
+        """The memory to act on: fresh where an episode begins."""
+        fresh = self.initial_state(n)
+        if state is None:
+            return fresh
+        old, new = _arrays(state), _arrays(fresh)
+        if [a.shape for a in old] != [a.shape for a in new]:
+            raise ValueError(
+                f"state has shapes {[a.shape for a in old]}, {n} observations need {[a.shape for a in new]}"
+            )
+        if episode_start is None:
+            return state
+        rows = np.atleast_1d(np.asarray(episode_start, dtype=bool))
+        if rows.shape != (n,):
+            raise ValueError(f"episode_start must have shape ({n},), got {rows.shape}")
+        merged = tuple(
+            np.where(rows.reshape(-1, *[1] * (a.ndim - 1)), b, a) for a, b in zip(old, new, strict=True)
+        )
+        return merged if isinstance(state, tuple) else merged[0]
+
+    def _action(self, commands: np.ndarray, columns: Columns) -> np.ndarray:
+        """What `control` returned to actions (n, m), clipped to [-1, 1]."""
+        n, table = len(columns), self._components
+        given = commands.reshape(n, -1)
+        wanted = np.zeros((n, len(COMMANDS) + 1))
+        wanted[:, : given.shape[1]] = given
+        wanted[:, -1] = given[:, 0] - columns["commanded_force"]
+        low, high = table["low"], table["high"]
+        scaled = 2.0 * (wanted[:, table["command"]] - low) / (high - low) - 1.0
+        return np.clip(scaled, -1.0, 1.0).astype(np.float32)
+
+
+def _arrays(state: State) -> tuple[np.ndarray, ...]:
+    return state if isinstance(state, tuple) else (state,)

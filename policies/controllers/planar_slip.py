@@ -1,0 +1,251 @@
+"""Bringing the object to a pose (x, y, theta) in the grip by gravity, wrist and grip force."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from policies.controllers.base import Columns, ForcePolicy, State
+from policies.controllers.sensing import Caution, both, scaled_load, tangential
+from slipgym.config import Overrides
+
+APPROACH, TURN, FINISH, TRIM, DONE = range(5)
+"""Stages: slide, turn, slide the rest, turn the rest, hold."""
+
+Point: TypeAlias = tuple[np.ndarray, np.ndarray]
+
+
+class Memory(NamedTuple):
+    """What the controller remembers, (n,) each; all 0 at the start."""
+
+    x: np.ndarray
+    """Slip displacement along the pads' x axis [m]."""
+    y: np.ndarray
+    """The same along their y axis [m]."""
+    measured_slip_x: np.ndarray
+    """Travel in the last sample [m]."""
+    measured_slip_y: np.ndarray
+    """The same along y [m]."""
+    measured_slip_theta: np.ndarray
+    """The same about the grip axis [rad]."""
+    weight: np.ndarray
+    """Filtered tangential force per finger [N]."""
+    stage: np.ndarray
+    """One of the stages."""
+    slipping: np.ndarray
+    """1 while the object is let slip, 0 while it is held and the wrist turns."""
+    moving: np.ndarray
+    """1 while it moves."""
+    error: np.ndarray
+    """Integral of the missing speed [m or rad]."""
+    broken: np.ndarray
+    """The integral at the last break-away [m or rad]."""
+    side: np.ndarray
+    """Sign of the turn."""
+    leaps: np.ndarray
+    """Break-aways in this slip so far."""
+
+
+class PlanarSlipPolicy(ForcePolicy):
+    """Slide, turn, slide the rest, turn the rest; in between hold firmly and point gravity with the wrist.
+
+    All is planned on the box: b, the pads' place on it, has to go to the place that the target gives them,
+    along the upward direction. The box slides without turning while its centre of mass hangs under the
+    pads, at any pitch of the wrist; with its centre of mass to the side it turns, and the pads creep
+    r^2 / |b| per radian along the arc (docs/environments/planar_slip.md). So the first slide goes to where
+    that creep will begin, a little short; the turn follows with the centre of mass about level with the
+    pads; then the box hangs again and slides the rest. Every stage goes by the measured travel, so that
+    what one leaves over the next one takes on.
+
+    A slip is let go by what balances the load at Coulomb friction, f_slip, as in "rotational_slip": v is the
+    speed of the slide or the rate of the turn, v_cmd the one wanted,
+
+        sticking:  e' = v_cmd - v,           f = f_slip (1 - k_e e)
+        moving:    e' = k_m (v_cmd - v),     f = f_slip (1 - k_e e + k_v (v - v_cmd))
+
+    e begins at 0 at a break-away, and at a share of what broke the last one when the object sticks again.
+    After `leaps` break-aways in a slip, which then must be small ones, e keeps more at each. A slip that
+    static friction has held back leaps; what is less than half a leap is left as it is.
+
+    Args:
+        speeds: Largest speed of a slide [m/s] and rate of a turn [rad/s].
+        gain: Speed wanted per distance left, down to a quarter of the largest [1/s].
+        k_e: Gains on the integral, as a share of f_slip, of slide [1/m] and turn [1/rad].
+        k_v: Gains on the speed of slide [s/m] and turn [s/rad].
+        k_m: How much slower the integral grows while the object moves [-].
+        keep: Share of the integral at the last break-away with which the next one is looked for [-].
+        leaps: Break-aways after which a slip is braked less [-].
+        worth: Distances of slide [m] and turn [rad] from which they are worth a slip; one stops at half.
+        short: How much the first slide ends before its goal [m].
+        lean: Angle of the centre of mass from straight under the pads, in the middle of a turn [rad].
+        ready: Angle [rad] that the wrist may be off when the box is let slip.
+        hold_margin: Grip while holding, as a multiple of what the load needs at worst [-].
+        wrist_rate: Largest pitch rate of the wrist [rad/s].
+        wrist_acceleration: Its largest change; the held box has to follow [rad/s^2].
+        caution: Friction assumed until the estimate has support.
+        config: Overrides of the environment's configuration.
+
+    Raises:
+        ValueError: A parameter or the configuration is not valid.
+    """
+
+    task = "PlanarSlip"
+    action_mode = "grip_force_pitch"
+
+    def __init__(
+        self,
+        speeds: tuple[float, float] = (0.006, 0.2),
+        gain: float = 2.0,
+        k_e: tuple[float, float] = (150.0, 10.0),
+        k_v: tuple[float, float] = (50.0, 0.5),
+        k_m: float = 0.15,
+        keep: float = 0.6,
+        leaps: int = 8,
+        worth: tuple[float, float] = (0.0013, 0.03),
+        short: float = 0.0015,
+        lean: float = 1.5,
+        ready: float = 0.02,
+        hold_margin: float = 1.4,
+        wrist_rate: float = 2.0,
+        wrist_acceleration: float = 12.0,
+        caution: Caution | None = None,
+        config: Overrides | None = None,
+    ) -> None:
+        super().__init__(config)
+        for name, value in (("wrist_rate", wrist_rate), ("wrist_acceleration", wrist_acceleration)):
+            if not 0.0 < value < np.inf:
+                raise ValueError(f"{name} = {value!r} must be finite and > 0")
+        self.speeds, self.gain, self.worth = speeds, gain, worth
+        self.k_e, self.k_v, self.k_m, self.keep = k_e, k_v, k_m, keep
+        self.leaps, self.short, self.lean = leaps, short, lean
+        self.ready, self.hold_margin = ready, hold_margin
+        self.wrist_rate, self.wrist_acceleration = wrist_rate, wrist_acceleration
+        self.caution = caution or Caution(r=0.004)
+        self._dt = 1.0 / self.config.physics.control_rate
+
+    def initial_state(self, n: int) -> np.ndarray:
+        """Columns of `Memory`, (n, 13)."""
+        return np.zeros((n, len(Memory._fields)))
+
+    def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
+        """Grip force per finger and wrist velocity, (n, 4) [N, m/s, m/s, rad/s]."""
+        past = _followed(columns, Memory(*np.asarray(state).T))
+        mu_c, r = self.caution.blend(columns, "mu_c"), self.caution.blend(columns, "r")
+        turning = (past.stage == TURN) | (past.stage == TRIM)
+        left = columns["target_theta"] - columns["measured_slip_theta"]
+        side = np.where(past.slipping > 0.0, past.side, np.sign(left))
+        attitude = columns["wrist_pitch"] + columns["measured_slip_theta"]
+        place = turned((-past.x, -past.y), -columns["measured_slip_theta"])
+        under = np.arctan2(*place)  # attitude in which the box hangs
+        way = self._way(columns, place, past.stage, left * r**2)
+        # how far to go, and the attitude in which to go there
+        along = np.where(past.stage == FINISH, under, attitude)
+        distance = np.where(turning, side * left, way[0] * np.sin(along) + way[1] * np.cos(along))
+        near = np.hypot(*way) < 2.0 * self.short
+        steer = np.where(near, attitude, np.arctan2(*way))
+        wanted = np.where(past.stage == APPROACH, steer, under)
+        wanted = np.where(turning, under - side * (self.lean + 0.5 * np.abs(left)), wanted)
+        fixed = (past.stage == DONE) | ((past.slipping > 0.0) & (past.stage != APPROACH))
+        off = np.where(fixed, 0.0, wrapped(wanted - attitude))
+        speed = np.where(turning, side * both(columns, "omega"), _falling(columns))
+        stage, slipping = self._decide(past, turning, distance, speed, off, columns["wrist_pitch_rate"])
+        load = scaled_load(columns, r) / mu_c
+        motion, share = self._let_slip(past, turning, distance, speed, slipping)
+        lever = np.hypot(*place) + self.short
+        firm = self.hold_margin * past.weight * np.hypot(1.0, lever / r) / mu_c
+        loose = np.minimum(load * share, firm)
+        force = np.where(slipping, loose, firm)
+        rate, still = self._pitch(off, columns["wrist_pitch_rate"]), np.zeros(len(columns))
+        memory = past._replace(stage=stage, slipping=slipping, side=side, **motion)
+        return np.column_stack((force, still, still, rate)), np.column_stack(memory)
+
+    def _way(self, columns: Columns, place: Point, stage: np.ndarray, creep: np.ndarray) -> Point:
+        """From the pads' place to the next goal, on the box [m]; creep over |b| is the coming arc [m^2]."""
+        goal = turned((-columns["target_x"], -columns["target_y"]), -columns["target_theta"])
+        reach, bearing = np.hypot(*goal), np.arctan2(*goal)
+        short = np.where(stage == APPROACH, self.short, 0.0)
+        arc = np.where(stage == APPROACH, creep / np.maximum(reach, self.short), 0.0)
+        sin, cos = np.sin(bearing), np.cos(bearing)
+        return goal[0] - short * sin + arc * cos - place[0], goal[1] - short * cos - arc * sin - place[1]
+
+    def _decide(
+        self,
+        past: Memory,
+        turning: np.ndarray,
+        distance: np.ndarray,
+        speed: np.ndarray,
+        off: np.ndarray,
+        rate: np.ndarray,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The stage, and whether the object is let slip."""
+        slipping = past.slipping > 0.0
+        worth = np.where(turning, self.worth[1], self.worth[0])
+        arrived = distance <= np.where(slipping, 0.5, 1.0) * worth
+        rests = np.abs(speed) < 0.1 * np.where(turning, self.speeds[1], self.speeds[0])
+        goes_on = ~slipping & arrived & rests & (past.stage < DONE)
+        ready = (np.abs(off) < self.ready) & (np.abs(rate) < 0.1) & (past.stage < DONE)
+        return np.where(goes_on, past.stage + 1, past.stage), ~arrived & (slipping | ready)
+
+    def _let_slip(
+        self,
+        past: Memory,
+        turning: np.ndarray,
+        distance: np.ndarray,
+        speed: np.ndarray,
+        slipping: np.ndarray,
+    ) -> tuple[dict[str, np.ndarray], np.ndarray]:
+        """What changes in the memory, and the grip over f_slip."""
+        k_e, k_v, top = (np.where(turning, b, a) for a, b in (self.k_e, self.k_v, self.speeds))
+        ahead = np.clip(self.gain * distance, 0.25 * top, top) - speed
+        moving, moved = speed > 0.15 * top, past.moving > 0.0
+        breaks, sticks = moving & ~moved, moved & ~moving
+        leaps = np.where(slipping, past.leaps + breaks, 0.0)
+        broken = np.where(breaks, past.error, past.broken)
+        left_over = np.clip(0.05 * (leaps - self.leaps), 0.0, self.keep) * broken
+        error = np.where(breaks, left_over, np.where(sticks, self.keep * broken, past.error))
+        error = np.where(slipping, error + np.where(moving, self.k_m, 1.0) * ahead * self._dt, 0.0)
+        share = 1.0 - k_e * error - np.where(moving, k_v * ahead, 0.0)
+        return {"moving": moving, "error": error, "broken": broken, "leaps": leaps}, share
+
+    def _pitch(self, off: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """Pitch rate that turns the wrist by `off` and then rests [rad/s]."""
+        braking = np.minimum(np.sqrt(1.4 * self.wrist_acceleration * np.abs(off)), 8.0 * np.abs(off))
+        change = np.sign(off) * np.minimum(braking, self.wrist_rate) - rate
+        most = self.wrist_acceleration * self._dt
+        return rate + np.clip(change, -most, most)
+
+
+def turned(point: Point, angle: np.ndarray) -> Point:
+    """A point turned about the origin by an angle [rad]."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return cos * point[0] - sin * point[1], sin * point[0] + cos * point[1]
+
+
+def wrapped(angle: np.ndarray) -> np.ndarray:
+    """An angle between -pi and pi [rad]."""
+    return (angle + np.pi) % (2.0 * np.pi) - np.pi
+
+
+def _falling(columns: Columns) -> np.ndarray:
+    """Slip velocity along gravity [m/s]."""
+    pitch = columns["wrist_pitch"]
+    return -np.sin(pitch) * both(columns, "v_x") - np.cos(pitch) * both(columns, "v_y")
+
+
+def _followed(columns: Columns, past: Memory) -> Memory:
+    """The memory with the slip displacement and the weight as they are now.
+
+    Travel is the sum of velocities at the pad centre; a turn carries the grasped point along.
+    """
+    x, y, theta = (columns[f"measured_slip_{axis}"] for axis in ("x", "y", "theta"))
+    dx, dy, turn = x - past.measured_slip_x, y - past.measured_slip_y, theta - past.measured_slip_theta
+    load = tangential(columns)
+    return past._replace(
+        x=past.x + dx - turn * (past.y + 0.5 * dy),
+        y=past.y + dy + turn * (past.x + 0.5 * dx),
+        measured_slip_x=x,
+        measured_slip_y=y,
+        measured_slip_theta=theta,
+        weight=np.where(past.weight == 0.0, load, 0.98 * past.weight + 0.02 * load),
+    )

@@ -1,0 +1,97 @@
+"""The leaderboard: all estimators on all scenarios."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from tqdm import tqdm
+
+import estimator
+from policies.evaluation.folder import filled_in_place, stamped, write_versions
+from policies.evaluation.frames import values
+from policies.evaluation.plots.style import STYLE, styled
+from policies.research.leaderboard.picture import plot_leaderboard
+from policies.research.leaderboard.ranking import ranked, winners
+from policies.research.leaderboard.replay import replay
+from policies.research.leaderboard.scenario import FIELDS, Scenario
+from policies.research.leaderboard.scenarios import GROUPS, QUICK, Effort
+from policies.research.leaderboard.score import FIGURES, score
+from policies.research.leaderboard.tables import markdown
+
+Entrants = dict[str, tuple[str, dict[str, object]]]
+"""Label -> name and parameters of an estimator."""
+
+
+def entrants() -> Entrants:
+    """Every estimator as it is made by its name, and the paper's without its heuristic."""
+    rows: Entrants = {name: (name, {}) for name in estimator.names()}
+    rows["rls, plain"] = "rls", {"heuristic": False}
+    return rows
+
+
+def run_leaderboard(
+    output: str | os.PathLike[str] = "runs", quick: bool = False, seed: int = 0, progress: bool = True
+) -> Path:
+    """Runs all estimators on all scenarios and ranks them.
+
+    Args:
+        output: Folder that the run's own folder goes to.
+        quick: Whether a few coarse records will do, for a test of the machinery.
+        seed: Of the sensors' noise.
+        progress: Whether to show a progress bar.
+
+    Returns:
+        The run's folder: leaderboard.md, ranking.csv, scenarios.csv, leaderboard.png.
+    """
+    effort = replace(QUICK if quick else Effort(), seed=seed)
+    rows = []
+    with tqdm(GROUPS, desc="leaderboard", unit="group", disable=not progress) as groups:
+        for group in groups:
+            for scenario in group(effort):
+                groups.set_postfix_str(f"{scenario.group} {scenario.name}")
+                rows += judge(scenario)
+    table = pd.DataFrame(rows)
+    ranking, best = ranked(table), winners(table)
+    path = stamped(output, "leaderboard")
+    with filled_in_place(path) as folder:
+        write_versions(folder)
+        table.to_csv(folder / "scenarios.csv", index=False)
+        ranking.to_csv(folder / "ranking.csv", index=False)
+        (folder / "leaderboard.md").write_text(page(table, ranking, best), encoding="utf-8")
+        with styled():
+            plot_leaderboard(table, ranking).savefig(folder / "leaderboard.png", dpi=STYLE.dpi)
+    return path
+
+
+def judge(scenario: Scenario) -> list[dict[str, object]]:
+    """A row for each entrant."""
+    rows = []
+    for label, (name, parameters) in entrants().items():
+        made = [
+            replay(name, run.record, scenario.told, scenario.starts, **parameters) for run in scenario.runs
+        ]
+        figures = score(scenario, made)
+        rows.append({"group": scenario.group, "scenario": scenario.name, "estimator": label, **figures})
+    return rows
+
+
+def page(table: pd.DataFrame, ranking: pd.DataFrame, best: pd.DataFrame) -> str:
+    """The tables as a page."""
+    parts = ["# Leaderboard of the estimators", "Errors in %.", markdown(ranking)]
+    parts += ["## The best, by group", markdown(best)]
+    for field in FIELDS:
+        figures = {f"{figure}_{field}": figure for figure in FIGURES}
+        parts += [f"## {field}", markdown(_seen(table, f"error_{field}", figures))]
+    parts += ["## Lock-ups, share of start values", markdown(_seen(table, "lock_ups", {"lock_ups": "share"}))]
+    return "\n\n".join(part.rstrip() for part in parts) + "\n"
+
+
+def _seen(table: pd.DataFrame, needed: str, columns: dict[str, str]) -> pd.DataFrame:
+    """The rows that have a figure; some columns of them, renamed."""
+    keys = {name: name for name in ("group", "scenario", "estimator")}
+    rows = table.loc[np.isfinite(values(table, needed))]
+    return pd.DataFrame({new: rows[old] for old, new in (keys | columns).items()})

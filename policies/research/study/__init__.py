@@ -1,0 +1,8 @@
+"""What knowing friction is worth: controllers and learned policies x what they are told, on both engines."""
+
+from policies.research.study.config import Study
+from policies.research.study.files import load_study, narrowed, study_names
+from policies.research.study.run import run_study
+from policies.research.study.terminal import words
+
+__all__ = ["Study", "load_study", "narrowed", "run_study", "study_names", "words"]

@@ -1,0 +1,128 @@
+"""The cells of a study: one policy, one thing it is told, one world, one block of episodes."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from policies.evaluation.experiment import Experiment, PolicyChoice
+from policies.evaluation.files import checked
+from policies.play.screenshot import own_policy
+from policies.research.study.changes import UNCHANGED, Change, changes
+from policies.research.study.config import BLOCKS_MAX, Study, World
+from policies.research.study.learned import TRAINED_WITH
+from slipgym.tasks import find
+
+
+@dataclass(frozen=True)
+class Cell:
+    """Episodes that differ in nothing but their seeds."""
+
+    world: World
+    task: str
+    preset: str
+    change: Change
+    kind: str
+    source: str
+    estimator: str
+    policy: str
+    """Its name, or the folder of a learned one."""
+    block: int
+    episodes: int
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """What tells its episodes from the others', for tables."""
+        return {
+            "world": self.world.label,
+            "task": self.task,
+            "preset": self.preset,
+            "change": self.change.name,
+            "level": self.change.level,
+            "kind": self.kind,
+            "source": self.source,
+            "estimator": self.estimator if self.source == "estimated" else "",
+            "block": self.block,
+        }
+
+    @property
+    def name(self) -> str:
+        """Names its file."""
+        change = f"{self.change.name}_{self.change.level:g}" if self.change.name else ""
+        parts = [find(self.task).key, self.preset, change, self.world.engine, self.world.contact, self.kind]
+        parts += [self.source, self.keys["estimator"], str(self.block)]
+        return re.sub(r"[^A-Za-z0-9_-]", "_", "__".join(part for part in parts if part))
+
+    def experiment(self, study: Study) -> Experiment:
+        """The experiment whose trials it holds."""
+        contact = {**study.config.get("contact", {}), "model": self.world.contact}
+        values = {
+            "name": self.name,
+            "task": self.task,
+            "seed": BLOCKS_MAX * study.seed + self.block,
+            "trials": self.episodes,
+            "policies": [self._policy()],
+            "friction": [{"source": self.source, "estimator": {"name": self.estimator}}],
+            "engine": self.world.engine,
+            "randomization": self.change.of(self.preset, self.task),
+            "config": {**study.config, "contact": contact},
+        }
+        return checked(values, self.name)
+
+    def _policy(self) -> PolicyChoice:
+        if self.kind == "classic" and self.source == "none":
+            parameters = {"controller": self.policy}
+            return PolicyChoice(
+                name="policies.controllers.no_friction_info:NoFrictionInfo",
+                parameters=parameters,
+                label="classic",
+            )
+        return PolicyChoice(name=self.policy, label=self.kind)
+
+
+def cells(study: Study, learned: Mapping[tuple[str, str], Sequence[Path]]) -> list[Cell]:
+    """Every cell of a study, in the order of the tables.
+
+    Args:
+        study: The study.
+        learned: Learned policies, by task and friction source of the training; what is not there is left out.
+    """
+    return [
+        Cell(world, task, preset, change, kind, source, estimator, policy, block, episodes)
+        for world, task, preset, change, sources, estimators, episodes in _places(study)
+        for kind, source in itertools.product(study.kinds, sources)
+        for estimator in (estimators if source == "estimated" else study.estimators[:1])
+        for block in range(study.blocks)
+        for policy in _policy(task, kind, source, block, learned)
+    ]
+
+
+def _places(study: Study) -> Iterator[tuple]:
+    """World, task, preset, change, sources, estimators and episodes of a block."""
+    for world, task in itertools.product(study.worlds, study.tasks):
+        estimators = [name for name in study.estimators if name in (world.estimators or study.estimators)]
+        for preset in world.presets or study.presets:
+            yield world, task, preset, UNCHANGED, world.sources, estimators, study.episodes
+    worse = study.degradation
+    if worse is not None:
+        for task, change in itertools.product(study.tasks, changes(worse)):
+            world = study.world(worse.world)
+            yield world, task, worse.preset, change, worse.sources, study.estimators[:1], worse.episodes
+
+
+def _policy(
+    task: str,
+    kind: str,
+    source: str,
+    block: int,
+    learned: Mapping[tuple[str, str], Sequence[Path]],
+) -> list[str]:
+    """The policy of a block, or none."""
+    if kind == "classic":
+        return [own_policy(task)]
+    seeds = learned.get((task, TRAINED_WITH[source]), ())
+    return [str(seeds[block % len(seeds)])] if seeds else []

@@ -1,0 +1,149 @@
+"""The report of a study: one HTML file that needs nothing else."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import pandas as pd
+import yaml
+from tqdm import tqdm
+
+from policies.atomic_io import replace_durably
+from policies.evaluation.folder import versions
+from policies.evaluation.frames import distinct, records, where, without
+from policies.evaluation.plots.style import styled
+from policies.research.study import figures
+from policies.research.study.cells import Cell
+from policies.research.study.config import Study
+from policies.research.study.figures.differences import TRANSFER_MOST
+from policies.research.study.figures.inline import inline
+from policies.research.study.films import Scene, scene
+from policies.research.study.formats import FILTERS
+from policies.research.study.sentences import answers
+from policies.research.study.store import sources
+from policies.research.study.tables import ALL, by
+
+_TEMPLATE = Path(__file__).parent / "report.html.j2"
+
+
+def write_page(
+    study: Study,
+    cells: Sequence[Cell],
+    episodes: pd.DataFrame,
+    tables: Mapping[str, pd.DataFrame],
+    missing: Sequence[str],
+    command: str,
+    folder: Path,
+    progress: bool = True,
+) -> None:
+    """Writes report.html, whole.
+
+    Args:
+        study: The study.
+        cells: All its cells.
+        episodes: Their episodes.
+        tables: "outcomes", "shares" and "transfer".
+        missing: What was left out, in words.
+        command: What it was made by.
+        folder: The study's folder; films are kept in its "films".
+        progress: Whether to show a progress bar.
+    """
+    bar = tqdm(study.videos, desc="films", unit="task", disable=not progress)
+    scenes = [scene(study, task, cells, episodes, folder / "films") for task in bar]
+    page = render(study, episodes, tables, [each for each in scenes if each], missing, command)
+    replace_durably(folder / "report.html", page.encode())
+
+
+def render(
+    study: Study,
+    episodes: pd.DataFrame,
+    tables: Mapping[str, pd.DataFrame],
+    scenes: Sequence[Scene],
+    missing: Sequence[str],
+    command: str,
+) -> str:
+    """The report as text; arguments as of `write_page`."""
+    outcomes, shares, transfer = (tables[name] for name in ("outcomes", "shares", "transfer"))
+    plain, changed = where(outcomes, change=""), without(outcomes, "change", "")
+    fractions = where(shares, world=study.worlds[0].label)
+    judged = where(plain, world=study.worlds[0].label, preset=study.presets[0])
+    places = [
+        {
+            "world": world,
+            "preset": preset,
+            "tasks": [(task, records(rows)) for (task,), rows in by(group, ["task"])],
+        }
+        for (world, preset), group in by(without(plain, "task", ALL), ["world", "preset"])
+    ]
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
+    environment.filters.update(FILTERS)
+    return environment.from_string(_TEMPLATE.read_text(encoding="utf-8")).render(
+        study=study,
+        answers=answers(study, outcomes, shares),
+        tiles=_tiles(judged),
+        pictures=_pictures(study, plain, changed, fractions, transfer),
+        places=places,
+        shares=records(fractions),
+        transfer=records(transfer),
+        transfer_most=TRANSFER_MOST,
+        scenes=scenes,
+        film=_film,
+        missing=missing,
+        command=command,
+        digest=sources(),
+        episodes=len(episodes),
+        versions={name: version for name, version in versions().items() if version},
+        described=yaml.safe_dump(study.model_dump(mode="json"), sort_keys=False, allow_unicode=True),
+    )
+
+
+def _tiles(judged: pd.DataFrame) -> list[tuple[str, str, list[dict[str, Any]]]]:
+    """Kind, task and the rows of its sources: of all tasks together, or of the only one."""
+    tiles = []
+    for (kind,), group in by(judged, ["kind"]):
+        task = ALL if ALL in distinct(group, "task") else distinct(group, "task")[0]
+        rows = where(group, task=task).drop_duplicates("source")
+        tiles.append((str(kind), task, records(rows)))
+    return tiles
+
+
+def _pictures(
+    study: Study, plain: pd.DataFrame, changed: pd.DataFrame, fractions: pd.DataFrame, transfer: pd.DataFrame
+) -> dict[str, Any]:
+    """Every figure as an element; by preset or kind where there is one for each."""
+    first = where(plain, world=study.worlds[0].label)
+    pictures: dict[str, Any] = {
+        "success": {},
+        "shares": {},
+        "estimators": {},
+        "degradation": {},
+        "transfer": "",
+    }
+    estimator, *others = study.estimators
+    with styled():
+        for (preset,), group in by(first, ["preset"]):
+            success = figures.plot_success(group, estimator)
+            pictures["success"][preset] = inline(success, f"Episodes solved, {preset}")
+            if others:
+                compared = figures.plot_estimators(group, study.estimators)
+                pictures["estimators"][preset] = inline(compared, f"Episodes solved by estimator, {preset}")
+            if len(part := where(fractions, preset=preset)):
+                pictures["shares"][preset] = inline(
+                    figures.plot_shares(part), f"Share of the truth, {preset}"
+                )
+        for (kind,), group in by(changed, ["kind"]):
+            worse = figures.plot_degradation(group)
+            pictures["degradation"][kind] = inline(worse, f"Episodes solved as things get worse, {kind}")
+        if len(transfer):
+            pictures["transfer"] = inline(
+                figures.plot_transfer(transfer), "From the batched core to PyBullet"
+            )
+    return pictures
+
+
+def _film(path: Path) -> str:
+    return "data:video/mp4;base64," + base64.b64encode(path.read_bytes()).decode("ascii")

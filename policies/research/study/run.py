@@ -1,0 +1,67 @@
+"""From a study to its folder."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pandas as pd
+import yaml
+
+from policies.atomic_io import replace_durably
+from policies.evaluation.folder import write_versions
+from policies.research.study import tables
+from policies.research.study.cells import cells
+from policies.research.study.config import Study
+from policies.research.study.episodes import episodes
+from policies.research.study.learned import missing, policies_of
+from policies.research.study.page import write_page
+from policies.research.study.store import Store
+
+
+def run_study(
+    study: Study,
+    output: str | os.PathLike[str] = "runs",
+    jobs: int = 1,
+    command: str = "",
+    progress: bool = True,
+) -> Path:
+    """Runs what a study has not run yet, and writes its tables and its report.
+
+    Args:
+        study: From `load_study`.
+        output: Folder that the study's own folder goes to; cells that lie there already are not run again.
+        jobs: Processes; -1 for one per core. The results do not depend on it.
+        command: What the report says it was made by.
+        progress: Whether to show progress bars.
+
+    Returns:
+        The study's folder, <output>/study__<name>__<seed>.
+
+    Raises:
+        ValueError: There is nothing to run, or a policy refuses the observations.
+        OSError: The output cannot be written.
+    """
+    folder = Path(output).expanduser().resolve() / f"study__{study.name}__{study.seed}"
+    learned = policies_of(study)
+    chosen = cells(study, learned)
+    if not chosen:
+        raise ValueError(f"{study.name}: no cell to run; {'; '.join(missing(study, learned))}")
+    done = episodes(study, chosen, Store(folder / "cells", study), jobs, progress)
+    made = {
+        "outcomes": tables.outcomes(done),
+        "shares": tables.shares(done, study.estimators[0]),
+        "transfer": tables.transfer(done, study),
+    }
+    write_versions(folder)
+    text = yaml.safe_dump(study.model_dump(mode="json"), sort_keys=False, allow_unicode=True)
+    replace_durably(folder / "study.yaml", text.encode())
+    replace_durably(folder / "episodes.parquet", done.to_parquet(index=False))
+    for name, table in made.items():
+        replace_durably(folder / f"{name}.csv", _csv(table))
+    write_page(study, chosen, done, made, missing(study, learned), command, folder, progress)
+    return folder
+
+
+def _csv(table: pd.DataFrame) -> bytes:
+    return table.to_csv(index=False).encode()

@@ -1,0 +1,54 @@
+"""What a finished study says on a terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from policies.evaluation.report import aligned
+from policies.evaluation.tables import text
+from policies.research.study.config import Study
+from policies.research.study.tables import PLACE, TOLD
+
+
+def words(study: Study, folder: Path) -> str:
+    """Success of every condition in the world judged by, the shares, and where to look next.
+
+    Args:
+        study: The study.
+        folder: From `run_study`.
+    """
+    # as text: a column of nothing but "true" would turn into booleans
+    names = dict.fromkeys([*PLACE, *TOLD], str)
+    names.pop("level")
+    outcomes, shares = (
+        pd.read_csv(folder / f"{name}.csv", dtype=names, keep_default_na=False, na_values=[""])  # type: ignore[arg-type]
+        for name in ("outcomes", "shares")
+    )
+    world = study.worlds[0].label
+    rows = [["task", "preset", "policy", "friction", "success [%]", "dropped [%]", "return, IQM"]]
+    for row in outcomes[(outcomes["world"] == world) & outcomes["change"].isna()].to_dict("records"):
+        told = " ".join(str(row[name]) for name in TOLD if row[name] == row[name])
+        figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
+        rows.append([row["task"], row["preset"], row["kind"], told, *figures])
+    parts = [f"{world}:", aligned(rows), "(95 % confidence intervals in brackets)"]
+    if len(shares):
+        rows = [["task", "preset", "policy", "of", "(estimated - none) / (true - none) [%]", ">= 80 %"]]
+        for row in shares[shares["world"] == world].to_dict("records"):
+            share = _text(row, "share", "[%]")
+            rows.append([row["task"], row["preset"], row["kind"], row["figure"], share, row["verdict"]])
+        parts.append(aligned(rows))
+    return "\n\n".join([*parts, f"Look at:\n  {folder / 'report.html'}"])
+
+
+_UNITS = {"success": "[%]", "dropped": "[%]", "return": ""}
+
+
+def _text(row: Mapping[str, Any], name: str, unit: str) -> str:
+    """A figure with its interval; nothing where there is none."""
+    value, low, high = row[name], row[f"{name}_low"], row[f"{name}_high"]
+    return "" if math.isnan(value) else text((value, low, high), unit)

@@ -1,8 +1,0 @@
-"""What knowing friction is worth: controllers and learned policies x what they are told, on both engines."""
-
-from policies.study.config import Study
-from policies.study.files import load_study, narrowed, study_names
-from policies.study.run import run_study
-from policies.study.terminal import words
-
-__all__ = ["Study", "load_study", "narrowed", "run_study", "study_names", "words"]

@@ -1,0 +1,109 @@
+"""What happens between two updates: evaluations, checkpoints, the end."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.vec_env import VecEnv
+from tqdm import tqdm
+
+from policies.training import checkpoint_io as plain
+from policies.training import checkpoints, folder
+from policies.training import model as learners
+from policies.training.config import Training
+from policies.training.curve import Row, best
+from policies.training.evaluate import evaluate
+
+
+class Keeper(BaseCallback):
+    """Keeps the record of a run.
+
+    It acts where a collection of samples begins, when the update before it is complete: there the state of
+    the run is its learner, its environments, and the record.
+
+    Args:
+        config: The run.
+        path: Its folder.
+        envs: Environments for evaluations.
+        bar: Progress bar over steps.
+
+    Attributes:
+        curve: The evaluations so far.
+        ended: Why the run is over, "success" or "budget"; empty while it is not.
+        seconds: Time spent so far [s].
+    """
+
+    def __init__(self, config: Training, path: Path, envs: VecEnv, bar: tqdm) -> None:
+        super().__init__()
+        self._config, self._path, self._envs, self._bar = config, path, envs, bar
+        self.curve: list[Row] = []
+        self.ended, self.seconds = "", 0.0
+        self._next_evaluation, self._next_checkpoint = 0, config.checkpoints.every
+        self._since = time.perf_counter()
+
+    def get_state(self) -> dict[str, Any]:
+        """The record as plain data."""
+        now = time.perf_counter()
+        self.seconds, self._since = self.seconds + now - self._since, now
+        return {
+            "curve": [asdict(row) for row in self.curve],
+            "ended": self.ended,
+            "seconds": self.seconds,
+            "next": [self._next_evaluation, self._next_checkpoint],
+        }
+
+    def set_state(self, state: dict[str, Any]) -> None:
+        """Go on from a record."""
+        self.curve = [Row(**values) for values in state["curve"]]
+        self.ended, self.seconds = state["ended"], state["seconds"]
+        self._next_evaluation, self._next_checkpoint = state["next"]
+        folder.write_curve(self._path, self.curve)
+
+    def _on_step(self) -> bool:
+        self._bar.update(self.num_timesteps - self._bar.n)
+        return not self.ended
+
+    def _on_rollout_start(self) -> None:
+        self._pause()
+
+    def _on_training_end(self) -> None:
+        if not self.ended:
+            self._pause()
+
+    def _pause(self) -> None:
+        steps = self.model.num_timesteps
+        if steps >= self._config.budget:
+            self.ended = "budget"
+        if self.ended or steps >= self._next_evaluation:
+            self._evaluate()
+            self._next_evaluation = _after(steps, self._config.evaluation.every)
+        if self.ended or steps >= self._next_checkpoint:
+            self._next_checkpoint = _after(steps, self._config.checkpoints.every)
+            state = {"record": self.get_state(), "learner": learners.get_state(self.model)}
+            checkpoints.save(self._path, steps, state, self._config.checkpoints.keep)
+
+    def _evaluate(self) -> None:
+        row = evaluate(self._config, self.model, self._envs)
+        self.curve.append(row)
+        if best(self.curve, self._config.evaluation.episodes) is row:
+            state = {"row": asdict(row), "learner": learners.get_state(self.model, replay=False)}
+            plain.write(checkpoints.best(self._path), state)
+        folder.write_curve(self._path, self.curve)
+        for name, value in asdict(row).items():
+            self.logger.record(f"evaluation/{name}", value)
+        self.logger.dump(row.steps)
+        self._bar.set_postfix({"success": f"{row.success:.0%}", "drops": f"{row.drops:.0%}"})
+        stop = self._config.stop
+        last = self.curve[-stop.evaluations :]
+        reached = [stop.success is not None and one.success >= stop.success for one in last]
+        if len(last) == stop.evaluations and all(reached):
+            self.ended = "success"
+
+
+def _after(steps: int, every: int) -> int:
+    """The first multiple of `every` beyond `steps`."""
+    return (steps // every + 1) * every

@@ -1,0 +1,79 @@
+"""Several seeds and conditions side by side, each a run of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from policies.evaluation.folder import stamped
+from policies.evaluation.plots.style import STYLE, styled
+from policies.training import curve, folder
+from policies.training import parallel as scatter
+from policies.training import seeds as numbers
+from policies.training.config import Training
+from policies.training.files import changed
+from policies.training.run import train
+from slipgym.tasks import TASKS
+
+
+def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output: Path) -> Path:
+    """Makes the folder of a study, with one for every run in it.
+
+    Args:
+        config: What the runs share.
+        seeds: Seeds of the runs.
+        sources: Friction sources, each with every seed; none given: the configuration's.
+        output: Folder that the study's own folder goes to.
+
+    Raises:
+        ValueError: A source is unknown or a seed out of range.
+    """
+    for seed in seeds:
+        numbers.training(seed)
+    given = sources or [config.environment.friction_source]
+    conditions = [
+        changed(config, {"environment.friction_source": source}, "--friction-source") for source in given
+    ]
+    path = stamped(output, f"{TASKS[config.task].key}__{config.algorithm}")
+    for condition in conditions:
+        for seed in seeds:
+            folder.begin(path / f"{condition.environment.friction_source}__{seed}", condition, seed)
+    return path
+
+
+def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -> str:
+    """Trains every run of a study that is not over yet, and draws their curves.
+
+    Args:
+        path: The study's folder, or that of one run.
+        jobs: Runs at once; -1 for one per core.
+        ray: See `scatter.run_all`.
+        progress: Whether to show progress bars.
+
+    Returns:
+        What came out, as text.
+
+    Raises:
+        FileNotFoundError: There is no run in the folder.
+        ModuleNotFoundError: Ray is asked for and not installed.
+    """
+    runs = folder.runs(path)
+    results = scatter.run_all(train, [(run, progress, k) for k, run in enumerate(runs)], jobs, ray)
+    if len(runs) > 1:
+        _draw(path, runs)
+    lines = [
+        f"  {run.name}: solved {result['best']['success']:.0%} of the held-out episodes at step "
+        f"{result['best']['steps']}; ended by {result['ended']} at step {result['steps']} "
+        f"after {result['seconds']:.0f} s"
+        for run, result in zip(runs, results, strict=True)
+    ]
+    return "\n".join([f"Look at {path}", *lines])
+
+
+def _draw(path: Path, runs: Sequence[Path]) -> None:
+    """The curves of all runs in one picture, a colour for each condition."""
+    curves: dict[str, list[list[curve.Row]]] = {}
+    for run in runs:
+        curves.setdefault(run.name.partition("__")[0], []).append(folder.read_curve(run))
+    with styled():
+        curve.plot(curves).savefig(path / "curves.png", dpi=STYLE.dpi)

@@ -1,0 +1,1 @@
+"""How functions are compiled: everything that touches internals of numba."""

@@ -1,0 +1,128 @@
+"""Between the planar world and a rigid-body engine: what the engine did, what it is to do.
+
+World plane: x to the right, z up; the grip axis n = x × z = -y points at the viewer. The
+engine integrates with semi-implicit Euler steps, so its velocity is the mean velocity of a
+step. The wrench sent to it is the one that gives the object the mean velocity of the
+sub-stepped motion (friction's mean over the step, staggered by half of one); it and its
+reactions on the fingers cancel, but for the moment that tilts the box out of the plane: the pads'
+pressure carries that. Whatever else the engine did to the object (normal forces,
+collisions) comes back as the difference between the pose expected and the pose found, and is
+taken over.
+"""
+
+from __future__ import annotations
+
+import math
+
+from slipgym._numba.compiled import compiled
+from slipgym.world.substep import advance
+
+
+@compiled
+def observe(world, fingers, position, orientation, wrist, normals):
+    """Take over the engine's poses and normal forces. Calling it twice changes nothing.
+
+    Args:
+        world: WORLD record.
+        fingers: FINGER records (2,).
+        position: Object's centre of mass (x, y, z) [m].
+        orientation: Its quaternion (x, y, z, w).
+        wrist: Wrist joint positions (x, z, pitch) [m, m, rad].
+        normals: Normal force of finger 1 and 2, mean over the last engine step [N].
+    """
+    dt = world.engine_ticks * world.tick_length
+    angle = -2.0 * math.atan2(orientation[1], orientation[3])
+    turn = angle - world.angle
+    turn -= 2.0 * math.pi * round(turn / (2.0 * math.pi))
+    world.velocity[0] += (position[0] - world.com[0]) / dt
+    world.velocity[1] += (position[2] - world.com[1]) / dt
+    world.velocity[2] += turn / dt
+    world.com[0], world.com[1] = position[0], position[2]
+    world.angle += turn
+    for a in range(3):
+        world.wrist[a] = wrist[a]
+    for f in range(2):
+        fingers[f].contact_force = normals[f]
+        fingers[f].contact_mean_force = fingers[f].mean_force
+
+
+@compiled
+def step_loads(
+    world,
+    pads,
+    cells,
+    fingers,
+    force_torque,
+    slip_sensors,
+    position,
+    orientation,
+    linear,
+    angular,
+    wrist,
+    normals,
+):
+    """Advance the planar world by one engine step and say what the engine must apply.
+
+    Args:
+        world: WORLD record.
+        pads: PAD records (2,).
+        cells: Patches (2, CELL_FIELDS, m); None for ellipsoids.
+        fingers: FINGER records (2,).
+        force_torque: FORCE_TORQUE records (2,).
+        slip_sensors: SLIP_SENSOR records (2,).
+        position: As in `observe`, like the next one.
+        orientation: Quaternion of the object.
+        linear: Engine velocity of the object [m/s].
+        angular: Engine angular velocity of the object [rad/s].
+        wrist: As in `observe`.
+        normals: As in `observe`.
+
+    Returns:
+        Force and torque on the object at its centre of mass; for either finger the point,
+        force and torque of friction's reaction; finger efforts; wrist joint velocities.
+    """
+    observe(world, fingers, position, orientation, wrist, normals)
+    dt = world.engine_ticks * world.tick_length
+    x, z, angle = world.com[0], world.com[1], world.angle
+    advance(world, pads, cells, fingers, force_torque, slip_sensors)
+    # total in-plane load that gives the engine this step's mean velocity
+    fx = world.mass * ((world.com[0] - x) / dt - linear[0]) / dt
+    fz = world.mass * ((world.com[1] - z) / dt - linear[2]) / dt + world.mass * world.gravity
+    torque = world.inertia * ((world.angle - angle) / dt + angular[1]) / dt
+    # friction's share of it, on both fingers
+    excess_x, excess_z, excess_t = fx - world.external[0], fz - world.external[1], torque - world.external[2]
+    for f in range(2):
+        excess_x -= fingers[f].reaction[0]
+        excess_z -= fingers[f].reaction[1]
+    cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])
+    for f in range(2):
+        load = fingers[f].reaction
+        load[0] += 0.5 * excess_x
+        load[1] += 0.5 * excess_z
+        arm_x = world.wrist[0] + cos * pads[f].cop[0] - sin * pads[f].cop[1] - x
+        arm_z = world.wrist[1] + sin * pads[f].cop[0] + cos * pads[f].cop[1] - z
+        excess_t -= load[2] + arm_x * load[1] - arm_z * load[0]
+    for f in range(2):
+        fingers[f].reaction[2] += 0.5 * excess_t
+    goal = (
+        (world.wrist_plan[0] - wrist[0]) / dt,
+        (world.wrist_plan[1] - wrist[1]) / dt,
+        (world.wrist_plan[2] - wrist[2]) / dt,
+    )
+    return (
+        ((fx, 0.0, fz), (0.0, -torque, 0.0)),
+        reaction(world, pads[0], fingers[0], position[1] + world.half_thickness),
+        reaction(world, pads[1], fingers[1], position[1] - world.half_thickness),
+        (fingers[0].mean_force, fingers[1].mean_force),
+        goal,
+    )
+
+
+@compiled
+def reaction(world, pad, finger, depth):
+    """Point, force and torque of friction on a finger, world coordinates."""
+    cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])
+    x = world.wrist[0] + cos * pad.cop[0] - sin * pad.cop[1]
+    z = world.wrist[1] + sin * pad.cop[0] + cos * pad.cop[1]
+    fx, fz, tau = finger.reaction
+    return (x, depth, z), (-fx, 0.0, -fz), (0.0, tau, 0.0)

@@ -1,0 +1,297 @@
+"""PyBullet moves the bodies; friction and sensing between its steps are ours."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any, NoReturn
+
+import numpy as np
+import pybullet as p
+
+from slipgym._numba.compiled import compiled
+from slipgym.config import Config
+from slipgym.world import bullet_coupling as coupling
+from slipgym.world import scene
+from slipgym.world.actuator import command
+from slipgym.world.momentum import normal_forces
+from slipgym.world.placing import place
+from slipgym.world.plant import Plant
+from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
+from slipgym.world.snapshot import EngineState, load_engine, save_engine
+from slipgym.world.substep import locate
+from slipgym.world.wrist import ramp_wrist
+
+
+@compiled
+def _loads(worlds, pads, cells, fingers, force_torque, slip_sensors, pose, velocity, wrist, normals):
+    return coupling.step_loads(
+        worlds[0],
+        pads[0],
+        None if cells is None else cells[0],
+        fingers[0],
+        force_torque[0],
+        slip_sensors[0],
+        pose[0],
+        pose[1],
+        velocity[0],
+        velocity[1],
+        wrist,
+        normals,
+    )
+
+
+@compiled
+def _observe(worlds, fingers, pose, wrist, normals):
+    coupling.observe(worlds[0], fingers[0], pose[0], pose[1], wrist, normals)
+    locate(worlds[0])
+
+
+@compiled
+def _command(worlds, fingers, force):
+    for f in range(2):
+        command(fingers[0, f], worlds[0].tick, force)
+
+
+class BulletWorld:
+    """One gripper and one box in a physics client of their own.
+
+    The scene is built once; an episode starts from a saved state of it, in which the pads
+    touch the box. Only another geometry builds another box.
+
+    Args:
+        config: Configuration; gripper, physics and the rates are read.
+        plant: Arrays of one world, shared with whoever senses or controls it.
+    """
+
+    def __init__(self, config: Config, plant: Plant) -> None:
+        self._config = config
+        self._plant = plant
+        self._client: int | None = scene.connect()
+        self._box: Box | None = None
+        self._gripper = self._body = self._saved = -1
+        self._weighed: tuple[float, float] | None = None
+        self._reading: tuple[Any, ...] = ()
+
+    @property
+    def client(self) -> int:
+        """PyBullet's id of the physics client.
+
+        Raises:
+            RuntimeError: The world is closed.
+        """
+        if self._client is None:
+            raise RuntimeError("this environment is closed; make a new one")
+        return self._client
+
+    @property
+    def closed(self) -> bool:
+        """Whether the world was closed."""
+        return self._client is None
+
+    @property
+    def box(self) -> Box:
+        """The box of this episode.
+
+        Raises:
+            RuntimeError: There was no reset yet.
+        """
+        if self._box is None:
+            raise RuntimeError("call reset() first: there is no object yet")
+        return self._box
+
+    @property
+    def body(self) -> int:
+        """PyBullet's id of the box."""
+        return self._body
+
+    @property
+    def gripper(self) -> int:
+        """PyBullet's id of the gripper."""
+        return self._gripper
+
+    @property
+    def reading(self) -> tuple[Any, ...]:
+        """What the engine said after its last step.
+
+        Pose and velocity of the box, positions of the wrist's joints, normal forces, speeds of all joints.
+        """
+        return self._reading
+
+    def reset(self, box: Box, force: float, wrist: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
+        """Start an episode: the box held still by both fingers.
+
+        Args:
+            box: The object.
+            force: Grip force per finger, already established [N].
+            wrist: Pad centre (x, z) and pitch [m, m, rad].
+        """
+        client = self.client
+        if self._box is None or _geometry(box) != _geometry(self._box):
+            self._build(box)
+        self._weigh(box.mass, box.inertia)
+        p.restoreState(stateId=self._saved, physicsClientId=client)
+        self._box = box
+        place(self._plant, 0, box, force, wrist)
+        if any(wrist):
+            self._place(wrist)
+        *bodies, speeds = self._read()
+        self._reading = *bodies, (force, force), speeds
+
+    def command(self, force: float) -> None:
+        """Command a grip force per finger [N]; both fingers get the same."""
+        _command(self._plant.world, self._plant.fingers, force)
+
+    def command_wrist(self, velocity: np.ndarray, duration: float) -> None:
+        """Ramp the wrist velocity to a target within `duration`.
+
+        Args:
+            velocity: Along x, along z and in pitch, (3,) [m/s, m/s, rad/s]; brought down to the
+                gripper's `wrist_speed_max`, direction kept, and `wrist_pitch_rate_max`.
+            duration: Length of the ramp [s].
+        """
+        gripper = self._config.gripper
+        limits = gripper.wrist_speed_max, gripper.wrist_pitch_rate_max
+        ramp_wrist(self._plant.world[0], *velocity, *limits, duration)
+
+    def weigh(self) -> None:
+        """Give the engine's box the planar world's mass and inertia, if they have changed."""
+        mass = self._plant.world["mass"].item()
+        if mass != self.box.mass:
+            self._box = replace(self.box, mass=mass, inertia=self._plant.world["inertia"].item())
+            self._weigh(mass, self._box.inertia)
+            self._place_links()
+
+    def disturb(self, wrench: np.ndarray) -> None:
+        """Apply a load (f_x, f_z, torque) to the object's centre of mass until told otherwise."""
+        self._plant.world["external"] = wrench
+
+    def step(self) -> None:
+        """Advance by one control step."""
+        client, body, gripper, plant = self.client, self._body, self._gripper, self._plant
+        push, twist, drive = p.applyExternalForce, p.applyExternalTorque, p.setJointMotorControlArray
+        (first, second), world = FINGER_LINKS, p.WORLD_FRAME
+        inertia = self._config.gripper.finger_mass * self._config.physics.engine_rate
+        for _ in range(self._config.physics.engine_steps):
+            pose, velocity, wrist, normals, before = self._reading
+            (force, torque), at_first, at_second, efforts, speeds = _loads(
+                plant.world,
+                plant.pads,
+                plant.cells,
+                plant.fingers,
+                plant.force_torque,
+                plant.slip_sensors,
+                pose,
+                velocity,
+                wrist,
+                normals,
+            )
+            push(body, -1, force, pose[0], world, client)
+            twist(body, -1, torque, world, client)
+            push(gripper, first, at_first[1], at_first[0], world, client)
+            twist(gripper, first, at_first[2], world, client)
+            push(gripper, second, at_second[1], at_second[0], world, client)
+            twist(gripper, second, at_second[2], world, client)
+            drive(gripper, FINGER_LINKS, p.TORQUE_CONTROL, forces=efforts, physicsClientId=client)
+            drive(
+                gripper,
+                WRIST_JOINTS,
+                p.VELOCITY_CONTROL,
+                targetVelocities=speeds,
+                forces=WRIST_FORCE,
+                physicsClientId=client,
+            )
+            p.stepSimulation(client)
+            pose, velocity, wrist, after = self._read()
+            normals = normal_forces(efforts, before, after, inertia)
+            self._reading = pose, velocity, wrist, normals, after
+        self._place_links()
+        _observe(plant.world, plant.fingers, self._reading[0], self._reading[2], self._reading[3])
+
+    def get_state(self) -> EngineState:
+        """Everything that the engine's next step depends on, apart from the plant's arrays.
+
+        Raises:
+            RuntimeError: The world is closed, or there was no reset yet.
+        """
+        box, client = self.box, self.client
+        return EngineState(save_engine(client), box, self._reading)
+
+    def set_state(self, state: EngineState) -> None:
+        """Go on from a state, also from that of another world or process; the plant's arrays are not touched.
+
+        Raises:
+            RuntimeError: The world is closed.
+        """
+        client = self.client
+        if self._box is None or _geometry(state.box) != _geometry(self._box):
+            self._build(state.box)
+        self._weigh(state.box.mass, state.box.inertia)
+        load_engine(client, state.engine)
+        self._box, self._reading = state.box, state.reading
+        self._place_links()
+
+    def discard(self) -> None:
+        """Give the bodies up: the next reset builds them anew."""
+        self._box = None
+
+    def close(self) -> None:
+        """Disconnect the client; the world cannot be used again. Closing twice is harmless."""
+        if self._client is not None:
+            p.disconnect(physicsClientId=self._client)
+            self._client = None
+
+    def __del__(self) -> None:
+        if getattr(self, "_client", None) is not None and p is not None:
+            self.close()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(
+            "a BulletWorld cannot be copied or pickled: two copies would share one physics client; "
+            "save get_state()"
+        )
+
+    def _read(self) -> tuple[Any, ...]:
+        """Pose and velocity of the box, positions of the wrist's joints, speeds of all."""
+        client, body = self.client, self._body
+        pose = p.getBasePositionAndOrientation(body, client)
+        velocity = p.getBaseVelocity(body, client)
+        x, z, pitch, first, second = p.getJointStates(self._gripper, JOINTS, client)
+        return pose, velocity, (x[0], z[0], pitch[0]), (x[1], z[1], pitch[1], first[1], second[1])
+
+    def _weigh(self, mass: float, inertia: float) -> None:
+        if (mass, inertia) != self._weighed:
+            scene.weigh(self.client, self._body, mass, inertia)
+            self._weighed = mass, inertia
+
+    def _place_links(self) -> None:
+        """Have the engine place the gripper's links anew from its joints.
+
+        A step and a restore round the links' transforms differently; placed by the same function after
+        both, a restored world goes on bit for bit. Setting any joint to what it is does it.
+        """
+        _, _, positions, _, speeds = self._reading
+        joint = WRIST_JOINTS[0]
+        p.resetJointState(self._gripper, joint, positions[0], speeds[0], physicsClientId=self.client)
+
+    def _build(self, box: Box) -> None:
+        client = self.client
+        scene.clear(client, self._config)
+        self._weighed = None
+        self._gripper = scene.add_gripper(client, self._config, box.size[1])
+        self._body = scene.add_box(client, box)
+        self._saved = scene.settle(client, self._config, self._gripper)
+
+    def _place(self, wrist: tuple[float, float, float]) -> None:
+        client = self.client
+        for joint, position in zip(WRIST_JOINTS, wrist, strict=True):
+            p.resetJointState(self._gripper, joint, position, 0.0, physicsClientId=client)
+        x, z = self._plant.world["com"][0]
+        half = -0.5 * wrist[2]
+        p.resetBasePositionAndOrientation(
+            self._body, [x, 0.0, z], [0.0, math.sin(half), 0.0, math.cos(half)], physicsClientId=client
+        )
+
+
+def _geometry(box: Box) -> tuple[tuple[float, ...], ...]:
+    return box.size, box.com_offset, box.grasp_offset

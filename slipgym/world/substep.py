@@ -1,0 +1,217 @@
+"""The planar world: object, wrist and fingers between two engine steps, sub-stepped.
+
+The object's in-plane motion relative to the pads is stiff (14 000 rad/s in stick), so it
+is integrated here, implicitly and together with the friction of both pads. A rigid-body
+engine then follows by receiving the step's mean wrench.
+
+Positions, not velocities, decide about slip: a sub-step compares the object's pose in the
+pad frame before and after, with the pad's own motion taken exactly. An object that sticks
+therefore stays where it is in a turning or shaken gripper, to rounding.
+"""
+
+from __future__ import annotations
+
+import math
+
+from slipgym._numba.compiled import compiled
+from slipgym.contact.coupled import step_pads
+from slipgym.sensors.force_torque import sample_force_torque
+from slipgym.sensors.slip_velocity import accumulate_slip
+from slipgym.world.actuator import relax, take_up, ticks_to_next
+
+HOLDING = 1e-2  # [N]; pads with less, a fiftieth of the smallest grip, do not hold the object
+
+
+@compiled
+def advance(world, pads, cells, fingers, force_torque, slip_sensors):
+    """Advance one world by one engine step.
+
+    Args:
+        world: WORLD record.
+        pads: PAD records (2,).
+        cells: Patches (2, CELL_FIELDS, m); None for ellipsoids.
+        fingers: FINGER records (2,).
+        force_torque: FORCE_TORQUE records (2,).
+        slip_sensors: SLIP_SENSOR records (2,).
+    """
+    start = world.tick
+    end = start + world.engine_ticks
+    for f in range(2):
+        fingers[f].mean_force = 0.0
+        fingers[f].reaction[:] = 0.0
+    both = (pads[0], pads[1]), cells, (fingers[0], fingers[1]), (slip_sensors[0], slip_sensors[1])
+    while world.tick < end:
+        for f in range(2):
+            take_up(fingers[f], world.tick)
+        ticks = resolving_ticks(world, fingers, force_torque)
+        share = ticks / world.engine_ticks
+        substep(world, *both, ticks * world.tick_length, share)
+        world.tick += ticks
+        for f in range(2):
+            if world.tick % force_torque[f].period == 0:
+                sample_force_torque(force_torque[f], pads[f], world.tick)
+
+
+@compiled
+def resolving_ticks(world, fingers, force_torque):
+    """Ticks of a sub-step that resolves all there is: at most to the next command, sample or engine step."""
+    ticks = min(world.substep_ticks, world.engine_ticks - world.tick % world.engine_ticks)
+    for f in range(len(fingers)):
+        ticks = ticks_to_next(fingers[f], world.tick, ticks)
+    for f in range(len(force_torque)):
+        ticks = min(ticks, force_torque[f].period - world.tick % force_torque[f].period)
+    return ticks
+
+
+@compiled
+def substep(world, pads, cells, fingers, slip_sensors, h, share):
+    """Advance wrist, fingers, friction and object by h, a `share` of the engine step.
+
+    Args:
+        world: WORLD record.
+        pads: Two PAD records, as an array or, faster (`step_pads` says why), as a tuple.
+        cells: As in `advance`.
+        fingers: Two FINGER records, likewise.
+        slip_sensors: Two SLIP_SENSOR records, likewise.
+        h: Time [s].
+        share: Of the engine step, in its means of force and friction.
+    """
+    for f in range(2):
+        mean = relax(fingers[f], h)
+        fingers[f].mean_force += share * mean
+        # in slip momentum counts, the mean force's over the sub-step; in stick what holds at its end
+        pads[f].normal = normal_force(fingers[f], mean if pads[f].slip_rate != 0.0 else fingers[f].force)
+    slide(world, pads, cells, slip_sensors, h)
+    cos, sin = pad_axes(world)
+    for f in range(2):
+        fx, fy, tau = pads[f].wrench
+        fingers[f].reaction[0] += share * (cos * fx - sin * fy)
+        fingers[f].reaction[1] += share * (sin * fx + cos * fy)
+        fingers[f].reaction[2] += share * tau
+
+
+@compiled
+def slide(world, pads, cells, slip_sensors, h):
+    """Advance wrist, friction and object by h under the pads' normal forces.
+
+    Args:
+        world: WORLD record.
+        pads: Two PAD records, or one that stands for both, as an array or a tuple.
+        cells: As in `advance`.
+        slip_sensors: As many SLIP_SENSOR records, likewise.
+        h: Time [s].
+    """
+    move_wrist(world, h)
+    cos, sin = pad_axes(world)
+    rate, per_mass = 1.0 / h, 1.0 / world.mass  # a product costs less than a quotient
+    ax = world.external[0] * per_mass
+    az = world.external[1] * per_mass - world.gravity
+    at = world.external[2] / world.inertia
+    # held: backward Euler, as sticking needs; in slip or let go: the mean of the velocities at both ends, of
+    # second order. What it says of a sub-step in which slip ends would be the velocity turned round
+    held = holds(pads[0], h) or holds(pads[-1], h)
+    lead = 1.0 if held else 0.5
+    late = 1.0 - lead
+    drift = drifting(world, cos, sin, h)
+    gain = lead * h * h
+    free = (
+        drift[0] + gain * (cos * ax + sin * az),
+        drift[1] + gain * (cos * az - sin * ax),
+        drift[2] + gain * at,
+    )
+    # the levers are those of the time that the accelerations stand for
+    centre = (world.relative[0] + late * drift[0], world.relative[1] + late * drift[1])
+    # a sub-step this long is one of firm stick: what the object would drift in it lies far beyond break-away,
+    # from where Newton's iteration may not find back
+    firm = h > 1.001 * world.calm_ticks * world.tick_length
+    guess = (0.0, 0.0, 0.0) if firm else drift
+    per_lead = 1.0 if held else 2.0
+    part = 0.5 * len(pads) * per_lead  # one pad has half of the object to hold
+    motion = step_pads(pads, cells, (part * world.mass, part * world.inertia), centre, free, guess, h)
+    per_lead *= rate
+    braking_x = (motion[0] - free[0]) * per_lead
+    braking_y = (motion[1] - free[1]) * per_lead
+    back = late * h * (world.wrist_velocity[2] - 0.5 * h * world.wrist_acceleration[2])
+    cos, sin = cos + back * sin, sin - back * cos  # friction turns with the pads: that of the middle
+    gained_x = h * ax + cos * braking_x - sin * braking_y
+    gained_z = h * az + sin * braking_x + cos * braking_y
+    gained_t = h * at + (motion[2] - free[2]) * per_lead
+    world.velocity[0] += gained_x
+    world.velocity[1] += gained_z
+    world.velocity[2] += gained_t
+    world.com[0] += h * (world.velocity[0] - late * gained_x)
+    world.com[1] += h * (world.velocity[1] - late * gained_z)
+    world.angle += h * (world.velocity[2] - late * gained_t)
+    for a in range(3):
+        world.relative[a] += motion[a]
+        world.relative_velocity[a] = motion[a] * rate
+    slip = (motion[0] + motion[2] * centre[1], motion[1] - motion[2] * centre[0], motion[2])
+    for f in range(len(pads)):
+        accumulate_slip(slip_sensors[f], slip)
+
+
+@compiled
+def normal_force(finger, force):
+    """Normal force at an actuator's force [N]: the engine's last mean, moved on by the change since."""
+    if finger.contact_force <= 0.0:
+        return 0.0
+    return max(0.0, finger.contact_force + force - finger.contact_mean_force)
+
+
+@compiled
+def holds(pad, h):
+    """Whether a pad sticks, or its slip is expected to end within h."""
+    slip = pad.slip_rate != 0.0 and pad.slip_speed + (pad.half_step + h) * pad.slip_rate > 0.0
+    return pad.normal > HOLDING and not slip
+
+
+@compiled
+def move_wrist(world, h):
+    """Advance the commanded wrist motion by h (constant acceleration)."""
+    for a in range(3):
+        step = h * (world.wrist_velocity[a] + 0.5 * h * world.wrist_acceleration[a])
+        world.wrist[a] += step
+        world.wrist_plan[a] += step
+        world.wrist_velocity[a] += h * world.wrist_acceleration[a]
+
+
+@compiled
+def pad_axes(world):
+    """Cosine and sine of the wrist's pitch, computed anew when it has changed."""
+    if world.wrist[2] != world.pitch:
+        world.pitch = world.wrist[2]
+        world.axes[0], world.axes[1] = math.cos(world.pitch), math.sin(world.pitch)
+    return world.axes[0], world.axes[1]
+
+
+@compiled
+def drifting(world, cos, sin, h):
+    """Motion of the centre of mass in the pad frame over h at its present velocity.
+
+    The wrist has already moved; cos and sin are those of its new pitch.
+    """
+    x = world.com[0] + h * world.velocity[0] - world.wrist[0]
+    z = world.com[1] + h * world.velocity[1] - world.wrist[1]
+    turned = world.angle + h * world.velocity[2] - world.wrist[2]
+    return (
+        cos * x + sin * z - world.relative[0],
+        cos * z - sin * x - world.relative[1],
+        turned - world.relative[2],
+    )
+
+
+@compiled
+def locate(world):
+    """Update slip displacement and slip twist at the pad centre from the relative pose.
+
+    The displacement is that of the object's point that lay at the pad centre at the grasp.
+    """
+    cos, sin = math.cos(world.relative[2]), math.sin(world.relative[2])
+    px, py = world.grasp_point
+    world.slip[0] = world.relative[0] + cos * px - sin * py
+    world.slip[1] = world.relative[1] + sin * px + cos * py
+    world.slip[2] = world.relative[2]
+    vx, vy, omega = world.relative_velocity
+    world.slip_twist[0] = vx + omega * world.relative[1]
+    world.slip_twist[1] = vy - omega * world.relative[0]
+    world.slip_twist[2] = omega
