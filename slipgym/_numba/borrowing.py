@@ -11,6 +11,8 @@ from typing import Any
 from numba import types
 from numba.extending import intrinsic
 
+from slipgym._numba.switches import DISABLED
+
 
 def _borrowing(_: Any, arrays: Any) -> Any:
     """Type and code of `borrowed`."""
@@ -18,7 +20,9 @@ def _borrowing(_: Any, arrays: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         items = [builder.extract_value(arguments[0], k) for k in range(len(arrays))]
         for k, kind in enumerate(arrays):
-            if isinstance(kind, types.Array):
+            if "borrowing" in DISABLED:
+                context.nrt.incref(builder, kind, items[k])
+            elif isinstance(kind, types.Array):
                 array = context.make_array(kind)(context, builder, items[k])
                 array.meminfo = array.meminfo.type(None)
                 items[k] = array._getvalue()

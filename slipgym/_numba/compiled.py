@@ -8,21 +8,44 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any, ParamSpec, TypeVar
 
 from estimator.caching import compiler
+from slipgym._numba.switches import DISABLED
 
-_HERE = Path(__file__).parents[1]
+P = ParamSpec("P")
+R = TypeVar("R")
 
-compiled = compiler(_HERE, error_model="numpy", forceinline=True)
-unlocked = compiler(_HERE, error_model="numpy", nogil=True, forceinline=True)
-"""The same for what threads run side by side."""
-compiled_sum = compiler(_HERE, error_model="numpy", fastmath={"reassoc"})
-"""For a loop that sums: its additions may be taken in another order, which is what several elements at once
-takes. The order is fixed when the function is compiled, so that equal input gives equal bits; a processor
-with other vector instructions may round otherwise. Functions that it calls keep their own order."""
+
+def _decorator(**options: Any) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """`estimator.caching.compiler` for slipgym, one cache stamp for each set of disabled optimisations."""
+    decorate = compiler(Path(__file__).parents[1], error_model="numpy", **options)
+
+    def decorated(function: Callable[P, R]) -> Callable[P, R]:
+        dispatcher = decorate(function)
+        if DISABLED:
+            file = dispatcher._cache._cache_file
+            file._source_stamp = (*file._source_stamp, *sorted(DISABLED))
+        return dispatcher
+
+    return decorated
+
+
+compiled: Any = _decorator(forceinline=True, fastmath=False)
+"""Compiles a function on its first call.
+
+`fastmath` is given, for a function that does not give it inherits it from the function whose compilation
+compiles it first: results would depend on what was compiled before."""
+unlocked: Any = _decorator(nogil=True, forceinline=True, fastmath=False)
+"""`compiled` for functions that several threads run at the same time: it releases Python's lock."""
+compiled_sum: Any = _decorator(fastmath={"reassoc"})
+"""For loops that sum: additions may be reordered, so that the loop computes several elements at once.
+
+The order is fixed when the function is compiled, so that equal input gives equal bits; a processor with other
+vector instructions may round differently. Functions that it calls keep the order of their operations."""
 
 
 @contextmanager

@@ -13,6 +13,8 @@ from numba.core import cgutils
 from numba.experimental.function_type import FunctionModel
 from numba.extending import NativeValue, register_model, unbox
 
+from slipgym._numba.switches import DISABLED
+
 
 class Known(types.FunctionType):
     """Type of a `Pointer` in the signature of a compiled function.
@@ -47,3 +49,11 @@ def _unbox(kind: Any, pointer: Any, c: Any) -> NativeValue:
     function.py_addr = function.jit_addr = cgutils.get_null_value(cgutils.voidptr_t)
     c.pyapi.decref(number)
     return NativeValue(function._getvalue())
+
+
+if "pointers" in DISABLED:  # numba's own way
+    Known = types.FunctionType  # type: ignore[misc]
+
+    def Pointer(function: Any, signature: Any) -> Any:
+        """The function itself."""
+        return function

@@ -13,11 +13,13 @@ from numba import types
 from numba.extending import intrinsic
 
 from slipgym._numba.compiled import unlocked
+from slipgym._numba.switches import DISABLED
 
 LINE = 64
 """Bytes that come together."""
 HEAD = 704
 """Bytes of a record that are asked for: in longer ones what most steps do not need comes last."""
+_ENABLED = "prefetch" not in DISABLED
 _READ, _SECOND_LEVEL, _DATA = 0, 2, 1
 
 
@@ -42,6 +44,8 @@ _ask: Any = intrinsic(_asking)
 @unlocked
 def fetch(array, first, stop):
     """Ask for rows of records, (n,) or (n, 2), from the first to before `stop`, as far as there are."""
+    if not _ENABLED:
+        return
     row = array.strides[0]
     for start in range(first * row, min(stop, array.shape[0]) * row, array.itemsize):
         for offset in range(start, start + min(HEAD, array.itemsize), LINE):

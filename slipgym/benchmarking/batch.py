@@ -35,7 +35,7 @@ CACHED = 256
 
 
 class VectorPlayer:
-    """Plays a batch with random grip forces, asking for infos where episodes end, as a learner does.
+    """Plays a batch with random grip forces.
 
     Args:
         env_id: Id of the environment.
@@ -45,7 +45,7 @@ class VectorPlayer:
     """
 
     def __init__(self, env_id: str, n: int, actions: tuple[float, float] = ACTIONS, **arguments: Any) -> None:
-        env = gym.make_vec(env_id, num_envs=n, infos="ends", **arguments).unwrapped
+        env = gym.make_vec(env_id, num_envs=n, **arguments).unwrapped
         assert isinstance(env, SlipVectorEnv)
         self.env, self.n, self._actions = env, n, actions
         self._rng = np.random.default_rng(0)

@@ -3,19 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from multiprocessing import get_context
-from multiprocessing.connection import Connection
-from typing import Any, Protocol
+from typing import Any
 
-from slipgym.benchmarking.processors import SECOND, pin, two_processors
-
-
-class Player(Protocol):
-    """Plays something when asked to."""
-
-    def block(self, steps: int) -> tuple[float, int]:
-        """The time that some steps took [s], and how many they were."""
-        ...
+from slipgym.benchmarking.processors import SECOND, two_processors
+from slipgym.benchmarking.worker import Player, Worker
 
 
 class Twins:
@@ -29,48 +20,29 @@ class Twins:
     """
 
     def __init__(self, make: Callable[..., Player], *arguments: Any) -> None:
-        context = get_context("spawn")
-        self._ends: list[Connection] = []
-        self._processes = []
-        for processor in two_processors():
-            here, there = context.Pipe()
-            process = context.Process(target=_play, args=(there, processor, make, arguments), daemon=True)
-            process.start()
-            self._ends.append(here)
-            self._processes.append(process)
-        for end in self._ends:
-            end.recv()  # made
+        self._workers = [Worker(make, *arguments, processor=processor) for processor in two_processors()]
+        for worker in self._workers:
+            worker.wait()
 
     def alone(self, steps: int) -> tuple[float, float]:
         """What one does in a second while the other rests: the mean of both, from a block of each in turn."""
-        speeds = [self._speeds([end], steps)[0] for end in self._ends]
+        speeds = [self._speeds([worker], steps)[0] for worker in self._workers]
         return SECOND, sum(speeds) / len(speeds)
 
     def both(self, steps: int) -> tuple[float, float]:
         """What both together do in a second, from a block of both at once; at its end the slower is alone."""
-        return SECOND, sum(self._speeds(self._ends, steps))
+        return SECOND, sum(self._speeds(self._workers, steps))
 
     def __enter__(self) -> Twins:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for end, process in zip(self._ends, self._processes, strict=True):
-            end.send(0)
-            process.join()
+        for worker in self._workers:
+            worker.close()
 
     @staticmethod
-    def _speeds(ends: list[Connection], steps: int) -> list[float]:
-        for end in ends:
-            end.send(steps)
-        results = [end.recv() for end in ends]
+    def _speeds(workers: list[Worker], steps: int) -> list[float]:
+        for worker in workers:
+            worker.ask(steps)
+        results = [worker.answer() for worker in workers]
         return [made / seconds for seconds, made in results]
-
-
-def _play(
-    end: Connection, processor: set[int], make: Callable[..., Player], arguments: tuple[Any, ...]
-) -> None:
-    pin(processor)
-    player = make(*arguments)
-    end.send(True)
-    while steps := end.recv():
-        end.send(player.block(steps))

@@ -7,8 +7,9 @@ to the pads within the sub-step. It solves the momentum balance
 
 with S_i the map from q to the scaled slip displacement at pad i's centre of pressure
 and f_i its friction. Pads are ellipsoids (`slipgym.contact.ellipsoid_kernel`) or, if they have cells,
-patches (`slipgym.contact.distributed_kernel`): `prepare`, `respond`, `commit` and `release` of pad i know
-which. `cells` is None for ellipsoids, so that either kind is compiled for itself.
+patches (`slipgym.contact.distributed_kernel`). `set_friction_level`, `friction_and_jacobian`,
+`update_friction_level`, `store_state` and `detach` call the one or the other. `cells` is None for ellipsoids,
+so that each kind is compiled separately.
 The derivative of a bristle's friction is a multiple of the identity less a dyad, so an
 ellipsoid's pull-back needs no matrix products.
 """
@@ -16,10 +17,15 @@ ellipsoid's pull-back needs no matrix products.
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
+
+import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.contact import distributed_kernel as patch
-from slipgym.contact import ellipsoid_kernel as kernel
+from slipgym.contact import distributed_kernel, ellipsoid_kernel
+from slipgym.contact.records import Pad, Pads, Symmetric, Vector
+
+Pair: TypeAlias = tuple[float, float]
 
 MAX_NEWTON = 30
 MAX_HALVINGS = 8
@@ -27,26 +33,26 @@ FORCE_TOLERANCE = 1e-10  # of the friction limit; rounding reaches about 1e-13
 
 
 @compiled
-def lever(pad, centre):
+def lever(pad: Pad, centre: Pair) -> Pair:
     """Vector from the centre of mass to the pad's centre of pressure [m]."""
     return pad.cop[0] - centre[0], pad.cop[1] - centre[1]
 
 
 @compiled
-def scaled(pad, arm, motion):
+def scaled_displacement(pad: Pad, arm: Pair, motion: Vector) -> Vector:
     """Scaled slip displacement S q at the centre of pressure."""
     return (motion[0] - motion[2] * arm[1], motion[1] + motion[2] * arm[0], pad.r * motion[2])
 
 
 @compiled
-def transposed(pad, arm, vector):
+def generalised_force(pad: Pad, arm: Pair, vector: Vector) -> Vector:
     """Generalised force S^T f of a scaled friction vector f about the centre of mass."""
     moment = arm[0] * vector[1] - arm[1] * vector[0] + pad.r * vector[2]
     return vector[0], vector[1], moment
 
 
 @compiled
-def pulled_back(pad, arm, a):
+def generalised_stiffness(pad: Pad, arm: Pair, a: Symmetric) -> Symmetric:
     """S^T a S of a symmetric a = (xx, yy, tt, xy, xt, yt)."""
     xx, yy, tt, xy, xt, yt = a
     x, y, r = arm[0], arm[1], pad.r
@@ -57,28 +63,29 @@ def pulled_back(pad, arm, a):
 
 
 @compiled
-def prepare(pad, cells, i, h):
-    """Fix the friction levels of a sub-step; returns their mean over the load [-]."""
+def set_friction_level(pad: Pad, cells: np.ndarray | None, i: int, h: float) -> float:
+    """Set the friction levels of a sub-step; returns their mean over the load [-]."""
     if cells is None:
-        return kernel.prepare(pad, h)
-    return patch.prepare(pad, cells[i], patch.expected_twist(pad, h))
+        return ellipsoid_kernel.set_friction_level(pad, h)
+    twist = distributed_kernel.expected_twist(pad, h)
+    return distributed_kernel.set_friction_levels(pad, cells[i], twist)
 
 
 @compiled
-def respond(pad, cells, i, limit, arm, motion, h):
-    """Generalised friction force of one pad about the centre of mass, and its derivative.
-
-    Returns:
-        Force (3,) and derivative (xx, yy, tt, xy, xt, yt), as tuples.
-    """
-    delta = scaled(pad, arm, motion)
+def friction_and_jacobian(
+    pad: Pad, cells: np.ndarray | None, i: int, level: float, arm: Pair, motion: Vector, h: float
+) -> tuple[Vector, Symmetric]:
+    """Generalised friction force of one pad about the centre of mass, and its derivative."""
+    delta = scaled_displacement(pad, arm, motion)
     if cells is not None:
-        force, derivative = patch.respond(pad, cells[i], delta, h)
-        return transposed(pad, arm, force), pulled_back(pad, arm, derivative)
+        force, derivative = distributed_kernel.friction_and_jacobian(pad, cells[i], delta, h)
+        return generalised_force(pad, arm, force), generalised_stiffness(pad, arm, derivative)
     z = (pad.z[0], pad.z[1], pad.z[2])
-    force, isotropic, radial, direction, _ = kernel.respond(pad, z, pad.normal, delta, h, limit / pad.sigma_0)
-    nx, ny, nt = transposed(pad, arm, direction)
-    return transposed(pad, arm, force), (
+    force, isotropic, radial, direction, _ = ellipsoid_kernel.friction_and_jacobian(
+        pad, z, pad.normal, delta, h, level / pad.sigma_0
+    )
+    nx, ny, nt = generalised_force(pad, arm, direction)
+    return generalised_force(pad, arm, force), (
         isotropic - radial * nx * nx,
         isotropic - radial * ny * ny,
         isotropic * (arm[0] ** 2 + arm[1] ** 2 + pad.r**2) - radial * nt * nt,
@@ -89,37 +96,52 @@ def respond(pad, cells, i, limit, arm, motion, h):
 
 
 @compiled
-def commit(pad, cells, i, limit, delta, h):
+def update_friction_level(
+    pad: Pad, cells: np.ndarray | None, i: int, level: float, before: Vector, delta: Vector, h: float
+) -> float:
+    """Set the friction levels anew if a solved slip displacement gives others; returns their mean [-]."""
+    if cells is None:
+        return ellipsoid_kernel.update_friction_level(pad, before, delta, h, level)
+    return distributed_kernel.update_friction_levels(pad, cells[i], delta, h, level)
+
+
+@compiled
+def store_state(pad: Pad, cells: np.ndarray | None, i: int, level: float, delta: Vector, h: float) -> None:
     """Store the state of a pad after a scaled slip displacement."""
     if cells is None:
-        kernel.commit(pad, delta, h, limit)
+        ellipsoid_kernel.store_state(pad, delta, h, level)
     else:
-        patch.commit(pad, cells[i], delta, h)
+        distributed_kernel.store_state(pad, cells[i], delta, h)
 
 
 @compiled
-def release(pad, cells, i, delta, h):
-    """Forget the bristles of a pad without normal force, after a scaled slip displacement."""
+def detach(pad: Pad, cells: np.ndarray | None, i: int, delta: Vector, h: float) -> None:
+    """Reset the bristles of a pad without normal force, after a scaled slip displacement."""
     if cells is None:
-        kernel.release(pad, math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h)
+        ellipsoid_kernel.detach(pad, math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h)
     else:
-        patch.release(pad, cells[i], (delta[0] / h, delta[1] / h, delta[2] / h))
+        distributed_kernel.detach(pad, cells[i], (delta[0] / h, delta[1] / h, delta[2] / h))
 
 
 @compiled
-def assemble(pads, cells, limits, inertia, centre, free, motion, h):
-    """Residual of the momentum balance and its symmetric derivative.
-
-    Returns:
-        Residual (3,) and derivative (xx, yy, tt, xy, xt, yt), as tuples.
-    """
+def assemble(
+    pads: Pads,
+    cells: np.ndarray | None,
+    levels: Pair,
+    inertia: Pair,
+    centre: Pair,
+    free: Vector,
+    motion: Vector,
+    h: float,
+) -> tuple[Vector, Symmetric]:
+    """Residual of the momentum balance and its symmetric derivative."""
     rate = 1.0 / h
     jx, jt = inertia[0] * rate * rate, inertia[1] * rate * rate
     rx, ry, rt = jx * (motion[0] - free[0]), jx * (motion[1] - free[1]), jt * (motion[2] - free[2])
     jy, jxy, jxt, jyt = jx, 0.0, 0.0, 0.0
     for i in range(len(pads)):
         if pads[i].normal > 0.0:
-            force, d = respond(pads[i], cells, i, limits[i], lever(pads[i], centre), motion, h)
+            force, d = friction_and_jacobian(pads[i], cells, i, levels[i], lever(pads[i], centre), motion, h)
             rx, ry, rt = rx + force[0], ry + force[1], rt + force[2]
             jx, jy, jt = jx + d[0], jy + d[1], jt + d[2]
             jxy, jxt, jyt = jxy + d[3], jxt + d[4], jyt + d[5]
@@ -127,11 +149,11 @@ def assemble(pads, cells, limits, inertia, centre, free, motion, h):
 
 
 @compiled
-def solve_symmetric(a, b):
+def solve_symmetric(a: Symmetric, b: Vector) -> Vector:
     """Solve the symmetric positive definite system a x = b, a = (xx, yy, tt, xy, xt, yt).
 
     By the cofactors: one division instead of three in a row. Rounding grows with the condition number
-    more than in a factorisation; the Newton iteration judges by the residual and does not mind.
+    more than in a factorisation; the Newton iteration stops by the residual, so this does no harm.
     """
     xx, yy, tt, xy, xt, yt = a
     c_xx, c_yy, c_tt = yy * tt - yt * yt, xx * tt - xt * xt, xx * yy - xy * xy
@@ -145,85 +167,102 @@ def solve_symmetric(a, b):
 
 
 @compiled
-def norm(residual, radius):
+def norm(residual: Vector, radius: float) -> float:
     """Length of a residual, its torque divided by a radius [N]."""
     return math.sqrt(residual[0] ** 2 + residual[1] ** 2 + (residual[2] / radius) ** 2)
 
 
 @compiled
-def solve_motion(pads, cells, limits, inertia, centre, free, motion, h):
+def solve_motion(
+    pads: Pads,
+    cells: np.ndarray | None,
+    levels: Pair,
+    inertia: Pair,
+    centre: Pair,
+    free: Vector,
+    motion: Vector,
+    h: float,
+) -> Vector:
     """Damped semi-smooth Newton iteration for the motion that balances momentum and friction.
 
-    If it does not get there from the guess, it begins again from rest, which lies on the other side of the
-    break-away; the better result counts.
+    If it does not converge from the guess, it is repeated from rest, which lies on the other side of the
+    break-away; the better result is returned.
     """
     tolerance = 0.0
     for i in range(len(pads)):
-        tolerance += FORCE_TOLERANCE * limits[i] * pads[i].normal
-    motion, error = iterate(pads, cells, limits, inertia, centre, free, motion, h, tolerance)
+        tolerance += FORCE_TOLERANCE * levels[i] * pads[i].normal
+    motion, error = iterate(pads, cells, levels, inertia, centre, free, motion, h, tolerance)
     if error > tolerance:
-        other, rest = iterate(pads, cells, limits, inertia, centre, free, (0.0, 0.0, 0.0), h, tolerance)
+        other, rest = iterate(pads, cells, levels, inertia, centre, free, (0.0, 0.0, 0.0), h, tolerance)
         if rest < error:
             return other
     return motion
 
 
 @compiled
-def iterate(pads, cells, limits, inertia, centre, free, motion, h, tolerance):
-    """The iteration from a first guess; returns the motion and the norm of its residual [N]."""
+def iterate(
+    pads: Pads,
+    cells: np.ndarray | None,
+    levels: Pair,
+    inertia: Pair,
+    centre: Pair,
+    free: Vector,
+    motion: Vector,
+    h: float,
+    tolerance: float,
+) -> tuple[Vector, float]:
+    """Newton iteration from a first guess; returns the motion and the norm of its residual [N]."""
     radius = pads[0].r
-    residual, jacobian = assemble(pads, cells, limits, inertia, centre, free, motion, h)
+    residual, jacobian = assemble(pads, cells, levels, inertia, centre, free, motion, h)
     error = norm(residual, radius)
     for _ in range(MAX_NEWTON):
         if error <= tolerance:
             break
         step = solve_symmetric(jacobian, residual)
-        share, start, before = 1.0, motion, error
+        part, start, before = 1.0, motion, error
         for _ in range(MAX_HALVINGS):
-            motion = (start[0] - share * step[0], start[1] - share * step[1], start[2] - share * step[2])
-            residual, jacobian = assemble(pads, cells, limits, inertia, centre, free, motion, h)
+            motion = (
+                start[0] - part * step[0],
+                start[1] - part * step[1],
+                start[2] - part * step[2],
+            )
+            residual, jacobian = assemble(pads, cells, levels, inertia, centre, free, motion, h)
             error = norm(residual, radius)
             if error < before:
                 break
-            share *= 0.5
+            part *= 0.5
     return motion, error
 
 
 @compiled
-def slip_of(pads, centre, motion):
+def slip_displacements(pads: Pads, centre: Pair, motion: Vector) -> tuple[Vector, Vector]:
     """Scaled slip displacements of the first and the last pad."""
     return (
-        scaled(pads[0], lever(pads[0], centre), motion),
-        scaled(pads[-1], lever(pads[-1], centre), motion),
+        scaled_displacement(pads[0], lever(pads[0], centre), motion),
+        scaled_displacement(pads[-1], lever(pads[-1], centre), motion),
     )
 
 
 @compiled
-def bristles(pad):
-    """Bristle deflection as a tuple of 3 [m]."""
+def bristles(pad: Pad) -> Vector:
+    """Bristle deflection [m]."""
     return pad.z[0], pad.z[1], pad.z[2]
 
 
 @compiled
-def revise(pad, cells, i, limit, before, delta, h):
-    """Fix the friction levels anew if a scaled slip displacement means others; returns their mean [-]."""
-    if cells is None:
-        return kernel.revise(pad, before, delta, h, limit)
-    return patch.revise(pad, cells[i], delta, h, limit)
-
-
-@compiled
-def step_pads(pads, cells, inertia, centre, free, guess, h):
+def step_pads(
+    pads: Pads, cells: np.ndarray | None, inertia: Pair, centre: Pair, free: Vector, guess: Vector, h: float
+) -> Vector:
     """Advance all pads and the object's motion relative to them by one sub-step.
 
     Args:
         pads: PAD records of the one or two pads that hold the object, an array or a tuple; updated.
-            Numba counts references to an array, which takes as long as the friction; to a tuple it does not.
+            A tuple is faster: numba counts references to an array, which takes as long as the friction.
         cells: Their patches, shape (p, CELL_FIELDS, n); updated. None for ellipsoids.
         inertia: Mass [kg] and moment of inertia about the centre of mass [kg m^2].
         centre: Centre of mass in the pad frame [m].
         free: Motion (x, y, theta) of the centre of mass relative to the pads in this
-            sub-step if there were no friction [m, m, rad].
+            sub-step without friction [m, m, rad].
         guess: First guess of the motion with friction.
         h: Sub-step [s].
 
@@ -231,21 +270,23 @@ def step_pads(pads, cells, inertia, centre, free, guess, h):
         Motion (x, y, theta) with friction [m, m, rad].
     """
     before = bristles(pads[0]), bristles(pads[-1])
-    first = prepare(pads[0], cells, 0, h)
-    limits = first, first if len(pads) == 1 else prepare(pads[-1], cells, -1, h)
+    first = set_friction_level(pads[0], cells, 0, h)
+    levels = first, first if len(pads) == 1 else set_friction_level(pads[-1], cells, -1, h)
     held = pads[0].normal > 0.0 or pads[-1].normal > 0.0
-    motion = solve_motion(pads, cells, limits, inertia, centre, free, guess, h) if held else free
-    slips = slip_of(pads, centre, motion)
+    motion = solve_motion(pads, cells, levels, inertia, centre, free, guess, h) if held else free
+    slips = slip_displacements(pads, centre, motion)
     if held:
-        first = revise(pads[0], cells, 0, limits[0], before[0], slips[0], h)
-        last = first if len(pads) == 1 else revise(pads[-1], cells, -1, limits[1], before[1], slips[1], h)
-        if first != limits[0] or last != limits[1]:
-            limits = first, last
-            motion = solve_motion(pads, cells, limits, inertia, centre, free, motion, h)
-            slips = slip_of(pads, centre, motion)
+        first = update_friction_level(pads[0], cells, 0, levels[0], before[0], slips[0], h)
+        last = first
+        if len(pads) > 1:
+            last = update_friction_level(pads[-1], cells, -1, levels[1], before[1], slips[1], h)
+        if first != levels[0] or last != levels[1]:
+            levels = first, last
+            motion = solve_motion(pads, cells, levels, inertia, centre, free, motion, h)
+            slips = slip_displacements(pads, centre, motion)
     for i in range(len(pads)):
         if pads[i].normal > 0.0:
-            commit(pads[i], cells, i, limits[i], slips[i], h)
+            store_state(pads[i], cells, i, levels[i], slips[i], h)
         else:
-            release(pads[i], cells, i, slips[i], h)
+            detach(pads[i], cells, i, slips[i], h)
     return motion

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from slipgym.contact.distributed_kernel import prescribed_step
 from slipgym.contact.pressure import MAX_CELLS, patch_cells
-from slipgym.contact.records import SHARE, Z_X, Z_Y, X, Y, pads, patch, rest, rest_cells
+from slipgym.contact.records import LOAD, Z_X, Z_Y, X, Y, pads, patch, rest, rest_cells
 from slipgym.contact.validation import check_friction, finite_vector, positive
 
 
@@ -86,8 +86,8 @@ class DistributedContact:
 
     @property
     def shares(self) -> np.ndarray:
-        """Copy of the loaded cells' shares of the normal force, shape (n,), sum 1."""
-        return self._cells[SHARE].copy()
+        """Copy of the fractions of the normal force that the loaded cells carry, shape (n,), sum 1."""
+        return self._cells[LOAD].copy()
 
     @property
     def bristles(self) -> np.ndarray:

@@ -1,10 +1,10 @@
 """The friction step of a patch: an elasto-plastic return mapping in every cell.
 
-Cell i lies at x_i from the centre of pressure and carries the share w_i of the normal
+Cell i lies at x_i from the centre of pressure and carries the fraction w_i of the normal
 force f_n (LuGre patch of Waltersson & Karayiannidis, arXiv 2308.01123):
 
     v_i = v + omega x x_i                              slip velocity of the cell
-    g_i = mu_c + (mu_s - mu_c) exp(-(s_i / v_s)^gamma)
+    g_i = g(s_i)                                       `slipgym.contact.stribeck`
     f_i = w_i f_n (sigma_0 z_i + sigma_1 dz_i/dt + sigma_2 v_i),    |z_i| <= g_i / sigma_0
     F = -sum f_i,    tau = -sum x_i x f_i
 
@@ -16,8 +16,8 @@ z_i = g_i v_i / (sigma_0 |v_i|), in which it arrives along the shortest way and 
 exponentially. The exponential step of LuGre has no limit either; but it drifts in stick
 or needs a switching function, and passivity would rest on that function.
 
-s_i is |v_i| in slip. In stick it only falls (elastic motion must not lower g), which one
-number a cell keeps: the cap, infinite in slip. |v_i| is that of the twist to come: known if
+s_i is |v_i| in slip. In stick it only falls (elastic motion must not lower g): each cell
+keeps an upper bound of it, its speed cap, infinite in slip. |v_i| is that of the coming twist: known if
 it is prescribed, otherwise extrapolated from the last two sub-steps. With s_i so fixed the
 friction of all cells is the gradient of a convex function of the twist.
 
@@ -31,36 +31,50 @@ from __future__ import annotations
 
 import math
 
-from slipgym._numba.compiled import compiled, compiled_sum
-from slipgym.contact import ellipsoid_kernel as kernel
-from slipgym.contact.decay import LARGEST, decay
-from slipgym.contact.records import CAP, KEPT, REACH, SHARE, Z_X, Z_Y, X, Y
+import numpy as np
 
-FLAT = 3.0  # slip speed over v_s from which the Stribeck curve has decayed, to exp(-9)
-MOSTLY = 0.5  # of the load, on cells that slip: the patch does
+from slipgym._numba.compiled import compiled, compiled_sum
+from slipgym.contact import ellipsoid_kernel, stribeck
+from slipgym.contact.records import (
+    ELASTIC_LIMIT,
+    LOAD,
+    RETENTION,
+    SPEED_CAP,
+    Z_X,
+    Z_Y,
+    Cells,
+    Pad,
+    Symmetric,
+    Vector,
+    X,
+    Y,
+)
+
+SLIPPING = 0.5
+"""Fraction of the load on slipping cells above which the patch counts as slipping [-]."""
 
 
 @compiled
-def length(vector):
+def length(vector: Vector) -> float:
     """Length of a tuple of 3."""
     return math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
 
 
 @compiled
-def at_cell(x, y, motion):
+def at_cell(x: float, y: float, motion: Vector) -> Vector:
     """Displacement or velocity of a cell, a tuple of 3 with zero spin."""
     return motion[0] - motion[2] * y, motion[1] + motion[2] * x, 0.0
 
 
 @compiled
-def speed_at(x, y, cap, twist):
-    """Slip speed of a cell by which its friction level goes [m/s]."""
+def speed_at(x: float, y: float, cap: float, twist: Vector) -> float:
+    """Slip speed that sets a cell's friction level [m/s]."""
     v_x, v_y, _ = at_cell(x, y, twist)
     return min(math.sqrt(v_x * v_x + v_y * v_y), cap)
 
 
 @compiled
-def expected_twist(pad, h):
+def expected_twist(pad: Pad, h: float) -> Vector:
     """Scaled slip twist expected in the middle of a sub-step of h [m/s]."""
     ahead = pad.half_step + 0.5 * h
     return (
@@ -71,76 +85,81 @@ def expected_twist(pad, h):
 
 
 @compiled
-def set_powers(pad, cells, twist):
-    """Write (s_i / v_s)^gamma of every cell into REACH; returns how many cells feel mu_s at all."""
-    x, y, cap, power = cells[X], cells[Y], cells[CAP], cells[REACH]
+def write_speeds(pad: Pad, cells: Cells, twist: Vector) -> int:
+    """Write the cells' s_i / v_s into ELASTIC_LIMIT; returns for how many the level may exceed mu_c."""
+    x, y, cap, speed = cells[X], cells[Y], cells[SPEED_CAP], cells[ELASTIC_LIMIT]
     per_unit, slow = 1.0 / pad.stribeck_velocity, 0
-    if pad.stribeck_exponent == 2.0:
-        for i in range(cells.shape[1]):
-            ratio = speed_at(x[i], y[i], cap[i], twist) * per_unit
-            power[i] = ratio * ratio
-            slow += ratio * ratio < LARGEST
-    else:  # cell by cell, as the processor has no such operation
-        for i in range(cells.shape[1]):
-            power[i] = (speed_at(x[i], y[i], cap[i], twist) * per_unit) ** pad.stribeck_exponent
-            slow += power[i] < LARGEST
+    bound = stribeck.vanishing_speed(pad.stribeck_exponent)
+    for i in range(cells.shape[1]):
+        speed[i] = speed_at(x[i], y[i], cap[i], twist) * per_unit
+        slow += speed[i] < bound
     return slow
 
 
+@compiled
+def write_levels(pad: Pad, cells: Cells, exponent: float) -> None:
+    """Replace the scaled slip speeds in ELASTIC_LIMIT by friction levels."""
+    mu_c, mu_s, level = pad.mu_c, pad.mu_s, cells[ELASTIC_LIMIT]
+    for i in range(cells.shape[1]):
+        level[i] = stribeck.friction_level(mu_c, mu_s, level[i], exponent)
+
+
 @compiled_sum
-def prepare(pad, cells, twist):
-    """Fix every cell's friction level and bring its bristle into it; once more in a step is the same as once.
+def set_friction_levels(pad: Pad, cells: Cells, twist: Vector) -> float:
+    """Set every cell's friction level and shorten its bristle to it; a second call replaces the first.
 
     Args:
         pad: PAD record with the parameters.
         cells: Patch (CELL_FIELDS, n); updated.
-        twist: Scaled slip twist to come, tuple of 3 [m/s].
+        twist: Scaled slip twist of the coming sub-step [m/s].
 
     Returns:
         Friction level, mean over the load [-].
     """
-    share, z_x, z_y, reach, kept = cells[SHARE], cells[Z_X], cells[Z_Y], cells[REACH], cells[KEPT]
-    mu_c, mu_s, compliance, mean = pad.mu_c, pad.mu_s, 1.0 / pad.sigma_0, 0.0
-    if set_powers(pad, cells, twist) > 0:
-        for i in range(cells.shape[1]):
-            reach[i] = kernel.level(mu_c, mu_s, decay(reach[i]))
+    load, z_x, z_y = cells[LOAD], cells[Z_X], cells[Z_Y]
+    limit, kept = cells[ELASTIC_LIMIT], cells[RETENTION]
+    compliance, mean = 1.0 / pad.sigma_0, 0.0
+    if write_speeds(pad, cells, twist) == 0:
+        limit[:] = pad.mu_c
+    elif pad.stribeck_exponent == 2.0:
+        write_levels(pad, cells, 2.0)  # a loop of its own, without a power: several cells at once
     else:
-        reach[:] = mu_c
+        write_levels(pad, cells, pad.stribeck_exponent)
     for i in range(cells.shape[1]):
-        mean += share[i] * reach[i]
-        reach[i] *= compliance
+        mean += load[i] * limit[i]
+        limit[i] *= compliance
         x, y = z_x[i] / kept[i], z_y[i] / kept[i]
-        kept[i] = kernel.kept((x, y, 0.0), reach[i])
+        kept[i] = ellipsoid_kernel.retention((x, y, 0.0), limit[i])
         z_x[i], z_y[i] = kept[i] * x, kept[i] * y
     return mean
 
 
 @compiled_sum
-def respond(pad, cells, delta, h):
-    """Friction of all cells after a scaled slip displacement over time h.
+def friction_and_jacobian(pad: Pad, cells: Cells, delta: Vector, h: float) -> tuple[Vector, Symmetric]:
+    """Friction of all cells after a scaled slip displacement over time h, and its derivative.
 
     Args:
         pad: PAD record with the parameters and the normal force.
-        cells: Patch (CELL_FIELDS, n) from `prepare`; read only.
-        delta: Scaled slip displacement (x, y, r theta) of the sub-step, tuple of 3 [m].
+        cells: Patch (CELL_FIELDS, n) from `set_friction_levels`; read only.
+        delta: Scaled slip displacement (x, y, r theta) of the sub-step [m].
         h: Sub-step [s].
 
     Returns:
-        force: Friction opposing `delta`, scaled components, tuple of 3 [N].
+        force: Friction opposing `delta`, scaled components [N].
         derivative: Of `force` by `delta`, symmetric (xx, yy, tt, xy, xt, yt) [N/m].
     """
-    xs, ys, share = cells[X], cells[Y], cells[SHARE]
-    z_x, z_y, reach = cells[Z_X], cells[Z_Y], cells[REACH]
+    xs, ys, load = cells[X], cells[Y], cells[LOAD]
+    z_x, z_y, limit = cells[Z_X], cells[Z_Y], cells[ELASTIC_LIMIT]
     fx, fy, ft = 0.0, 0.0, 0.0
     xx, yy, tt, xy, xt, yt = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(cells.shape[1]):
         x, y = xs[i], ys[i]
         # as if it carried the whole normal force: what does not differ is computed once
-        force, isotropic, radial, direction, _ = kernel.respond(
-            pad, (z_x[i], z_y[i], 0.0), pad.normal, at_cell(x, y, delta), h, reach[i]
+        force, isotropic, radial, direction, _ = ellipsoid_kernel.friction_and_jacobian(
+            pad, (z_x[i], z_y[i], 0.0), pad.normal, at_cell(x, y, delta), h, limit[i]
         )
-        f_x, f_y = share[i] * force[0], share[i] * force[1]
-        isotropic, radial = share[i] * isotropic, share[i] * radial
+        f_x, f_y = load[i] * force[0], load[i] * force[1]
+        isotropic, radial = load[i] * isotropic, load[i] * radial
         n_x, n_y, _ = direction
         n_t = x * n_y - y * n_x
         fx, fy, ft = fx + f_x, fy + f_y, ft + (x * f_y - y * f_x)
@@ -154,88 +173,91 @@ def respond(pad, cells, delta, h):
 
 
 @compiled_sum
-def advance(pad, cells, delta, twist, h):
-    """Store bristles and caps after a scaled slip displacement.
+def store_cells(pad: Pad, cells: Cells, delta: Vector, twist: Vector, h: float) -> tuple[Vector, float]:
+    """Store bristles and speed caps after a scaled slip displacement.
 
     Returns:
-        Friction opposing it, tuple of 3 [N], and the share of the load on cells that slip [-].
+        Friction opposing it [N], and the fraction of the load on cells that slip [-].
     """
-    xs, ys, share, cap = cells[X], cells[Y], cells[SHARE], cells[CAP]
-    z_x, z_y, reach, kept = cells[Z_X], cells[Z_Y], cells[REACH], cells[KEPT]
+    xs, ys, load, cap = cells[X], cells[Y], cells[LOAD], cells[SPEED_CAP]
+    z_x, z_y, limit, kept = cells[Z_X], cells[Z_Y], cells[ELASTIC_LIMIT], cells[RETENTION]
     fx, fy, ft, slipping = 0.0, 0.0, 0.0, 0.0
     for i in range(cells.shape[1]):
         x, y = xs[i], ys[i]
         stuck = speed_at(x, y, cap[i], twist)
-        force, _, _, trial, shortening = kernel.respond(
-            pad, (z_x[i], z_y[i], 0.0), pad.normal, at_cell(x, y, delta), h, reach[i]
+        force, _, _, trial, shortening = ellipsoid_kernel.friction_and_jacobian(
+            pad, (z_x[i], z_y[i], 0.0), pad.normal, at_cell(x, y, delta), h, limit[i]
         )
-        f_x, f_y = share[i] * force[0], share[i] * force[1]
+        f_x, f_y = load[i] * force[0], load[i] * force[1]
         fx, fy, ft = fx + f_x, fy + f_y, ft + (x * f_y - y * f_x)
         z_x[i], z_y[i] = shortening * trial[0], shortening * trial[1]
         cap[i] = math.inf if shortening < 1.0 else stuck
-        slipping += share[i] if shortening < 1.0 else 0.0
+        slipping += load[i] if shortening < 1.0 else 0.0
         kept[i] = 1.0
     return (fx, fy, ft), slipping
 
 
 @compiled
-def revise(pad, cells, delta, h, limit):
-    """Fix the friction levels anew that a scaled slip displacement turns out to mean, if they are others.
+def update_friction_levels(pad: Pad, cells: Cells, delta: Vector, h: float, level: float) -> float:
+    """Set the friction levels anew if the solved slip displacement gives others.
 
     Args:
         pad: PAD record.
-        cells: Patch (CELL_FIELDS, n) from `prepare`; updated.
-        delta: Scaled slip displacement under these levels, tuple of 3 [m].
+        cells: Patch (CELL_FIELDS, n) from `set_friction_levels`; updated.
+        delta: Scaled slip displacement solved for with these levels [m].
         h: Sub-step [s].
-        limit: Their mean over the load [-].
+        level: Their mean over the load [-].
 
     Returns:
-        The mean; `limit` if it is near.
+        The mean; `level` itself if the two differ by less than `stribeck.LEVEL_TOLERANCE`.
     """
     expected, found = expected_twist(pad, h), (delta[0] / h, delta[1] / h, delta[2] / h)
     away = length((found[0] - expected[0], found[1] - expected[1], found[2] - expected[2]))
-    fast = (
-        limit - pad.mu_c < kernel.LEVEL_TOLERANCE * pad.mu_c
-        and math.hypot(found[0], found[1]) > FLAT * pad.stribeck_velocity
-    )
-    if fast or kernel.near(pad, away):
-        return limit  # without a look at the cells
-    mean = prepare(pad, cells, found)
-    return mean if abs(mean - limit) > kernel.LEVEL_TOLERANCE * limit else prepare(pad, cells, expected)
+    flat = stribeck.flat_speed(pad.stribeck_exponent) * pad.stribeck_velocity
+    low = level - pad.mu_c < stribeck.LEVEL_TOLERANCE * pad.mu_c
+    fast = low and math.hypot(found[0], found[1]) > flat
+    if fast or stribeck.level_unchanged(pad, away):
+        return level  # without a look at the cells
+    mean = set_friction_levels(pad, cells, found)
+    if abs(mean - level) > stribeck.LEVEL_TOLERANCE * level:
+        return mean
+    return set_friction_levels(pad, cells, expected)
 
 
 @compiled
-def commit(pad, cells, delta, h):
+def store_state(pad: Pad, cells: Cells, delta: Vector, h: float) -> None:
     """Store bristle states, slip twist and wrench after a scaled slip displacement."""
     between, pad.half_step = pad.half_step + 0.5 * h, 0.5 * h
     for a in range(3):
         pad.twist_rate[a] = (delta[a] / h - pad.twist[a]) / between
         pad.twist[a] = delta[a] / h
     twist = pad.twist[0], pad.twist[1], pad.twist[2]
-    force, slipping = advance(pad, cells, delta, twist, h)
+    force, slipping = store_cells(pad, cells, delta, twist, h)
     speed = length(twist)
-    pad.slip_rate = (speed - pad.slip_speed) / between if slipping > MOSTLY else 0.0
+    pad.slip_rate = (speed - pad.slip_speed) / between if slipping > SLIPPING else 0.0
     pad.slip_speed = speed
     pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
 
 
 @compiled
-def release(pad, cells, twist):
-    """Forget the bristle states of a patch without normal force."""
+def detach(pad: Pad, cells: Cells, twist: Vector) -> None:
+    """Reset the bristles of a patch that carries no normal force."""
     pad.wrench[:] = 0.0
     pad.slip_speed, pad.slip_rate = length(twist), 0.0
     for a in range(3):
         pad.twist[a] = twist[a]
         pad.twist_rate[a] = 0.0
-    cells[Z_X], cells[Z_Y], cells[KEPT], cells[CAP] = 0.0, 0.0, 1.0, math.inf
+    cells[Z_X], cells[Z_Y], cells[RETENTION], cells[SPEED_CAP] = 0.0, 0.0, 1.0, math.inf
 
 
 @compiled
-def prescribed_step(pads, cells, v_x, v_y, omega, normal, h):
+def prescribed_step(
+    pads: np.ndarray, cells: Cells, v_x: float, v_y: float, omega: float, normal: float, h: float
+) -> Vector:
     """Advance a patch by a prescribed slip twist at its centre of pressure.
 
     Args:
-        pads: PAD (1,); updated. An array, since numba takes in a record of Python's ten times as slowly.
+        pads: PAD (1,); updated. An array: numba converts a single record ten times as slowly.
         cells: Patch (CELL_FIELDS, n); updated.
         v_x: Slip twist, with `v_y` and `omega` [m/s, m/s, rad/s].
         v_y: See `v_x`.
@@ -249,6 +271,6 @@ def prescribed_step(pads, cells, v_x, v_y, omega, normal, h):
     pad = pads[0]
     pad.normal = normal
     twist = (v_x, v_y, pad.r * omega)
-    prepare(pad, cells, twist)
-    commit(pad, cells, (h * twist[0], h * twist[1], h * twist[2]), h)
+    set_friction_levels(pad, cells, twist)
+    store_state(pad, cells, (h * twist[0], h * twist[1], h * twist[2]), h)
     return pad.wrench[0], pad.wrench[1], pad.wrench[2]

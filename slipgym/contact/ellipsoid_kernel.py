@@ -5,7 +5,7 @@ Each pad carries three bristle deflections z in the scaled displacement
 
     f / f_n = sigma_0 z + sigma_1 dz/dt + sigma_2 u,        |z| <= g(v) / sigma_0,
 
-with u the scaled slip twist and g(v) the Stribeck curve of the slip speed v: |u|
+with u the scaled slip twist and g(v) the Stribeck curve (`slipgym.contact.stribeck`) of the slip speed v: |u|
 where the contact slips; where it sticks v never rises, so that only slip lowers g and
 a sub-step of stick amid slip does not restore it. (The plastic part of |u| alone would be
 ill-posed: as g falls z must shrink, which reads as more plastic speed.) A sub-step
@@ -22,74 +22,57 @@ The step is backward Euler in the object's momentum, so it knows mass and inerti
 and has no stiffness limit. g is that of the speed expected in the sub-step's middle,
 extrapolated from the last two; with g so fixed each pad's force is the gradient of a
 convex function of the twist: the coupled problem of both pads has one solution,
-which a semi-smooth Newton iteration finds. If its speed says another g, as in a
-break-away, where slip grows within a sub-step, that one is fixed and the problem solved
-once more.
+which a semi-smooth Newton iteration finds. If its speed means another g, as in a
+break-away, where slip grows within a sub-step, g is set to that one and the problem is
+solved once more.
 """
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from slipgym._numba.compiled import compiled
-from slipgym.contact.decay import decay
-
-LEVEL_TOLERANCE = 1e-3  # of the friction level, between what was expected and what was found
-
-
-@compiled
-def level(mu_c, mu_s, share):
-    """Friction level g = mu_c + (mu_s - mu_c) share [-], the share being exp(-(v / v_s)^gamma)."""
-    return mu_c + (mu_s - mu_c) * share
+from slipgym.contact.records import Pad, Vector
+from slipgym.contact.stribeck import LEVEL_TOLERANCE, level_at, level_unchanged
 
 
 @compiled
-def stribeck(pad, slip_speed):
-    """Friction level g(v) with power = (v / v_s)^gamma [-]."""
-    ratio = slip_speed / pad.stribeck_velocity
-    power = ratio * ratio if pad.stribeck_exponent == 2.0 else ratio**pad.stribeck_exponent
-    return level(pad.mu_c, pad.mu_s, decay(power))
-
-
-@compiled
-def friction_level(pad, h):
+def expected_level(pad: Pad, h: float) -> float:
     """Friction level g at the slip speed expected in the middle of a sub-step of h [-]."""
-    return stribeck(pad, expected_speed(pad, h))
+    return level_at(pad, expected_speed(pad, h))
 
 
 @compiled
-def expected_speed(pad, h):
+def expected_speed(pad: Pad, h: float) -> float:
     """Slip speed expected in the middle of a sub-step of h [m/s]."""
     return max(0.0, pad.slip_speed + (pad.half_step + 0.5 * h) * pad.slip_rate)
 
 
 @compiled
-def near(pad, speed_change):
-    """Whether a change of slip speed hardly changes the friction level, a curve of slope below 1 / v_s."""
-    return (pad.mu_s - pad.mu_c) * abs(speed_change) <= LEVEL_TOLERANCE * pad.mu_c * pad.stribeck_velocity
-
-
-@compiled
-def kept(z, reach):
-    """Share of its deflection that a bristle keeps within a reach that may have become shorter [-]."""
+def retention(z: Vector, elastic_limit: float) -> float:
+    """Fraction of its deflection that a bristle keeps when the elastic limit may have fallen [-]."""
     squared = z[0] * z[0] + z[1] * z[1] + z[2] * z[2]
-    return reach / math.sqrt(squared) if squared > reach * reach else 1.0
+    return elastic_limit / math.sqrt(squared) if squared > elastic_limit * elastic_limit else 1.0
 
 
 @compiled
-def respond(pad, z, normal, delta, h, reach):
-    """Friction of one bristle after a scaled slip displacement over time h.
+def friction_and_jacobian(
+    pad: Pad, z: Vector, normal: float, delta: Vector, h: float, elastic_limit: float
+) -> tuple[Vector, float, float, Vector, float]:
+    """Friction of one bristle after a scaled slip displacement over time h, and its derivative.
 
     Args:
         pad: PAD record with the parameters.
-        z: Deflection inside the ball of `reach`, scaled components, tuple of 3 [m].
+        z: Deflection, not longer than `elastic_limit`, scaled components [m].
         normal: Normal force that the bristle carries [N].
-        delta: Scaled slip displacement (x, y, r theta) of the sub-step, tuple of 3 [m].
+        delta: Scaled slip displacement (x, y, r theta) of the sub-step [m].
         h: Sub-step [s].
-        reach: Longest deflection g / sigma_0 in this sub-step [m].
+        elastic_limit: Longest deflection g / sigma_0 in this sub-step [m].
 
     Returns:
-        force: Friction opposing `delta`, scaled components, tuple of 3 [N].
+        force: Friction opposing `delta`, scaled components [N].
         isotropic, radial, direction: Derivative of `force` by `delta`, as
             isotropic I - radial direction direction^T [N/m].
         shortening: Factor of the return mapping on the trial deflection (1 = stick).
@@ -101,9 +84,9 @@ def respond(pad, z, normal, delta, h, reach):
     elastic = normal * pad.sigma_0 + damping
     viscous = normal * pad.sigma_2 * rate
     shortening, radial = 1.0, 0.0
-    if squared > reach * reach:
+    if squared > elastic_limit * elastic_limit:
         per_length = 1.0 / math.sqrt(squared)
-        shortening = reach * per_length
+        shortening = elastic_limit * per_length
         radial = elastic * shortening * per_length * per_length
     spring = elastic * shortening
     force = (
@@ -115,61 +98,61 @@ def respond(pad, z, normal, delta, h, reach):
 
 
 @compiled
-def prepare(pad, h):
-    """Fix the friction level of a sub-step and bring the bristles into it; returns the level [-]."""
-    limit = friction_level(pad, h)
-    bring_in(pad, limit)
-    return limit
+def set_friction_level(pad: Pad, h: float) -> float:
+    """Set the friction level of a sub-step and shorten the bristles to it; returns the level [-]."""
+    level = expected_level(pad, h)
+    shorten_bristles(pad, level)
+    return level
 
 
 @compiled
-def bring_in(pad, limit):
-    """Bring the bristles into a friction level."""
-    share = kept((pad.z[0], pad.z[1], pad.z[2]), limit / pad.sigma_0)
-    if share < 1.0:  # a product with 1 would have stick wait for root and quotient, a fifth of a sub-step
+def shorten_bristles(pad: Pad, level: float) -> None:
+    """Shorten the bristles to the elastic limit of a friction level."""
+    fraction = retention((pad.z[0], pad.z[1], pad.z[2]), level / pad.sigma_0)
+    if fraction < 1.0:  # a product with 1 would have stick wait for root and quotient, a fifth of a sub-step
         for a in range(3):
-            pad.z[a] *= share
+            pad.z[a] *= fraction
 
 
 @compiled
-def revise(pad, before, delta, h, limit):
-    """Fix the level anew that the slip speed of a sub-step turns out to mean, if it is another.
+def update_friction_level(pad: Pad, before: Vector, delta: Vector, h: float, level: float) -> float:
+    """Set the friction level anew if the slip speed of the solved sub-step gives another one.
 
     Args:
         pad: PAD record.
-        before: Bristles at the start of the sub-step, tuple of 3 [m].
-        delta: Scaled slip displacement under `limit`, tuple of 3 [m].
+        before: Bristles at the start of the sub-step [m].
+        delta: Scaled slip displacement solved for with `level` [m].
         h: Sub-step [s].
-        limit: The level so far [-].
+        level: The level so far [-].
 
     Returns:
-        The level; `limit` if it is near.
+        The level; `level` itself if the two differ by less than LEVEL_TOLERANCE.
     """
     expected = expected_speed(pad, h)
     x, y, t = pad.z[0] + delta[0], pad.z[1] + delta[1], pad.z[2] + delta[2]
-    reach = limit / pad.sigma_0
-    stuck = x * x + y * y + t * t <= reach * reach
-    if stuck and near(pad, max(expected, pad.slip_speed)):
-        return limit
+    elastic_limit = level / pad.sigma_0
+    stuck = x * x + y * y + t * t <= elastic_limit * elastic_limit
+    if stuck and level_unchanged(pad, max(expected, pad.slip_speed)):
+        return level
     speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) * (1.0 / h)
     if stuck:
         speed = min(speed, pad.slip_speed)
-    if near(pad, speed - expected):
-        return limit
-    found = stribeck(pad, speed)
-    if abs(found - limit) <= LEVEL_TOLERANCE * limit:
-        return limit
+    if level_unchanged(pad, speed - expected):
+        return level
+    found = level_at(pad, speed)
+    if abs(found - level) <= LEVEL_TOLERANCE * level:
+        return level
     for a in range(3):
         pad.z[a] = before[a]
-    bring_in(pad, found)
+    shorten_bristles(pad, found)
     return found
 
 
 @compiled
-def commit(pad, delta, h, limit):
+def store_state(pad: Pad, delta: Vector, h: float, level: float) -> None:
     """Store bristle state, slip speed and wrench after a scaled slip displacement."""
     z = (pad.z[0], pad.z[1], pad.z[2])
-    force, _, _, trial, shortening = respond(pad, z, pad.normal, delta, h, limit / pad.sigma_0)
+    force, _, _, trial, shortening = friction_and_jacobian(pad, z, pad.normal, delta, h, level / pad.sigma_0)
     for a in range(3):
         pad.z[a] = shortening * trial[a]
     rate = 1.0 / h
@@ -185,8 +168,8 @@ def commit(pad, delta, h, limit):
 
 
 @compiled
-def release(pad, slip_speed):
-    """Forget the bristle state of a pad without normal force."""
+def detach(pad: Pad, slip_speed: float) -> None:
+    """Reset the bristles of a pad that carries no normal force."""
     pad.z[:] = 0.0
     pad.wrench[:] = 0.0
     pad.slip_speed = slip_speed
@@ -194,7 +177,7 @@ def release(pad, slip_speed):
 
 
 @compiled
-def prescribed_step(pad, twist, h):
+def prescribed_step(pad: Pad, twist: np.ndarray, h: float) -> None:
     """Advance one pad by a prescribed slip twist (v_x, v_y, omega) at its centre of pressure."""
     delta = (h * twist[0], h * twist[1], h * pad.r * twist[2])
-    commit(pad, delta, h, prepare(pad, h))
+    store_state(pad, delta, h, set_friction_level(pad, h))

@@ -1,6 +1,8 @@
-"""Plain-array state of one pad: the record every contact kernel reads and writes."""
+"""State of the pads as plain arrays: the records that the contact kernels read and write."""
 
 from __future__ import annotations
+
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -29,18 +31,29 @@ PAD = np.dtype(
 )
 """One pad: parameters of the limit surface, bristle state and last wrench."""
 
+Pad: TypeAlias = Any
+"""A record of `PAD`. Compiled code reads its fields as attributes, which numpy's types do not describe."""
+Pads: TypeAlias = Any
+"""Records of `PAD`, as an array or as a tuple."""
+Cells: TypeAlias = np.ndarray
+"""Cells of one pad's patch, (CELL_FIELDS, n)."""
+Vector: TypeAlias = tuple[float, float, float]
+"""A scaled vector (x, y, r theta), or a motion (x, y, theta)."""
+Symmetric: TypeAlias = tuple[float, float, float, float, float, float]
+"""A symmetric 3 x 3 matrix (xx, yy, tt, xy, xt, yt)."""
+
 X, Y = 0, 1
 """Position of a cell from the centre of pressure over the pad's r [-]."""
-SHARE = 2
-"""Share of the pad's normal force that a cell carries [-]."""
+LOAD = 2
+"""Fraction of the pad's normal force that a cell carries [-]."""
 Z_X, Z_Y = 3, 4
 """Bristle state of a cell [m]."""
-CAP = 5
+SPEED_CAP = 5
 """Slip speed of a cell that stick does not exceed; infinite in slip [m/s]."""
-REACH = 6
+ELASTIC_LIMIT = 6
 """Longest deflection of a cell's bristle in this step [m]."""
-KEPT = 7
-"""Share of its deflection that a cell's bristle has kept in this step's friction level [-]."""
+RETENTION = 7
+"""Fraction of its deflection that a cell's bristle has kept in this step's friction level [-]."""
 CELL_FIELDS = 8
 """Rows of a patch, an array (CELL_FIELDS, n): one quantity in a row lets loops over n cells vectorise."""
 
@@ -58,22 +71,22 @@ def pads(shape: int | tuple[int, ...], **parameters: float) -> np.ndarray:
     return array
 
 
-def patch(positions: np.ndarray, shares: np.ndarray) -> np.ndarray:
+def patch(positions: np.ndarray, loads: np.ndarray) -> np.ndarray:
     """Return cells at rest, shape (CELL_FIELDS, n).
 
     Args:
         positions: From the centre of pressure, over the pad's r, shape (n, 2) [-].
-        shares: Of the normal force, shape (n,), sum 1.
+        loads: Fractions of the normal force, shape (n,), sum 1.
     """
-    cells = np.zeros((CELL_FIELDS, len(shares)))
+    cells = np.zeros((CELL_FIELDS, len(loads)))
     cells[X], cells[Y] = positions.T
-    cells[SHARE] = shares
-    cells[KEPT] = 1.0
+    cells[LOAD] = loads
+    cells[RETENTION] = 1.0
     return cells
 
 
 @compiled
-def rest(pads):
+def rest(pads: np.ndarray) -> None:
     """Bring pads, an array (n,) of `PAD`, to rest: no deflection, no speed, no wrench."""
     for i in range(pads.shape[0]):
         pad = pads[i]
@@ -85,8 +98,8 @@ def rest(pads):
 
 
 @compiled
-def rest_cells(cells):
+def rest_cells(cells: np.ndarray) -> None:
     """Bring cells (..., CELL_FIELDS, n) to rest: no deflection, no speed."""
-    for row in (Z_X, Z_Y, CAP):
+    for row in (Z_X, Z_Y, SPEED_CAP):
         cells[..., row, :] = 0.0
-    cells[..., KEPT, :] = 1.0
+    cells[..., RETENTION, :] = 1.0

@@ -8,7 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from slipgym.contact.coupled import assemble, norm, prepare, solve_motion, solve_symmetric, step_pads
+from slipgym.contact.coupled import (
+    assemble,
+    norm,
+    set_friction_level,
+    solve_motion,
+    solve_symmetric,
+    step_pads,
+)
 from slipgym.contact.records import pads
 
 H = 5e-4
@@ -179,7 +186,7 @@ def test_momentum_is_balanced_however_far_the_guess(h):
         mass, arm = rng.uniform(0.05, 0.4), np.array([1.0, 1.0, pad["r"]])
         inertia = mass, 1e-3 * mass
         free = tuple(h**2 * rng.uniform(0.0, 3.0) * held * load * arm / [mass, mass, inertia[1]])
-        limits = tuple(prepare(one, NO_CELLS, 0, h) for one in array)
+        limits = tuple(set_friction_level(one, NO_CELLS, 0, h) for one in array)
         motion = solve_motion(array, NO_CELLS, limits, inertia, (0.0, 0.0), free, free, h)
         residual, _ = assemble(array, NO_CELLS, limits, inertia, (0.0, 0.0), free, motion, h)
         assert norm(residual, pad["r"]) <= 1e-9 * held

@@ -6,9 +6,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from slipgym.contact.coupled import assemble, norm, prepare, solve_motion, step_pads
+from slipgym.contact.coupled import assemble, norm, set_friction_level, solve_motion, step_pads
 from slipgym.contact.pressure import patch_cells
-from slipgym.contact.records import CAP, REACH, SHARE, Z_X, Z_Y, X, Y, pads, patch
+from slipgym.contact.records import ELASTIC_LIMIT, LOAD, SPEED_CAP, Z_X, Z_Y, X, Y, pads, patch
 
 H = 2.5e-4
 LAW = {"mu_c": 0.4, "mu_s": 0.5, "stribeck_velocity": 1e-3, "sigma_0": 1e6, "sigma_1": 80.0, "sigma_2": 0.2}
@@ -36,13 +36,13 @@ def problems(draw):
         pad["cop"] = rng.uniform(-0.005, 0.005, 2)
         pad["normal"] = rng.uniform(0.1, 30.0)
         pad["twist"] = rng.normal(size=3) * 10.0 ** rng.uniform(-6.0, -1.0)
-        own[CAP] = np.where(rng.random(size) < 0.5, np.inf, 10.0 ** rng.uniform(-6.0, -2.0, size))
+        own[SPEED_CAP] = np.where(rng.random(size) < 0.5, np.inf, 10.0 ** rng.uniform(-6.0, -2.0, size))
         length, angle = pad["mu_s"] / pad["sigma_0"] * rng.random(size), rng.uniform(0.0, 2.0 * np.pi, size)
         own[Z_X], own[Z_Y] = length * np.cos(angle), length * np.sin(angle)
     inertia = rng.uniform(0.05, 0.5), rng.uniform(2e-5, 2e-3)
     centre = tuple(rng.uniform(-0.03, 0.03, 2))
     free = rng.normal(size=3) * 10.0 ** rng.uniform(-9.0, -4.0) * (1.0, 1.0, 100.0)
-    limits = np.array([prepare(array[i], cells, i, H) for i in range(2)])
+    limits = np.array([set_friction_level(array[i], cells, i, H) for i in range(2)])
     return (array, cells, limits, inertia, centre, tuple(free)), float(limits @ array["normal"])
 
 
@@ -57,7 +57,7 @@ def slipping(array, cells, centre, q):
     moved = (
         np.hypot(*np.add(*displaced(pad, own, centre, q))) for pad, own in zip(array, cells, strict=True)
     )
-    return np.concatenate(list(moved)) > cells[:, REACH].ravel()
+    return np.concatenate(list(moved)) > cells[:, ELASTIC_LIMIT].ravel()
 
 
 def potential(q, array, cells, _, inertia, centre, free):
@@ -68,11 +68,13 @@ def potential(q, array, cells, _, inertia, centre, free):
         z, delta = displaced(pad, own, centre, q)
         length = np.hypot(*(z + delta))
         stuck = 0.5 * length**2
-        slipping = own[REACH] * (length - 0.5 * own[REACH])
-        energy = (pad["sigma_0"] + pad["sigma_1"] / H) * np.where(length <= own[REACH], stuck, slipping)
+        slipping = own[ELASTIC_LIMIT] * (length - 0.5 * own[ELASTIC_LIMIT])
+        energy = (pad["sigma_0"] + pad["sigma_1"] / H) * np.where(
+            length <= own[ELASTIC_LIMIT], stuck, slipping
+        )
         energy += -pad["sigma_1"] / H * np.sum(z * delta, axis=0)
         energy += 0.5 * pad["sigma_2"] / H * np.sum(delta**2, axis=0)
-        value += pad["normal"] * own[SHARE] @ energy
+        value += pad["normal"] * own[LOAD] @ energy
     return value
 
 
@@ -137,7 +139,7 @@ def test_in_translation_a_patch_is_an_ellipsoid(pressure, start, load):
     patchy, cells = pads(2, r=0.01, normal=2.0, **LAW), patches(pressure, 7)
     plain, velocity = patchy.copy(), np.full((2, 3), (0.0, -start, 0.0))
     if start > 0.0:
-        plain["slip_speed"], cells[:, CAP] = start, np.inf
+        plain["slip_speed"], cells[:, SPEED_CAP] = start, np.inf
         patchy["twist"][:, 1] = -start
         plain["z"][:, 1] = cells[:, Z_Y] = -LAW["mu_s"] / LAW["sigma_0"]
     state = (0.2, 5e-4), (0.0, 0.0)

@@ -11,7 +11,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 from slipgym.contact.pressure import OUTER_RADII
-from slipgym.contact.records import SHARE, X, Y
+from slipgym.contact.records import LOAD, X, Y
 
 SCRIPT = str(Path(__file__).with_name("rollout.py"))
 PRESETS = ("train", "eval_ood")
@@ -131,8 +131,8 @@ def test_a_patch_has_the_drawn_pressure(make):
         _, info = env.reset(seed=seed)
         seen[info["drawn"]["pressure"]] = info["true"][2]
         cells = env.simulation.plant.cells[0, 0]
-        assert cells[SHARE].sum() == pytest.approx(1.0)
-        assert cells[SHARE] @ np.hypot(cells[X], cells[Y]) == pytest.approx(1.0)
+        assert cells[LOAD].sum() == pytest.approx(1.0)
+        assert cells[LOAD] @ np.hypot(cells[X], cells[Y]) == pytest.approx(1.0)
     assert seen == {name: pytest.approx(0.015 / OUTER_RADII[name]) for name in ("hertz", "rim")}
 
 

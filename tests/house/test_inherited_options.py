@@ -1,0 +1,24 @@
+"""A function's bits do not depend on which function had it compiled."""
+
+import numpy as np
+
+from slipgym._numba.compiled import compiled, compiled_sum
+
+
+@compiled
+def product(a: float, b: float, c: float) -> float:
+    return a * b * c * c
+
+
+@compiled_sum
+def total(values: np.ndarray) -> float:
+    result = 0.0
+    for i in range(values.shape[0]):
+        result += product(values[i], 3.0, 0.1)
+    return result
+
+
+def test_a_function_called_by_a_sum_keeps_the_order_of_its_operations() -> None:
+    total(np.ones(3))
+    assert "reassoc" in next(iter(total.inspect_llvm().values()))
+    assert "reassoc" not in next(iter(product.inspect_llvm().values()))
