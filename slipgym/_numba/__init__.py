@@ -1,1 +1,4 @@
-"""How functions are compiled: everything that touches internals of numba."""
+"""How functions are compiled. Everything that touches numba's internals is here; see docs/numba.md.
+
+Inner package: its names may change between versions.
+"""

@@ -1,13 +1,14 @@
-"""Asks the processor for rows of arrays before they are needed.
+"""Prefetches rows of arrays: asks the processor for their memory before it is needed.
 
-Thousands of environments do not fit into its own caches, and what it fetches by itself are streams, not
-records of which a step needs some lines each.
+The records of thousands of environments do not fit into a processor's caches, and its own prefetcher follows
+streams, not records of which a step needs some lines each.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
@@ -16,15 +17,15 @@ from slipgym._numba.compiled import unlocked
 from slipgym._numba.switches import DISABLED
 
 LINE = 64
-"""Bytes that come together."""
+"""Bytes of a cache line."""
 HEAD = 704
-"""Bytes of a record that are asked for: in longer ones what most steps do not need comes last."""
+"""Bytes of a record that are prefetched. In longer records, fields that most steps do not need come last."""
 _ENABLED = "prefetch" not in DISABLED
 _READ, _SECOND_LEVEL, _DATA = 0, 2, 1
 
 
 def _asking(_: Any, array: Any, offset: Any) -> Any:
-    """Type and code of a function that asks for the line `offset` bytes into an array."""
+    """Type and code of a function that prefetches the line `offset` bytes into an array."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         start = context.make_array(signature.args[0])(context, builder, arguments[0]).data
@@ -42,8 +43,8 @@ _ask: Any = intrinsic(_asking)
 
 
 @unlocked
-def fetch(array, first, stop):
-    """Ask for rows of records, (n,) or (n, 2), from the first to before `stop`, as far as there are."""
+def fetch(array: np.ndarray, first: int, stop: int) -> None:
+    """Prefetch rows of records, (n,) or (n, 2), from `first` to before `stop`, as far as there are any."""
     if not _ENABLED:
         return
     row = array.strides[0]

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 
 VARIABLE = "SLIPGYM_NUMBA_DISABLE"
-OPTIMISATIONS = ("borrowing", "pointers", "prefetch")
+OPTIMISATIONS = ("pointers", "prefetch")
 """What can be switched off: a module of this package each."""
 
 

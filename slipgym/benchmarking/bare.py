@@ -33,7 +33,7 @@ class BareLoop:
         self._gripper = scene.add_gripper(self._client, config, box.size[1])
         self._body = scene.add_box(self._client, box)
         scene.settle(self._client, config, self._gripper)
-        scene.weigh(self._client, self._body, box.mass, box.inertia)
+        scene.set_mass(self._client, self._body, box.mass, box.inertia)
         self._weight = box.mass * config.physics.gravity
         self._efforts = (force, force)
         self._points = tuple((0.0, side * box.size[1] / 2, 0.0) for side in (1.0, -1.0))

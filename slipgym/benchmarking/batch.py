@@ -23,7 +23,7 @@ from slipgym.envs.vector_env import SlipVectorEnv
 from slipgym.sensors.measure import measure
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import begin_step
-from slipgym.world.planar_engine import move
+from slipgym.world.planar_engine import step_world
 
 SIZES = 1, 16, 256, 4096
 EVERY_ACTION = -1.0, 1.0
@@ -205,7 +205,7 @@ def _advance(worlds, pads, cells, fingers, force_torque, slip_sensors, commands)
     """A control step of all worlds; sub-steps that it took."""
     done = 0
     for i in range(worlds.shape[0]):
-        done += move(worlds, pads, cells, fingers, force_torque, slip_sensors, commands[i, 0], i)
+        done += step_world(worlds, pads, cells, fingers, force_torque, slip_sensors, commands[i, 0], i)
     return done
 
 

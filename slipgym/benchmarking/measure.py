@@ -101,7 +101,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
     assert isinstance(simulation, loops.BulletSimulation)
     rows: list[list[float]] = []
     with Stopwatches() as watches:
-        for name in ("_loads", "_observe", "_command"):
+        for name in ("_loads", "_read_engine", "_queue_command"):
             watches.watch("kernel", bullet, name)
         watches.watch("Bullet and its calls", simulation.world, "step")
         watches.watch("sensors", loops, "measure")

@@ -98,7 +98,7 @@ class LimitSurface:
 
 
 @compiled
-def _sums(positions, shares, r, twists):
+def _sums(positions: np.ndarray, shares: np.ndarray, r: float, twists: np.ndarray) -> np.ndarray:
     """Friction over mu_c f_n of points (n, 2) with shares (n,) at twists (m, 3), shape (m, 3)."""
     wrenches = np.zeros(twists.shape)
     for k in range(len(twists)):

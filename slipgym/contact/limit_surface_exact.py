@@ -37,7 +37,7 @@ def hertz_friction(ratio: float) -> tuple[float, float]:
 
 
 @compiled
-def _hertz(ratio, nodes, weights):
+def _hertz(ratio: float, nodes: np.ndarray, weights: np.ndarray) -> tuple[float, float]:
     # where a disc's edge passes through the centre of rotation its friction has a logarithm: towards that
     # the nodes are drawn by a square
     bend = math.asin(min(ratio, 1.0))

@@ -110,7 +110,7 @@ class BulletSimulation(Simulation):
         plant, episode = self.plant, self.episode
         begin_step(episode, self.commands)
         disturb(episode, plant.world, plant.pads, self.truth)
-        self.world.weigh()
+        self.world.update_mass()
         self.task.plan(episode, plant.world)
         self._advance(self.commands.item(0))
         episode["step"] += 1

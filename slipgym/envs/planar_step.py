@@ -13,7 +13,6 @@ import numpy as np
 from numba import from_dtype, types
 
 from estimator.estimate import ESTIMATE
-from slipgym._numba.borrowing import borrowed
 from slipgym._numba.compiled import patience, unlocked
 from slipgym._numba.pointers import Known, Pointer
 from slipgym._numba.prefetch import fetch
@@ -27,7 +26,7 @@ from slipgym.sensors.measure import measure
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import EPISODE, begin_step
-from slipgym.world.planar_engine import move
+from slipgym.world.planar_engine import step_world
 from slipgym.world.records import FINGER, WORLD
 
 BLOCK = 64
@@ -58,7 +57,7 @@ def _sample(
         fetch(states, 2 * ahead, 2 * ahead + 2)
         fetch(estimates, 2 * ahead, 2 * ahead + 2)
         fetch(episodes, ahead, ahead + 1)
-        move(worlds, pads, cells, fingers, force_torque, slip_sensors, commands[i, 0], i)
+        step_world(worlds, pads, cells, fingers, force_torque, slip_sensors, commands[i, 0], i)
     measure(worlds[rows], force_torque[rows], slip_sensors[rows], wrenches[rows], twists[rows])
     for i in range(lo, hi):
         episodes[i].step += 1
@@ -98,10 +97,10 @@ def _drive(plan, judge, update, arrays, sight, action, results, tells_all, skip,
         worlds, pads, cells, fingers, force_torque, slip_sensors,
         parameters, states, estimates,
         episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth,
-    ) = borrowed(arrays)  # fmt: skip
-    wrist, friction, low, high, out = borrowed(sight)
-    actions, components, active = borrowed(action)
-    numbers, flags, terms, rewards, terminated, truncated = borrowed(results)
+    ) = arrays  # fmt: skip
+    wrist, friction, low, high, out = sight
+    actions, components, active = action
+    numbers, flags, terms, rewards, terminated, truncated = results
     bad = -1
     size = BLOCK if skip == 1 else 1
     start = lo
@@ -167,8 +166,8 @@ def _start(judge, starts, arrays, begun, told):
         worlds, pads, cells, fingers, force_torque, slip_sensors,
         _, states, estimates,
         episodes, commands, wrenches, twists, per_finger, estimated, task_part, truth,
-    ) = borrowed(arrays)  # fmt: skip
-    numbers, flags, terms = borrowed(told)
+    ) = arrays  # fmt: skip
+    numbers, flags, terms = told
     fresh_states, fresh_estimates, spread, noise = begun
     grip(starts, episodes, worlds, pads, cells, fingers)
     equip(starts, spread, noise, pads, force_torque, slip_sensors, truth)
@@ -176,7 +175,7 @@ def _start(judge, starts, arrays, begun, told):
         i, force = starts[k].row, starts[k].force
         row = slice(i, i + 1)
         for _ in range(WARM_UP_STEPS):
-            move(worlds, pads, cells, fingers, force_torque, slip_sensors, force, i)
+            step_world(worlds, pads, cells, fingers, force_torque, slip_sensors, force, i)
             measure(worlds[row], force_torque[row], slip_sensors[row], wrenches[row], twists[row])
     open_episodes(
         starts, fresh_states, fresh_estimates, slip_sensors, states, estimates, episodes, commands, terms

@@ -7,7 +7,7 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
-from slipgym.world.placing import put
+from slipgym.world.placing import place_world
 
 WARM_UP_STEPS = 6
 """Control steps before time 0 in which grip and sensors come to rest."""
@@ -72,7 +72,7 @@ def grip(starts, episodes, worlds, pads, cells, fingers):
         wrist = episodes[i].wrist_start
         grasp = start.grasp_point
         body = start.mass, start.inertia, start.half_thickness, grasp[0], grasp[1]
-        put(worlds, pads, cells, fingers, i, body, start.force, (wrist[0], wrist[1], wrist[2]))
+        place_world(worlds, pads, cells, fingers, i, body, start.force, (wrist[0], wrist[1], wrist[2]))
 
 
 @compiled

@@ -8,10 +8,12 @@ its own, opposite normal.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from slipgym._numba.compiled import compiled
+from slipgym.contact.records import Pad
 from slipgym.sensors.noise import standard_normal
 
 HISTORY = 64
@@ -60,7 +62,7 @@ def roomier(sensors: np.ndarray, kept: int) -> np.ndarray:
 
 
 @compiled
-def sample_force_torque(sensor, pad, tick):
+def sample_force_torque(sensor: Any, pad: Pad, tick: int) -> None:
     """Keep the load on a finger at a sampling instant; what the sensor makes of it is left to who reads it.
 
     Args:
@@ -77,7 +79,7 @@ def sample_force_torque(sensor, pad, tick):
 
 
 @compiled
-def sample_read_next(sensor, tick, control_ticks):
+def next_sample_read(sensor: Any, tick: int, control_ticks: int) -> int:
     """Time of the first sample after `tick` that a reading needs, if it reads every `control_ticks`."""
     period = sensor.period
     number = tick // period + 1
@@ -86,7 +88,7 @@ def sample_read_next(sensor, tick, control_ticks):
 
 
 @compiled
-def sensed(sensor, number, reading):
+def sensed(sensor: Any, number: int, reading: np.ndarray) -> None:
     """What the sensor makes of the load at a sampling instant: bias, noise, quantisation, saturation.
 
     Args:
@@ -107,7 +109,7 @@ def sensed(sensor, number, reading):
 
 
 @compiled
-def read_force_torque(sensor, tick, reading):
+def read_force_torque(sensor: Any, tick: int, reading: np.ndarray) -> None:
     """Read the newest sample that has arrived by `tick` into `reading` (6,); the bias then drifts on."""
     sensed(sensor, max((tick - sensor.delay) // sensor.period, 0), reading)
     for a in range(6):
@@ -117,7 +119,9 @@ def read_force_torque(sensor, tick, reading):
 
 
 @compiled
-def resolve_at_cop(sensor, reading, contact_threshold, wrench, cop):
+def resolve_at_cop(
+    sensor: Any, reading: np.ndarray, contact_threshold: float, wrench: np.ndarray, cop: np.ndarray
+) -> None:
     """Wrench (f_x, f_y, f_n, tau) at the measured centre of pressure, in the pad frame.
 
     Args:

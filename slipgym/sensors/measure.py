@@ -1,4 +1,4 @@
-"""Both sensors of both fingers, read at one slip-velocity sample."""
+"""Reads both sensors of both fingers at a control step."""
 
 from __future__ import annotations
 
@@ -12,7 +12,13 @@ CONTACT_THRESHOLD = 0.2  # [N]; below it the centre of pressure is not defined
 
 
 @compiled
-def measure(worlds, force_torque, slip_sensors, wrenches, twists):
+def measure(
+    worlds: np.ndarray,
+    force_torque: np.ndarray,
+    slip_sensors: np.ndarray,
+    wrenches: np.ndarray,
+    twists: np.ndarray,
+) -> None:
     """Sample the slip sensors and read all sensors.
 
     Args:

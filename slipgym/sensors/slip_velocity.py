@@ -9,10 +9,12 @@ arXiv 2410.19660). No count, no velocity: the twist is then exactly 0.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from slipgym._numba.compiled import compiled
+from slipgym.contact.records import Vector
 from slipgym.sensors.noise import standard_normal
 
 HISTORY = 16
@@ -59,14 +61,14 @@ def chip_positions(radius: float, chips: int) -> np.ndarray:
 
 
 @compiled
-def accumulate_slip(sensor, motion):
+def accumulate_slip(sensor: Any, motion: Vector) -> None:
     """Add a slip displacement (x, y, theta) at the pad centre to what the chips have seen."""
     for k in range(3):
         sensor.moved[k] += motion[k]
 
 
 @compiled
-def sample_slip(sensor):
+def sample_slip(sensor: Any) -> None:
     """Close one sample: count what has been seen since the last.
 
     Counting truncates towards zero and keeps the rest, so a surface that trembles by less
@@ -89,7 +91,7 @@ def sample_slip(sensor):
 
 
 @compiled
-def read_slip(sensor, twist):
+def read_slip(sensor: Any, twist: np.ndarray) -> None:
     """Slip twist (v_x, v_y, omega) at the pad centre, in the pad frame, as delivered now.
 
     Returns the window average that is `delay` samples old and adds the newest delivered
@@ -111,7 +113,7 @@ def read_slip(sensor, twist):
 
 
 @compiled
-def displacement(sensor):
+def displacement(sensor: Any) -> Vector:
     """Slip displacement (x, y, theta) counted in the newest sample: least squares over the axes of all chips.
 
     As the chips' mean is the pad centre, its three equations are independent of each other.

@@ -1,4 +1,4 @@
-"""Sensors at the start of an episode."""
+"""Draws and resets the sensors' state at the start of an episode."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ def draw_sensors(n: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarr
 
 
 @compiled
-def start_sensors(force_torque, slip_sensors, keys, shares):
+def start_sensors(
+    force_torque: np.ndarray, slip_sensors: np.ndarray, keys: np.ndarray, shares: np.ndarray
+) -> None:
     """Forget all samples.
 
     Args:

@@ -90,7 +90,13 @@ def sense(
 
 
 @compiled
-def _expose(worlds, force_torque, slip_sensors, pad, motion):
+def _expose(
+    worlds: np.ndarray,
+    force_torque: np.ndarray,
+    slip_sensors: np.ndarray,
+    pad: np.ndarray,
+    motion: np.ndarray,
+) -> None:
     """Lets all fingers feel the pad's load and see its slip since the last sample."""
     for i in range(slip_sensors.shape[0]):
         for f in range(2):

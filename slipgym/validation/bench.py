@@ -10,7 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from slipgym.config import Config, load
-from slipgym.validation.alone import AloneWorld
+from slipgym.validation.planar_world import PlanarWorld
 from slipgym.validation.trace import Trace
 from slipgym.world.bullet_engine import BulletWorld
 from slipgym.world.plant import build
@@ -87,8 +87,8 @@ class Bench:
         for field in ("mu_s", "mu_c", "r"):
             self.plant.pads[field] = getattr(self.friction, field)
         self._alone = engine == "planar"
-        make = AloneWorld if self._alone else _WatchedWorld
-        self.world: AloneWorld | _WatchedWorld = make(self.config, self.plant)
+        make = PlanarWorld if self._alone else _WatchedWorld
+        self.world: PlanarWorld | _WatchedWorld = make(self.config, self.plant)
         self.world.reset(self.box, force, wrist)
         self.time = 0.0
         self._force: float = force

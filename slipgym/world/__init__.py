@@ -1,1 +1,1 @@
-"""Worlds that move the object: a sub-stepped planar model, and PyBullet around it."""
+"""What moves the object: the planar engine, and PyBullet coupled to the same planar sub-steps."""

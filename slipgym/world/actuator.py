@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from slipgym._numba.compiled import compiled
 from slipgym.contact.decay import decay
-from slipgym.world.records import QUEUE
+from slipgym.world.records import QUEUE, Finger
 
 
 @compiled
-def command(finger, tick, force):
+def queue_command(finger: Finger, tick: int, force: float) -> None:
     """Queue a force command [N]; it takes effect one dead time after `tick`."""
     if force < finger.open_below:
         force = 0.0
@@ -19,7 +19,7 @@ def command(finger, tick, force):
 
 
 @compiled
-def take_up(finger, tick):
+def apply_due_commands(finger: Finger, tick: int) -> None:
     """Put the commands that are due into effect."""
     while finger.served < finger.queued and finger.queue_tick[finger.served % QUEUE] <= tick:
         finger.command = finger.queue_force[finger.served % QUEUE]
@@ -27,7 +27,7 @@ def take_up(finger, tick):
 
 
 @compiled
-def ticks_to_next(finger, tick, horizon):
+def ticks_to_next_command(finger: Finger, tick: int, horizon: int) -> int:
     """Ticks until the next queued command is due, at most `horizon`."""
     if finger.served < finger.queued:
         return min(horizon, finger.queue_tick[finger.served % QUEUE] - tick)
@@ -35,8 +35,8 @@ def ticks_to_next(finger, tick, horizon):
 
 
 @compiled
-def least_force(finger, tick):
-    """Least force until a tick [N]: the lag goes from the present one towards one command after the other."""
+def lowest_force(finger: Finger, tick: int) -> float:
+    """Lowest force until a tick [N]: the lag moves the force from its value towards each command in turn."""
     least = min(finger.force, finger.command)
     for k in range(finger.served, finger.queued):
         if finger.queue_tick[k % QUEUE] < tick:
@@ -45,7 +45,7 @@ def least_force(finger, tick):
 
 
 @compiled
-def relax(finger, h):
+def advance_lag(finger: Finger, h: float) -> float:
     """Advance the first-order lag by h; returns the mean force over h [N]."""
     gap = finger.force - finger.command
     if finger.lag <= 0.0:
@@ -60,12 +60,12 @@ def relax(finger, h):
 
 
 @compiled
-def relax_through(finger, tick, ticks, tick_length):
-    """Advance the lag by some ticks, through the commands that fall due; returns the mean force [N]."""
+def advance_lag_through_commands(finger: Finger, tick: int, ticks: int, tick_length: float) -> float:
+    """Advance the lag by some ticks, with the commands that fall due in them; returns the mean force [N]."""
     total, end = 0.0, tick + ticks
     while tick < end:
-        take_up(finger, tick)
-        piece = ticks_to_next(finger, tick, end - tick)
-        total += piece * relax(finger, piece * tick_length)
+        apply_due_commands(finger, tick)
+        piece = ticks_to_next_command(finger, tick, end - tick)
+        total += piece * advance_lag(finger, piece * tick_length)
         tick += piece
     return total / ticks

@@ -1,4 +1,4 @@
-"""Between the planar world and a rigid-body engine: what the engine did, what it is to do.
+"""Coupling of the planar sub-steps to a rigid-body engine: poses and normal forces in, loads out.
 
 World plane: x to the right, z up; the grip axis n = x × z = -y points at the viewer. The
 engine integrates with semi-implicit Euler steps, so its velocity is the mean velocity of a
@@ -13,14 +13,26 @@ taken over.
 from __future__ import annotations
 
 import math
+from typing import Any
+
+import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.world.substep import advance
+from slipgym.contact.records import Pad, Vector
+from slipgym.world.records import Finger, Records, World
+from slipgym.world.substep import advance_engine_step
 
 
 @compiled
-def observe(world, fingers, position, orientation, wrist, normals):
-    """Take over the engine's poses and normal forces. Calling it twice changes nothing.
+def read_engine(
+    world: World,
+    fingers: Records,
+    position: Vector,
+    orientation: tuple[float, float, float, float],
+    wrist: Vector,
+    normals: tuple[float, float],
+) -> None:
+    """Copy the engine's poses and normal forces. A second call changes nothing.
 
     Args:
         world: WORLD record.
@@ -47,21 +59,21 @@ def observe(world, fingers, position, orientation, wrist, normals):
 
 
 @compiled
-def step_loads(
-    world,
-    pads,
-    cells,
-    fingers,
-    force_torque,
-    slip_sensors,
-    position,
-    orientation,
-    linear,
-    angular,
-    wrist,
-    normals,
-):
-    """Advance the planar world by one engine step and say what the engine must apply.
+def engine_loads(
+    world: World,
+    pads: Records,
+    cells: np.ndarray | None,
+    fingers: Records,
+    force_torque: Records,
+    slip_sensors: Records,
+    position: Vector,
+    orientation: tuple[float, float, float, float],
+    linear: Vector,
+    angular: Vector,
+    wrist: Vector,
+    normals: tuple[float, float],
+) -> tuple[Any, ...]:
+    """Advance the planar world by one engine step; returns what the engine must apply.
 
     Args:
         world: WORLD record.
@@ -70,26 +82,26 @@ def step_loads(
         fingers: FINGER records (2,).
         force_torque: FORCE_TORQUE records (2,).
         slip_sensors: SLIP_SENSOR records (2,).
-        position: As in `observe`, like the next one.
+        position: As in `read_engine`, like the next one.
         orientation: Quaternion of the object.
         linear: Engine velocity of the object [m/s].
         angular: Engine angular velocity of the object [rad/s].
-        wrist: As in `observe`.
-        normals: As in `observe`.
+        wrist: As in `read_engine`.
+        normals: As in `read_engine`.
 
     Returns:
         Force and torque on the object at its centre of mass; for either finger the point,
         force and torque of friction's reaction; finger efforts; wrist joint velocities.
     """
-    observe(world, fingers, position, orientation, wrist, normals)
+    read_engine(world, fingers, position, orientation, wrist, normals)
     dt = world.engine_ticks * world.tick_length
     x, z, angle = world.com[0], world.com[1], world.angle
-    advance(world, pads, cells, fingers, force_torque, slip_sensors)
+    advance_engine_step(world, pads, cells, fingers, force_torque, slip_sensors)
     # total in-plane load that gives the engine this step's mean velocity
     fx = world.mass * ((world.com[0] - x) / dt - linear[0]) / dt
     fz = world.mass * ((world.com[1] - z) / dt - linear[2]) / dt + world.mass * world.gravity
     torque = world.inertia * ((world.angle - angle) / dt + angular[1]) / dt
-    # friction's share of it, on both fingers
+    # the part of it that is friction, on both fingers
     excess_x, excess_z, excess_t = fx - world.external[0], fz - world.external[1], torque - world.external[2]
     for f in range(2):
         excess_x -= fingers[f].reaction[0]
@@ -119,7 +131,7 @@ def step_loads(
 
 
 @compiled
-def reaction(world, pad, finger, depth):
+def reaction(world: World, pad: Pad, finger: Finger, depth: float) -> tuple[Vector, Vector, Vector]:
     """Point, force and torque of friction on a finger, world coordinates."""
     cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])
     x = world.wrist[0] + cos * pad.cop[0] - sin * pad.cop[1]

@@ -1,4 +1,4 @@
-"""PyBullet moves the bodies; friction and sensing between its steps are ours."""
+"""The engine "bullet": PyBullet moves the bodies, slipgym computes friction and sensing between its steps."""
 
 from __future__ import annotations
 
@@ -11,21 +11,33 @@ import pybullet as p
 
 from slipgym._numba.compiled import compiled
 from slipgym.config import Config
+from slipgym.contact.records import Vector
 from slipgym.world import bullet_coupling as coupling
 from slipgym.world import scene
-from slipgym.world.actuator import command
+from slipgym.world.actuator import queue_command
 from slipgym.world.momentum import normal_forces
 from slipgym.world.placing import place
 from slipgym.world.plant import Plant
 from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
 from slipgym.world.snapshot import EngineState, load_engine, save_engine
-from slipgym.world.substep import locate
+from slipgym.world.substep import update_slip
 from slipgym.world.wrist import ramp_wrist
 
 
 @compiled
-def _loads(worlds, pads, cells, fingers, force_torque, slip_sensors, pose, velocity, wrist, normals):
-    return coupling.step_loads(
+def _loads(
+    worlds: np.ndarray,
+    pads: np.ndarray,
+    cells: np.ndarray | None,
+    fingers: np.ndarray,
+    force_torque: np.ndarray,
+    slip_sensors: np.ndarray,
+    pose: tuple,
+    velocity: tuple,
+    wrist: Vector,
+    normals: tuple[float, float],
+) -> tuple[Any, ...]:
+    return coupling.engine_loads(
         worlds[0],
         pads[0],
         None if cells is None else cells[0],
@@ -42,15 +54,17 @@ def _loads(worlds, pads, cells, fingers, force_torque, slip_sensors, pose, veloc
 
 
 @compiled
-def _observe(worlds, fingers, pose, wrist, normals):
-    coupling.observe(worlds[0], fingers[0], pose[0], pose[1], wrist, normals)
-    locate(worlds[0])
+def _read_engine(
+    worlds: np.ndarray, fingers: np.ndarray, pose: tuple, wrist: Vector, normals: tuple[float, float]
+) -> None:
+    coupling.read_engine(worlds[0], fingers[0], pose[0], pose[1], wrist, normals)
+    update_slip(worlds[0])
 
 
 @compiled
-def _command(worlds, fingers, force):
+def _queue_command(worlds: np.ndarray, fingers: np.ndarray, force: float) -> None:
     for f in range(2):
-        command(fingers[0, f], worlds[0].tick, force)
+        queue_command(fingers[0, f], worlds[0].tick, force)
 
 
 class BulletWorld:
@@ -70,7 +84,7 @@ class BulletWorld:
         self._client: int | None = scene.connect()
         self._box: Box | None = None
         self._gripper = self._body = self._saved = -1
-        self._weighed: tuple[float, float] | None = None
+        self._mass_set: tuple[float, float] | None = None
         self._reading: tuple[Any, ...] = ()
 
     @property
@@ -112,7 +126,7 @@ class BulletWorld:
 
     @property
     def reading(self) -> tuple[Any, ...]:
-        """What the engine said after its last step.
+        """What was read from the engine after its last step.
 
         Pose and velocity of the box, positions of the wrist's joints, normal forces, speeds of all joints.
         """
@@ -129,7 +143,7 @@ class BulletWorld:
         client = self.client
         if self._box is None or _geometry(box) != _geometry(self._box):
             self._build(box)
-        self._weigh(box.mass, box.inertia)
+        self._set_mass(box.mass, box.inertia)
         p.restoreState(stateId=self._saved, physicsClientId=client)
         self._box = box
         place(self._plant, 0, box, force, wrist)
@@ -140,7 +154,7 @@ class BulletWorld:
 
     def command(self, force: float) -> None:
         """Command a grip force per finger [N]; both fingers get the same."""
-        _command(self._plant.world, self._plant.fingers, force)
+        _queue_command(self._plant.world, self._plant.fingers, force)
 
     def command_wrist(self, velocity: np.ndarray, duration: float) -> None:
         """Ramp the wrist velocity to a target within `duration`.
@@ -154,16 +168,16 @@ class BulletWorld:
         limits = gripper.wrist_speed_max, gripper.wrist_pitch_rate_max
         ramp_wrist(self._plant.world[0], *velocity, *limits, duration)
 
-    def weigh(self) -> None:
-        """Give the engine's box the planar world's mass and inertia, if they have changed."""
+    def update_mass(self) -> None:
+        """Set the mass and inertia of the engine's box to those of the planar world, if they have changed."""
         mass = self._plant.world["mass"].item()
         if mass != self.box.mass:
             self._box = replace(self.box, mass=mass, inertia=self._plant.world["inertia"].item())
-            self._weigh(mass, self._box.inertia)
+            self._set_mass(mass, self._box.inertia)
             self._place_links()
 
     def disturb(self, wrench: np.ndarray) -> None:
-        """Apply a load (f_x, f_z, torque) to the object's centre of mass until told otherwise."""
+        """Apply a load (f_x, f_z, torque) to the object's centre of mass until the next call."""
         self._plant.world["external"] = wrench
 
     def step(self) -> None:
@@ -206,10 +220,10 @@ class BulletWorld:
             normals = normal_forces(efforts, before, after, inertia)
             self._reading = pose, velocity, wrist, normals, after
         self._place_links()
-        _observe(plant.world, plant.fingers, self._reading[0], self._reading[2], self._reading[3])
+        _read_engine(plant.world, plant.fingers, self._reading[0], self._reading[2], self._reading[3])
 
     def get_state(self) -> EngineState:
-        """Everything that the engine's next step depends on, apart from the plant's arrays.
+        """Everything that the engine's next step depends on, except the plant's arrays.
 
         Raises:
             RuntimeError: The world is closed, or there was no reset yet.
@@ -218,7 +232,7 @@ class BulletWorld:
         return EngineState(save_engine(client), box, self._reading)
 
     def set_state(self, state: EngineState) -> None:
-        """Go on from a state, also from that of another world or process; the plant's arrays are not touched.
+        """Restore a state, also one of another world or process; the plant's arrays are not changed.
 
         Raises:
             RuntimeError: The world is closed.
@@ -226,13 +240,13 @@ class BulletWorld:
         client = self.client
         if self._box is None or _geometry(state.box) != _geometry(self._box):
             self._build(state.box)
-        self._weigh(state.box.mass, state.box.inertia)
+        self._set_mass(state.box.mass, state.box.inertia)
         load_engine(client, state.engine)
         self._box, self._reading = state.box, state.reading
         self._place_links()
 
     def discard(self) -> None:
-        """Give the bodies up: the next reset builds them anew."""
+        """Drop the bodies: the next reset builds them again."""
         self._box = None
 
     def close(self) -> None:
@@ -259,16 +273,16 @@ class BulletWorld:
         x, z, pitch, first, second = p.getJointStates(self._gripper, JOINTS, client)
         return pose, velocity, (x[0], z[0], pitch[0]), (x[1], z[1], pitch[1], first[1], second[1])
 
-    def _weigh(self, mass: float, inertia: float) -> None:
-        if (mass, inertia) != self._weighed:
-            scene.weigh(self.client, self._body, mass, inertia)
-            self._weighed = mass, inertia
+    def _set_mass(self, mass: float, inertia: float) -> None:
+        if (mass, inertia) != self._mass_set:
+            scene.set_mass(self.client, self._body, mass, inertia)
+            self._mass_set = mass, inertia
 
     def _place_links(self) -> None:
-        """Have the engine place the gripper's links anew from its joints.
+        """Make the engine compute the poses of the gripper's links from its joints.
 
-        A step and a restore round the links' transforms differently; placed by the same function after
-        both, a restored world goes on bit for bit. Setting any joint to what it is does it.
+        A step and a restore round these poses differently. Computed by the same function after both, a
+        restored world continues bit for bit. Setting any joint to its own value is enough.
         """
         _, _, positions, _, speeds = self._reading
         joint = WRIST_JOINTS[0]
@@ -277,7 +291,7 @@ class BulletWorld:
     def _build(self, box: Box) -> None:
         client = self.client
         scene.clear(client, self._config)
-        self._weighed = None
+        self._mass_set = None
         self._gripper = scene.add_gripper(client, self._config, box.size[1])
         self._body = scene.add_box(client, box)
         self._saved = scene.settle(client, self._config, self._gripper)

@@ -1,4 +1,4 @@
-"""Normal forces by the momentum of the fingers."""
+"""Normal forces from the momentum of the fingers."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ _LEAST = 1e-9  # [N]; less is rounding of a finger that touches nothing
 def normal_forces(
     efforts: tuple[float, float], before: tuple[float, ...], after: tuple[float, ...], inertia: float
 ) -> tuple[float, float]:
-    """What the contacts pressed with in the last engine step [N].
+    """Normal forces of the contacts in the last engine step [N].
 
-    They are the sums of the engine's contact points, to rounding, and take less time to read.
+    They equal the sums over the engine's contact points, to rounding, and take less time to read.
 
     Args:
         efforts: Of the fingers in the step [N].

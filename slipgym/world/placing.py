@@ -1,11 +1,13 @@
-"""Box and gripper at the start of an episode."""
+"""Places box and gripper at the start of an episode."""
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from slipgym._numba.compiled import compiled
-from slipgym.contact.records import rest, rest_cells
+from slipgym.contact.records import Vector, rest, rest_cells
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box
 
@@ -21,11 +23,20 @@ def place(plant: Plant, i: int, box: Box, force: float, wrist: tuple[float, floa
         wrist: Pad centre (x, z) and pitch [m, m, rad].
     """
     body = box.mass, box.inertia, box.size[1] / 2, *box.grasp_from_com
-    put(plant.world, plant.pads, plant.cells, plant.fingers, i, body, force, wrist)
+    place_world(plant.world, plant.pads, plant.cells, plant.fingers, i, body, force, wrist)
 
 
 @compiled
-def put(worlds, pads, cells, fingers, i, body, force, wrist):
+def place_world(
+    worlds: np.ndarray,
+    pads: np.ndarray,
+    cells: np.ndarray | None,
+    fingers: np.ndarray,
+    i: int,
+    body: tuple[float, float, float, float, float],
+    force: float,
+    wrist: Vector,
+) -> None:
     """`place`, compiled; body is (mass, inertia, half thickness, pad centre from the centre of mass)."""
     world = worlds[i]
     mass, inertia, half_thickness, x, z = body

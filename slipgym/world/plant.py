@@ -1,4 +1,4 @@
-"""The arrays of n worlds, filled from a configuration."""
+"""`Plant`: the arrays of n worlds, and how they are filled from a configuration."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def dead_ticks(config: Config, dead_time: float, name: str = "gripper.dead_time"
 
 
 def check_slip_latency(config: Config, samples: int, name: str = "latency_samples") -> None:
-    """Raise ValueError if the slip sensor does not remember samples as old as this."""
+    """Raise ValueError if samples of this age are no longer in the slip sensor's history."""
     window = config.sensors.slip.window
     if window + samples >= SLIP_HISTORY:
         raise ValueError(f"sensors.slip: window + {name} = {window + samples} must be below {SLIP_HISTORY}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, TypeAlias
+
 import numpy as np
 
 QUEUE = 32  # force commands that can be under way in the dead time
@@ -26,7 +28,7 @@ WORLD = np.dtype(
         ("wrist_plan", "f8", 3),  # the same as commanded
         ("wrist_velocity", "f8", 3),  # commanded, now
         ("wrist_acceleration", "f8", 3),  # commanded, over this control step
-        ("pitch", "f8"),  # that `axes` are for [rad]
+        ("pitch", "f8"),  # wrist pitch that `axes` belong to [rad]
         ("axes", "f8", 2),  # its cosine and sine
         ("relative", "f8", 3),  # centre of mass and angle in the pad frame
         ("relative_velocity", "f8", 3),  # of the centre of mass in the pad frame, last sub-step
@@ -44,10 +46,10 @@ FINGER = np.dtype(
         ("force_limit", "f8"),  # hard limit of the actuator [N]
         ("open_below", "f8"),  # commands below it open the force loop [N]
         ("queued", "i8"),  # commands ever queued
-        ("served", "i8"),  # commands ever taken up
+        ("served", "i8"),  # commands ever put into effect
         ("command", "f8"),  # command in effect [N]
         ("force", "f8"),  # actuator force now [N]
-        ("relaxed", "f8"),  # sub-step over lag that `decay` and `mean_decay` are for [-]
+        ("relaxed", "f8"),  # sub-step over lag that `decay` and `mean_decay` belong to [-]
         ("decay", "f8"),  # of the gap to the command over a sub-step [-]
         ("mean_decay", "f8"),  # its mean over the sub-step [-]
         ("mean_force", "f8"),  # actuator force, mean over the engine step [N]
@@ -59,3 +61,10 @@ FINGER = np.dtype(
     ]
 )
 """One finger: force loop, normal contact and the friction impulse it passes on."""
+
+World: TypeAlias = Any
+"""A record of `WORLD`. Compiled code reads its fields as attributes, which numpy's types do not describe."""
+Finger: TypeAlias = Any
+"""A record of `FINGER`."""
+Records: TypeAlias = Any
+"""Records of the two fingers, pads or sensors, as an array or as a tuple."""

@@ -118,7 +118,7 @@ def add_gripper(client: int, config: Config, thickness: float) -> int:
 
 
 def add_box(client: int, box: Box) -> int:
-    """Create the box with its grasp point at the origin; `weigh` gives it its mass."""
+    """Create the box with its grasp point at the origin; `set_mass` gives it its mass."""
     half = [extent / 2 for extent in box.size]
     centre = [-box.com_offset[0], 0.0, -box.com_offset[1]]
     shape = p.createCollisionShape(
@@ -136,7 +136,7 @@ def add_box(client: int, box: Box) -> int:
         _SETTLE_MASS, shape, look, [-x, 0.0, -z], useMaximalCoordinates=1, physicsClientId=client
     )
     _frictionless(client, body, -1)
-    weigh(client, body, _SETTLE_MASS, box_inertia(_SETTLE_MASS, box.size[0], box.size[2]))
+    set_mass(client, body, _SETTLE_MASS, box_inertia(_SETTLE_MASS, box.size[0], box.size[2]))
     return body
 
 
@@ -159,7 +159,7 @@ def settle(client: int, config: Config, gripper: int) -> int:
     return p.saveState(physicsClientId=client)
 
 
-def weigh(client: int, body: int, mass: float, inertia: float) -> None:
+def set_mass(client: int, body: int, mass: float, inertia: float) -> None:
     """Give the body a mass [kg] and a moment of inertia about the grip axis [kg m^2].
 
     About the other axes it is infinite, for which Bullet takes 0: flat pads do not let a box tilt. Bullet

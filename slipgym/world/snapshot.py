@@ -1,4 +1,4 @@
-"""Bullet's own file of a world: poses, velocities and cached contacts, equal bit for bit after loading."""
+"""Saves and loads a physics client, bit for bit, as Bullet's own file of poses, velocities and contacts."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ _NAME = "world.bullet"
 
 @dataclass(frozen=True)
 class EngineState:
-    """What the engine's next step depends on, as plain data."""
+    """Plain data that the engine's next step depends on."""
 
     engine: bytes
     """Bullet's own file of its bodies."""
     box: Box
     """The box of the episode."""
     reading: tuple[Any, ...]
-    """What the engine said last, as `BulletWorld.reading`."""
+    """`BulletWorld.reading` at that time."""
 
 
 def save_engine(client: int) -> bytes:
-    """What the engine remembers of the bodies of a client."""
+    """State of the bodies of a client, as the content of a file."""
     with tempfile.TemporaryDirectory(prefix="slipgym-") as folder:
         path = Path(folder) / _NAME
         p.saveBullet(str(path), physicsClientId=client)
@@ -35,7 +35,7 @@ def save_engine(client: int) -> bytes:
 
 
 def load_engine(client: int, content: bytes) -> None:
-    """Give the bodies of a client, created in the same order, what `save_engine` returned."""
+    """Restore what `save_engine` returned; the client's bodies were created in the same order."""
     with tempfile.TemporaryDirectory(prefix="slipgym-") as folder:
         path = Path(folder) / _NAME
         path.write_bytes(content)

@@ -1,4 +1,4 @@
-"""The planar world: object, wrist and fingers between two engine steps, sub-stepped.
+"""A sub-step of the planar model: object, wrist, fingers and friction. Both engines use it.
 
 The object's in-plane motion relative to the pads is stiff (14 000 rad/s in stick), so it
 is integrated here, implicitly and together with the friction of both pads. A rigid-body
@@ -13,17 +13,28 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from slipgym._numba.compiled import compiled
 from slipgym.contact.coupled import step_pads
+from slipgym.contact.records import Pad, Vector
 from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.slip_velocity import accumulate_slip
-from slipgym.world.actuator import relax, take_up, ticks_to_next
+from slipgym.world.actuator import advance_lag, apply_due_commands, ticks_to_next_command
+from slipgym.world.records import Finger, Records, World
 
 HOLDING = 1e-2  # [N]; pads with less, a fiftieth of the smallest grip, do not hold the object
 
 
 @compiled
-def advance(world, pads, cells, fingers, force_torque, slip_sensors):
+def advance_engine_step(
+    world: World,
+    pads: Records,
+    cells: np.ndarray | None,
+    fingers: Records,
+    force_torque: Records,
+    slip_sensors: Records,
+) -> None:
     """Advance one world by one engine step.
 
     Args:
@@ -42,10 +53,10 @@ def advance(world, pads, cells, fingers, force_torque, slip_sensors):
     both = (pads[0], pads[1]), cells, (fingers[0], fingers[1]), (slip_sensors[0], slip_sensors[1])
     while world.tick < end:
         for f in range(2):
-            take_up(fingers[f], world.tick)
-        ticks = resolving_ticks(world, fingers, force_torque)
-        share = ticks / world.engine_ticks
-        substep(world, *both, ticks * world.tick_length, share)
+            apply_due_commands(fingers[f], world.tick)
+        ticks = resolved_ticks(world, fingers, force_torque)
+        fraction = ticks / world.engine_ticks
+        substep(world, *both, ticks * world.tick_length, fraction)
         world.tick += ticks
         for f in range(2):
             if world.tick % force_torque[f].period == 0:
@@ -53,51 +64,61 @@ def advance(world, pads, cells, fingers, force_torque, slip_sensors):
 
 
 @compiled
-def resolving_ticks(world, fingers, force_torque):
-    """Ticks of a sub-step that resolves all there is: at most to the next command, sample or engine step."""
+def resolved_ticks(world: World, fingers: Records, force_torque: Records) -> int:
+    """Ticks of a short sub-step: at most to the next command, force/torque sample or engine step."""
     ticks = min(world.substep_ticks, world.engine_ticks - world.tick % world.engine_ticks)
     for f in range(len(fingers)):
-        ticks = ticks_to_next(fingers[f], world.tick, ticks)
+        ticks = ticks_to_next_command(fingers[f], world.tick, ticks)
     for f in range(len(force_torque)):
         ticks = min(ticks, force_torque[f].period - world.tick % force_torque[f].period)
     return ticks
 
 
 @compiled
-def substep(world, pads, cells, fingers, slip_sensors, h, share):
-    """Advance wrist, fingers, friction and object by h, a `share` of the engine step.
+def substep(
+    world: World,
+    pads: Records,
+    cells: np.ndarray | None,
+    fingers: Records,
+    slip_sensors: Records,
+    h: float,
+    fraction: float,
+) -> None:
+    """Advance wrist, fingers, friction and object by h, a `fraction` of the engine step.
 
     Args:
         world: WORLD record.
-        pads: Two PAD records, as an array or, faster (`step_pads` says why), as a tuple.
-        cells: As in `advance`.
+        pads: Two PAD records, as an array or, faster (see `step_pads`), as a tuple.
+        cells: As in `advance_engine_step`.
         fingers: Two FINGER records, likewise.
         slip_sensors: Two SLIP_SENSOR records, likewise.
         h: Time [s].
-        share: Of the engine step, in its means of force and friction.
+        fraction: Of the engine step: weight in its mean force and friction.
     """
     for f in range(2):
-        mean = relax(fingers[f], h)
-        fingers[f].mean_force += share * mean
-        # in slip momentum counts, the mean force's over the sub-step; in stick what holds at its end
+        mean = advance_lag(fingers[f], h)
+        fingers[f].mean_force += fraction * mean
+        # in slip the momentum counts, hence the mean force; in stick the force at the sub-step's end
         pads[f].normal = normal_force(fingers[f], mean if pads[f].slip_rate != 0.0 else fingers[f].force)
-    slide(world, pads, cells, slip_sensors, h)
+    advance_object(world, pads, cells, slip_sensors, h)
     cos, sin = pad_axes(world)
     for f in range(2):
         fx, fy, tau = pads[f].wrench
-        fingers[f].reaction[0] += share * (cos * fx - sin * fy)
-        fingers[f].reaction[1] += share * (sin * fx + cos * fy)
-        fingers[f].reaction[2] += share * tau
+        fingers[f].reaction[0] += fraction * (cos * fx - sin * fy)
+        fingers[f].reaction[1] += fraction * (sin * fx + cos * fy)
+        fingers[f].reaction[2] += fraction * tau
 
 
 @compiled
-def slide(world, pads, cells, slip_sensors, h):
+def advance_object(
+    world: World, pads: Records, cells: np.ndarray | None, slip_sensors: Records, h: float
+) -> None:
     """Advance wrist, friction and object by h under the pads' normal forces.
 
     Args:
         world: WORLD record.
         pads: Two PAD records, or one that stands for both, as an array or a tuple.
-        cells: As in `advance`.
+        cells: As in `advance_engine_step`.
         slip_sensors: As many SLIP_SENSOR records, likewise.
         h: Time [s].
     """
@@ -107,32 +128,35 @@ def slide(world, pads, cells, slip_sensors, h):
     ax = world.external[0] * per_mass
     az = world.external[1] * per_mass - world.gravity
     at = world.external[2] / world.inertia
-    # held: backward Euler, as sticking needs; in slip or let go: the mean of the velocities at both ends, of
-    # second order. What it says of a sub-step in which slip ends would be the velocity turned round
-    held = holds(pads[0], h) or holds(pads[-1], h)
+    # in stick: backward Euler. In slip or without contact: the mean of the velocities at both ends, of second
+    # order. Where slip ends within the sub-step that would reverse the velocity: this counts as stick
+    held = sticks(pads[0], h) or sticks(pads[-1], h)
     lead = 1.0 if held else 0.5
     late = 1.0 - lead
-    drift = drifting(world, cos, sin, h)
+    drift = motion_without_forces(world, cos, sin, h)
     gain = lead * h * h
     free = (
         drift[0] + gain * (cos * ax + sin * az),
         drift[1] + gain * (cos * az - sin * ax),
         drift[2] + gain * at,
     )
-    # the levers are those of the time that the accelerations stand for
+    # levers at the time at which the accelerations apply
     centre = (world.relative[0] + late * drift[0], world.relative[1] + late * drift[1])
-    # a sub-step this long is one of firm stick: what the object would drift in it lies far beyond break-away,
-    # from where Newton's iteration may not find back
+    # only firm stick takes sub-steps this long: the drift without friction would lie far beyond break-away,
+    # from where Newton's iteration may not converge
     firm = h > 1.001 * world.calm_ticks * world.tick_length
     guess = (0.0, 0.0, 0.0) if firm else drift
     per_lead = 1.0 if held else 2.0
-    part = 0.5 * len(pads) * per_lead  # one pad has half of the object to hold
+    part = 0.5 * len(pads) * per_lead  # one pad holds half of the object
     motion = step_pads(pads, cells, (part * world.mass, part * world.inertia), centre, free, guess, h)
     per_lead *= rate
     braking_x = (motion[0] - free[0]) * per_lead
     braking_y = (motion[1] - free[1]) * per_lead
     back = late * h * (world.wrist_velocity[2] - 0.5 * h * world.wrist_acceleration[2])
-    cos, sin = cos + back * sin, sin - back * cos  # friction turns with the pads: that of the middle
+    cos, sin = (
+        cos + back * sin,
+        sin - back * cos,
+    )  # friction turns with the pads: direction in the middle of the sub-step
     gained_x = h * ax + cos * braking_x - sin * braking_y
     gained_z = h * az + sin * braking_x + cos * braking_y
     gained_t = h * at + (motion[2] - free[2]) * per_lead
@@ -151,7 +175,7 @@ def slide(world, pads, cells, slip_sensors, h):
 
 
 @compiled
-def normal_force(finger, force):
+def normal_force(finger: Finger, force: float) -> float:
     """Normal force at an actuator's force [N]: the engine's last mean, moved on by the change since."""
     if finger.contact_force <= 0.0:
         return 0.0
@@ -159,14 +183,14 @@ def normal_force(finger, force):
 
 
 @compiled
-def holds(pad, h):
+def sticks(pad: Pad, h: float) -> bool:
     """Whether a pad sticks, or its slip is expected to end within h."""
     slip = pad.slip_rate != 0.0 and pad.slip_speed + (pad.half_step + h) * pad.slip_rate > 0.0
     return pad.normal > HOLDING and not slip
 
 
 @compiled
-def move_wrist(world, h):
+def move_wrist(world: World, h: float) -> None:
     """Advance the commanded wrist motion by h (constant acceleration)."""
     for a in range(3):
         step = h * (world.wrist_velocity[a] + 0.5 * h * world.wrist_acceleration[a])
@@ -176,7 +200,7 @@ def move_wrist(world, h):
 
 
 @compiled
-def pad_axes(world):
+def pad_axes(world: World) -> tuple[float, float]:
     """Cosine and sine of the wrist's pitch, computed anew when it has changed."""
     if world.wrist[2] != world.pitch:
         world.pitch = world.wrist[2]
@@ -185,7 +209,7 @@ def pad_axes(world):
 
 
 @compiled
-def drifting(world, cos, sin, h):
+def motion_without_forces(world: World, cos: float, sin: float, h: float) -> Vector:
     """Motion of the centre of mass in the pad frame over h at its present velocity.
 
     The wrist has already moved; cos and sin are those of its new pitch.
@@ -201,7 +225,7 @@ def drifting(world, cos, sin, h):
 
 
 @compiled
-def locate(world):
+def update_slip(world: World) -> None:
     """Update slip displacement and slip twist at the pad centre from the relative pose.
 
     The displacement is that of the object's point that lay at the pad centre at the grasp.

@@ -1,14 +1,17 @@
-"""What the wrist is told, within the gripper's limits."""
+"""Velocity commands of the wrist, within the gripper's limits."""
 
 from __future__ import annotations
 
 import math
 
 from slipgym._numba.compiled import compiled
+from slipgym.world.records import World
 
 
 @compiled
-def ramp_wrist(world, x, z, pitch, speed_max, pitch_rate_max, duration):
+def ramp_wrist(
+    world: World, x: float, z: float, pitch: float, speed_max: float, pitch_rate_max: float, duration: float
+) -> None:
     """Ramp the wrist's velocity to a target.
 
     Args:

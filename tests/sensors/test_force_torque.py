@@ -6,10 +6,10 @@ import pytest
 from slipgym.config import load
 from slipgym.contact.records import pads
 from slipgym.sensors.force_torque import (
+    next_sample_read,
     read_force_torque,
     resolve_at_cop,
     sample_force_torque,
-    sample_read_next,
     sensed,
 )
 from slipgym.sensors.measure import measure
@@ -108,7 +108,7 @@ def test_only_the_samples_that_a_reading_needs(latency, rate):
     needed = sorted({(tick - delay) // period * period for tick in readings if tick - delay >= period})
     tick, found = 0, []
     while len(found) < len(needed):
-        tick = sample_read_next(sensor, tick, control)
+        tick = next_sample_read(sensor, tick, control)
         found.append(tick)
     assert found == needed
 

@@ -12,7 +12,7 @@ from slipgym.sensors.measure import measure
 from slipgym.validation.bench import Bench, Friction
 from slipgym.validation.planar import slides
 from slipgym.world.placing import place
-from slipgym.world.planar_engine import FAST, FIRM, STILL, longest_substep, move
+from slipgym.world.planar_engine import FAST, FIRM, STILL, longest_substep, step_world
 from slipgym.world.plant import build
 from slipgym.world.scene import Box
 
@@ -225,7 +225,7 @@ def test_friction_carries_the_object_however_uneven_sub_steps_are(period, pitchi
     for _ in range(12):
         plant.world["wrist_acceleration"][0] = acceleration
         bodies = plant.world, plant.pads, None, plant.fingers, plant.force_torque, plant.slip_sensors
-        move(*bodies, 20.0, 0)
+        step_world(*bodies, 20.0, 0)
         measure(plant.world, plant.force_torque, plant.slip_sensors, wrenches, twists)
     world = plant.world[0]
     cos, sin = math.cos(world["wrist"][2]), math.sin(world["wrist"][2])

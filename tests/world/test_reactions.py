@@ -130,7 +130,7 @@ def test_a_box_turns_with_its_inertia_from_the_first_step_on(factor):
         world, plant = bench.world, bench.plant
         inertia = factor * bench.box.inertia
         plant.world["mass"], plant.world["inertia"] = factor * bench.box.mass, inertia
-        world.weigh()
+        world.update_mass()
         before = np.array(world.reading[1][1])
         pybullet.applyExternalTorque(world.body, -1, (0.0, 0.01, 0.0), pybullet.WORLD_FRAME, world.client)
         pybullet.stepSimulation(world.client)

@@ -1,4 +1,4 @@
-"""The planar world alone, driven like PyBullet's."""
+"""The planar engine with the interface of `BulletWorld`, for figures that are measured with both."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 
 from slipgym.config import Config
 from slipgym.world.placing import place
-from slipgym.world.planar_engine import move
+from slipgym.world.planar_engine import step_world
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box
 from slipgym.world.wrist import ramp_wrist
 
 
-class AloneWorld:
-    """One world that friction and the planar equations of motion alone move.
+class PlanarWorld:
+    """One world of the planar engine.
 
     Its methods are those of `slipgym.world.bullet_engine.BulletWorld`.
 
@@ -26,7 +26,7 @@ class AloneWorld:
     """
 
     mismatch = 0.0
-    """There is no engine to differ from [m]."""
+    """Difference between the poses of world and engine: there is no engine [m]."""
 
     def __init__(self, config: Config, plant: Plant) -> None:
         self._gripper, self._plant, self._force = config.gripper, plant, 0.0
@@ -46,18 +46,18 @@ class AloneWorld:
         ramp_wrist(self._plant.world[0], *velocity, *limits, duration)
 
     def disturb(self, wrench: np.ndarray) -> None:
-        """Apply a load (f_x, f_z, torque) to the object's centre of mass until told otherwise."""
+        """Apply a load (f_x, f_z, torque) to the object's centre of mass until the next call."""
         self._plant.world["external"] = wrench
 
     def step(self) -> None:
         """Advance by one control step."""
         plant = self._plant
         bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
-        move(*bodies, self._force, 0)
+        step_world(*bodies, self._force, 0)
 
     @property
     def reading(self) -> tuple[Any, ...]:
-        """Pose, velocity, wrist joints, normal forces, as PyBullet tells them."""
+        """Pose, velocity, wrist joints, normal forces, in PyBullet's form."""
         world, fingers = self._plant.world[0], self._plant.fingers[0]
         (x, z), angle, (v_x, v_z, omega) = world["com"], float(world["angle"]), world["velocity"]
         pose = (x, 0.0, z), (0.0, -math.sin(angle / 2), 0.0, math.cos(angle / 2))
