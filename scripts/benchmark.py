@@ -15,8 +15,19 @@ def main() -> None:
     parser.add_argument("--pairs", type=int, default=300, help="pairs of timed blocks (default: %(default)s)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there, too")
     parser.add_argument("--learning", action="store_true", help="learning instead; needs the extra train")
+    parser.add_argument(
+        "--optimisations",
+        action="store_true",
+        help="what slipgym._numba's optimisations are worth instead",
+    )
     arguments = parser.parse_args()
-    if arguments.learning:
+    if arguments.optimisations:
+        from slipgym.benchmarking.optimisations import optimisations
+        from slipgym.benchmarking.report import line, machine, publish
+
+        print(line(machine()))
+        publish(optimisations(arguments.env, max(3, arguments.pairs // 20)), arguments.json)
+    elif arguments.learning:
         from policies.training.benchmark import benchmark as learning
 
         learning(arguments.env, arguments.pairs, arguments.json)

@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, ParamSpec, Protocol, TypeVar
 
 from estimator.caching import compiler
 from slipgym._numba.switches import DISABLED
@@ -20,7 +20,15 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def _decorator(**options: Any) -> Callable[[Callable[P, R]], Callable[P, R]]:
+class Decorator(Protocol):
+    """Compiles a function; type checkers see its own signature."""
+
+    def __call__(self, function: Callable[P, R], /) -> Callable[P, R]:
+        """The compiled function."""
+        ...
+
+
+def _decorator(**options: Any) -> Decorator:
     """`estimator.caching.compiler` for slipgym, one cache stamp for each set of disabled optimisations."""
     decorate = compiler(Path(__file__).parents[1], error_model="numpy", **options)
 
@@ -34,14 +42,14 @@ def _decorator(**options: Any) -> Callable[[Callable[P, R]], Callable[P, R]]:
     return decorated
 
 
-compiled: Any = _decorator(forceinline=True, fastmath=False)
+compiled = _decorator(forceinline=True, fastmath=False)
 """Compiles a function on its first call.
 
 `fastmath` is given, for a function that does not give it inherits it from the function whose compilation
 compiles it first: results would depend on what was compiled before."""
-unlocked: Any = _decorator(nogil=True, forceinline=True, fastmath=False)
+unlocked = _decorator(nogil=True, forceinline=True, fastmath=False)
 """`compiled` for functions that several threads run at the same time: it releases Python's lock."""
-compiled_sum: Any = _decorator(fastmath={"reassoc"})
+compiled_sum = _decorator(fastmath={"reassoc"})
 """For loops that sum: additions may be reordered, so that the loop computes several elements at once.
 
 The order is fixed when the function is compiled, so that equal input gives equal bits; a processor with other

@@ -24,7 +24,7 @@ from slipgym.world import bullet_engine as bullet
 from slipgym.world.plant import Plant
 
 BLOCK = 50  # control steps
-ACTIONS = -0.97, -0.7  # 1 to 4.3 N; the default box needs 2 to 3 N, so that a fifth of the time it slips
+ACTIONS = -0.97, -0.7  # 1 to 4.3 N; the default box needs 2 to 3 N, so that it slips a fifth of the time
 _FIRST_STEP = (
     "import gymnasium as gym; env = gym.make('slipgym:{env_id}'); env.reset(seed=0); "
     "env.step(env.action_space.sample())"

@@ -19,8 +19,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym._numba.switches import OPTIMISATIONS, VARIABLE
-from slipgym.benchmarking.batch import VectorPlayer
-from slipgym.benchmarking.measure import ACTIONS
+from slipgym.benchmarking.batch import SLIP_LIMIT, VectorPlayer, action_bounds
 from slipgym.benchmarking.processors import two_processors
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.worker import Worker
@@ -43,7 +42,7 @@ class SinglePlayer:
     def __init__(self, env_id: str, resets: bool) -> None:
         self._env: Any = gym.make(env_id, engine="planar").unwrapped
         self._rng = np.random.default_rng(0)
-        self._resets = resets
+        self._resets, self._actions = resets, action_bounds(self._env.config.gripper, SLIP_LIMIT)
         self._env.reset(seed=0)
 
     def block(self, steps: int) -> tuple[float, int]:
@@ -54,7 +53,7 @@ class SinglePlayer:
                 self._env.reset()
             return perf_counter() - start, steps
         seconds = 0.0
-        for action in self._rng.uniform(*ACTIONS, (steps, 1)).astype(np.float32):
+        for action in self._rng.uniform(*self._actions, (steps, 1)).astype(np.float32):
             start = perf_counter()
             _, _, terminated, truncated, _ = self._env.step(action)
             seconds += perf_counter() - start

@@ -61,7 +61,7 @@ def chip_positions(radius: float, chips: int) -> np.ndarray:
 
 
 @compiled
-def accumulate_slip(sensor: Any, motion: Vector) -> None:
+def accumulate_slip(sensor: Any, motion: Vector | np.ndarray) -> None:
     """Add a slip displacement (x, y, theta) at the pad centre to what the chips have seen."""
     for k in range(3):
         sensor.moved[k] += motion[k]

@@ -43,7 +43,8 @@ class PlanarWorld:
     def command_wrist(self, velocity: np.ndarray, duration: float) -> None:
         """Ramp the wrist velocity to a target within `duration` [s]."""
         limits = self._gripper.wrist_speed_max, self._gripper.wrist_pitch_rate_max
-        ramp_wrist(self._plant.world[0], *velocity, *limits, duration)
+        x, z, pitch = velocity
+        ramp_wrist(self._plant.world[0], x, z, pitch, *limits, duration)
 
     def disturb(self, wrench: np.ndarray) -> None:
         """Apply a load (f_x, f_z, torque) to the object's centre of mass until the next call."""

@@ -166,7 +166,8 @@ class BulletWorld:
         """
         gripper = self._config.gripper
         limits = gripper.wrist_speed_max, gripper.wrist_pitch_rate_max
-        ramp_wrist(self._plant.world[0], *velocity, *limits, duration)
+        x, z, pitch = velocity
+        ramp_wrist(self._plant.world[0], x, z, pitch, *limits, duration)
 
     def update_mass(self) -> None:
         """Set the mass and inertia of the engine's box to those of the planar world, if they have changed."""

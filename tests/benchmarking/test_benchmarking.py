@@ -9,7 +9,8 @@ from pathlib import Path
 import pybullet
 import pytest
 
-from slipgym.benchmarking import measure, timing
+from slipgym._numba.switches import OPTIMISATIONS, VARIABLE
+from slipgym.benchmarking import batch, measure, optimisations, timing
 from slipgym.benchmarking.bare import BareLoop
 from slipgym.benchmarking.report import Figure, table, write
 from slipgym.benchmarking.timing import Stopwatches, compare, per_call
@@ -160,3 +161,21 @@ def test_the_page_explains_what_the_script_prints():
     player.env.close()
     assert [name for name in names if name.startswith("env.step: ")] == shares
     assert all(f"**{name}" in page for name in names if name not in shares and "quartile" not in name)
+
+
+def test_a_third_of_the_headlines_rows_slips_and_none_of_a_firm_hold():
+    slipping = {}
+    for name, forces in batch.WORKLOADS.items():
+        player = batch.VectorPlayer("slipgym/LinearSlip-v0", 64, forces)
+        player.block(64 * 200)
+        slipping[name] = player.slipping(60)
+        player.env.close()
+    assert 0.25 < slipping["about the slip limit"] < 0.42
+    assert slipping["all forces, mostly a firm hold"] < 0.01
+
+
+def test_every_variant_has_its_own_compiler_cache():
+    variants = [optimisations._environment(off) for off in ("", *OPTIMISATIONS)]
+    assert [variant[VARIABLE] for variant in variants] == ["", *OPTIMISATIONS]
+    folders = [variant["NUMBA_CACHE_DIR"] for variant in variants[1:]]
+    assert len(set(folders)) == len(OPTIMISATIONS)

@@ -19,7 +19,7 @@ COUNT, RADIUS, RATE = 7.94e-6, 0.0243, 120
 
 def sensors(**slip):
     """Both fingers' sensors as the environment builds them."""
-    return build(load({"sensors": {"slip": slip}})).chips[0]
+    return build(load({"sensors": {"slip": slip}})).slip_sensors[0]
 
 
 def levers(radius: float, chips: int) -> np.ndarray:
