@@ -49,6 +49,11 @@ class Worker:
             os.environ.update(before)
         there.close()
 
+    @property
+    def exitcode(self) -> int | None:
+        """Exit code of the process; None while it runs."""
+        return self._process.exitcode
+
     def wait(self) -> None:
         """Return when the player is made."""
         self._end.recv()

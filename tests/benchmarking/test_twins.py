@@ -23,8 +23,8 @@ def test_alone_and_both():
     with Twins(Sleeper, 0.5) as twins:
         assert twins.alone(4) == (1.0, 2.0)  # a step in half a second, on either
         assert twins.both(4) == (1.0, 2.0)  # a step in a second, on both
-        assert not any(process.exitcode is not None for process in twins._processes)
-    assert [process.exitcode for process in twins._processes] == [0, 0]
+        assert all(worker.exitcode is None for worker in twins._workers)
+    assert [worker.exitcode for worker in twins._workers] == [0, 0]
 
 
 def allowed():

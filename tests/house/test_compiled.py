@@ -33,7 +33,7 @@ def test_an_edited_kernel_is_compiled_again(tmp_path):
 
     before = friction()
     assert before == friction()
-    kernel = copy / "contact" / "ellipsoid_kernel.py"  # called from coupled.py
+    kernel = copy / "contact" / "stribeck.py"  # called from coupled.py
     law = kernel.read_text()
     assert "return mu_c +" in law
     kernel.write_text(law.replace("return mu_c +", "return -0.2 + mu_c +"))
