@@ -1,4 +1,4 @@
-"""docs/glossary.md: every term has a link and names in the code that exist; the drawing is made by its script."""
+"""docs/glossary.md: every term has a link and names in the code that exist; a script makes the drawing."""
 
 import importlib
 import re
