@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+import slipgym
+
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 TEMPLATES = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
@@ -15,7 +17,7 @@ TEMPLATES = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
 def test_the_citation_has_what_a_reader_needs():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     assert {"cff-version", "message", "title", "authors", "version", "license"} <= citation.keys()
-    assert citation["version"] == PROJECT["version"]
+    assert citation["version"] == slipgym.__version__
     assert citation["license"] == PROJECT["license"]
     papers = {reference["identifiers"][0]["value"] for reference in citation["references"]}
     assert papers == {"arXiv:2507.06824", "arXiv:2308.01123", "arXiv:2410.19660"}
