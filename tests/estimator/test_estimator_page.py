@@ -9,7 +9,8 @@ import pytest
 import estimator
 from slipgym.validation.records import ellipsoid
 
-PAGE = (Path(__file__).parents[2] / "docs" / "estimator.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "estimator.md").read_text(encoding="utf-8")
 FIELDS = [
     pytest.param(field, id=f"{kind.__name__}.{field.name}")
     for kind in (
@@ -59,3 +60,16 @@ def test_the_log_loop_runs(tmp_path, monkeypatch, capsys):
 def test_the_figures_on_locking_out_are_printed_by_their_code(capsys):
     exec(compile(code_blocks()[1], "locking out", "exec"), {})
     assert f"```text\n{capsys.readouterr().out}```" in PAGE
+
+
+def test_the_files_that_the_pages_name_exist():
+    docs = ROOT / "docs"
+    named = {
+        path
+        for page in ("estimator.md", "adding_an_estimator.md", "records.md")
+        for path in re.findall(
+            r"`((?:estimator|scripts|tests|examples)/[\w./]+\.\w+)`", (docs / page).read_text()
+        )
+    }
+    assert len(named) > 10
+    assert {path for path in named if not (ROOT / path).exists()} == set()

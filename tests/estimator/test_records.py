@@ -108,7 +108,7 @@ def test_the_shipped_record_gives_its_friction():
 
 
 def test_rls_reads_viscous_friction_as_mu_c():
-    """3 to 7 % high; without viscous friction the same slide reads 1 % high, the rest of the start value 1.3."""
+    """3 to 7 % high; without viscous friction 1 % high, which is left of the start value 1.3."""
     last = records.estimate(records.load(SHIPPED), "rls").estimates[-1]
     assert 1.03 < last["mu_c"] / 0.3623 < 1.07
 
