@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, ParamSpec, Protocol, TypeVar
 
-from estimator.caching import compiler
+from estimator._numba.caching import compiler
 from slipgym._numba.switches import DISABLED
 
 P = ParamSpec("P")
@@ -29,7 +29,7 @@ class Decorator(Protocol):
 
 
 def _decorator(**options: Any) -> Decorator:
-    """`estimator.caching.compiler` for slipgym, one cache stamp for each set of disabled optimisations."""
+    """`estimator._numba.caching.compiler` for slipgym; a cache stamp for each set of switches."""
     decorate = compiler(Path(__file__).parents[1], error_model="numpy", **options)
 
     def decorated(function: Callable[P, R]) -> Callable[P, R]:

@@ -111,7 +111,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
         watches.watch("observation", env._observer, "read")
         watches.watch("info", env._information, "one")
         task = simulation.task
-        timed = {name: watches.timed("task", getattr(task, name)) for name in ("plan", "judge")}
+        timed = {name: watches.timed("task", getattr(task, name)) for name in ("script_wrist", "evaluate_step")}
         simulation.task = dataclasses.replace(task, **timed)
         for _ in range(blocks):
             watches.running = False
