@@ -12,6 +12,7 @@ import re
 import textwrap
 
 from slipgym.config import Config, load
+from slipgym.envs.infos import FLAGS, NUMBERS
 from slipgym.envs.observation import FRICTION_COLUMNS, columns
 from slipgym.envs.slip_env import SlipEnv
 from slipgym.tasks import Task
@@ -51,9 +52,9 @@ Bounds follow the configuration; those of the defaults are
 
 {table}
 
-With `friction_source="estimated"` the friction part merges both fingers' estimates by their support, and
-the support (0 to 1) says how much data stands behind each: do not trust a value before it has grown. With
-"true" and "nominal" every support is 1.
+With `friction_source="estimated"` the friction part merges both fingers' estimates by their confidence, and
+the confidence (0 to 1) says how much data stands behind each: do not trust a value before it has grown. With
+"true" and "nominal" every confidence is 1.
 
 With an `action_mode` that moves the wrist, what the agent commands of it and its pitch precede
 the friction part, unless the table has them. `observation_mode="sensor"` leaves the friction part out;
@@ -81,22 +82,8 @@ _ARGUMENTS = {
     "config": "file or mapping of overrides, merged over the defaults in `configs/`",
 }
 
-_INFO = """\
-| Key | Content |
-|---|---|
-| `true` | true (mu_s, mu_c, r) now, (3,) [-, -, m] |
-| `estimated` | the estimators' (mu_s, mu_c, r), mean of both fingers, (3,) |
-| `estimated_per_finger` | the same, finger by finger, (2, 3) |
-| `slip` | true slip displacement (x, y, theta) in the pad frame since the grasp, (3,) [m, m, rad] |
-| `slip_twist` | true slip velocity (v_x, v_y, omega) at the pad centre, (3,) [m/s, m/s, rad/s] |
-| `contact_wrench` | true friction (f_x, f_y, tau) of either pad on the box, (2, 3) [N, N, N m] |
-| `grip_force` | actuator force of each finger, (2,) [N] |
-{reference}
-| `reward_terms` | scaled reward terms of this step by name; they add up to the reward |
-| `time` | time since reset [s] |
-| `is_success` | whether the task is solved; see Episode End |
-| `dropped` | whether the box is dropped |
-
+_REWARD_TERMS = ("`reward_terms`", "scaled reward terms of this step by name; they add up to the reward")
+_DRAWN = """\
 With a randomization, the info of a reset also holds `drawn`: what was drawn for the episode, by name (see
 docs/randomization.md)."""
 
@@ -113,7 +100,6 @@ def docstring(task: Task) -> str:
         if title not in TITLES:
             raise ValueError(f"page of {task.id}: unknown section {title!r}; valid: {', '.join(TITLES)}")
     config = load()
-    reference = own.get("Info", "| `reference` | what the task says of it, (3,) |")
     sections = {
         "Description": _joined(own.get("Description", ""), _FRAMES),
         "Action Space": own.get("Action Space") or _action(config),
@@ -123,7 +109,7 @@ def docstring(task: Task) -> str:
         "Episode End": own.get("Episode End", _END),
         "Arguments": _arguments(task),
         "Reset Options": _options(task),
-        "Info": _INFO.format(reference=reference),
+        "Info": _infos(own.get("Info")),
         "Version History": own.get("Version History", ""),
     }
     written = [f"## {title}\n\n{sections[title]}" for title in TITLES if sections[title]]
@@ -170,6 +156,18 @@ def _arguments(task: Task) -> str:
     told = {**_ARGUMENTS, "action_mode": _ARGUMENTS["action_mode"].format(mode=task.action_mode)}
     rows = [(f"`{name}`", f"`{defaults[name]}`", meaning) for name, meaning in told.items()]
     return _table(("Argument", "Default", "Meaning"), rows)
+
+
+def _infos(reference: str | None) -> str:
+    """The table of infos; a task's page may hold its own row of `reference`."""
+    rows = []
+    for info in (*NUMBERS, *FLAGS):
+        shape = f", {info.shape}".replace(", ()", "")
+        unit = f" [{info.unit}]" if info.unit else ""
+        rows.append((f"`{info.name}`", f"{info.meaning}{shape}{unit}"))
+        if info.name == "reference" and reference is not None:
+            rows[-1] = tuple(cell.strip() for cell in reference.strip().strip("|").split(" | "))
+    return f"{_table(('Key', 'Content'), [*rows, _REWARD_TERMS])}\n\n{_DRAWN}"
 
 
 def _options(task: Task) -> str:

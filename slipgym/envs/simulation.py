@@ -16,9 +16,9 @@ from slipgym.envs.actions import COMMANDS
 from slipgym.envs.choices import LATENCY, chosen_estimator
 from slipgym.envs.draw import Randomizer
 from slipgym.envs.equipment import Equipment
-from slipgym.envs.observation import FRICTION_COLUMNS, Sight
+from slipgym.envs.infos import InfoBuffer, write_infos
+from slipgym.envs.observation import FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.starter import Row, Starter
-from slipgym.envs.told import Told, tell
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
@@ -66,10 +66,10 @@ class Simulation(ABC):
         materials: Name of every episode's material.
         boxes: Its object.
         drawn: What the randomization drew for it, JSON-like; empty without one.
-        truth: (mu_s, mu_c, r) now and full support, (n, 6); columns as `estimated`.
+        ground_truth: True (mu_s, mu_c, r) now and full confidence, (n, 6); columns as `estimated`.
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
-        estimated: Estimates of both fingers merged, with their support, (n, 6).
-        told: What infos tell, the last step's reward terms among it.
+        estimated: Estimates of both fingers merged, with their confidence, (n, 6).
+        infos: Infos of all environments, the last step's reward terms among them.
         estimator_choice: Name and parameters of the estimators; `velocity_delay` only if it was given.
         step_time: Length of a sample [s].
     """
@@ -97,19 +97,19 @@ class Simulation(ABC):
         self.commands = np.zeros((n, len(COMMANDS)))
         self.wrenches, self.twists = np.zeros((n, 2, 4)), np.zeros((n, 2, 3))
         self.task_part = np.zeros((n, len(task.columns)))
-        self.truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
+        self.ground_truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
         self.per_finger = np.zeros((n, 2, 3))
-        self.told = Told.zeros(n, len(task.terms))
+        self.infos = InfoBuffer.zeros(n, len(task.terms))
         bodies = self.plant.world, self.plant.pads, self.plant.fingers
-        self._told_from = *bodies, self.episode, self.truth, self.estimated, self.per_finger
+        self._infos_from = *bodies, self.episode, self.ground_truth, self.estimated, self.per_finger
         self.step_time = 1.0 / config.physics.control_rate
-        told = self.estimator.parameters_array if tells_latency else None
-        self._starter = Starter(config, task, randomizer, equipment, self.episode, told)
+        latency_of = self.estimator.parameters_array if tells_latency else None
+        self._starter = Starter(config, task, randomizer, equipment, self.episode, latency_of)
         self.materials, self.boxes = self._starter.materials, self._starter.boxes
         self.drawn = self._starter.drawn
         plant, learned = self.plant, (self.estimator.states, self.estimator.estimates)
         self._biases = equipment.biases
-        self._equipped = plant.pads, plant.force_torque, plant.slip_sensors, self.truth
+        self._equipped = plant.pads, plant.force_torque, plant.slip_sensors, self.ground_truth
         # start values are the same for all and do not depend on a latency
         self._fresh = self.estimator.states[:2].copy(), self.estimator.estimates[:2].copy()
         self._opened = plant.slip_sensors, *learned, self.episode, self.commands
@@ -117,7 +117,7 @@ class Simulation(ABC):
     @property
     def true_friction(self) -> np.ndarray:
         """(mu_s, mu_c, r) now, (n, 3)."""
-        return self.truth[:, :3]
+        return self.ground_truth[:, :3]
 
     @property
     def time(self) -> float:
@@ -154,7 +154,12 @@ class Simulation(ABC):
 
     @abstractmethod
     def step(
-        self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
+        self,
+        actions: np.ndarray,
+        components: np.ndarray,
+        skip: int,
+        active: np.ndarray,
+        buffers: ObservationBuffers,
     ) -> None:
         """Some samples with the same action, and what is observed then; an episode that ends does not go on.
 
@@ -163,7 +168,7 @@ class Simulation(ABC):
             components: COMPONENT (m,), what they mean.
             skip: Samples.
             active: Which environments take part, (n,).
-            sight: Where to write what they observe.
+            buffers: Where to write their observations.
 
         Raises:
             FloatingPointError: Something is no longer a finite number; only a reset helps.
@@ -209,16 +214,16 @@ class Simulation(ABC):
         for name, array in self._arrays().items():
             array[:] = state.arrays[name]
         self.materials[:], self.boxes[:] = state.materials, state.boxes
-        self._tell()
+        self._write_infos()
 
-    def hand_over(self) -> Told:
-        """What is told, the receiver's own from now on; the next step fills in new arrays."""
-        told, self.told = self.told, self.told.empty_like()
-        return told
+    def hand_over_infos(self) -> InfoBuffer:
+        """The infos, which belong to the caller from now on; the next step fills in new arrays."""
+        infos, self.infos = self.infos, self.infos.empty_like()
+        return infos
 
-    def _tell(self) -> None:
-        """Fill in what is told but for the reward terms."""
-        tell(self.told.numbers, self.told.flags, *self._told_from)
+    def _write_infos(self) -> None:
+        """Fill in the infos but for the reward terms."""
+        write_infos(self.infos.numbers, self.infos.flags, *self._infos_from)
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that last from sample to sample."""
@@ -231,7 +236,7 @@ class Simulation(ABC):
             "wrenches": self.wrenches,
             "twists": self.twists,
             "task_part": self.task_part,
-            "truth": self.truth,
+            "ground_truth": self.ground_truth,
             "per_finger": self.per_finger,
             "estimated": self.estimated,
         }

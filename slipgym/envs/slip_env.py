@@ -13,7 +13,6 @@ import numpy as np
 
 from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, refuse_unknown
 from slipgym.envs.engines import make_simulation
-from slipgym.envs.information import Information
 from slipgym.envs.observer import first
 from slipgym.envs.setup import Setup
 from slipgym.envs.state import EnvState, checked, restored_generator
@@ -104,7 +103,6 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns
         self.action_space, self.observation_space = self._actions.space, self._observer.space
-        self._information = Information(self.simulation)
         self._arguments = {**setup.arguments, "engine": engine}
         self._renderer: Any = None
         if render_mode is not None:
@@ -135,7 +133,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         drawn = self.simulation.drawn[0]
         self._observer.begin(_FIRST)
         return first(self._observer.read()), {
-            **self._information.one(0),
+            **self._info(),
             **({"drawn": dict(drawn)} if drawn else {}),
         }
 
@@ -160,18 +158,18 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         # a picture's strip shows every sample
         at_once = self._frame_skip if self._renderer is None else 1
         for _ in range(0, self._frame_skip, at_once):
-            simulation.step(actions, self._actions.table, at_once, _ONE, observer.sight)
-            total += simulation.told.terms[0]
+            simulation.step(actions, self._actions.table, at_once, _ONE, observer.buffers)
+            total += simulation.infos.terms[0]
             dropped = episode["dropped"].item()
             finished = episode["step"].item() >= episode["steps"].item()
             if self._renderer is not None:
                 self._renderer.keep()
             if dropped or finished:
                 break
-        simulation.told.terms[0] = total
+        simulation.infos.terms[0] = total
         observer.next(_ONE)
         self._ready = True
-        reward, info = sum(total.tolist()), self._information.one(0)
+        reward, info = sum(total.tolist()), self._info()
         return first(observer.read()), reward, dropped, finished and not dropped, info
 
     def render(self) -> np.ndarray | None:
@@ -227,6 +225,9 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
                 self._renderer.begin()
         self._observer.set_state(state.frames)
         self._ready = state.simulation is not None
+
+    def _info(self) -> dict[str, Any]:
+        return self.simulation.infos.one(0, self.task.terms)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make a new environment with a world of its own, in the same state."""

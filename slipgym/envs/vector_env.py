@@ -15,13 +15,13 @@ from gymnasium.vector.utils import batch_space
 
 from slipgym.config import Config, Randomization
 from slipgym.envs.choices import DEFAULT_ESTIMATOR, autoreset, one_of, whole
-from slipgym.envs.information import Information, final
-from slipgym.envs.pictures import Pictures
+from slipgym.envs.infos import final
 from slipgym.envs.planar_simulation import PlanarSimulation
 from slipgym.envs.seeds import Generators
 from slipgym.envs.setup import Setup
 from slipgym.envs.state import VectorState, checked
-from slipgym.envs.vector_options import RowOptions, refuse_scalar
+from slipgym.envs.vector_options import RowOptions, discard_infos, refuse_scalar
+from slipgym.envs.vector_rendering import Pictures
 from slipgym.tasks import TASKS, Task
 from slipgym.tasks.options import EpisodeOptions
 
@@ -50,7 +50,6 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         threads: Threads that share the environments; None: as many as processors, if there is work for them.
         render_mode: None, "rgb_array" or "depth_array".
         render_rows: Environments that `render` shows.
-        infos: Of which environments a step tells: "all", or "ends": those whose episode ends or begins in it.
         config: See the scalar environment.
 
     Raises:
@@ -78,10 +77,10 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         threads: int | None = None,
         render_mode: str | None = None,
         render_rows: Sequence[int] = (0,),
-        infos: str = "all",
         config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
         **others: Any,
     ) -> None:
+        discard_infos(others)
         refuse_scalar(others, inspect.signature(SlipVectorEnv.__init__).parameters)
         self.task: Task = TASKS[one_of("task", task, TASKS)]
         self.num_envs = whole("num_envs", num_envs, 1)
@@ -125,12 +124,9 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         }
         self._shown = {
             "threads": threads,
-            "infos": infos,
             "render_mode": render_mode,
             "render_rows": render_rows,
         }
-        self._information = Information(self.simulation)
-        self.simulation.tells_all = one_of("infos", infos, ("all", "ends")) == "all"
         self._generators = Generators(num_envs)
         self.render_mode = render_mode
         self._pictures = Pictures(self.simulation, render_mode, render_rows)
@@ -160,7 +156,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._ready[rows] = self._over[rows] = False
         self._begin(rows, asked)
         self._observer.again()
-        infos = self._information.some(rows)
+        infos = self.simulation.infos.some(rows, self.task.terms)
         return self._observer.read(), self._add_drawn(infos, rows)
 
     def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
@@ -188,9 +184,9 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             raise RuntimeError(f"call reset() before step(): environments {waiting[:8]} have no episode")
         simulation, rows = self.simulation, np.flatnonzero(begins)
         self._ready, self._over = np.zeros((2, self.num_envs), dtype=bool)
-        table, sight, meanwhile = self._actions.table, self._observer.sight, partial(self._begin, rows)
+        table, buffers, meanwhile = self._actions.table, self._observer.buffers, partial(self._begin, rows)
         try:
-            simulation.step(chosen, table, self._frame_skip, active, sight, meanwhile)
+            simulation.step(chosen, table, self._frame_skip, active, buffers, meanwhile)
         except BaseException:
             self._ready.fill(False)  # those that began, too
             raise
@@ -202,14 +198,12 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         ended: dict[str, Any] = {}
         if self.autoreset_mode is AutoresetMode.SAME_STEP:
             rows = np.flatnonzero(over)
-            ended = final(self._observer.present(), self._information.some(rows), rows, self.num_envs)
+            last = simulation.infos.some(rows, self.task.terms)
+            ended = final(self._observer.present(), last, rows, self.num_envs)
             self._begin(rows)
         else:
             self._over = over
-        if simulation.tells_all:
-            infos = self._information.every()
-        else:
-            infos = self._information.some(np.flatnonzero(over | begins))
+        infos = simulation.hand_over_infos().every(self.task.terms)
         infos = self._add_drawn({**infos, **ended}, rows)
         return self._observer.read(), rewards, terminated, truncated, infos
 

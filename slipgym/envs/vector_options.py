@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from slipgym.envs.choices import refuse_unknown
+from slipgym.envs.choices import one_of, refuse_unknown
 from slipgym.tasks.options import EpisodeOptions
 
 
@@ -62,6 +63,18 @@ def _checked_mask(mask: Any, n: int) -> np.ndarray:
     if not mask.any():
         raise ValueError("options['reset_mask'] must hold at least one True")
     return mask.copy()
+
+
+def discard_infos(others: dict[str, Any]) -> None:
+    """Take the former argument `infos` out of the keyword arguments, with a warning.
+
+    Raises:
+        ValueError: Its value was never allowed.
+    """
+    if "infos" in others:
+        one_of("infos", others.pop("infos"), ("all", "ends"))
+        message = "infos is gone: infos of all environments are always returned"
+        warnings.warn(message, DeprecationWarning, stacklevel=3)
 
 
 def refuse_scalar(others: Mapping[str, Any], known: Iterable[str]) -> None:

@@ -72,7 +72,7 @@ class Renderer:
         about = f"{simulation.materials[row]}, {1e3 * world['mass']:.0f} g"
         slip = world["slip"]
         caption(view, simulation.task.name, about, self._history.time, self._state(), contact, slip)
-        true = float(simulation.truth[row, 0]), float(simulation.truth[row, 1])
+        true = float(simulation.ground_truth[row, 0]), float(simulation.ground_truth[row, 1])
         strip.draw_strip(beside, self._history, self._motion, self._goal, true)
         return picture
 

@@ -30,6 +30,8 @@ class Column(NamedTuple):
     high: float
     unit: str
     meaning: str
+    read: str = ""
+    """Expression that reads it out of the simulation's arrays."""
 
 
 class Term(NamedTuple):

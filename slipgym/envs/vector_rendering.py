@@ -1,4 +1,4 @@
-"""Pictures of some environments of a batch."""
+"""Pictures of some environments of a vector environment."""
 
 from __future__ import annotations
 
