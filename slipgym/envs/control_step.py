@@ -199,8 +199,8 @@ class Kernels:
     def pointers(self) -> dict[str, Pointer]:
         """Compiles the functions; their pointers by name."""
         functions = {
-            "script_wrist": self._task.plan,
-            "evaluate_step": self._task.judge,
+            "script_wrist": self._task.script_wrist,
+            "evaluate_step": self._task.evaluate_step,
             "update": self._update,
         }
         for name in ("script_wrist", "evaluate_step"):

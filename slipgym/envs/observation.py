@@ -119,20 +119,20 @@ def _better(name: str) -> str:
     return f"max(first.{name}, second.{name})"
 
 
-_COEFFICIENT, _RADIUS, _CONFIDENCE = (0.0, 10.0), (0.0, 1.0), (0.0, 1.0)
-FRICTION_COLUMNS = (
-    Column("mu_s", *_COEFFICIENT, "-", "static friction", _merged("mu_s")),
-    Column("mu_c", *_COEFFICIENT, "-", "Coulomb friction", _merged("mu_c")),
-    Column("r", *_RADIUS, "m", "radius of the equivalent rim contact", _merged("r")),
-    *(
-        Column(
-            f"confidence_{name}", *_CONFIDENCE, "-", f"how much data stands behind {name}",
-            _better(f"confidence_{name}"),
-        )
-        for name in ("mu_s", "mu_c", "r")
+FRICTION = (
+    Reading("mu_s", (0.0, 10.0), "-", "static friction", _merged("mu_s")),
+    Reading("mu_c", (0.0, 10.0), "-", "Coulomb friction", _merged("mu_c")),
+    Reading("r", (0.0, 1.0), "m", "radius of the equivalent rim contact", _merged("r")),
+    Reading(
+        "confidence_mu_s", (0.0, 1.0), "-", "how much data stands behind mu_s", _better("confidence_mu_s")
     ),
-)  # fmt: skip
-"""Friction part; read from the estimates of the first and the second finger."""
+    Reading(
+        "confidence_mu_c", (0.0, 1.0), "-", "how much data stands behind mu_c", _better("confidence_mu_c")
+    ),
+    Reading("confidence_r", (0.0, 1.0), "-", "how much data stands behind r", _better("confidence_r")),
+)
+"""Friction part, as it is read from the estimates of the first and the second finger."""
+FRICTION_COLUMNS = tuple(reading.column() for reading in FRICTION)
 
 
 class ObservationBuffers(NamedTuple):
@@ -201,10 +201,10 @@ _read_wrist = choice_reader(
 )
 _write_friction = row_writer(
     "_write_friction",
-    [column.read for column in FRICTION_COLUMNS],
+    [reading.read for reading in FRICTION],
     ("estimates",),
     __file__,
-    "Write `FRICTION_COLUMNS` as estimated in environment i.",
+    "Write `FRICTION` of environment i.",
     before=("first, second = estimates[2 * i], estimates[2 * i + 1]",),
     functions={"weighted_mean": weighted_mean},
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from slipgym._numba.compiled import compiled
 from slipgym.config import Config
-from slipgym.envs.observation import FRICTION_COLUMNS
+from slipgym.envs.observation import FRICTION, FRICTION_COLUMNS
 from slipgym.envs.readings import Reading, row_writer
 from slipgym.tasks.task import Column
 
@@ -25,10 +25,8 @@ def _torque(config: Config) -> tuple[float, float]:
 
 
 def _true(k: int) -> Reading:
-    """Column k of the friction part, as it is and not as it is estimated."""
-    column = FRICTION_COLUMNS[k]
-    limits = column.low, column.high
-    return Reading(column.name, limits, column.unit, column.meaning, f"friction[i, {k}]")
+    """Row k of the friction part, from the ground truth in place of the estimates."""
+    return FRICTION[k]._replace(read=f"friction[i, {k}]")
 
 
 def _pad(f: int) -> tuple[Reading, ...]:

@@ -29,9 +29,13 @@ class Reading(NamedTuple):
     read: str
     """Expression for environment i in terms of the writer's arguments, "worlds[i].angle" for example."""
 
-    def column(self, config: Config) -> Column:
-        """The column of an observation, with the limits of a configuration."""
-        low, high = self.limits(config) if callable(self.limits) else self.limits
+    def column(self, config: Config | None = None) -> Column:
+        """The column of an observation, with the limits of a configuration if they depend on it."""
+        if callable(self.limits):
+            assert config is not None
+            low, high = self.limits(config)
+        else:
+            low, high = self.limits
         return Column(self.name, low, high, self.unit, self.meaning, self.read)
 
 

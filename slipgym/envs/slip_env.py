@@ -94,7 +94,8 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             frame_skip,
             config,
         )
-        self.config, self.randomization, self.material = setup.config, setup.randomization, setup.material
+        self.config, self.settings = setup.config, setup.settings
+        self.randomization, self.material = setup.randomization, setup.material
         self.render_mode, self._frame_skip = render_mode, setup.frame_skip
         modes = [mode for mode in self.metadata["render_modes"] if mode != "human" or not obstacle()]
         rate = self.config.physics.control_rate / frame_skip
@@ -153,7 +154,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             self.simulation.check_open()
             raise RuntimeError("call reset() before step()")
         simulation, episode, observer = self.simulation, self.simulation.episode, self._observer
-        total = np.zeros(len(self.task.terms))
+        total = np.zeros(len(self.task.term_names))
         dropped = finished = self._ready = False
         # a picture's strip shows every sample
         at_once = self._frame_skip if self._renderer is None else 1
@@ -227,7 +228,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self._ready = state.simulation is not None
 
     def _info(self) -> dict[str, Any]:
-        return self.simulation.infos.one(0, self.task.terms)
+        return self.simulation.infos.one(0, self.task.term_names)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make a new environment with a world of its own, in the same state."""

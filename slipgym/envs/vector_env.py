@@ -13,7 +13,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from slipgym.config import Config, Randomization
+from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.choices import DEFAULT_ESTIMATOR, autoreset, one_of, whole
 from slipgym.envs.infos import final
 from slipgym.envs.planar_simulation import PlanarSimulation
@@ -86,9 +86,9 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self.num_envs = whole("num_envs", num_envs, 1)
 
         def make_simulation(
-            config: Config, task: Task, estimator: Any, randomization: Randomization
+            config: Config, settings: TaskConfig, task: Task, estimator: Any, randomization: Randomization
         ) -> PlanarSimulation:
-            return PlanarSimulation(config, task, estimator, randomization, num_envs, threads)
+            return PlanarSimulation(config, settings, task, estimator, randomization, num_envs, threads)
 
         setup = Setup(
             self.task,
@@ -106,7 +106,8 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             config,
         )
         assert isinstance(setup.simulation, PlanarSimulation)
-        self.config, self._frame_skip, self._material = setup.config, setup.frame_skip, setup.material
+        self.config, self.settings = setup.config, setup.settings
+        self._frame_skip, self._material = setup.frame_skip, setup.material
         self.simulation, self._actions, self._observer = setup.simulation, setup.actions, setup.observer
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns
@@ -156,7 +157,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._ready[rows] = self._over[rows] = False
         self._begin(rows, asked)
         self._observer.again()
-        infos = self.simulation.infos.some(rows, self.task.terms)
+        infos = self.simulation.infos.some(rows, self.task.term_names)
         return self._observer.read(), self._add_drawn(infos, rows)
 
     def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
@@ -198,12 +199,12 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         ended: dict[str, Any] = {}
         if self.autoreset_mode is AutoresetMode.SAME_STEP:
             rows = np.flatnonzero(over)
-            last = simulation.infos.some(rows, self.task.terms)
+            last = simulation.infos.some(rows, self.task.term_names)
             ended = final(self._observer.present(), last, rows, self.num_envs)
             self._begin(rows)
         else:
             self._over = over
-        infos = simulation.hand_over_infos().every(self.task.terms)
+        infos = simulation.hand_over_infos().every(self.task.term_names)
         infos = self._add_drawn({**infos, **ended}, rows)
         return self._observer.read(), rewards, terminated, truncated, infos
 

@@ -24,7 +24,7 @@ def records(simulation):
         "dropped": episode["dropped"] != 0,
         **{
             name: episode["terms"][:, k] * (episode["step"] > 0)  # of no step after a reset
-            for k, name in enumerate(simulation.task.terms)
+            for k, name in enumerate(simulation.task.term_names)
         },
     }
 
@@ -33,7 +33,7 @@ def check(simulation, infos):
     """Compare the infos of one environment or of all with the arrays of the simulation."""
     terms = infos["reward_terms"]
     wanted = records(simulation)
-    assert {*(info.name for info in (*NUMBERS, *FLAGS)), *simulation.task.terms} == set(wanted)
+    assert {*(info.name for info in (*NUMBERS, *FLAGS)), *simulation.task.term_names} == set(wanted)
     for name, values in wanted.items():
         found = np.asarray(infos[name] if name in infos else terms[name])
         np.testing.assert_array_equal(found, values.reshape(found.shape), err_msg=name)

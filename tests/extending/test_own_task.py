@@ -16,8 +16,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import slipgym
-from policies.play import own_policy
-from policies.play import portrait
+from policies.play import own_policy, portrait
 from slipgym.config import load
 from slipgym.envs import HoldEnv
 from slipgym.registration import ENVIRONMENTS, TASK_MODULES

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from policies.play import Film, own_policy, watch
-from policies.play import portrait
+from policies.play import Film, own_policy, portrait, watch
 from policies.play.watch import Keyboard
 from slipgym.config import load
 from slipgym.registration import ENVIRONMENTS
