@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from slipgym._numba.compiled import patience
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import interpret
 from slipgym.envs.nan_guard import Guard
 from slipgym.envs.observation import ObservationBuffers, combine, observe
+from slipgym.envs.reset_kernels import WARM_UP_STEPS, equip, open_episodes
 from slipgym.envs.simulation import Simulation, SimulationState
-from slipgym.envs.start import WARM_UP_STEPS, equip, open_episodes
 from slipgym.sensors.measure import measure
 from slipgym.tasks import Task
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import begin_step
 from slipgym.world.bullet_engine import BulletWorld
+
+_NOTHING: AbstractContextManager[None] = nullcontext()
 
 
 class BulletSimulation(Simulation):
@@ -46,6 +50,7 @@ class BulletSimulation(Simulation):
         super().__init__(config, settings, task, estimator, randomization)
         self.world = BulletWorld(config, self.plant)
         self._guard = Guard()
+        self._compiled: set[str] = set()
         self._wrench_rows, self._twist_rows = self.wrenches.reshape(2, 4), self.twists.reshape(2, 3)
 
     def step(
@@ -57,6 +62,17 @@ class BulletSimulation(Simulation):
         buffers: ObservationBuffers,
     ) -> None:
         """See `Simulation.step`."""
+        with self._patience("step"):
+            self._step(actions, components, skip, active, buffers)
+
+    def _step(
+        self,
+        actions: np.ndarray,
+        components: np.ndarray,
+        skip: int,
+        active: np.ndarray,
+        buffers: ObservationBuffers,
+    ) -> None:
         episode, terms = self.episode, self.infos.terms
         terms[:] = 0.0
         for _ in range(skip if active[0] else 0):
@@ -102,6 +118,17 @@ class BulletSimulation(Simulation):
         self.world.close()
 
     def _begin(self, starts: np.ndarray) -> None:
+        with self._patience("reset"):
+            self._reset(starts)
+
+    def _patience(self, stage: str) -> AbstractContextManager[None]:
+        """Explains on stderr why the first reset and the first step take long, if they do."""
+        if stage in self._compiled:
+            return _NOTHING
+        self._compiled.add(stage)
+        return patience(f"the {stage} of {self.task.name} with PyBullet")
+
+    def _reset(self, starts: np.ndarray) -> None:
         force, episode = starts["force"].item(), self.episode
         x, z, pitch = episode["wrist_start"][0].tolist()
         self.world.reset(self.boxes[0], force, (x, z, pitch))

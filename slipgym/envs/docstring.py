@@ -1,4 +1,4 @@
-"""The docstring of an environment: what its task's file says, completed by what follows from the code.
+"""The docstring of an environment, made of its task's file and of the tables in the code, and its page.
 
 A task's page is a summary and sections under headings of the second level, as in `TITLES`. "Description",
 "Starting State" and "Version History" are its own; "Rewards" follows the table of terms, "Info" holds the
@@ -7,15 +7,19 @@ row of `reference`. "Action Space" and "Episode End" replace what stands here. W
 
 from __future__ import annotations
 
+import importlib
 import inspect
 import re
 import textwrap
 
 from slipgym.config import Config, load
+from slipgym.envs.arguments import ScalarArguments, fields
 from slipgym.envs.infos import FLAGS, NUMBERS
 from slipgym.envs.observation import FRICTION_COLUMNS, columns
-from slipgym.envs.slip_env import SlipEnv
+from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import Task
+
+_NOTE = "<!-- Made by scripts/make_docs.py; what is written by hand stands in slipgym/tasks/. -->"
 
 TITLES = (
     "Description",
@@ -65,22 +69,6 @@ _END = """\
 - Terminated: the object is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
 - Truncated: the time of the episode has passed. The environment truncates by itself; no `TimeLimit` is
   needed."""
-
-_ARGUMENTS = {
-    "friction_source": 'friction in the observation: or `"true"`, `"nominal"`, `"none"`',
-    "estimator": "a name of `estimator.names()`, or a mapping with its `name` and parameters",
-    "contact": 'friction model of the pads: or `"distributed"` (see `contact.pressure`)',
-    "sensors": 'sensor preset: `"realistic"` or `"ideal"`',
-    "material": 'name of a material, or `"random"` for another in every episode',
-    "action_mode": 'what an action means, see Action Space; `None`: the task\'s own, `"{mode}"`',
-    "observation_mode": 'how an observation is laid out: or `"sensor"`, `"dict"`',
-    "history": "how many earlier observations come along with each",
-    "randomization": 'what else is drawn: `"train"`, `"eval_ood"`, a file or a mapping',
-    "engine": 'what moves the bodies: PyBullet, or `"planar"` (see docs/batch.md)',
-    "frame_skip": "slip-velocity samples per step; the action is repeated, the rewards are summed",
-    "render_mode": '`None`, `"rgb_array"`: 720 by 480 pictures, `"depth_array"`, `"human"`',
-    "config": "file or mapping of overrides, merged over the defaults in `configs/`",
-}
 
 _REWARD_TERMS = ("`reward_terms`", "scaled reward terms of this step by name; they add up to the reward")
 _DRAWN = """\
@@ -151,10 +139,11 @@ def _rewards(task: Task) -> str:
 
 
 def _arguments(task: Task) -> str:
-    parameters = inspect.signature(SlipEnv).parameters
-    defaults = {name: repr(parameters[name].default).replace("'", '"') for name in _ARGUMENTS}
-    told = {**_ARGUMENTS, "action_mode": _ARGUMENTS["action_mode"].format(mode=task.action_mode)}
-    rows = [(f"`{name}`", f"`{defaults[name]}`", meaning) for name, meaning in told.items()]
+    rows = []
+    for field in fields(ScalarArguments).values():
+        default = repr(field.default).replace("'", '"')
+        own = f' (here `"{task.action_mode}"`)' if field.name == "action_mode" else ""
+        rows.append((f"`{field.name}`", f"`{default}`", f"{field.text}{own}"))
     return _table(("Argument", "Default", "Meaning"), rows)
 
 
@@ -175,3 +164,27 @@ def _options(task: Task) -> str:
     rows = [(f"`{name}`", field.description or "") for name, field in fields.items()]
     head = "What `reset(options={...})` fixes for one episode; anything else in it is an error."
     return f"{head}\n\n{_table(('Option', 'Meaning'), rows)}"
+
+
+def page(name: str, environment: type) -> str:
+    """Markdown page of an environment.
+
+    Args:
+        name: Its id.
+        environment: Its class.
+    """
+    use = f'```python\nimport gymnasium as gym\n\nenv = gym.make("slipgym:{name}")\n```'
+    picture = (
+        f"![{environment.task.name}: view and plots of an episode](../images/{environment.task.key}.png)"
+    )
+    return f"# {name}\n\n{_NOTE}\n\n{use}\n\n{picture}\n\n{inspect.getdoc(environment)}\n"
+
+
+def pages() -> dict[str, str]:
+    """File name -> page, of every registered environment."""
+    written = {}
+    for name, entry_point in ENVIRONMENTS.items():
+        module, _, cls = entry_point.partition(":")
+        environment = getattr(importlib.import_module(module), cls)
+        written[f"{environment.task.key}.md"] = page(name, environment)
+    return written

@@ -12,9 +12,6 @@ from slipgym.envs.actions import ACTION_MODES
 from slipgym.envs.readings import Reading, choice_reader, row_writer
 from slipgym.tasks.task import Column, Task
 
-OBSERVATION_MODES = ("flat", "sensor", "dict")
-FRICTION_SOURCES = ("estimated", "true", "nominal", "none")
-
 
 def _tangential(config: Config) -> tuple[float, float]:
     limit = config.sensors.force_torque.force_range

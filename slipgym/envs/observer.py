@@ -8,10 +8,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.envs import privileged
-from slipgym.envs.choices import one_of, whole
 from slipgym.envs.observation import (
-    FRICTION_SOURCES,
-    OBSERVATION_MODES,
     ObservationBuffers,
     columns,
     observe_some,
@@ -39,18 +36,13 @@ class Observer:
         privileged: Columns of the group "privileged"; empty without one.
         space: The observation space of one environment.
         buffers: Where the simulation writes the observations.
-
-    Raises:
-        ValueError: The value of an argument is unknown or not allowed.
     """
 
     def __init__(
         self, simulation: Simulation, friction_source: str, action_mode: str, mode: str, history: int
     ) -> None:
-        one_of("friction_source", friction_source, FRICTION_SOURCES)
-        one_of("observation_mode", mode, OBSERVATION_MODES)
         self._simulation = simulation
-        self._history = whole("history", history, 0)
+        self._history = history
         self.columns = columns(simulation.config, simulation.task, friction_source, action_mode, mode)
         low, high = _bounds(self.columns)
         wrist = np.array(wrist_part(simulation.task, action_mode), dtype=np.int64)

@@ -23,7 +23,7 @@ from slipgym.envs.control_step import (
 from slipgym.envs.infos import write_infos
 from slipgym.envs.nan_guard import sound
 from slipgym.envs.observation import observe
-from slipgym.envs.start import START, WARM_UP_STEPS, equip, grip, open_episodes
+from slipgym.envs.reset_kernels import START, WARM_UP_STEPS, equip, grip, open_episodes
 from slipgym.world.planar_engine import move
 
 BLOCK = 64

@@ -5,20 +5,20 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 import estimator as estimators
+from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
-from slipgym.envs.choices import LATENCY, chosen_estimator
-from slipgym.envs.draw import Randomizer
-from slipgym.envs.equipment import Equipment
+from slipgym.envs.episode_sampler import LATENCY, EpisodeSampler, Row
+from slipgym.envs.hardware_randomization import HardwareRandomization
 from slipgym.envs.infos import InfoBuffer, write_infos
 from slipgym.envs.observation import FRICTION_COLUMNS, ObservationBuffers
-from slipgym.envs.starter import Row, Starter
+from slipgym.envs.randomizer import Randomizer
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
@@ -87,9 +87,9 @@ class Simulation(ABC):
         self.config, self.settings, self.task, self.n = config, settings, task, n
         self.plant = build(config, n)
         randomizer = Randomizer(config, settings, task.key, randomization or Randomization())
-        equipment = Equipment(config, self.plant, randomizer.pressures)
-        equipment.check(randomizer.most)
-        self.estimator_choice = chosen_estimator(estimator)
+        hardware = HardwareRandomization(config, self.plant, randomizer.pressures)
+        hardware.check(randomizer.most)
+        self.estimator_choice = _chosen_estimator(estimator)
         self.estimator = estimators.make_batch(n=2 * n, **self.estimator_choice)
         asked = self.estimator.parameters_array.dtype.names or ()
         tells_latency = LATENCY in asked and LATENCY not in self.estimator_choice
@@ -106,11 +106,11 @@ class Simulation(ABC):
         self._infos_from = *bodies, self.episode, self.ground_truth, self.estimated, self.per_finger
         self.step_time = 1.0 / config.physics.control_rate
         latency_of = self.estimator.parameters_array if tells_latency else None
-        self._starter = Starter(config, settings, task, randomizer, equipment, self.episode, latency_of)
-        self.materials, self.boxes = self._starter.materials, self._starter.boxes
-        self.drawn = self._starter.drawn
+        self._sampler = EpisodeSampler(config, settings, task, randomizer, hardware, self.episode, latency_of)
+        self.materials, self.boxes = self._sampler.materials, self._sampler.boxes
+        self.drawn = self._sampler.drawn
         plant, learned = self.plant, (self.estimator.states, self.estimator.estimates)
-        self._biases = equipment.biases
+        self._biases = hardware.biases
         self._equipped = plant.pads, plant.force_torque, plant.slip_sensors, self.ground_truth
         # start values are the same for all and do not depend on a latency
         self._fresh = self.estimator.states[:2].copy(), self.estimator.estimates[:2].copy()
@@ -152,7 +152,7 @@ class Simulation(ABC):
             RuntimeError: See there.
         """
         self.check_open()
-        self._begin(self._starter.draw(rows, material))
+        self._begin(self._sampler.sample(rows, material))
 
     @abstractmethod
     def step(
@@ -242,3 +242,23 @@ class Simulation(ABC):
             "per_finger": self.per_finger,
             "estimated": self.estimated,
         }
+
+
+def _chosen_estimator(choice: str | Mapping[str, Any]) -> dict[str, Any]:
+    """An estimator's name and parameters; `velocity_delay` is left out unless it was given.
+
+    The simulation then sets it to the latency of the slip sensor.
+    """
+    if isinstance(choice, str):
+        choice = {"name": choice}
+    if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
+        raise ValueError(
+            f"estimator = {choice!r} must be a name or a mapping with a name; "
+            f"valid: {', '.join(estimators.names())}"
+        )
+    given = dict(choice)
+    name = given.pop("name")
+    parameters = asdict(specification(name).parameters.create(**given))
+    if LATENCY not in given:
+        parameters.pop(LATENCY, None)
+    return {"name": name, **parameters}

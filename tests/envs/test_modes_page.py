@@ -8,7 +8,8 @@ import pytest
 from slipgym.config import load
 from slipgym.envs import privileged
 from slipgym.envs.actions import ACTION_MODES, components
-from slipgym.envs.observation import OBSERVATION_MODES, WRIST
+from slipgym.envs.arguments import OBSERVATION_MODES
+from slipgym.envs.observation import WRIST
 
 PAGE = (Path(__file__).parents[2] / "docs" / "modes.md").read_text(encoding="utf-8")
 CONFIG = load()

@@ -1,4 +1,4 @@
-"""The start of an episode: what is drawn of it in Python, and the rest for many of them at once."""
+"""Compiled parts of a reset: a record of what was sampled in Python, and kernels that apply many of them."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def equip(starts, spread, noise, pads, force_torque, slip_sensors, ground_truth)
 
     Args:
         starts: START (m,).
-        spread: See `slipgym.envs.equipment.Equipment.biases`, like the next one.
+        spread: See `slipgym.envs.hardware_randomization.HardwareRandomization.biases`, like the next one.
         noise: See there.
         pads: PAD (n, 2).
         force_torque: FORCE_TORQUE (n, 2).
