@@ -27,6 +27,7 @@ from typing import (
 
 from gymnasium.vector import AutoresetMode
 
+import estimator as estimators
 from slipgym.config.errors import unknown
 
 FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
@@ -39,8 +40,7 @@ FRICTION_SOURCES: tuple[str, ...] = get_args(FrictionSource)
 OBSERVATION_MODES: tuple[str, ...] = get_args(ObservationMode)
 ENGINES: tuple[str, ...] = get_args(Engine)
 
-DEFAULT_ESTIMATOR = "disc"
-"""First of the leaderboard (docs/leaderboard.md), at a sixth of the cost of the filter beside it."""
+DEFAULT_ESTIMATOR = estimators.DEFAULT
 
 
 @dataclass(frozen=True)

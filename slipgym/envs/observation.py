@@ -117,7 +117,13 @@ def _better(name: str) -> str:
 
 
 FRICTION = (
-    Reading("mu_s", (0.0, 10.0), "-", "static friction", _merged("mu_s")),
+    Reading(
+        "mu_s",
+        (0.0, 10.0),
+        "-",
+        "static friction",
+        f"max({_merged('mu_s')}, {_merged('mu_c')})",  # their weights differ: the means may cross
+    ),
     Reading("mu_c", (0.0, 10.0), "-", "Coulomb friction", _merged("mu_c")),
     Reading("r", (0.0, 1.0), "m", "radius of the equivalent rim contact", _merged("r")),
     Reading(

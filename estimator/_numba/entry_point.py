@@ -1,0 +1,41 @@
+"""Compiles the function of an estimator that Python calls."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numba import from_dtype, types
+
+from estimator._numba.caching import compiler
+from estimator.estimate import ESTIMATE
+
+# error_model="numpy": a division by zero gives inf or NaN; the kernels refuse both where it matters
+_compiled = compiler(Path(__file__).parents[1], error_model="numpy", forceinline=True)
+
+
+def _array(dtype: Any, ndim: int) -> Any:
+    return types.Array(dtype, ndim, "C")
+
+
+def entry_point(state: np.dtype[np.void], parameters: np.dtype[np.void]) -> Callable[[Any], Any]:
+    """Decorates an `update_batch(states, parameters, t, wrenches, twists, estimates)`.
+
+    The function is compiled at import, or read from the cache, so the first call is not slow. Arguments of
+    other types are a TypeError.
+
+    Args:
+        state: The dtype of a state.
+        parameters: The dtype of a parameter set.
+    """
+    rows = [_array(from_dtype(dtype), 1) for dtype in (state, parameters, ESTIMATE)]
+    matrix = _array(types.float64, 2)
+    signature = types.void(rows[0], rows[1], types.float64, matrix, matrix, rows[2])
+
+    def decorate(function: Any) -> Any:
+        dispatcher = _compiled(function)
+        dispatcher.compile(signature)
+        dispatcher.disable_compile()
+        return dispatcher
+
+    return decorate
