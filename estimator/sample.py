@@ -55,8 +55,8 @@ def publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate
     """Closes a sample: stores t [s] and f_n [N], writes the ESTIMATE record.
 
     Static friction is never below Coulomb friction, but each is estimated from other samples. Where they
-    contradict each other, the start value of mu_c yields to a measured mu_s, and else mu_s is raised to mu_c. The
-    state keeps its own values.
+    contradict each other, the start value of mu_c yields to a measured mu_s, and else mu_s is raised to mu_c.
+    The state keeps its own values.
     """
     state.t = t
     state.f_n = f_n

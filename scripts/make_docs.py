@@ -15,7 +15,7 @@ def main(
 ) -> None:
     """Write a page and a picture for every registered environment."""
     from policies.play import write_portraits
-    from slipgym.envs.page import pages
+    from slipgym.envs.docstring import pages
 
     for name, text in pages().items():
         (DOCS / "environments" / name).write_text(text, encoding="utf-8")

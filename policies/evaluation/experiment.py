@@ -14,9 +14,7 @@ import policies
 from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen, as_tuple
 from slipgym.config.errors import unknown
-from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of
-from slipgym.envs.engines import ENGINES
-from slipgym.envs.observation import FRICTION_SOURCES
+from slipgym.envs.arguments import DEFAULT_ESTIMATOR, ENGINES, FRICTION_SOURCES, one_of
 from slipgym.tasks import find
 
 

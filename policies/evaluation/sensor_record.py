@@ -11,7 +11,7 @@ import pandas as pd
 
 import policies
 from policies.learned import LearnedPolicy
-from slipgym.envs.observation import Sight
+from slipgym.envs.observation import ObservationBuffers
 from slipgym.envs.simulation import Simulation
 from slipgym.sensors.force_torque import HISTORY, roomier, sensed
 from slipgym.sensors.slip_velocity import read_slip
@@ -97,17 +97,22 @@ class _Tap:
         self._step, simulation.step = simulation.step, self._one_by_one
 
     def _one_by_one(
-        self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
+        self,
+        actions: np.ndarray,
+        components: np.ndarray,
+        skip: int,
+        active: np.ndarray,
+        buffers: ObservationBuffers,
     ) -> None:
         """The loop's `step`, one sample after the other."""
-        episode, total = self.simulation.episode[0], np.zeros_like(self.simulation.told.terms)
+        episode, total = self.simulation.episode[0], np.zeros_like(self.simulation.infos.terms)
         for _ in range(skip):
-            self._step(actions, components, 1, active, sight)
+            self._step(actions, components, 1, active, buffers)
             self._take()
-            total += self.simulation.told.terms
+            total += self.simulation.infos.terms
             if episode["dropped"] or episode["step"] >= episode["steps"]:
                 break
-        self.simulation.told.terms[:] = total
+        self.simulation.infos.terms[:] = total
 
     def _take(self) -> None:
         """Keeps what was sampled since the last call."""

@@ -25,7 +25,7 @@ class SlipVecEnv(VecEnv):
     returns, but that infos are empty where no episode ended.
 
     Args:
-        env: The batch, with autoreset mode "SameStep"; cheapest with `infos="ends"`.
+        env: The batch, with autoreset mode "SameStep".
         scenarios: Options of reset of each environment, for all its episodes; then the autoreset mode must be
             "Disabled". Options that are set for the next reset come on top.
 
@@ -194,7 +194,6 @@ def make_vec_env(
         "vector_entry_point",
         autoreset_mode=_AUTORESET[scenarios is not None],
         threads=threads,
-        infos="ends",
         **keywords,
     )
     assert isinstance(batch, SlipVectorEnv)

@@ -42,7 +42,6 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
     figures = learning(env_id, max(2, pairs // 50))
     for size in SIZES:
         figures += shares(env_id, size, STEPS)
-        figures += infos(env_id, size, max(2, pairs // 10))
     report.publish(figures, json, *LIBRARIES)
 
 
@@ -106,35 +105,6 @@ def shares(env_id: str, size: int, steps: int) -> list[Figure]:
         Figure(f"SlipVecEnv, n = {size}", spent["adapter"], "us"),
         Figure(f"SlipVecEnv, n = {size}, share", spent["adapter"] / (spent["batch"] + spent["adapter"]), "-"),
         Figure(f"VecMonitor, n = {size}", spent["monitor"], "us"),
-    ]
-
-
-def infos(env_id: str, size: int, pairs: int, steps: int = 20) -> list[Figure]:
-    """What infos of all environments cost beside those of episodes that end or begin.
-
-    Args:
-        env_id: Id of the environment.
-        size: Environments.
-        pairs: Pairs of blocks.
-        steps: Steps of a block.
-    """
-    batches = [
-        gym.make_vec(env_id, size, "vector_entry_point", autoreset_mode="SameStep", infos=told)
-        for told in ("ends", "all")
-    ]
-    for batch in batches:
-        batch.reset(seed=0)
-    few, many = (_playing(batch, steps) for batch in batches)
-    for block in (few, many):
-        block()  # warm up
-    lower, middle, upper = compare(few, many, pairs).quartiles
-    for batch in batches:
-        batch.close()
-    name = f'SlipVectorEnv.step, n = {size}, infos="all" / "ends"'
-    return [
-        Figure(name, middle, "-"),
-        Figure(f"{name}, lower quartile", lower, "-"),
-        Figure(f"{name}, upper quartile", upper, "-"),
     ]
 
 

@@ -16,8 +16,7 @@ from slipgym.config import load, load_randomization
 from slipgym.config.base import Count, Frozen, NonNegative, Positive, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.envs.actions import ACTION_MODES
-from slipgym.envs.choices import DEFAULT_ESTIMATOR
-from slipgym.envs.observation import FRICTION_SOURCES
+from slipgym.envs.arguments import DEFAULT_ESTIMATOR, FRICTION_SOURCES
 from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import TASKS
 

@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import math
 
-import pybullet as p
-
 from slipgym.config import Config
 from slipgym.world import scene
+from slipgym.world.quiet_pybullet import p
 from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
 
 

@@ -161,7 +161,7 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
 def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
     """Time of the parts of a step, taken one after the other over all environments, in one thread."""
     env = player.env
-    simulation, look = env.simulation, env._observer.sight
+    simulation, look = env.simulation, env._observer.buffers
     plant, n = simulation.plant, player.n
     bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
     actions = np.random.default_rng(0).uniform(*player.actions, (steps, n, 1))
@@ -170,7 +170,7 @@ def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
     def task(k: int) -> None:
         interpret(actions[k], env._actions.table, simulation.episode, simulation.commands)
         begin_step(simulation.episode, simulation.commands)
-        disturb(simulation.episode, plant.world, plant.pads, simulation.truth)
+        disturb(simulation.episode, plant.world, plant.pads, simulation.ground_truth)
         simulation.task.script_wrist(simulation.episode, plant.world)
 
     def advance(_: int) -> None:

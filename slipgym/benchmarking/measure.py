@@ -109,7 +109,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
         watches.watch("estimator", loops, "combine")
         watches.watch("observation", loops, "observe")
         watches.watch("observation", env._observer, "read")
-        watches.watch("info", env._information, "one")
+        watches.watch("info", env, "_info")
         task = simulation.task
         timed = {
             name: watches.timed("task", getattr(task, name)) for name in ("script_wrist", "evaluate_step")

@@ -3,26 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from slipgym._numba.compiled import patience
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import interpret
-from slipgym.envs.guard import Guard
-from slipgym.envs.observation import Sight, combine, observe
+from slipgym.envs.nan_guard import Guard
+from slipgym.envs.observation import ObservationBuffers, combine, observe
+from slipgym.envs.reset_kernels import WARM_UP_STEPS, equip, open_episodes
 from slipgym.envs.simulation import Simulation, SimulationState
-from slipgym.envs.start import WARM_UP_STEPS, equip, open_episodes
 from slipgym.sensors.measure import measure
 from slipgym.tasks import Task
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import begin_step
 from slipgym.world.bullet_engine import BulletWorld
 
+_NOTHING: AbstractContextManager[None] = nullcontext()
+
 
 class BulletSimulation(Simulation):
-    """A loop around a PyBullet world.
+    """One environment whose bodies PyBullet moves.
 
     Args:
         config: As of `Simulation`, like the others.
@@ -46,32 +50,51 @@ class BulletSimulation(Simulation):
         super().__init__(config, settings, task, estimator, randomization)
         self.world = BulletWorld(config, self.plant)
         self._guard = Guard()
+        self._compiled: set[str] = set()
         self._wrench_rows, self._twist_rows = self.wrenches.reshape(2, 4), self.twists.reshape(2, 3)
 
     def step(
-        self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
+        self,
+        actions: np.ndarray,
+        components: np.ndarray,
+        skip: int,
+        active: np.ndarray,
+        buffers: ObservationBuffers,
     ) -> None:
         """See `Simulation.step`."""
-        episode, terms = self.episode, self.told.terms
+        with self._patience("step"):
+            self._step(actions, components, skip, active, buffers)
+
+    def _step(
+        self,
+        actions: np.ndarray,
+        components: np.ndarray,
+        skip: int,
+        active: np.ndarray,
+        buffers: ObservationBuffers,
+    ) -> None:
+        episode, terms = self.episode, self.infos.terms
         terms[:] = 0.0
         for _ in range(skip if active[0] else 0):
             interpret(actions, components, episode, self.commands)
-            self._sample()
+            self._control_step()
             terms += episode["terms"][:, : terms.shape[1]]
             if episode["dropped"].item() or episode["step"].item() >= episode["steps"].item():
                 break
         plant = self.plant
-        observe(self.wrenches, self.twists, plant.slip_sensors, episode, self.task_part, plant.world, *sight)
-        self._tell()
+        observe(
+            self.wrenches, self.twists, plant.slip_sensors, episode, self.task_part, plant.world, *buffers
+        )
+        self._write_infos()
 
     def sample(self, force: float) -> None:
-        """One slip-velocity sample with a grip force per finger [N], the wrist as the task scripts it.
+        """One control step with a grip force per finger [N], the wrist as the task scripts it.
 
         Raises:
             FloatingPointError: Something is no longer a finite number; only a reset helps.
         """
         self.commands[0] = force, 0.0, 0.0, 0.0
-        self._sample()
+        self._control_step()
 
     def get_state(self) -> SimulationState:
         """See `Simulation.get_state`."""
@@ -95,6 +118,17 @@ class BulletSimulation(Simulation):
         self.world.close()
 
     def _begin(self, starts: np.ndarray) -> None:
+        with self._patience("reset"):
+            self._reset(starts)
+
+    def _patience(self, stage: str) -> AbstractContextManager[None]:
+        """Explains on stderr why the first reset and the first step take long, if they do."""
+        if stage in self._compiled:
+            return _NOTHING
+        self._compiled.add(stage)
+        return patience(f"the {stage} of {self.task.name} with PyBullet")
+
+    def _reset(self, starts: np.ndarray) -> None:
         force, episode = starts["force"].item(), self.episode
         x, z, pitch = episode["wrist_start"][0].tolist()
         self.world.reset(self.boxes[0], force, (x, z, pitch))
@@ -102,16 +136,16 @@ class BulletSimulation(Simulation):
         equip(starts, *self._biases, *self._equipped)
         for _ in range(WARM_UP_STEPS):
             self._advance(force)
-        open_episodes(starts, *self._fresh, *self._opened, self.told.terms)
+        open_episodes(starts, *self._fresh, *self._opened, self.infos.terms)
         combine(self.estimator.estimates, self.per_finger, self.estimated)
         self.task.evaluate_step(episode, self.plant.world, self.plant.fingers, self.task_part)
-        self._tell()
+        self._write_infos()
 
-    def _sample(self) -> None:
-        """Act, move, measure, estimate, judge."""
+    def _control_step(self) -> None:
+        """Act, move, measure, estimate, evaluate: the stages of `slipgym.envs.control_step`."""
         plant, episode = self.plant, self.episode
         begin_step(episode, self.commands)
-        disturb(episode, plant.world, plant.pads, self.truth)
+        disturb(episode, plant.world, plant.pads, self.ground_truth)
         self.world.update_mass()
         self.task.script_wrist(episode, plant.world)
         self._advance(self.commands.item(0))

@@ -1,4 +1,4 @@
-"""The docstring of an environment: what its task's file says, completed by what follows from the code.
+"""The docstring of an environment, made of its task's file and of the tables in the code, and its page.
 
 A task's page is a summary and sections under headings of the second level, as in `TITLES`. "Description",
 "Starting State" and "Version History" are its own; "Rewards" follows the table of terms, "Info" holds the
@@ -7,14 +7,19 @@ row of `reference`. "Action Space" and "Episode End" replace what stands here. W
 
 from __future__ import annotations
 
+import importlib
 import inspect
 import re
 import textwrap
 
 from slipgym.config import Config, load
+from slipgym.envs.arguments import ScalarArguments, fields
+from slipgym.envs.infos import FLAGS, NUMBERS
 from slipgym.envs.observation import FRICTION_COLUMNS, columns
-from slipgym.envs.slip_env import SlipEnv
+from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import Task
+
+_NOTE = "<!-- Made by scripts/make_docs.py; what is written by hand stands in slipgym/tasks/. -->"
 
 TITLES = (
     "Description",
@@ -51,9 +56,9 @@ Bounds follow the configuration; those of the defaults are
 
 {table}
 
-With `friction_source="estimated"` the friction part merges both fingers' estimates by their support, and
-the support (0 to 1) says how much data stands behind each: do not trust a value before it has grown. With
-"true" and "nominal" every support is 1.
+With `friction_source="estimated"` the friction part merges both fingers' estimates by their confidence, and
+the confidence (0 to 1) says how much data stands behind each: do not trust a value before it has grown. With
+"true" and "nominal" every confidence is 1.
 
 With an `action_mode` that moves the wrist, what the agent commands of it and its pitch precede
 the friction part, unless the table has them. `observation_mode="sensor"` leaves the friction part out;
@@ -65,38 +70,8 @@ _END = """\
 - Truncated: the time of the episode has passed. The environment truncates by itself; no `TimeLimit` is
   needed."""
 
-_ARGUMENTS = {
-    "friction_source": 'friction in the observation: or `"true"`, `"nominal"`, `"none"`',
-    "estimator": "a name of `estimator.names()`, or a mapping with its `name` and parameters",
-    "contact": 'friction model of the pads: or `"distributed"` (see `contact.pressure`)',
-    "sensors": 'sensor preset: `"realistic"` or `"ideal"`',
-    "material": 'name of a material, or `"random"` for another in every episode',
-    "action_mode": 'what an action means, see Action Space; `None`: the task\'s own, `"{mode}"`',
-    "observation_mode": 'how an observation is laid out: or `"sensor"`, `"dict"`',
-    "history": "how many earlier observations come along with each",
-    "randomization": 'what else is drawn: `"train"`, `"eval_ood"`, a file or a mapping',
-    "engine": 'what moves the bodies: PyBullet, or `"planar"` (see docs/batch.md)',
-    "frame_skip": "slip-velocity samples per step; the action is repeated, the rewards are summed",
-    "render_mode": '`None`, `"rgb_array"`: 720 by 480 pictures, `"depth_array"`, `"human"`',
-    "config": "file or mapping of overrides, merged over the defaults in `configs/`",
-}
-
-_INFO = """\
-| Key | Content |
-|---|---|
-| `true` | true (mu_s, mu_c, r) now, (3,) [-, -, m] |
-| `estimated` | the estimators' (mu_s, mu_c, r), mean of both fingers, (3,) |
-| `estimated_per_finger` | the same, finger by finger, (2, 3) |
-| `slip` | true slip displacement (x, y, theta) in the pad frame since the grasp, (3,) [m, m, rad] |
-| `slip_twist` | true slip velocity (v_x, v_y, omega) at the pad centre, (3,) [m/s, m/s, rad/s] |
-| `contact_wrench` | true friction (f_x, f_y, tau) of either pad on the box, (2, 3) [N, N, N m] |
-| `grip_force` | actuator force of each finger, (2,) [N] |
-{reference}
-| `reward_terms` | scaled reward terms of this step by name; they add up to the reward |
-| `time` | time since reset [s] |
-| `is_success` | whether the task is solved; see Episode End |
-| `dropped` | whether the box is dropped |
-
+_REWARD_TERMS = ("`reward_terms`", "scaled reward terms of this step by name; they add up to the reward")
+_DRAWN = """\
 With a randomization, the info of a reset also holds `drawn`: what was drawn for the episode, by name (see
 docs/randomization.md)."""
 
@@ -113,7 +88,6 @@ def docstring(task: Task) -> str:
         if title not in TITLES:
             raise ValueError(f"page of {task.id}: unknown section {title!r}; valid: {', '.join(TITLES)}")
     config = load()
-    reference = own.get("Info", "| `reference` | what the task says of it, (3,) |")
     sections = {
         "Description": _joined(own.get("Description", ""), _FRAMES),
         "Action Space": own.get("Action Space") or _action(config),
@@ -123,7 +97,7 @@ def docstring(task: Task) -> str:
         "Episode End": own.get("Episode End", _END),
         "Arguments": _arguments(task),
         "Reset Options": _options(task),
-        "Info": _INFO.format(reference=reference),
+        "Info": _infos(own.get("Info")),
         "Version History": own.get("Version History", ""),
     }
     written = [f"## {title}\n\n{sections[title]}" for title in TITLES if sections[title]]
@@ -165,11 +139,24 @@ def _rewards(task: Task) -> str:
 
 
 def _arguments(task: Task) -> str:
-    parameters = inspect.signature(SlipEnv).parameters
-    defaults = {name: repr(parameters[name].default).replace("'", '"') for name in _ARGUMENTS}
-    told = {**_ARGUMENTS, "action_mode": _ARGUMENTS["action_mode"].format(mode=task.action_mode)}
-    rows = [(f"`{name}`", f"`{defaults[name]}`", meaning) for name, meaning in told.items()]
+    rows = []
+    for field in fields(ScalarArguments).values():
+        default = repr(field.default).replace("'", '"')
+        own = f' (here `"{task.action_mode}"`)' if field.name == "action_mode" else ""
+        rows.append((f"`{field.name}`", f"`{default}`", f"{field.text}{own}"))
     return _table(("Argument", "Default", "Meaning"), rows)
+
+
+def _infos(reference: str | None) -> str:
+    """The table of infos; a task's page may hold its own row of `reference`."""
+    rows = []
+    for info in (*NUMBERS, *FLAGS):
+        shape = f", {info.shape}".replace(", ()", "")
+        unit = f" [{info.unit}]" if info.unit else ""
+        rows.append((f"`{info.name}`", f"{info.meaning}{shape}{unit}"))
+        if info.name == "reference" and reference is not None:
+            rows[-1] = tuple(cell.strip() for cell in reference.strip().strip("|").split(" | "))
+    return f"{_table(('Key', 'Content'), [*rows, _REWARD_TERMS])}\n\n{_DRAWN}"
 
 
 def _options(task: Task) -> str:
@@ -177,3 +164,27 @@ def _options(task: Task) -> str:
     rows = [(f"`{name}`", field.description or "") for name, field in fields.items()]
     head = "What `reset(options={...})` fixes for one episode; anything else in it is an error."
     return f"{head}\n\n{_table(('Option', 'Meaning'), rows)}"
+
+
+def page(name: str, environment: type) -> str:
+    """Markdown page of an environment.
+
+    Args:
+        name: Its id.
+        environment: Its class.
+    """
+    use = f'```python\nimport gymnasium as gym\n\nenv = gym.make("slipgym:{name}")\n```'
+    picture = (
+        f"![{environment.task.name}: view and plots of an episode](../images/{environment.task.key}.png)"
+    )
+    return f"# {name}\n\n{_NOTE}\n\n{use}\n\n{picture}\n\n{inspect.getdoc(environment)}\n"
+
+
+def pages() -> dict[str, str]:
+    """File name -> page, of every registered environment."""
+    written = {}
+    for name, entry_point in ENVIRONMENTS.items():
+        module, _, cls = entry_point.partition(":")
+        environment = getattr(importlib.import_module(module), cls)
+        written[f"{environment.task.key}.md"] = page(name, environment)
+    return written

@@ -9,33 +9,143 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.envs.actions import ACTION_MODES
+from slipgym.envs.readings import Reading, choice_reader, row_writer
 from slipgym.tasks.task import Column, Task
 
-OBSERVATION_MODES = ("flat", "sensor", "dict")
-FRICTION_SOURCES = ("estimated", "true", "nominal", "none")
-FRICTION_COLUMNS = (
-    Column("mu_s", 0.0, 10.0, "-", "static friction"),
-    Column("mu_c", 0.0, 10.0, "-", "Coulomb friction"),
-    Column("r", 0.0, 1.0, "m", "radius of the equivalent rim contact"),
-    Column("confidence_mu_s", 0.0, 1.0, "-", "how much data stands behind mu_s"),
-    Column("confidence_mu_c", 0.0, 1.0, "-", "how much data stands behind mu_c"),
-    Column("confidence_r", 0.0, 1.0, "-", "how much data stands behind r"),
-)
-WRIST_COLUMNS = (
-    Column("wrist_velocity_x", -2.0, 2.0, "m/s", "commanded wrist velocity along world x"),
-    Column("wrist_velocity_z", -2.0, 2.0, "m/s", "commanded wrist velocity along world z"),
-    Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "commanded wrist pitch rate"),
-    Column("wrist_pitch", -10.0, 10.0, "rad", "pitch of the wrist against level"),
-)
+
+def _tangential(config: Config) -> tuple[float, float]:
+    limit = config.sensors.force_torque.force_range
+    return -limit, limit
 
 
-class Sight(NamedTuple):
-    """Of an observation, what does not come from the loop, and where it goes: arguments of `observe`."""
+def _normal(config: Config) -> tuple[float, float]:
+    limit = config.sensors.force_torque.normal_range
+    return -limit, limit
+
+
+def _torque(config: Config) -> tuple[float, float]:
+    limit = config.sensors.force_torque.torque_range
+    return -limit, limit
+
+
+def _slip_velocity(config: Config) -> tuple[float, float]:
+    limit = 2 * config.sensors.slip.speed_max
+    return -limit, limit
+
+
+def _slip_rate(config: Config) -> tuple[float, float]:
+    limit = 2.0 * config.sensors.slip.speed_max / config.sensors.slip.chip_radius
+    return -limit, limit
+
+
+def _grip_force(config: Config) -> tuple[float, float]:
+    return 0.0, config.gripper.force_limit
+
+
+def _finger(f: int) -> tuple[Reading, ...]:
+    """Measurements of finger 1 or 2."""
+    wrench, twist = f"wrenches[i, {f - 1}, ", f"twists[i, {f - 1}, "
+    return (
+        Reading(f"f_x_{f}", _tangential, "N", f"tangential force on finger {f}", f"{wrench}0]"),
+        Reading(f"f_y_{f}", _tangential, "N", f"tangential force on finger {f}", f"{wrench}1]"),
+        Reading(f"f_n_{f}", _normal, "N", f"normal force of finger {f}", f"{wrench}2]"),
+        Reading(f"tau_{f}", _torque, "N m", f"torque at finger {f}'s CoP", f"{wrench}3]"),
+        Reading(f"v_x_{f}", _slip_velocity, "m/s", f"slip velocity at finger {f}'s CoP", f"{twist}0]"),
+        Reading(f"v_y_{f}", _slip_velocity, "m/s", f"slip velocity at finger {f}'s CoP", f"{twist}1]"),
+        Reading(
+            f"omega_{f}", _slip_rate, "rad/s", f"slip rate about the grip axis at finger {f}", f"{twist}2]"
+        ),
+    )
+
+
+def _mean_slip(axis: int) -> str:
+    return " + ".join(f"slip_sensors[i, {f}].measured_slip[{axis}]" for f in (0, 1)).join(("0.5 * (", ")"))
+
+
+SENSORS = (
+    *_finger(1),
+    *_finger(2),
+    Reading(
+        "measured_slip_x",
+        (-1.0, 1.0),
+        "m",
+        "slip displacement, summed from the counts of both fingers",
+        _mean_slip(0),
+    ),
+    Reading("measured_slip_y", (-1.0, 1.0), "m", "the same along the pads' y axis", _mean_slip(1)),
+    Reading("measured_slip_theta", (-10.0, 10.0), "rad", "the same about the grip axis", _mean_slip(2)),
+    Reading(
+        "commanded_force", _grip_force, "N", "grip force commanded in the last step", "episodes[i].command"
+    ),
+)
+"""Sensor part: wrench and twist of both fingers, measured slip, commanded force."""
+
+WRIST = (
+    Reading(
+        "wrist_velocity_x",
+        (-2.0, 2.0),
+        "m/s",
+        "commanded wrist velocity along world x",
+        "worlds[i].wrist_velocity[0]",
+    ),
+    Reading(
+        "wrist_velocity_z",
+        (-2.0, 2.0),
+        "m/s",
+        "commanded wrist velocity along world z",
+        "worlds[i].wrist_velocity[1]",
+    ),
+    Reading(
+        "wrist_pitch_rate",
+        (-10.0, 10.0),
+        "rad/s",
+        "commanded wrist pitch rate",
+        "worlds[i].wrist_velocity[2]",
+    ),
+    Reading("wrist_pitch", (-10.0, 10.0), "rad", "pitch of the wrist against level", "worlds[i].wrist[2]"),
+)
+"""Wrist part, of which an environment has what its agent commands; see `wrist_part`."""
+
+
+def _merged(name: str) -> str:
+    weights = f"first.confidence_{name}, second.confidence_{name}"
+    return f"weighted_mean(first.{name}, second.{name}, {weights})"
+
+
+def _better(name: str) -> str:
+    return f"max(first.{name}, second.{name})"
+
+
+FRICTION = (
+    Reading(
+        "mu_s",
+        (0.0, 10.0),
+        "-",
+        "static friction",
+        f"max({_merged('mu_s')}, {_merged('mu_c')})",  # their weights differ: the means may cross
+    ),
+    Reading("mu_c", (0.0, 10.0), "-", "Coulomb friction", _merged("mu_c")),
+    Reading("r", (0.0, 1.0), "m", "radius of the equivalent rim contact", _merged("r")),
+    Reading(
+        "confidence_mu_s", (0.0, 1.0), "-", "how much data stands behind mu_s", _better("confidence_mu_s")
+    ),
+    Reading(
+        "confidence_mu_c", (0.0, 1.0), "-", "how much data stands behind mu_c", _better("confidence_mu_c")
+    ),
+    Reading("confidence_r", (0.0, 1.0), "-", "how much data stands behind r", _better("confidence_r")),
+)
+"""Friction part, as it is read from the estimates of the first and the second finger."""
+FRICTION_COLUMNS = tuple(reading.column() for reading in FRICTION)
+
+
+class ObservationBuffers(NamedTuple):
+    """The arguments of `observe` that are not the simulation's own state: its settings and its output."""
 
     wrist: np.ndarray
-    """Which of `WRIST_COLUMNS` make the wrist part, (w,)."""
+    """Which rows of `WRIST` make the wrist part, (w,)."""
     friction: np.ndarray
-    """What the friction part holds, (n, 6)."""
+    """Values of the friction part, (n, 6): an array of the simulation's, which changes as it steps, or
+    constants."""
     low: np.ndarray
     """Lower bounds, (m,) float32."""
     high: np.ndarray
@@ -44,41 +154,18 @@ class Sight(NamedTuple):
     """The observations, (n, m) float32."""
 
 
-def sensor_columns(config: Config) -> tuple[Column, ...]:
-    """Sensor part: both fingers' wrench and twist, measured travel, commanded force."""
-    ft, speed = config.sensors.force_torque, config.sensors.slip.speed_max
-    spin = 2.0 * speed / config.sensors.slip.chip_radius
-    fingers = []
-    for f in (1, 2):
-        fingers += [
-            Column(f"f_x_{f}", -ft.force_range, ft.force_range, "N", f"tangential force on finger {f}"),
-            Column(f"f_y_{f}", -ft.force_range, ft.force_range, "N", f"tangential force on finger {f}"),
-            Column(f"f_n_{f}", -ft.normal_range, ft.normal_range, "N", f"normal force of finger {f}"),
-            Column(f"tau_{f}", -ft.torque_range, ft.torque_range, "N m", f"torque at finger {f}'s CoP"),
-            Column(f"v_x_{f}", -2 * speed, 2 * speed, "m/s", f"slip velocity at finger {f}'s CoP"),
-            Column(f"v_y_{f}", -2 * speed, 2 * speed, "m/s", f"slip velocity at finger {f}'s CoP"),
-            Column(f"omega_{f}", -spin, spin, "rad/s", f"slip rate about the grip axis at finger {f}"),
-        ]
-    return (
-        *fingers,
-        Column(
-            "measured_slip_x", -1.0, 1.0, "m", "slip displacement, summed from the counts of both fingers"
-        ),
-        Column("measured_slip_y", -1.0, 1.0, "m", "the same along the pads' y axis"),
-        Column("measured_slip_theta", -10.0, 10.0, "rad", "the same about the grip axis"),
-        Column(
-            "commanded_force", 0.0, config.gripper.force_limit, "N", "grip force commanded in the last step"
-        ),
-    )
-
-
-def wrist_columns(task: Task, action_mode: str) -> tuple[Column, ...]:
-    """Wrist part: what an agent that commands the wrist needs and the task's part does not hold."""
+def wrist_part(task: Task, action_mode: str) -> tuple[int, ...]:
+    """Rows of `WRIST` that an agent which commands the wrist needs and the task's part does not hold."""
     commanded = set(ACTION_MODES[action_mode])
-    if commanded & {column.name for column in WRIST_COLUMNS}:
+    if commanded & {reading.name for reading in WRIST}:
         commanded.add("wrist_pitch")
     needed = commanded - {column.name for column in task.columns}
-    return tuple(column for column in WRIST_COLUMNS if column.name in needed)
+    return tuple(k for k, reading in enumerate(WRIST) if reading.name in needed)
+
+
+def sensor_columns(config: Config) -> tuple[Column, ...]:
+    """The sensor part, with the limits of a configuration."""
+    return tuple(reading.column(config) for reading in SENSORS)
 
 
 def columns(
@@ -89,39 +176,58 @@ def columns(
     observation_mode: str = "flat",
 ) -> tuple[Column, ...]:
     """All columns of an observation, or of its group "policy", in order."""
-    bare = friction_source == "none" or observation_mode == "sensor"
-    friction = () if bare else FRICTION_COLUMNS
-    return (*sensor_columns(config), *task.columns, *wrist_columns(task, action_mode), *friction)
+    no_friction = friction_source == "none" or observation_mode == "sensor"
+    return (
+        *sensor_columns(config),
+        *task.columns,
+        *(WRIST[k].column(config) for k in wrist_part(task, action_mode)),
+        *(() if no_friction else FRICTION_COLUMNS),
+    )
+
+
+@compiled
+def weighted_mean(a, b, weight_a, weight_b):
+    """Mean of two values by their weights; the plain mean if both weights are 0."""
+    total = weight_a + weight_b
+    return (a * weight_a + b * weight_b) / total if total > 0.0 else 0.5 * (a + b)
+
+
+_write_sensors = row_writer(
+    "_write_sensors",
+    [reading.read for reading in SENSORS],
+    ("wrenches", "twists", "slip_sensors", "episodes"),
+    __file__,
+    "Write `SENSORS` of environment i.",
+)
+_read_wrist = choice_reader(
+    "_read_wrist", [reading.read for reading in WRIST], ("worlds",), __file__, "Row k of `WRIST`."
+)
+_write_friction = row_writer(
+    "_write_friction",
+    [reading.read for reading in FRICTION],
+    ("estimates",),
+    __file__,
+    "Write `FRICTION` of environment i.",
+    before=("first, second = estimates[2 * i], estimates[2 * i + 1]",),
+    functions={"weighted_mean": weighted_mean},
+)
+_SENSORS = len(SENSORS)
 
 
 @compiled
 def combine(estimates, per_finger, friction):
-    """Merge both fingers' estimates, each weighted by its support.
+    """Merge both fingers' estimates, each weighted by its confidence.
 
     Args:
         estimates: ESTIMATE (2 n,), finger by finger.
         per_finger: Output (n, 2, 3): mu_s, mu_c, r of either finger.
-        friction: Output (n, 6): mu_s, mu_c, r and their supports (the better finger's).
+        friction: Output (n, 6): `FRICTION_COLUMNS`, that is mu_s, mu_c, r and the higher confidence in each.
     """
     for i in range(friction.shape[0]):
-        a, b = estimates[2 * i], estimates[2 * i + 1]
         for f in range(2):
             finger = estimates[2 * i + f]
             per_finger[i, f, 0], per_finger[i, f, 1], per_finger[i, f, 2] = finger.mu_s, finger.mu_c, finger.r
-        friction[i, 0] = weigh(a.mu_s, b.mu_s, a.confidence_mu_s, b.confidence_mu_s)
-        friction[i, 1] = weigh(a.mu_c, b.mu_c, a.confidence_mu_c, b.confidence_mu_c)
-        friction[i, 0] = max(friction[i, 0], friction[i, 1])  # their weights differ: the means may cross
-        friction[i, 2] = weigh(a.r, b.r, a.confidence_r, b.confidence_r)
-        friction[i, 3] = max(a.confidence_mu_s, b.confidence_mu_s)
-        friction[i, 4] = max(a.confidence_mu_c, b.confidence_mu_c)
-        friction[i, 5] = max(a.confidence_r, b.confidence_r)
-
-
-@compiled
-def weigh(a, b, support_a, support_b):
-    """Mean of two values weighted by their support; plain if neither has any."""
-    total = support_a + support_b
-    return (a * support_a + b * support_b) / total if total > 0.0 else 0.5 * (a + b)
+        _write_friction(friction[i], i, estimates)
 
 
 @compiled
@@ -131,34 +237,24 @@ def observe(wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, 
     Args:
         wrenches: As from `measure`, (n, 2, 4).
         twists: As from `measure`, (n, 2, 3).
-        slip_sensors: SLIP_SENSOR (n, 2), for the travel.
-        episodes: EPISODE (n,), for the command.
+        slip_sensors: SLIP_SENSOR (n, 2), for the measured slip.
+        episodes: EPISODE (n,), for the commanded force.
         task_part: (n, k).
         worlds: WORLD (n,), for the wrist.
-        wrist: Which of `WRIST_COLUMNS` (w,) make the wrist part.
-        friction: (n, 6); used as far as `out` has room for it.
+        wrist: Which rows of `WRIST` (w,) make the wrist part.
+        friction: `FRICTION_COLUMNS` (n, 6); used as far as `out` has room for it.
         low: Lower bounds (m,).
         high: Upper bounds (m,).
         out: Output (n, m), float32.
     """
     for i in range(out.shape[0]):
-        at = 0
-        for f in range(2):
-            for k in range(4):
-                out[i, at + k] = wrenches[i, f, k]
-            for k in range(3):
-                out[i, at + 4 + k] = twists[i, f, k]
-            at += 7
-        for k in range(3):
-            out[i, at + k] = 0.5 * (slip_sensors[i, 0].measured_slip[k] + slip_sensors[i, 1].measured_slip[k])
-        out[i, at + 3] = episodes[i].command
-        at += 4
+        _write_sensors(out[i], i, wrenches, twists, slip_sensors, episodes)
+        at = _SENSORS
         for k in range(task_part.shape[1]):
             out[i, at + k] = task_part[i, k]
         at += task_part.shape[1]
         for k in range(wrist.shape[0]):
-            which = wrist[k]
-            out[i, at + k] = worlds[i].wrist_velocity[which] if which < 3 else worlds[i].wrist[2]
+            out[i, at + k] = _read_wrist(wrist[k], i, worlds)
         at += wrist.shape[0]
         for k in range(out.shape[1] - at):
             out[i, at + k] = friction[i, k]

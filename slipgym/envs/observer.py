@@ -8,15 +8,11 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.envs import privileged
-from slipgym.envs.choices import one_of, whole
 from slipgym.envs.observation import (
-    FRICTION_SOURCES,
-    OBSERVATION_MODES,
-    WRIST_COLUMNS,
-    Sight,
+    ObservationBuffers,
     columns,
     observe_some,
-    wrist_columns,
+    wrist_part,
 )
 from slipgym.envs.simulation import Simulation
 from slipgym.tasks.task import Column
@@ -39,52 +35,48 @@ class Observer:
         columns: Of one observation, or of its group "policy".
         privileged: Columns of the group "privileged"; empty without one.
         space: The observation space of one environment.
-        sight: Where the loop writes what is observed.
-
-    Raises:
-        ValueError: The value of an argument is unknown or not allowed.
+        buffers: Where the simulation writes the observations.
     """
 
     def __init__(
         self, simulation: Simulation, friction_source: str, action_mode: str, mode: str, history: int
     ) -> None:
-        one_of("friction_source", friction_source, FRICTION_SOURCES)
-        one_of("observation_mode", mode, OBSERVATION_MODES)
         self._simulation = simulation
-        self._history = whole("history", history, 0)
+        self._history = history
         self.columns = columns(simulation.config, simulation.task, friction_source, action_mode, mode)
-        wrist = wrist_columns(simulation.task, action_mode)
         low, high = _bounds(self.columns)
-        placed = np.array([WRIST_COLUMNS.index(column) for column in wrist], dtype=np.int64)
-        self._looks = placed, _friction_part(simulation, friction_source), low, high
-        self.sight = Sight(*self._looks, np.zeros((simulation.n, len(self.columns)), dtype=np.float32))
-        if history:  # the last observations, the present one last; without it `sight` has all
+        wrist = np.array(wrist_part(simulation.task, action_mode), dtype=np.int64)
+        self._settings = wrist, _friction_part(simulation, friction_source), low, high
+        self.buffers = ObservationBuffers(
+            *self._settings, np.zeros((simulation.n, len(self.columns)), dtype=np.float32)
+        )
+        if history:  # the last observations, the present one last; without it `buffers` has all
             self._frames = np.zeros((simulation.n, history + 1, len(self.columns)), dtype=np.float32)
         policy = gym.spaces.Box(np.tile(low, history + 1), np.tile(high, history + 1))
         self.privileged: tuple[Column, ...] = ()
         self.space: gym.Space = policy
         if mode == "dict":
             self.privileged = privileged.columns(simulation.config)
-            self._truth_bounds = _bounds(self.privileged)
-            self._truth = np.zeros((simulation.n, len(self.privileged)), dtype=np.float32)
-            truth = gym.spaces.Box(*self._truth_bounds)
-            self.space = gym.spaces.Dict({"policy": policy, "privileged": truth})
+            self._privileged_bounds = _bounds(self.privileged)
+            self._ground_truth = np.zeros((simulation.n, len(self.privileged)), dtype=np.float32)
+            ground_truth = gym.spaces.Box(*self._privileged_bounds)
+            self.space = gym.spaces.Dict({"policy": policy, "privileged": ground_truth})
 
     def begin(self, rows: np.ndarray) -> None:
         """Take the first observations of some environments; they stand for those before them, too."""
         self._look(rows)
         if self._history:
-            self._frames[rows] = self.sight.out[rows, np.newaxis]
+            self._frames[rows] = self.buffers.out[rows, np.newaxis]
 
     def next(self, active: np.ndarray) -> None:
-        """Take what the loop observed after a step.
+        """Take the observations that the simulation wrote after a step.
 
         Args:
             active: Which environments took part, (n,).
         """
         if self._history:
             self._frames[active, :-1] = self._frames[active, 1:]
-            self._frames[active, -1] = self.sight.out[active]
+            self._frames[active, -1] = self.buffers.out[active]
 
     def again(self) -> None:
         """Take the present observations of all environments once more, after some were handed over."""
@@ -92,14 +84,13 @@ class Observer:
 
     def present(self) -> Observation:
         """Observations of all environments, (n, k) each, for as long as nothing changes."""
-        policy = self._frames.reshape(self._simulation.n, -1) if self._history else self.sight.out
+        policy = self._frames.reshape(self._simulation.n, -1) if self._history else self.buffers.out
         if not self.privileged:
             return policy
-        plant, (low, high) = self._simulation.plant, self._truth_bounds
-        privileged.reveal(
-            plant.world, plant.pads, plant.fingers, self._simulation.truth, low, high, self._truth
-        )
-        return {"policy": policy, "privileged": self._truth}
+        plant, (low, high) = self._simulation.plant, self._privileged_bounds
+        bodies = plant.world, plant.pads, plant.fingers
+        privileged.write_privileged(*bodies, self._simulation.ground_truth, low, high, self._ground_truth)
+        return {"policy": policy, "privileged": self._ground_truth}
 
     def read(self) -> Observation:
         """Observations of all environments, the receiver's own; the next ones go into another array."""
@@ -107,9 +98,9 @@ class Observer:
         if self._history:
             self._frames = self._frames.copy()
         else:
-            self.sight = Sight(*self._looks, np.empty_like(self.sight.out))
+            self.buffers = ObservationBuffers(*self._settings, np.empty_like(self.buffers.out))
         if self.privileged:
-            self._truth = np.empty_like(self._truth)
+            self._ground_truth = np.empty_like(self._ground_truth)
         return observations
 
     def get_state(self) -> np.ndarray:
@@ -117,10 +108,10 @@ class Observer:
         if self._history:
             return self._frames.copy()
         self.again()
-        return self.sight.out[:, np.newaxis].copy()
+        return self.buffers.out[:, np.newaxis].copy()
 
     def set_state(self, frames: np.ndarray) -> None:
-        """Go on from the last observations; without history the loop's state has all that is needed."""
+        """Go on from the last observations; without history the simulation's state has all that is needed."""
         if self._history:
             self._frames[:] = frames
 
@@ -134,7 +125,7 @@ class Observer:
             simulation.task_part,
             simulation.plant.world,
         )
-        observe_some(rows, *arrays, *self.sight)
+        observe_some(rows, *arrays, *self.buffers)
 
 
 def first(observations: Observation) -> Observation:
@@ -145,9 +136,9 @@ def first(observations: Observation) -> Observation:
 
 
 def _friction_part(simulation: Simulation, source: str) -> np.ndarray:
-    """What the friction part holds, (n, 6): an array of the loop's, or values that never change."""
+    """What the friction part holds, (n, 6): the simulation's own array, or constants."""
     if source in ("estimated", "true"):
-        return simulation.estimated if source == "estimated" else simulation.truth
+        return simulation.estimated if source == "estimated" else simulation.ground_truth
     nominal = simulation.config.nominal
     radius = simulation.settings.radius or nominal.r
     return np.tile([nominal.mu_s, nominal.mu_c, radius, 1.0, 1.0, 1.0], (simulation.n, 1))

@@ -9,8 +9,9 @@ import numpy as np
 
 from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
-from slipgym.envs.guard import Guard
-from slipgym.envs.observation import Sight
+from slipgym.envs.control_step import BatchState
+from slipgym.envs.nan_guard import Guard
+from slipgym.envs.observation import ObservationBuffers
 from slipgym.envs.planar_step import compiled_batch
 from slipgym.envs.simulation import Simulation
 from slipgym.envs.threads import Threads
@@ -18,7 +19,7 @@ from slipgym.tasks import Task
 
 
 class PlanarSimulation(Simulation):
-    """A loop around planar worlds that the pads' friction alone moves.
+    """n environments whose bodies move by friction and the planar equations of motion alone.
 
     Args:
         config: As of `Simulation`, like the others.
@@ -33,7 +34,6 @@ class PlanarSimulation(Simulation):
         rewards: Sum of the last step's reward terms, (n,); 0 without a step.
         terminated: Whether the object was dropped in it, (n,).
         truncated: Whether the episode's time had passed after it, and nothing was dropped, (n,).
-        tells_all: Whether a step fills in `told` of all environments, or only where an episode ends; True.
     """
 
     def __init__(
@@ -48,18 +48,31 @@ class PlanarSimulation(Simulation):
     ) -> None:
         super().__init__(config, settings, task, estimator, randomization, n)
         self._threads = Threads(n, threads)
-        self._closed, self.tells_all = False, True
+        self._closed = False
         self._blank()
         kind, plant = specification(self.estimator_choice["name"]), self.plant
         batch = self.estimator
         dtypes = batch.states.dtype, batch.parameters_array.dtype, plant.force_torque.dtype
         self._drive, self._start = compiled_batch(task, kind.update_batch, *dtypes, plant.cells is not None)
-        self._records = (
-            plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors,
-            batch.parameters_array, batch.states, batch.estimates,
-            self.episode, self.commands, self.wrenches, self.twists,
-            self.per_finger, self.estimated, self.task_part, self.truth,
-        )  # fmt: skip
+        self._state = BatchState(
+            worlds=plant.world,
+            pads=plant.pads,
+            cells=plant.cells,
+            fingers=plant.fingers,
+            force_torque=plant.force_torque,
+            slip_sensors=plant.slip_sensors,
+            parameters=batch.parameters_array,
+            estimator_states=batch.states,
+            estimates=batch.estimates,
+            episodes=self.episode,
+            commands=self.commands,
+            wrenches=self.wrenches,
+            twists=self.twists,
+            per_finger=self.per_finger,
+            estimated=self.estimated,
+            task_part=self.task_part,
+            ground_truth=self.ground_truth,
+        )
         self._begun = *self._fresh, *self._biases
 
     def step(
@@ -68,7 +81,7 @@ class PlanarSimulation(Simulation):
         components: np.ndarray,
         skip: int,
         active: np.ndarray,
-        sight: Sight,
+        buffers: ObservationBuffers,
         meanwhile: Callable[[], None] | None = None,
     ) -> None:
         """See `Simulation.step`; results are written into new arrays.
@@ -78,16 +91,16 @@ class PlanarSimulation(Simulation):
             components: See there.
             skip: See there.
             active: See there.
-            sight: See there.
+            buffers: See there.
             meanwhile: What may be done with the other environments at the same time.
         """
         self.check_open()
         self._blank()
         action = actions, components, active
-        results = *self.told, self.rewards, self.terminated, self.truncated
+        results = *self.infos, self.rewards, self.terminated, self.truncated
 
         def part(lo: int, hi: int) -> int:
-            return self._drive(self._records, sight, action, results, self.tells_all, skip, lo, hi)
+            return self._drive(self._state, buffers, action, results, skip, lo, hi)
 
         for bad in self._threads.run(part, meanwhile):
             if bad >= 0:
@@ -104,7 +117,7 @@ class PlanarSimulation(Simulation):
         self._closed = True
 
     def _begin(self, starts: np.ndarray) -> None:
-        self._start(starts, self._records, self._begun, self.told)
+        self._start(starts, self._state, self._begun, self.infos)
 
     def _blank(self) -> None:
         """New arrays for a step's results: the former ones belong to whoever has them."""
@@ -112,16 +125,9 @@ class PlanarSimulation(Simulation):
 
     def _explain(self, bad: int) -> None:
         """Raise FloatingPointError, naming what of an environment is not finite."""
-        plant, time = self.plant, self.episode["step"].item(bad) * self.step_time
-        arrays = (
-            plant.world,
-            plant.pads,
-            plant.fingers,
-            self.wrenches,
-            self.twists,
-            self.per_finger,
-            self.episode,
-        )
+        state, time = self._state, self.episode["step"].item(bad) * self.step_time
+        bodies = state.worlds, state.pads, state.fingers
+        arrays = *bodies, state.wrenches, state.twists, state.per_finger, state.episodes
         try:
             Guard().watch(time, bad, *arrays)
         except FloatingPointError as error:

@@ -5,20 +5,20 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 import estimator as estimators
+from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
-from slipgym.envs.choices import LATENCY, chosen_estimator
-from slipgym.envs.draw import Randomizer
-from slipgym.envs.equipment import Equipment
-from slipgym.envs.observation import FRICTION_COLUMNS, Sight
-from slipgym.envs.starter import Row, Starter
-from slipgym.envs.told import Told, tell
+from slipgym.envs.episode_sampler import LATENCY, EpisodeSampler, Row
+from slipgym.envs.hardware_randomization import HardwareRandomization
+from slipgym.envs.infos import InfoBuffer, write_infos
+from slipgym.envs.observation import FRICTION_COLUMNS, ObservationBuffers
+from slipgym.envs.randomizer import Randomizer
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
@@ -67,10 +67,10 @@ class Simulation(ABC):
         materials: Name of every episode's material.
         boxes: Its object.
         drawn: What the randomization drew for it, JSON-like; empty without one.
-        truth: (mu_s, mu_c, r) now and full support, (n, 6); columns as `estimated`.
+        ground_truth: True (mu_s, mu_c, r) now and full confidence, (n, 6); columns as `estimated`.
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
-        estimated: Estimates of both fingers merged, with their support, (n, 6).
-        told: What infos tell, the last step's reward terms among it.
+        estimated: Estimates of both fingers merged, with their confidence, (n, 6).
+        infos: Infos of all environments, the last step's reward terms among them.
         estimator_choice: Name and parameters of the estimators; `velocity_delay` only if it was given.
         step_time: Length of a sample [s].
     """
@@ -87,9 +87,9 @@ class Simulation(ABC):
         self.config, self.settings, self.task, self.n = config, settings, task, n
         self.plant = build(config, n)
         randomizer = Randomizer(config, settings, task.key, randomization or Randomization())
-        equipment = Equipment(config, self.plant, randomizer.pressures)
-        equipment.check(randomizer.most)
-        self.estimator_choice = chosen_estimator(estimator)
+        hardware = HardwareRandomization(config, self.plant, randomizer.pressures)
+        hardware.check(randomizer.most)
+        self.estimator_choice = _chosen_estimator(estimator)
         self.estimator = estimators.make_batch(n=2 * n, **self.estimator_choice)
         asked = self.estimator.parameters_array.dtype.names or ()
         tells_latency = LATENCY in asked and LATENCY not in self.estimator_choice
@@ -99,19 +99,19 @@ class Simulation(ABC):
         self.commands = np.zeros((n, len(COMMANDS)))
         self.wrenches, self.twists = np.zeros((n, 2, 4)), np.zeros((n, 2, 3))
         self.task_part = np.zeros((n, len(task.columns)))
-        self.truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
+        self.ground_truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
         self.per_finger = np.zeros((n, 2, 3))
-        self.told = Told.zeros(n, len(task.term_names))
+        self.infos = InfoBuffer.zeros(n, len(task.term_names))
         bodies = self.plant.world, self.plant.pads, self.plant.fingers
-        self._told_from = *bodies, self.episode, self.truth, self.estimated, self.per_finger
+        self._infos_from = *bodies, self.episode, self.ground_truth, self.estimated, self.per_finger
         self.step_time = 1.0 / config.physics.control_rate
-        told = self.estimator.parameters_array if tells_latency else None
-        self._starter = Starter(config, settings, task, randomizer, equipment, self.episode, told)
-        self.materials, self.boxes = self._starter.materials, self._starter.boxes
-        self.drawn = self._starter.drawn
+        latency_of = self.estimator.parameters_array if tells_latency else None
+        self._sampler = EpisodeSampler(config, settings, task, randomizer, hardware, self.episode, latency_of)
+        self.materials, self.boxes = self._sampler.materials, self._sampler.boxes
+        self.drawn = self._sampler.drawn
         plant, learned = self.plant, (self.estimator.states, self.estimator.estimates)
-        self._biases = equipment.biases
-        self._equipped = plant.pads, plant.force_torque, plant.slip_sensors, self.truth
+        self._biases = hardware.biases
+        self._equipped = plant.pads, plant.force_torque, plant.slip_sensors, self.ground_truth
         # start values are the same for all and do not depend on a latency
         self._fresh = self.estimator.states[:2].copy(), self.estimator.estimates[:2].copy()
         self._opened = plant.slip_sensors, *learned, self.episode, self.commands
@@ -119,7 +119,7 @@ class Simulation(ABC):
     @property
     def true_friction(self) -> np.ndarray:
         """(mu_s, mu_c, r) now, (n, 3)."""
-        return self.truth[:, :3]
+        return self.ground_truth[:, :3]
 
     @property
     def time(self) -> float:
@@ -152,11 +152,16 @@ class Simulation(ABC):
             RuntimeError: See there.
         """
         self.check_open()
-        self._begin(self._starter.draw(rows, material))
+        self._begin(self._sampler.sample(rows, material))
 
     @abstractmethod
     def step(
-        self, actions: np.ndarray, components: np.ndarray, skip: int, active: np.ndarray, sight: Sight
+        self,
+        actions: np.ndarray,
+        components: np.ndarray,
+        skip: int,
+        active: np.ndarray,
+        buffers: ObservationBuffers,
     ) -> None:
         """Some samples with the same action, and what is observed then; an episode that ends does not go on.
 
@@ -165,7 +170,7 @@ class Simulation(ABC):
             components: COMPONENT (m,), what they mean.
             skip: Samples.
             active: Which environments take part, (n,).
-            sight: Where to write what they observe.
+            buffers: Where to write their observations.
 
         Raises:
             FloatingPointError: Something is no longer a finite number; only a reset helps.
@@ -211,16 +216,16 @@ class Simulation(ABC):
         for name, array in self._arrays().items():
             array[:] = state.arrays[name]
         self.materials[:], self.boxes[:] = state.materials, state.boxes
-        self._tell()
+        self._write_infos()
 
-    def hand_over(self) -> Told:
-        """What is told, the receiver's own from now on; the next step fills in new arrays."""
-        told, self.told = self.told, self.told.empty_like()
-        return told
+    def hand_over_infos(self) -> InfoBuffer:
+        """The infos, which belong to the caller from now on; the next step fills in new arrays."""
+        infos, self.infos = self.infos, self.infos.empty_like()
+        return infos
 
-    def _tell(self) -> None:
-        """Fill in what is told but for the reward terms."""
-        tell(self.told.numbers, self.told.flags, *self._told_from)
+    def _write_infos(self) -> None:
+        """Fill in the infos but for the reward terms."""
+        write_infos(self.infos.numbers, self.infos.flags, *self._infos_from)
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that last from sample to sample."""
@@ -233,7 +238,27 @@ class Simulation(ABC):
             "wrenches": self.wrenches,
             "twists": self.twists,
             "task_part": self.task_part,
-            "truth": self.truth,
+            "ground_truth": self.ground_truth,
             "per_finger": self.per_finger,
             "estimated": self.estimated,
         }
+
+
+def _chosen_estimator(choice: str | Mapping[str, Any]) -> dict[str, Any]:
+    """An estimator's name and parameters; `velocity_delay` is left out unless it was given.
+
+    The simulation then sets it to the latency of the slip sensor.
+    """
+    if isinstance(choice, str):
+        choice = {"name": choice}
+    if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
+        raise ValueError(
+            f"estimator = {choice!r} must be a name or a mapping with a name; "
+            f"valid: {', '.join(estimators.names())}"
+        )
+    given = dict(choice)
+    name = given.pop("name")
+    parameters = asdict(specification(name).parameters.create(**given))
+    if LATENCY not in given:
+        parameters.pop(LATENCY, None)
+    return {"name": name, **parameters}

@@ -2,51 +2,46 @@
 
 from __future__ import annotations
 
-import inspect
-import os
 from collections.abc import Mapping
-from functools import partial
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Unpack
 
 import gymnasium as gym
 import numpy as np
 
-from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, refuse_unknown
-from slipgym.envs.engines import make_simulation
-from slipgym.envs.information import Information
+from slipgym.envs.arguments import ScalarArguments, complete, documented
 from slipgym.envs.observer import first
-from slipgym.envs.setup import Setup
+from slipgym.envs.setup import MakeSimulation, Setup
+from slipgym.envs.simulation import Simulation
 from slipgym.envs.state import EnvState, checked, restored_generator
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
 
 
+def _bullet(*arguments: Any) -> Simulation:
+    from slipgym.envs.bullet_simulation import BulletSimulation
+
+    return BulletSimulation(*arguments)
+
+
+def _planar(*arguments: Any) -> Simulation:
+    from slipgym.envs.planar_simulation import PlanarSimulation
+
+    return PlanarSimulation(*arguments)
+
+
+_SIMULATIONS: dict[str, MakeSimulation] = {"bullet": _bullet, "planar": _planar}
+"""Engine -> simulation; PyBullet is loaded on first use."""
+
+
+@documented(ScalarArguments)
 class SlipEnv(gym.Env[Any, np.ndarray]):
-    """A box between the two pads of a gripper; one step is `frame_skip` slip-velocity samples.
+    """A box between the two pads of a gripper; one step is `frame_skip` control steps.
 
     The tasks' environments are subclasses that name a `Task`, made by `slipgym.envs.environment`; their
     docstrings describe spaces and rewards.
 
     Args:
-        friction_source: What the observation's friction part holds: "estimated", "true",
-            "nominal" or "none".
-        estimator: Name of an estimator (`estimator.names()`), or a mapping with its `name`
-            and parameters.
-        contact: Friction model of the pads, "ellipsoid" or "distributed".
-        sensors: Sensor preset, "realistic" or "ideal".
-        material: Name of a material, or "random" for another in every episode.
-        action_mode: What an action means: "grip_force", "grip_force_pitch", "grip_force_wrist" or
-            "force_increment" (see docs/modes.md); None: the task's own.
-        observation_mode: "flat", "sensor" (without the friction part) or "dict" (groups "policy" and
-            "privileged").
-        history: How many earlier observations come along with each.
-        randomization: What is drawn per episode: "none", "train", "eval_ood", a file or a mapping
-            (see docs/randomization.md).
-        engine: What moves the bodies: "bullet", or "planar" for friction and the planar equations of motion
-            alone (see docs/batch.md).
-        frame_skip: Slip-velocity samples per step.
-        render_mode: None, "rgb_array", "depth_array" or "human".
-        config: File or mapping of overrides of the default configuration.
+        {arguments}
 
     Raises:
         ValueError: The value of an argument is unknown or not allowed.
@@ -60,44 +55,13 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         "render_fps": 120,
     }
 
-    def __init__(
-        self,
-        friction_source: str = "estimated",
-        estimator: str | Mapping[str, Any] = DEFAULT_ESTIMATOR,
-        contact: str = "ellipsoid",
-        sensors: str = "realistic",
-        material: str = "random",
-        action_mode: str | None = None,
-        observation_mode: str = "flat",
-        history: int = 0,
-        randomization: str | os.PathLike[str] | Mapping[str, Any] = "none",
-        engine: str = "bullet",
-        frame_skip: int = 1,
-        render_mode: str | None = None,
-        config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
-        **unknown: Any,
-    ) -> None:
-        refuse_unknown(unknown, _KEYWORDS)
-        if render_mode is not None:
-            one_of("render_mode", render_mode, self.metadata["render_modes"])
-        setup = Setup(
-            self.task,
-            partial(make_simulation, engine),
-            friction_source,
-            estimator,
-            contact,
-            sensors,
-            material,
-            action_mode,
-            observation_mode,
-            history,
-            randomization,
-            frame_skip,
-            config,
-        )
+    def __init__(self, **arguments: Unpack[ScalarArguments]) -> None:
+        values = complete(ScalarArguments, arguments)
+        engine, render_mode, frame_skip = values["engine"], values["render_mode"], values["frame_skip"]
+        setup = Setup(self.task, values, _SIMULATIONS[engine])
         self.config, self.settings = setup.config, setup.settings
         self.randomization, self.material = setup.randomization, setup.material
-        self.render_mode, self._frame_skip = render_mode, setup.frame_skip
+        self.render_mode, self._frame_skip = render_mode, frame_skip
         modes = [mode for mode in self.metadata["render_modes"] if mode != "human" or not obstacle()]
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_modes": modes, "render_fps": rate}
@@ -105,7 +69,6 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns
         self.action_space, self.observation_space = self._actions.space, self._observer.space
-        self._information = Information(self.simulation)
         self._arguments = {**setup.arguments, "engine": engine}
         self._renderer: Any = None
         if render_mode is not None:
@@ -136,12 +99,12 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         drawn = self.simulation.drawn[0]
         self._observer.begin(_FIRST)
         return first(self._observer.read()), {
-            **self._information.one(0),
+            **self._info(),
             **({"drawn": dict(drawn)} if drawn else {}),
         }
 
     def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Act for `frame_skip` slip-velocity samples.
+        """Act for `frame_skip` control steps.
 
         Args:
             action: Within [-1, 1], shape (m,); `action_columns` says what its components mean.
@@ -158,21 +121,21 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         simulation, episode, observer = self.simulation, self.simulation.episode, self._observer
         total = np.zeros(len(self.task.term_names))
         dropped = finished = self._ready = False
-        # a picture's strip shows every sample
+        # a picture's strip shows every control step
         at_once = self._frame_skip if self._renderer is None else 1
         for _ in range(0, self._frame_skip, at_once):
-            simulation.step(actions, self._actions.table, at_once, _ONE, observer.sight)
-            total += simulation.told.terms[0]
+            simulation.step(actions, self._actions.table, at_once, _ONE, observer.buffers)
+            total += simulation.infos.terms[0]
             dropped = episode["dropped"].item()
             finished = episode["step"].item() >= episode["steps"].item()
             if self._renderer is not None:
                 self._renderer.keep()
             if dropped or finished:
                 break
-        simulation.told.terms[0] = total
+        simulation.infos.terms[0] = total
         observer.next(_ONE)
         self._ready = True
-        reward, info = sum(total.tolist()), self._information.one(0)
+        reward, info = sum(total.tolist()), self._info()
         return first(observer.read()), reward, dropped, finished and not dropped, info
 
     def render(self) -> np.ndarray | None:
@@ -229,6 +192,9 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self._observer.set_state(state.frames)
         self._ready = state.simulation is not None
 
+    def _info(self) -> dict[str, Any]:
+        return self.simulation.infos.one(0, self.task.term_names)
+
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make a new environment with a world of its own, in the same state."""
         state = None if self.simulation.closed else self.get_state()
@@ -255,8 +221,3 @@ def _rebuild(kind: type[SlipEnv], arguments: Mapping[str, Any], state: EnvState 
 
 _ONE = np.ones(1, dtype=bool)
 _FIRST = np.zeros(1, dtype=np.int64)
-_KEYWORDS = [
-    name
-    for name, parameter in inspect.signature(SlipEnv.__init__).parameters.items()
-    if parameter.kind is parameter.POSITIONAL_OR_KEYWORD and name != "self"
-]

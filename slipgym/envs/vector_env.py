@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 import inspect
-import os
+import warnings
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, Unpack
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from slipgym.config import Config, Randomization, TaskConfig
-from slipgym.envs.choices import DEFAULT_ESTIMATOR, autoreset, one_of, whole
-from slipgym.envs.information import Information, final
-from slipgym.envs.pictures import Pictures
+from slipgym.envs.arguments import VectorArguments, complete, documented, one_of
+from slipgym.envs.infos import final
 from slipgym.envs.planar_simulation import PlanarSimulation
+from slipgym.envs.reset_options import RowOptions
 from slipgym.envs.seeds import Generators
 from slipgym.envs.setup import Setup
 from slipgym.envs.state import VectorState, checked
-from slipgym.envs.vector_options import RowOptions, refuse_scalar
+from slipgym.envs.vector_rendering import Pictures
 from slipgym.tasks import TASKS, Task
 from slipgym.tasks.options import EpisodeOptions
 
 
+@documented(
+    VectorArguments, inspect.Parameter("task", inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=str)
+)
 class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
     """n environments of a task without PyBullet, stepped by one compiled call.
 
@@ -34,24 +36,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
 
     Args:
         task: Name of the task, "LinearSlip" for example.
-        num_envs: Environments.
-        friction_source: As of the scalar environment, like all up to `frame_skip` and `config`.
-        estimator: See there.
-        contact: See there.
-        sensors: See there.
-        material: See there.
-        action_mode: See there.
-        observation_mode: See there.
-        history: See there.
-        randomization: See there.
-        frame_skip: See there.
-        autoreset_mode: What happens when an episode ends: "NextStep", "SameStep" or "Disabled" (then
-            `reset(options={"reset_mask": ...})` is up to the caller).
-        threads: Threads that share the environments; None: as many as processors, if there is work for them.
-        render_mode: None, "rgb_array" or "depth_array".
-        render_rows: Environments that `render` shows.
-        infos: Of which environments a step tells: "all", or "ends": those whose episode ends or begins in it.
-        config: See the scalar environment.
+        {arguments}
 
     Raises:
         ValueError: The value of an argument is unknown or not allowed.
@@ -60,62 +45,22 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "depth_array"], "render_fps": 120}  # noqa: RUF012
 
-    def __init__(
-        self,
-        task: str,
-        num_envs: int = 1,
-        friction_source: str = "estimated",
-        estimator: str | Mapping[str, Any] = DEFAULT_ESTIMATOR,
-        contact: str = "ellipsoid",
-        sensors: str = "realistic",
-        material: str = "random",
-        action_mode: str | None = None,
-        observation_mode: str = "flat",
-        history: int = 0,
-        randomization: str | os.PathLike[str] | Mapping[str, Any] = "none",
-        frame_skip: int = 1,
-        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
-        threads: int | None = None,
-        render_mode: str | None = None,
-        render_rows: Sequence[int] = (0,),
-        infos: str = "all",
-        config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
-        **others: Any,
-    ) -> None:
-        refuse_scalar(others, inspect.signature(SlipVectorEnv.__init__).parameters)
+    def __init__(self, task: str, **arguments: Unpack[VectorArguments]) -> None:
+        values = complete(VectorArguments, _without_scalar(arguments))
         self.task: Task = TASKS[one_of("task", task, TASKS)]
-        self.num_envs = whole("num_envs", num_envs, 1)
-
-        def make_simulation(
-            config: Config, settings: TaskConfig, task: Task, estimator: Any, randomization: Randomization
-        ) -> PlanarSimulation:
-            return PlanarSimulation(config, settings, task, estimator, randomization, num_envs, threads)
-
-        setup = Setup(
-            self.task,
-            make_simulation,
-            friction_source,
-            estimator,
-            contact,
-            sensors,
-            material,
-            action_mode,
-            observation_mode,
-            history,
-            randomization,
-            frame_skip,
-            config,
-        )
+        num_envs, threads, frame_skip = values["num_envs"], values["threads"], values["frame_skip"]
+        self.num_envs = num_envs
+        setup = Setup(self.task, values, partial(PlanarSimulation, n=num_envs, threads=threads))
         assert isinstance(setup.simulation, PlanarSimulation)
         self.config, self.settings = setup.config, setup.settings
-        self._frame_skip, self._material = setup.frame_skip, setup.material
+        self._frame_skip, self._material = frame_skip, setup.material
         self.simulation, self._actions, self._observer = setup.simulation, setup.actions, setup.observer
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns
         self.single_action_space, self.single_observation_space = self._actions.space, self._observer.space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self.autoreset_mode = autoreset(autoreset_mode)
+        self.autoreset_mode = AutoresetMode(values["autoreset_mode"])
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_fps": rate, "autoreset_mode": self.autoreset_mode}
         self._made_of = {
@@ -124,17 +69,10 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             "num_envs": num_envs,
             "autoreset_mode": self.autoreset_mode.value,
         }
-        self._shown = {
-            "threads": threads,
-            "infos": infos,
-            "render_mode": render_mode,
-            "render_rows": render_rows,
-        }
-        self._information = Information(self.simulation)
-        self.simulation.tells_all = one_of("infos", infos, ("all", "ends")) == "all"
+        self._shown = {name: values[name] for name in ("threads", "render_mode", "render_rows")}
         self._generators = Generators(num_envs)
-        self.render_mode = render_mode
-        self._pictures = Pictures(self.simulation, render_mode, render_rows)
+        self.render_mode = values["render_mode"]
+        self._pictures = Pictures(self.simulation, self.render_mode, values["render_rows"])
         self._options = self.task.options.parse(None)
         self._ready = np.zeros(num_envs, dtype=bool)
         self._over = np.zeros(num_envs, dtype=bool)
@@ -161,11 +99,11 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._ready[rows] = self._over[rows] = False
         self._begin(rows, asked)
         self._observer.again()
-        infos = self._information.some(rows)
+        infos = self.simulation.infos.some(rows, self.task.term_names)
         return self._observer.read(), self._add_drawn(infos, rows)
 
     def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Act for `frame_skip` slip-velocity samples in every environment.
+        """Act for `frame_skip` control steps in every environment.
 
         Args:
             actions: Within [-1, 1], (n, m).
@@ -189,9 +127,9 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             raise RuntimeError(f"call reset() before step(): environments {waiting[:8]} have no episode")
         simulation, rows = self.simulation, np.flatnonzero(begins)
         self._ready, self._over = np.zeros((2, self.num_envs), dtype=bool)
-        table, sight, meanwhile = self._actions.table, self._observer.sight, partial(self._begin, rows)
+        table, buffers, meanwhile = self._actions.table, self._observer.buffers, partial(self._begin, rows)
         try:
-            simulation.step(chosen, table, self._frame_skip, active, sight, meanwhile)
+            simulation.step(chosen, table, self._frame_skip, active, buffers, meanwhile)
         except BaseException:
             self._ready.fill(False)  # those that began, too
             raise
@@ -203,14 +141,12 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         ended: dict[str, Any] = {}
         if self.autoreset_mode is AutoresetMode.SAME_STEP:
             rows = np.flatnonzero(over)
-            ended = final(self._observer.present(), self._information.some(rows), rows, self.num_envs)
+            last = simulation.infos.some(rows, self.task.term_names)
+            ended = final(self._observer.present(), last, rows, self.num_envs)
             self._begin(rows)
         else:
             self._over = over
-        if simulation.tells_all:
-            infos = self._information.every()
-        else:
-            infos = self._information.some(np.flatnonzero(over | begins))
+        infos = simulation.hand_over_infos().every(self.task.term_names)
         infos = self._add_drawn({**infos, **ended}, rows)
         return self._observer.read(), rewards, terminated, truncated, infos
 
@@ -285,6 +221,26 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         return infos
 
 
+def _without_scalar(arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments without `engine`, which is the planar one here, and without the former argument `infos`.
+
+    Raises:
+        ValueError: The engine is another one, or the value of `infos` was never allowed.
+    """
+    given = dict(arguments)
+    engine = given.pop("engine", "planar")
+    if engine != "planar":
+        raise ValueError(
+            f"engine = {engine!r}: the batch runs on the planar engine alone; for PyBullet use "
+            'gym.make_vec(..., vectorization_mode="async")'
+        )
+    if "infos" in given:
+        one_of("infos", given.pop("infos"), ("all", "ends"))
+        message = "infos is gone: infos of all environments are always returned"
+        warnings.warn(message, DeprecationWarning, stacklevel=3)
+    return given
+
+
 def _rebuild(arguments: Mapping[str, Any], state: VectorState | None, spec: Any) -> SlipVectorEnv:
     env = SlipVectorEnv(**arguments)
     env.spec = spec
@@ -301,3 +257,7 @@ def __getattr__(name: str) -> partial[SlipVectorEnv]:
     if task not in TASKS or task == name:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return partial(SlipVectorEnv, task)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *(f"{task}VectorEnv" for task in TASKS)})

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from slipgym.envs.simulation import Simulation
+from slipgym.rendering.source import Source
 from slipgym.tasks.motion import Motion
 
 COLUMNS = ("grip_1", "grip_2", "path", "reference", "mu_c", "mu_s")
@@ -21,7 +21,7 @@ class History:
         motion: What path and reference are.
     """
 
-    def __init__(self, simulation: Simulation, row: int, motion: Motion) -> None:
+    def __init__(self, simulation: Source, row: int, motion: Motion) -> None:
         self._simulation, self._row, self._motion = simulation, row, motion
         self.rows = np.full((int(simulation.episode["steps"][row]) + 1, len(COLUMNS)), math.nan)
         self.step_time = float(simulation.episode["step_time"][row])

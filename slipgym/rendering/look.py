@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from slipgym.envs.simulation import Simulation
+from slipgym.rendering.source import Source
 from slipgym.rendering.stage import View
 
 
-def look(simulation: Simulation, row: int) -> View:
+def look(simulation: Source, row: int) -> View:
     """Where everything is in a world.
 
     Args:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipgym.envs.simulation import Simulation
 from slipgym.rendering import camera, strip
 from slipgym.rendering.caption import caption
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.history import History
 from slipgym.rendering.look import look
 from slipgym.rendering.scene import draw_scene, measure_depth
+from slipgym.rendering.source import Source
 from slipgym.rendering.stage import View, footprint
 from slipgym.rendering.window import Window
 
@@ -30,7 +30,7 @@ class Renderer:
         row: Which of its environments.
     """
 
-    def __init__(self, mode: str, simulation: Simulation, row: int = 0) -> None:
+    def __init__(self, mode: str, simulation: Source, row: int = 0) -> None:
         self._mode, self._simulation, self._row = mode, simulation, row
         self._motion = simulation.task.motion
         self._window = Window(f"slipgym {simulation.task.name}", (WIDTH, HEIGHT)) if mode == "human" else None
@@ -72,7 +72,7 @@ class Renderer:
         about = f"{simulation.materials[row]}, {1e3 * world['mass']:.0f} g"
         slip = world["slip"]
         caption(view, simulation.task.name, about, self._history.time, self._state(), contact, slip)
-        true = float(simulation.truth[row, 0]), float(simulation.truth[row, 1])
+        true = float(simulation.ground_truth[row, 0]), float(simulation.ground_truth[row, 1])
         strip.draw_strip(beside, self._history, self._motion, self._goal, true)
         return picture
 

@@ -35,7 +35,7 @@ def inlined(function: Any) -> Any:
     return (
         function
         if isinstance(function, Dispatcher)
-        else njit(error_model="numpy", forceinline=True)(function)
+        else njit(error_model="numpy", forceinline=True, fastmath=False)(function)
     )
 
 

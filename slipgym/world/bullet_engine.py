@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any, NoReturn
 
 import numpy as np
-import pybullet as p
 
 from slipgym._numba.compiled import compiled
 from slipgym.config import Config
@@ -18,6 +17,7 @@ from slipgym.world.actuator import queue_command
 from slipgym.world.momentum import normal_forces
 from slipgym.world.placing import place
 from slipgym.world.plant import Plant
+from slipgym.world.quiet_pybullet import p
 from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
 from slipgym.world.snapshot import EngineState, load_engine, save_engine
 from slipgym.world.substep import update_slip

@@ -9,10 +9,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import pybullet as p
-
 from slipgym.config import Config
 from slipgym.config.hardware import box_inertia
+from slipgym.world.quiet_pybullet import p
 
 WRIST_JOINTS = (0, 1, 2)
 FINGER_LINKS = (3, 4)

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import pybullet as p
-
+from slipgym.world.quiet_pybullet import p
 from slipgym.world.scene import Box
 
 _NAME = "world.bullet"

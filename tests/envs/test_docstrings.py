@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slipgym.envs.page import pages
+from slipgym.envs.docstring import pages
 from slipgym.registration import ENVIRONMENTS
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "environments"

@@ -11,7 +11,7 @@ from gymnasium.vector import AsyncVectorEnv, SyncVectorEnv
 from gymnasium.wrappers import FrameStackObservation, RecordEpisodeStatistics
 
 from slipgym.envs.actions import ACTION_MODES
-from slipgym.envs.observation import OBSERVATION_MODES
+from slipgym.envs.arguments import OBSERVATION_MODES
 
 PAIRS = tuple(product(ACTION_MODES, OBSERVATION_MODES))
 FULL = {"action_mode": "grip_force_wrist", "observation_mode": "dict", "history": 2}

@@ -8,7 +8,8 @@ import pytest
 from slipgym.config import load
 from slipgym.envs import privileged
 from slipgym.envs.actions import ACTION_MODES, components
-from slipgym.envs.observation import OBSERVATION_MODES, WRIST_COLUMNS
+from slipgym.envs.arguments import OBSERVATION_MODES
+from slipgym.envs.observation import WRIST
 
 PAGE = (Path(__file__).parents[2] / "docs" / "modes.md").read_text(encoding="utf-8")
 CONFIG = load()
@@ -29,7 +30,7 @@ def test_every_action_mode_and_component_is_listed(mode):
 def test_every_observation_mode_and_column_is_listed():
     for mode in OBSERVATION_MODES:
         assert f'| `"{mode}"` |' in PAGE
-    for column in WRIST_COLUMNS:
+    for column in (reading.column(CONFIG) for reading in WRIST):
         assert row(column) in PAGE
     table = "\n".join(f"{row(column)}" for column in privileged.columns(CONFIG))
     assert f"| Column | Min | Max | Unit | Meaning |\n|---|---|---|---|---|\n{table}\n\n" in PAGE

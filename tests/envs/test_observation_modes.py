@@ -5,7 +5,7 @@ import copy
 import numpy as np
 import pytest
 
-from slipgym.envs.observation import WRIST_COLUMNS
+from slipgym.envs.observation import WRIST as WRIST_READINGS
 
 WRIST = {"action_mode": "grip_force_wrist"}
 ACTIONS = np.random.default_rng(0).uniform(-1.0, 0.2, (40, 4))
@@ -80,7 +80,7 @@ def test_the_wrist_part_holds_what_the_task_does_not(make, env_id):
         ("grip_force", set()),
         ("force_increment", set()),
         ("grip_force_pitch", {"wrist_pitch", "wrist_pitch_rate"}),
-        ("grip_force_wrist", {c.name for c in WRIST_COLUMNS}),
+        ("grip_force_wrist", {c.name for c in WRIST_READINGS}),
     ):
         names = [c.name for c in make(env_id, action_mode=mode).columns]
         assert set(names) == plain | expected

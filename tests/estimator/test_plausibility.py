@@ -6,7 +6,7 @@ import pytest
 
 from estimator import DEFAULT, records
 from estimator.records.plausibility import warnings
-from slipgym.envs.choices import DEFAULT_ESTIMATOR
+from slipgym.envs.arguments import DEFAULT_ESTIMATOR
 
 GOOD = {"mu_s": 0.5, "mu_c": 0.4, "r": 0.01}
 

@@ -13,7 +13,7 @@ import pytest
 import policies
 from estimator import records
 from policies.evaluation.sensor_record import record_sensors
-from slipgym.envs.choices import DEFAULT_ESTIMATOR
+from slipgym.envs.arguments import DEFAULT_ESTIMATOR
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = ROOT / "examples" / "linear_slip_wood.csv.gz"

@@ -76,9 +76,8 @@ def record_linear(
         config: Overrides of the environment's configuration.
     """
     policy = policies.make("linear_slip")
-    env = LinearSlipEnv(
-        friction_source=friction_source, contact=contact, material=scenario["material"], config=config
-    )
+    chosen: dict[str, Any] = {"friction_source": friction_source, "contact": contact, "config": config}
+    env = LinearSlipEnv(**chosen, material=scenario["material"])
     try:
         options = {name: scenario[name] for name in ("distance", "duration")}
         observation, _ = env.reset(seed=scenario["seed"], options=options)

@@ -7,7 +7,7 @@ import pytest
 import policies
 from estimator import records
 from policies.evaluation.sensor_record import TWIST, record_sensors
-from slipgym.envs.choices import DEFAULT_ESTIMATOR
+from slipgym.envs.arguments import DEFAULT_ESTIMATOR
 
 
 def test_every_sample_within_its_steps_is_kept(policy_folder, tmp_path):

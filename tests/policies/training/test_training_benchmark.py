@@ -23,11 +23,6 @@ def test_shares_of_a_step():
     assert set(figures) >= {"VecMonitor, n = 4"}
 
 
-def test_infos_beside_those_of_ends():
-    middle, lower, upper = (figure.value for figure in benchmark.infos(LINEAR, 4, pairs=3, steps=5))
-    assert 0.0 < lower <= middle <= upper
-
-
 def test_ppo_in_both():
     figures = {figure.name: figure.value for figure in benchmark.learning(LINEAR, 2, rollout=512)}
     assert 0.0 < figures["PPO in a batch of 256, share of the environments"] < 1.0

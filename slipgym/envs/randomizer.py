@@ -1,7 +1,8 @@
-"""What an episode draws beyond its task's own draws."""
+"""Draws the randomized values of an episode and schedules its disturbances."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from slipgym.config import Config, Material, Randomization, Ranges, TaskConfig
-from slipgym.config.disturbances import AnyDisturbance
+from slipgym.config.disturbances import AnyDisturbance, FrictionJump, MassChange, Patch, Push, Shake
 from slipgym.config.errors import unknown
-from slipgym.envs.equipment import with_pressure
-from slipgym.envs.happenings import SHARES
+from slipgym.envs.hardware_randomization import with_pressure
 from slipgym.tasks.options import EpisodeOptions
 
+UNIFORMS = 8
+"""Uniform numbers of a disturbance: as many as the kind with the most needs."""
 FRICTION = ("mu_c", "mu_s", "friction_ratio")
 """Fields that have no value of their own in the configuration."""
 
@@ -68,8 +70,8 @@ class Draw:
     """Name of the material; None: as the task draws it."""
     config: Config
     """Configuration with the pressure of the episode."""
-    happenings: tuple[tuple[AnyDisturbance, np.ndarray], ...]
-    """Disturbances that the episode has, each with shares in [0, 1) of its distributions."""
+    disturbances: tuple[tuple[AnyDisturbance, np.ndarray], ...]
+    """Disturbances of the episode, each with the uniform numbers in [0, 1) that its distributions take."""
 
     def friction_of(self, material: Material) -> tuple[float, float]:
         """Static and Coulomb friction where the material would have those given."""
@@ -81,7 +83,7 @@ class Draw:
     def report(self, options: EpisodeOptions) -> dict[str, Any]:
         """What was drawn and not fixed by options, JSON-like; friction and mass come from the episode."""
         kept = [name for name in self.drawn if getattr(options, _FIXED_BY.get(name, ""), None) is None]
-        happened = ", ".join(disturbance.kind for disturbance, _ in self.happenings)
+        happened = ", ".join(disturbance.kind for disturbance, _ in self.disturbances)
         return {
             **{name: self.values[name] for name in kept},
             "pressure": self.config.contact.pressure,
@@ -145,22 +147,24 @@ class Randomizer:
         """
         values, friction, names, drawn = dict(self._nominal), {}, {}, []
         for name, field in self._drawn:
-            share, gate = rng.random(2).tolist()
+            u, gate = rng.random(2).tolist()
             if isinstance(field, tuple):
-                names[name] = field[int(share * len(field))] if gate < scale else None
+                names[name] = field[int(u * len(field))] if gate < scale else None
             elif name in FRICTION:
-                friction[name] = field.at(share)
+                friction[name] = field.at(u)
             else:
-                values[name] = blend(values[name], field.at(share), scale)
+                values[name] = blend(values[name], field.at(u), scale)
                 drawn.append(name)
         values["slip_latency"] = round(values["slip_latency"])
-        happenings = []
+        disturbances = []
         for disturbance in self._ranges.disturbances:
-            gate, *shares = rng.random(1 + SHARES).tolist()
+            gate, *u = rng.random(1 + UNIFORMS).tolist()
             if gate < scale * disturbance.probability:
-                happenings.append((disturbance, np.array(shares)))
+                disturbances.append((disturbance, np.array(u)))
         config = self._configs[names.get("pressure") or self._pressure]
-        return Draw(scale, values, tuple(drawn), friction, names.get("materials"), config, tuple(happenings))
+        return Draw(
+            scale, values, tuple(drawn), friction, names.get("materials"), config, tuple(disturbances)
+        )
 
 
 def _check_radius(config: Config, r: float) -> None:
@@ -170,3 +174,61 @@ def _check_radius(config: Config, r: float) -> None:
             f"randomization: the largest radius r = {r:g} m must not exceed gripper.pad_radius = {pad:g} m"
         )
     config.check_patch("randomization: the largest radius r", r)
+
+
+def schedule_disturbance(disturbance: AnyDisturbance, u: np.ndarray, episode: np.void) -> None:
+    """Write a disturbance into an episode.
+
+    Args:
+        disturbance: Its distributions.
+        u: Uniform numbers in [0, 1), (UNIFORMS,).
+        episode: EPISODE record; step_time, mass and friction are set already.
+    """
+    _SCHEDULE[disturbance.kind](disturbance, u.tolist(), episode)
+
+
+def _step(episode: np.void, time: float) -> int:
+    return round(time / float(episode["step_time"]))
+
+
+def _push(push: Push, u: list[float], episode: np.void) -> None:
+    begin = _step(episode, push.time.at(u[0]))
+    steps = max(1, _step(episode, push.duration.at(u[1])))
+    force = push.impulse.at(u[2]) / (steps * float(episode["step_time"]))
+    heading, lever = push.direction.at(u[3]), push.lever.at(u[4])
+    k = int(episode["pushes"])
+    episode["push_start"][k], episode["push_end"][k] = begin, begin + steps
+    episode["push_wrench"][k] = force * math.cos(heading), force * math.sin(heading), force * lever
+    episode["pushes"] = k + 1
+
+
+def _shake(shake: Shake, u: list[float], episode: np.void) -> None:
+    along, pitch = shake.amplitude.at(u[0]), shake.pitch.at(u[1])
+    omega = [math.tau * shake.frequency.at(each) for each in u[2:5]]
+    phase = [math.tau * each for each in u[5:8]]
+    episode["shakes"][1] = np.column_stack(([along, along, pitch], omega, phase))
+
+
+def _mass_change(change: MassChange, u: list[float], episode: np.void) -> None:
+    episode["mass_step"] = _step(episode, change.time.at(u[0]))
+    episode["mass_factor"] = change.factor.at(u[1])
+
+
+def _friction_jump(jump: FrictionJump, u: list[float], episode: np.void) -> None:
+    episode["jump_step"] = _step(episode, jump.time.at(u[0]))
+    episode["jump_factor"] = jump.factor.at(u[1])
+
+
+def _patch(patch: Patch, u: list[float], episode: np.void) -> None:
+    start = patch.start.at(u[0])
+    episode["patch"] = start, start + patch.length.at(u[1])
+    episode["patch_factor"] = patch.factor.at(u[2])
+
+
+_SCHEDULE: dict[str, Any] = {
+    "push": _push,
+    "shake": _shake,
+    "mass_change": _mass_change,
+    "friction_jump": _friction_jump,
+    "patch": _patch,
+}

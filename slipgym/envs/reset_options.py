@@ -1,13 +1,12 @@
-"""What `reset(options=...)` of a batch can fix, for all environments and for each."""
+"""Options of the reset of a vector environment: for all environments and for each."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from slipgym.envs.choices import refuse_unknown
 from slipgym.tasks.options import EpisodeOptions
 
 
@@ -62,15 +61,3 @@ def _checked_mask(mask: Any, n: int) -> np.ndarray:
     if not mask.any():
         raise ValueError("options['reset_mask'] must hold at least one True")
     return mask.copy()
-
-
-def refuse_scalar(others: Mapping[str, Any], known: Iterable[str]) -> None:
-    """Raise for arguments that only the scalar environment has, and for unknown ones."""
-    if others.get("engine", "planar") != "planar":
-        raise ValueError(
-            f"engine = {others['engine']!r}: the batch runs on the planar engine alone; for PyBullet use "
-            'gym.make_vec(..., vectorization_mode="async")'
-        )
-    refuse_unknown(
-        set(others) - {"engine"}, [name for name in known if name not in ("self", "task", "others")]
-    )

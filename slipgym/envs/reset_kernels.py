@@ -1,4 +1,4 @@
-"""The start of an episode: what is drawn of it in Python, and the rest for many of them at once."""
+"""Compiled parts of a reset: a record of what was sampled in Python, and kernels that apply many of them."""
 
 from __future__ import annotations
 
@@ -76,23 +76,23 @@ def grip(starts, episodes, worlds, pads, cells, fingers):
 
 
 @compiled
-def equip(starts, spread, noise, pads, force_torque, slip_sensors, truth):
+def equip(starts, spread, noise, pads, force_torque, slip_sensors, ground_truth):
     """Give pads their friction and start the sensors.
 
     Args:
         starts: START (m,).
-        spread: See `slipgym.envs.equipment.Equipment.biases`, like the next one.
+        spread: See `slipgym.envs.hardware_randomization.HardwareRandomization.biases`, like the next one.
         noise: See there.
         pads: PAD (n, 2).
         force_torque: FORCE_TORQUE (n, 2).
         slip_sensors: SLIP_SENSOR (n, 2).
-        truth: Output (n, 6), of which the first three are mu_s, mu_c, r.
+        ground_truth: Output (n, 6), of which the first three are mu_s, mu_c, r.
     """
     for k in range(starts.shape[0]):
         start = starts[k]
         i = start.row
         for a in range(3):
-            truth[i, a] = start.friction[a]
+            ground_truth[i, a] = start.friction[a]
         for f in range(2):
             pads[i, f].mu_s, pads[i, f].mu_c, pads[i, f].r = start.friction
             for a in range(6):

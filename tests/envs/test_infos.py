@@ -1,17 +1,17 @@
-"""What infos tell is what the records hold, after a reset, a step and a restore."""
+"""Infos hold the values of the records after a reset, a step and a restore."""
 
 import gymnasium as gym
 import numpy as np
 import pytest
 
-from slipgym.envs.told import FLAGS, SHAPES
+from slipgym.envs.infos import FLAGS, NUMBERS
 
 
 def records(simulation):
-    """Of all environments, from the arrays it is told from."""
+    """Infos of all environments, from the arrays of the simulation."""
     plant, episode = simulation.plant, simulation.episode
     return {
-        "true": simulation.truth[:, :3],
+        "true": simulation.ground_truth[:, :3],
         "estimated": simulation.estimated[:, :3],
         "estimated_per_finger": simulation.per_finger,
         "slip": plant.world["slip"],
@@ -24,16 +24,16 @@ def records(simulation):
         "dropped": episode["dropped"] != 0,
         **{
             name: episode["terms"][:, k] * (episode["step"] > 0)  # of no step after a reset
-            for k, name in enumerate(simulation.task.terms)
+            for k, name in enumerate(simulation.task.term_names)
         },
     }
 
 
 def check(simulation, infos):
-    """Compare all that is told with the arrays it is told from; of one environment or of all."""
+    """Compare the infos of one environment or of all with the arrays of the simulation."""
     terms = infos["reward_terms"]
     wanted = records(simulation)
-    assert {*SHAPES, *FLAGS, *simulation.task.terms} == set(wanted)
+    assert {*(info.name for info in (*NUMBERS, *FLAGS)), *simulation.task.term_names} == set(wanted)
     for name, values in wanted.items():
         found = np.asarray(infos[name] if name in infos else terms[name])
         np.testing.assert_array_equal(found, values.reshape(found.shape), err_msg=name)
@@ -53,10 +53,10 @@ def test_of_one_environment(make, env_id, engine):
     np.testing.assert_array_equal(info["grip_force"], kept)
     assert not np.array_equal(later["grip_force"], kept)
     other.set_state(env.get_state())
-    told = other._information.one(0)
+    restored = other._info()
     for name, values in later.items():
         if name != "reward_terms":  # of a step that another environment made
-            np.testing.assert_array_equal(told[name], values, err_msg=name)
+            np.testing.assert_array_equal(restored[name], values, err_msg=name)
 
 
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])

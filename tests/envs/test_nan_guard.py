@@ -6,7 +6,9 @@ import re
 import numpy as np
 import pytest
 
-from slipgym.envs.guard import KEPT, QUANTITIES
+from slipgym.envs.nan_guard import KEPT, QUANTITIES
+
+NAMES = [quantity.name for quantity in QUANTITIES]
 
 
 def stopped(env) -> str:
@@ -29,9 +31,9 @@ def test_names_the_first_quantity_and_writes_the_last_samples(make):
     path = re.search(r"in (\S+\.csv);", message)[1]
     with open(path) as file:
         rows = list(csv.DictReader(file))
-    assert list(rows[0]) == ["time", *QUANTITIES]
+    assert list(rows[0]) == ["time", *NAMES]
     assert len(rows) == 10
-    assert all(np.isfinite(float(rows[k][name])) for k in range(9) for name in QUANTITIES)
+    assert all(np.isfinite(float(rows[k][name])) for k in range(9) for name in NAMES)
     lag, commanded = np.exp(-(1 / 120 - 0.004) / 0.012), 12.8
     assert float(rows[0]["grip_force_1"]) == pytest.approx(commanded + (15.0 - commanded) * lag, abs=0.01)
     assert rows[9]["disturbance_x"] == "nan"

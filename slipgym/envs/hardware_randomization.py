@@ -1,4 +1,4 @@
-"""Pads, force loop and sensors as an episode draws them."""
+"""Applies what an episode draws for pads, force loop and sensors."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ def with_pressure(config: Config, pressure: str) -> Config:
     return config.model_copy(update={"contact": config.contact.model_copy(update={"pressure": pressure})})
 
 
-class Equipment:
-    """Sets a plant's parameters anew for every episode.
+class HardwareRandomization:
+    """Sets the parameters of gripper and sensors for every episode.
 
     Args:
         config: Configuration of the plant.
@@ -42,7 +42,7 @@ class Equipment:
             patches = {pressure: patch_of(with_pressure(config, pressure)) for pressure in pressures}
             room = max(cells.shape[1] for cells in patches.values())
             for pressure, cells in patches.items():
-                self._cells[pressure] = np.zeros((CELL_FIELDS, room))  # a cell without share does nothing
+                self._cells[pressure] = np.zeros((CELL_FIELDS, room))  # a cell of weight 0 does nothing
                 self._cells[pressure][:, : cells.shape[1]] = cells
             plant.cells = np.tile(self._cells[config.contact.pressure], (*plant.pads.shape, 1, 1))
 
@@ -51,7 +51,7 @@ class Equipment:
         dead_ticks(self._config, most["dead_time"], "randomization.dead_time")
         check_slip_latency(self._config, round(most["slip_latency"]), "randomization.slip_latency")
 
-    def fit(self, i: int, values: Mapping[str, float], pressure: str) -> None:
+    def apply(self, i: int, values: Mapping[str, float], pressure: str) -> None:
         """Set the parameters of a world's episode.
 
         Args:

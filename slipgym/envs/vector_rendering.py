@@ -1,4 +1,4 @@
-"""Pictures of some environments of a batch."""
+"""Pictures of some environments of a vector environment."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.envs.choices import one_of
 from slipgym.envs.simulation import Simulation
+
+SHOWN = 16
+"""Environments that are all shown unless rows are chosen."""
 
 
 class Pictures:
@@ -17,20 +19,21 @@ class Pictures:
     Args:
         simulation: The environments' simulation.
         mode: None, "rgb_array" or "depth_array".
-        rows: Which environments.
+        rows: Which environments; None: all, or the first alone of more than `SHOWN`.
 
     Raises:
-        ValueError: The mode is unknown, or the rows are no list of environments.
+        ValueError: The rows are no list of environments.
     """
 
-    def __init__(self, simulation: Simulation, mode: str | None, rows: Sequence[int]) -> None:
+    def __init__(self, simulation: Simulation, mode: str | None, rows: Sequence[int] | None) -> None:
         self._renderers: dict[int, Any] = {}
         self._mode, self._begun = mode, set[int]()
         if mode is None:
             return
-        one_of("render_mode", mode, ("rgb_array", "depth_array"))
         from slipgym.rendering import Renderer
 
+        if rows is None:
+            rows = range(simulation.n if simulation.n <= SHOWN else 1)
         if not isinstance(rows, Sequence) or not rows:
             raise ValueError(f"render_rows = {rows!r} must be a list of at least one row")
         for row in rows:

@@ -1,0 +1,256 @@
+"""The keyword arguments of the environments, each declared once with its type, default, choices and text.
+
+Signatures, docstrings, pages, checks and the arguments that a state records are derived from the fields of
+`ScalarArguments` and `VectorArguments`.
+"""
+
+from __future__ import annotations
+
+import inspect
+import os
+import textwrap
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from types import NoneType
+from typing import (
+    Annotated,
+    Any,
+    Literal,
+    TypeAlias,
+    TypedDict,
+    TypeVar,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+from gymnasium.vector import AutoresetMode
+
+import estimator as estimators
+from slipgym.config.errors import unknown
+
+FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
+Contact: TypeAlias = Literal["ellipsoid", "distributed"]
+ActionMode: TypeAlias = Literal["grip_force", "grip_force_pitch", "grip_force_wrist", "force_increment"]
+ObservationMode: TypeAlias = Literal["flat", "sensor", "dict"]
+Engine: TypeAlias = Literal["bullet", "planar"]
+
+FRICTION_SOURCES: tuple[str, ...] = get_args(FrictionSource)
+OBSERVATION_MODES: tuple[str, ...] = get_args(ObservationMode)
+ENGINES: tuple[str, ...] = get_args(Engine)
+
+DEFAULT_ESTIMATOR = estimators.DEFAULT
+
+
+@dataclass(frozen=True)
+class Argument:
+    """What stands beside the type of a keyword argument."""
+
+    default: Any
+    doc: str
+    """Its meaning, in Markdown."""
+    least: int | None = None
+    """Smallest value, of an argument that is a whole number."""
+
+
+class CommonArguments(TypedDict, total=False):
+    """Keyword arguments of both kinds of environment."""
+
+    friction_source: Annotated[
+        FrictionSource, Argument("estimated", "source of the friction part of the observation")
+    ]
+    estimator: Annotated[
+        str | Mapping[str, Any],
+        Argument(
+            DEFAULT_ESTIMATOR, "a name of `estimator.names()`, or a mapping with its `name` and parameters"
+        ),
+    ]
+    contact: Annotated[Contact, Argument("ellipsoid", "friction model of the pads (see docs/contact.md)")]
+    sensors: Annotated[str, Argument("realistic", 'sensor preset: `"realistic"` or `"ideal"`')]
+    material: Annotated[
+        str, Argument("random", 'name of a material, or `"random"` for another in every episode')
+    ]
+    action_mode: Annotated[
+        ActionMode | None, Argument(None, "meaning of an action (see docs/modes.md); `None`: the task's own")
+    ]
+    observation_mode: Annotated[
+        ObservationMode, Argument("flat", "layout of an observation (see docs/modes.md)")
+    ]
+    history: Annotated[int, Argument(0, "number of earlier observations in each observation", least=0)]
+    randomization: Annotated[
+        str | os.PathLike[str] | Mapping[str, Any],
+        Argument(
+            "none",
+            'what is drawn per episode: `"none"`, `"train"`, `"eval_ood"`, a file or a mapping (see '
+            "docs/randomization.md)",
+        ),
+    ]
+    frame_skip: Annotated[
+        int,
+        Argument(1, "control steps per step; the action is repeated, the rewards are summed", least=1),
+    ]
+    config: Annotated[
+        str | os.PathLike[str] | Mapping[str, Any] | None,
+        Argument(None, "file or mapping of overrides, merged over the defaults in `configs/`"),
+    ]
+
+
+class ScalarArguments(CommonArguments, total=False):
+    """Keyword arguments of a `SlipEnv`."""
+
+    engine: Annotated[
+        Engine, Argument("bullet", "what moves the bodies: PyBullet or the planar engine (see docs/batch.md)")
+    ]
+    render_mode: Annotated[
+        Literal["human", "rgb_array", "depth_array"] | None,
+        Argument(None, "what `render` returns or shows (see docs/rendering.md)"),
+    ]
+
+
+class VectorArguments(CommonArguments, total=False):
+    """Keyword arguments of a `SlipVectorEnv`."""
+
+    num_envs: Annotated[int, Argument(1, "number of environments", least=1)]
+    autoreset_mode: Annotated[
+        Literal["NextStep", "SameStep", "Disabled"] | AutoresetMode,
+        Argument(
+            "NextStep",
+            'what happens when an episode ends; with `"Disabled"`, '
+            '`reset(options={"reset_mask": ...})` is up to the caller',
+        ),
+    ]
+    threads: Annotated[
+        int | None,
+        Argument(
+            None,
+            "threads that share the environments; `None`: one per processor, each with at least 32",
+        ),
+    ]
+    render_mode: Annotated[
+        Literal["rgb_array", "depth_array"] | None, Argument(None, "what `render` returns; `None`: nothing")
+    ]
+    render_rows: Annotated[
+        Sequence[int] | None,
+        Argument(
+            None,
+            "environments that `render` shows, in this order; `None`: all, or the first of more than 16",
+        ),
+    ]
+
+
+@dataclass(frozen=True)
+class Field:
+    """A keyword argument."""
+
+    name: str
+    annotation: Any
+    """Its type, without the `Argument`."""
+    default: Any
+    doc: str
+    choices: tuple[str, ...]
+    """The valid names, where they are fixed."""
+    optional: bool
+    """Whether it may be None."""
+    least: int | None
+    """Smallest value, of an argument that is a whole number."""
+
+    @property
+    def text(self) -> str:
+        """Meaning and choices."""
+        listed = ", ".join(f'`"{choice}"`' for choice in self.choices)
+        return f"{self.doc}; one of {listed}" if listed else self.doc
+
+    def check(self, value: Any) -> None:
+        """Raise ValueError unless the value is allowed, as far as its type says."""
+        if value is None and self.optional:
+            return
+        if self.choices and not (isinstance(value, AutoresetMode) and value.value in self.choices):
+            one_of(self.name, value, self.choices)
+        if self.least is not None:
+            whole(self.name, value, self.least)
+
+
+@cache
+def fields(kind: type) -> dict[str, Field]:
+    """Name -> keyword argument, of `ScalarArguments`, `VectorArguments` or `CommonArguments`."""
+    found = {}
+    for name, hint in get_type_hints(kind, include_extras=True).items():
+        annotation, argument = get_args(hint)
+        members = get_args(annotation) if get_origin(annotation) is not Literal else (annotation,)
+        choices = [
+            choice for member in members if get_origin(member) is Literal for choice in get_args(member)
+        ]
+        optional = NoneType in members
+        found[name] = Field(
+            name, annotation, argument.default, argument.doc, tuple(choices), optional, argument.least
+        )
+    return found
+
+
+def complete(kind: type, given: Mapping[str, Any]) -> dict[str, Any]:
+    """All arguments of a kind, with their defaults; checked as far as their types say.
+
+    Raises:
+        TypeError: An argument is unknown.
+        ValueError: The value of an argument is not allowed.
+    """
+    known = fields(kind)
+    refuse_unknown(given, known)
+    values = {name: given.get(name, field.default) for name, field in known.items()}
+    for name, value in values.items():
+        known[name].check(value)
+    return values
+
+
+Class = TypeVar("Class", bound=type)
+
+
+def documented(kind: type, *first: inspect.Parameter) -> Callable[[Class], Class]:
+    """Decorator for a class whose constructor takes the arguments of a kind: signature and docstring.
+
+    Args:
+        kind: `ScalarArguments` or `VectorArguments`.
+        *first: Parameters in front of them.
+    """
+
+    def decorate(cls: Class) -> Class:
+        parameters = [
+            inspect.Parameter(
+                field.name, inspect.Parameter.KEYWORD_ONLY, default=field.default, annotation=field.annotation
+            )
+            for field in fields(kind).values()
+        ]
+        cls.__signature__ = inspect.Signature([*first, *parameters])
+        if cls.__doc__ is not None:
+            lines = [_paragraph(field) for field in fields(kind).values()]
+            cls.__doc__ = cls.__doc__.replace("        {arguments}", "\n".join(lines))
+        return cls
+
+    return decorate
+
+
+def _paragraph(field: Field) -> str:
+    text = f"{field.name}: {field.text[0].upper()}{field.text[1:]}. Default: {field.default!r}."
+    return textwrap.fill(text, 110, initial_indent=" " * 8, subsequent_indent=" " * 12)
+
+
+def one_of(name: str, value: object, valid: Iterable[str]) -> str:
+    """Return `value` if it is one of the valid names, or raise ValueError."""
+    if not isinstance(value, str) or value not in tuple(valid):
+        raise ValueError(unknown(name, value, valid))
+    return value
+
+
+def refuse_unknown(given: Iterable[str], known: Iterable[str]) -> None:
+    """Raise TypeError if a keyword argument was given that is not known."""
+    for name in given:
+        if name not in known:
+            raise TypeError(unknown("keyword argument", name, known))
+
+
+def whole(name: str, value: object, least: int) -> int:
+    """Return `value` if it is a whole number of at least `least`, or raise ValueError."""
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise ValueError(f"{name} = {value!r} must be a whole number >= {least}")
+    return value

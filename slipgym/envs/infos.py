@@ -1,0 +1,225 @@
+"""Infos: their entries, and the buffers that hold them for all environments.
+
+The numbers of an environment are one row of a plain array: numpy copies records field by field, which takes
+longer.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from slipgym._numba.compiled import compiled
+from slipgym.envs.readings import row_writer
+
+
+class Info(NamedTuple):
+    """One entry of an info."""
+
+    name: str
+    shape: tuple[int, ...]
+    unit: str
+    meaning: str
+    read: str
+    """Expression for environment i in terms of the arguments of `write_infos`; {0} and {1} are replaced by an
+    element's indices."""
+
+    @property
+    def reads(self) -> list[str]:
+        """An expression for every element, in C order."""
+        return [self.read.format(*index) for index in product(*map(range, self.shape))]
+
+
+NUMBERS = (
+    Info("true", (3,), "-, -, m", "true (mu_s, mu_c, r) now", "ground_truth[i, {0}]"),
+    Info(
+        "estimated",
+        (3,),
+        "-, -, m",
+        "the estimators' (mu_s, mu_c, r), mean of both fingers",
+        "estimated[i, {0}]",
+    ),
+    Info(
+        "estimated_per_finger",
+        (2, 3),
+        "-, -, m",
+        "the same, finger by finger",
+        "per_finger[i, {0}, {1}]",
+    ),
+    Info(
+        "slip",
+        (3,),
+        "m, m, rad",
+        "true slip displacement (x, y, theta) in the pad frame since the grasp",
+        "worlds[i].slip[{0}]",
+    ),
+    Info(
+        "slip_twist",
+        (3,),
+        "m/s, m/s, rad/s",
+        "true slip velocity (v_x, v_y, omega) at the pad centre",
+        "worlds[i].slip_twist[{0}]",
+    ),
+    Info(
+        "contact_wrench",
+        (2, 3),
+        "N, N, N m",
+        "true friction (f_x, f_y, tau) of either pad on the box",
+        "pads[i, {0}].wrench[{1}]",
+    ),
+    Info("grip_force", (2,), "N", "actuator force of each finger", "fingers[i, {0}].force"),
+    Info("reference", (3,), "", "position, velocity and acceleration of the task's reference",
+         "episodes[i].reference[{0}]"),
+    Info("time", (), "s", "time since reset", "episodes[i].step * episodes[i].step_time"),
+)  # fmt: skip
+"""Entries that are numbers, in the order of a row. The reward terms come on top."""
+
+FLAGS = (
+    Info("is_success", (), "", "whether the task is solved; see Episode End", "episodes[i].success"),
+    Info("dropped", (), "", "whether the box is dropped", "episodes[i].dropped"),
+)
+"""Entries that are true or false, in the order of a row."""
+
+_SIZES = [math.prod(info.shape) for info in NUMBERS]
+_WIDTH = sum(_SIZES)
+_ENDS = np.cumsum(_SIZES).tolist()
+_PARTS = {info.name: slice(end - size, end) for info, end, size in zip(NUMBERS, _ENDS, _SIZES, strict=True)}
+_VECTORS = [(info.name, _PARTS[info.name]) for info in NUMBERS if len(info.shape) == 1]
+_MATRICES = [(info.name, _PARTS[info.name], info.shape) for info in NUMBERS if len(info.shape) == 2]
+_SCALARS = [(info.name, _PARTS[info.name].start) for info in NUMBERS if not info.shape]
+_FLAG_NAMES = [info.name for info in FLAGS]
+
+
+class InfoBuffer(NamedTuple):
+    """Infos of n environments."""
+
+    numbers: np.ndarray
+    """See `NUMBERS`, (n, m)."""
+    flags: np.ndarray
+    """See `FLAGS`, (n, 2) bool."""
+    terms: np.ndarray
+    """Reward terms of the last step, summed over its control steps, (n, k)."""
+
+    @classmethod
+    def zeros(cls, n: int, terms: int) -> InfoBuffer:
+        """The buffer of n environments of a task with so many reward terms."""
+        return cls(np.zeros((n, _WIDTH)), np.zeros((n, len(FLAGS)), dtype=bool), np.zeros((n, terms)))
+
+    def empty_like(self) -> InfoBuffer:
+        """Another buffer of the same shapes, with undefined contents."""
+        return InfoBuffer(*map(np.empty_like, self))
+
+    def one(self, i: int, terms: Sequence[str]) -> dict[str, Any]:
+        """Info of environment i as `gymnasium.Env` returns it: copies, plain numbers.
+
+        Args:
+            i: Which environment.
+            terms: Names of the reward terms.
+        """
+        row = self.numbers[i].copy()
+        info: dict[str, Any] = {name: row[part] for name, part in _VECTORS}
+        for name, part, shape in _MATRICES:
+            info[name] = row[part].reshape(shape)
+        for name, at in _SCALARS:
+            info[name] = row.item(at)
+        info.update(zip(_FLAG_NAMES, self.flags[i].tolist(), strict=True))
+        info["reward_terms"] = dict(zip(terms, self.terms[i].tolist(), strict=True))
+        return info
+
+    def every(self, terms: Sequence[str], mask: np.ndarray | None = None) -> dict[str, Any]:
+        """Infos of all environments as `gymnasium.vector.VectorEnv` returns them: views, with masks beside.
+
+        Args:
+            terms: Names of the reward terms.
+            mask: Which environments the infos hold for, (n,); None: all.
+        """
+        numbers, flags, values = self
+        infos: dict[str, Any] = {
+            info.name: numbers[:, _PARTS[info.name]].reshape(-1, *info.shape) for info in NUMBERS
+        }
+        infos |= {name: flags[:, k] for k, name in enumerate(_FLAG_NAMES)}
+        scaled = {name: values[:, k] for k, name in enumerate(terms)}
+        masks = np.ones((len(infos) + 1 + len(scaled), len(numbers)), dtype=bool)
+        if mask is not None:
+            masks[:] = mask
+        left = iter(masks)
+        return _with_masks({**infos, "reward_terms": _with_masks(scaled, left)}, left)
+
+    def some(self, rows: np.ndarray, terms: Sequence[str]) -> dict[str, Any]:
+        """Copies of the infos of some environments (m,), zero elsewhere, with masks; empty for no rows.
+
+        Args:
+            rows: Which environments.
+            terms: Names of the reward terms.
+        """
+        if not rows.size:
+            return {}
+        n = len(self.flags)
+        copy, mask = InfoBuffer.zeros(n, self.terms.shape[1]), np.zeros(n, dtype=bool)
+        mask[rows] = True
+        for mine, other in zip(copy, self, strict=True):
+            mine[rows] = other[rows]
+        return copy.every(terms, mask)
+
+
+def _with_masks(infos: dict[str, Any], left: Iterator[np.ndarray]) -> dict[str, Any]:
+    """Each info with a mask beside it that says which environments have it, as Gymnasium asks for."""
+    return {**infos, **{f"_{name}": next(left) for name in infos}}
+
+
+def final(observations: Any, infos: dict[str, Any], rows: np.ndarray, n: int) -> dict[str, Any]:
+    """Infos that hold the last observations and infos of episodes that are over.
+
+    Args:
+        observations: Of all environments: (n, k), or a dictionary of such arrays.
+        infos: Of the environments whose episodes are over.
+        rows: Which these are, (m,).
+        n: Environments.
+    """
+    if not rows.size:
+        return {}
+    last, over = np.full(n, None, dtype=object), np.zeros((2, n), dtype=bool)
+    for i in rows.tolist():
+        if isinstance(observations, dict):
+            last[i] = {group: values[i].copy() for group, values in observations.items()}
+        else:
+            last[i] = observations[i].copy()
+    over[:, rows] = True
+    return {"final_obs": last, "_final_obs": over[0], "final_info": infos, "_final_info": over[1]}
+
+
+_ARRAYS = "worlds", "pads", "fingers", "episodes", "ground_truth", "estimated", "per_finger"
+_write_numbers = row_writer(
+    "_write_numbers",
+    [read for info in NUMBERS for read in info.reads],
+    _ARRAYS,
+    __file__,
+    "Write `NUMBERS` of environment i.",
+)
+_write_flags = row_writer(
+    "_write_flags", [info.read for info in FLAGS], _ARRAYS, __file__, "Write `FLAGS` of environment i."
+)
+
+
+@compiled
+def write_infos(numbers, flags, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger):
+    """Write all infos but the reward terms.
+
+    Args:
+        numbers: Output (n, m), see `NUMBERS`.
+        flags: Output (n, 2), see `FLAGS`.
+        worlds: WORLD (n,).
+        pads: PAD (n, 2).
+        fingers: FINGER (n, 2).
+        episodes: EPISODE (n,).
+        ground_truth: (n, 6), of which the first three (mu_s, mu_c, r) are used.
+        estimated: (n, 6), likewise.
+        per_finger: Estimated mu_s, mu_c, r (n, 2, 3).
+    """
+    for i in range(numbers.shape[0]):
+        _write_numbers(numbers[i], i, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger)
+        _write_flags(flags[i], i, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger)

@@ -1,0 +1,93 @@
+"""Rows of tables: what is read out of a simulation, and the compiled functions that read it.
+
+A row says in one place what a number is called and how it is computed. The functions that write the numbers
+are generated from the rows: number k of what they write is row k, whatever the order of the rows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, TypeAlias
+
+from slipgym._numba.compiled import compiled
+from slipgym._numba.generate import generate
+from slipgym.config import Config
+from slipgym.tasks.task import Column
+
+Limits: TypeAlias = tuple[float, float] | Callable[[Config], tuple[float, float]]
+"""Lowest and highest value: two numbers, or a function that takes them from the configuration."""
+
+
+class Reading(NamedTuple):
+    """One number that an environment reports."""
+
+    name: str
+    limits: Limits
+    unit: str
+    meaning: str
+    read: str
+    """Expression for environment i in terms of the writer's arguments, "worlds[i].angle" for example."""
+
+    def column(self, config: Config | None = None) -> Column:
+        """The column of an observation, with the limits of a configuration if they depend on it."""
+        if callable(self.limits):
+            assert config is not None
+            low, high = self.limits(config)
+        else:
+            low, high = self.limits
+        return Column(self.name, low, high, self.unit, self.meaning, self.read)
+
+
+def row_writer(
+    name: str,
+    reads: Sequence[str],
+    arrays: Sequence[str],
+    file: str,
+    doc: str,
+    before: Sequence[str] = (),
+    functions: Mapping[str, Any] | None = None,
+) -> Any:
+    """Generate a compiled function (row, i, *arrays) that stores the value of `reads[k]` in `row[k]`.
+
+    Args:
+        name: Name of the function.
+        reads: Expressions for environment i.
+        arrays: Names of the arrays in them.
+        file: `__file__` of the module with the table.
+        doc: Docstring.
+        before: Statements that the expressions rely on.
+        functions: Compiled functions that they call, by name.
+    """
+    body = [*before, *(f"row[{k}] = {read}" for k, read in enumerate(reads))]
+    return generate(name, ("row", "i", *arrays), body, functions or {}, compiled, file, doc)
+
+
+def choice_reader(name: str, reads: Sequence[str], arrays: Sequence[str], file: str, doc: str) -> Any:
+    """Generate a compiled function (k, i, *arrays) that returns the value of `reads[k]`.
+
+    Args:
+        name: Name of the function.
+        reads: Expressions for environment i.
+        arrays: Names of the arrays in them.
+        file: `__file__` of the module with the table.
+        doc: Docstring.
+    """
+    body = []
+    for k, read in enumerate(reads):
+        body += [f"if k == {k}:", f"    return {read}"]
+    return generate(name, ("k", "i", *arrays), [*body, "return 0.0"], {}, compiled, file, doc)
+
+
+def finite_check(name: str, reads: Sequence[str], arrays: Sequence[str], file: str, doc: str) -> Any:
+    """Generate a compiled function (i, *arrays) that returns whether the sum of all `reads` is finite.
+
+    Args:
+        name: Name of the function.
+        reads: Expressions for environment i.
+        arrays: Names of the arrays in them.
+        file: `__file__` of the module with the table.
+        doc: Docstring.
+    """
+    body = ["total = 0.0", *(f"total += {read}" for read in reads), "return isfinite(total)"]
+    return generate(name, ("i", *arrays), body, {"isfinite": math.isfinite}, compiled, file, doc)
