@@ -19,13 +19,17 @@ def main(
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core.")] = 1,
 ) -> None:
     """Prints what each policy achieves in the same episodes, what learning adds, what friction adds."""
-    from policies.evaluation import compare_learned as shelf
+    from policies.evaluation import compare_learned
     from policies.research.leaderboard.tables import markdown
 
     try:
         for task in tasks or TASKS:
-            found = shelf.trials_of(task, trials, engine, randomization, jobs)
-            tables = (shelf.outcomes(found), shelf.gains(found), shelf.worth(found))
+            found = compare_learned.trials_of(task, trials, engine, randomization, jobs)
+            tables = (
+                compare_learned.outcomes(found),
+                compare_learned.gains(found),
+                compare_learned.benefit(found),
+            )
             typer.echo("\n".join([f"\n{task}\n", *map(markdown, tables)]))
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error

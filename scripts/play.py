@@ -1,4 +1,4 @@
-"""Watches a policy: in a window, or as a film where there is none."""
+"""Watches a policy: in a window, or as a video where there is none."""
 
 from pathlib import Path
 from typing import Annotated
@@ -65,7 +65,7 @@ def main(
     for outcome in outcomes:
         typer.echo(outcome.words())
     if video is not None:
-        typer.echo(f"film: {video}")
+        typer.echo(f"video: {video}")
 
 
 if __name__ == "__main__":

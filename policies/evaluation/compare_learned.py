@@ -8,22 +8,23 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from policies.evaluation.files import checked, load_experiment
+from policies.evaluation.experiment import Experiment
+from policies.evaluation.files import load_experiment
 from policies.evaluation.frames import groups, values
 from policies.evaluation.plan import plan
 from policies.evaluation.statistics import Interval, mean_interval, share_interval
 from policies.evaluation.trial import run_trials
-from policies.learned import shipped
-from slipgym.config.errors import unknown
-from slipgym.tasks import TASKS
+from policies.learned import pretrained
+from slipgym.config.yaml_model import validate
+from slipgym.tasks import find
 
 SOURCES = ("estimated", "true", "none")
 CONTROLLER, LEARNED = "controller", "learned"
-_OUTCOMES = {"success": "solved [%]", "return": "sum of rewards", "mean_force_N": "grip force [N]"}
+_OUTCOMES = {"success": "success [%]", "return": "sum of rewards", "mean_force_N": "grip force [N]"}
 
 
 def trials_of(
-    key: str,
+    task: str,
     trials: int = 200,
     engine: str = "bullet",
     randomization: str | Mapping[str, Any] = "train",
@@ -33,7 +34,7 @@ def trials_of(
     """The controller and the learned policies of a task in the same episodes.
 
     Args:
-        key: Key of the task; the experiment "<key>_train" says which episodes.
+        task: As `slipgym.tasks.find` takes it; the experiment "<its key>_train" says which episodes.
         trials: Episodes, spread evenly over the experiment's combinations of options.
         engine: What moves the bodies.
         randomization: What is drawn per episode.
@@ -46,12 +47,14 @@ def trials_of(
     Raises:
         ValueError: The task, or a value, is unknown.
     """
-    keys = [task.key for task in TASKS.values()]
-    if key not in keys:
-        raise ValueError(unknown("task", key, keys))
+    key = find(task).key
     base = load_experiment(f"{key}_train")
     known = ({"name": key, "label": CONTROLLER}, ("estimated", "true"))
-    learned = [({"name": f"{key}_{s}", "label": LEARNED}, (s,)) for s in SOURCES if f"{key}_{s}" in shipped()]
+    learned = [
+        ({"name": f"{key}_{s}", "label": LEARNED}, (s,))
+        for s in SOURCES
+        if f"{key}_{s}" in pretrained.folders()
+    ]
     rows = []
     for policy, sources in (known, *learned):
         given = {
@@ -62,7 +65,7 @@ def trials_of(
             "engine": engine,
             "randomization": randomization,
         }
-        experiment = checked(given, key)
+        experiment = validate(given, Experiment, key)
         rows += [result.row for result in run_trials(experiment, plan(experiment), jobs, progress)]
     return pd.DataFrame(rows)
 
@@ -114,7 +117,7 @@ def gains(trials: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def worth(trials: pd.DataFrame) -> pd.DataFrame:
+def benefit(trials: pd.DataFrame) -> pd.DataFrame:
     """What knowing friction is worth to the learned policies, over paired episodes.
 
     Args:

@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 import estimator as estimators
 import policies
+from policies.task_names import canonical
 from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen, as_tuple
 from slipgym.config.errors import unknown
@@ -20,19 +21,7 @@ from slipgym.envs.observation import FRICTION_SOURCES
 from slipgym.tasks import find
 
 
-class Spelled(Frozen):
-    """A model that names its valid keys when it meets an unknown one."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _known_keys(cls, values: Any) -> Any:
-        for key in values if isinstance(values, Mapping) else ():
-            if key not in cls.model_fields:
-                raise ValueError(unknown("key", key, cls.model_fields))
-        return values
-
-
-class PolicyChoice(Spelled):
+class PolicyChoice(Frozen):
     """A policy of `policies.load`."""
 
     name: str = Field(description="Its name, the folder of a learned one, or module:class [-]")
@@ -56,7 +45,7 @@ class PolicyChoice(Spelled):
         return self.label or Path(self.name).name
 
 
-class FrictionChoice(Spelled):
+class FrictionChoice(Frozen):
     """What a policy is told about friction."""
 
     source: str = Field(description="friction_source of the environment [-]")
@@ -79,7 +68,7 @@ class FrictionChoice(Spelled):
         return self.label or self.source
 
 
-class Experiment(Spelled):
+class Experiment(Frozen):
     """Policies × friction × materials × options, each cell with a number of trials."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", description="Names the run folder [-]")
@@ -109,8 +98,7 @@ class Experiment(Spelled):
     @field_validator("task")
     @classmethod
     def _task_exists(cls, name: str) -> str:
-        find(name)
-        return name
+        return canonical(name)
 
     @field_validator("engine")
     @classmethod

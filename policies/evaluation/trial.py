@@ -18,6 +18,7 @@ from policies.evaluation.metrics import measure, measures
 from policies.evaluation.plan import Trial
 from policies.evaluation.recording import Recorder, Recording
 from policies.learned import LearnedPolicy
+from policies.stepping import steps
 from slipgym.tasks import find
 
 
@@ -91,12 +92,8 @@ def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None 
             policy.check(env)
         observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
         recorder.begin(info)
-        state, over = None, False
-        while not over:
-            action, state = policy.predict(observation, state=state)
-            observation, reward, terminated, truncated, info = env.step(action)
-            recorder.add(_present(env, observation), float(reward), info)
-            over = terminated or truncated
+        for step in steps(env, policy, observation):
+            recorder.add(_present(env, step.observation), float(step.reward), step.info)
     finally:
         env.close()
     return recorder.finish()

@@ -15,7 +15,7 @@ from policies.learned import files as policy_files
 from policies.learned.pretrained import FOLDER
 from policies.training import curve, export, files, folder
 from policies.training.curve import Row
-from slipgym.tasks import TASKS
+from slipgym.tasks import find
 
 CURVES = Path("docs") / "learned"
 """Where the curves of all seeds go, beside a picture of them."""
@@ -87,7 +87,7 @@ def _finished(path: Path) -> Run:
     config, seed = folder.order(path)
     if folder.result(path) is None:
         raise ValueError(f"{path} is not finished")
-    key, source = TASKS[config.task].key, config.environment.friction_source
+    key, source = find(config.task).key, config.environment.friction_source
     if config != files.load(key, {"environment.friction_source": source}):
         raise ValueError(f"{path} was not trained as configs/training/{key}.yaml says")
     return Run(key, source, seed, folder.read_curve(path), config.evaluation.episodes, path / export.POLICY)

@@ -11,7 +11,7 @@ import pandas as pd
 from tqdm import tqdm
 
 import estimator
-from policies.evaluation.folder import filled_in_place, stamped, write_versions
+from policies.evaluation.folder import stamped
 from policies.evaluation.frames import values
 from policies.evaluation.plots.style import STYLE, styled
 from policies.research.leaderboard.picture import plot_leaderboard
@@ -21,6 +21,8 @@ from policies.research.leaderboard.scenario import FIELDS, Scenario
 from policies.research.leaderboard.scenarios import GROUPS, QUICK, Effort
 from policies.research.leaderboard.score import FIGURES, score
 from policies.research.leaderboard.tables import markdown
+from policies.versions import write_versions
+from slipgym.atomic_io import new_folder
 
 Entrants = dict[str, tuple[str, dict[str, object]]]
 """Label -> name and parameters of an estimator."""
@@ -57,7 +59,7 @@ def run_leaderboard(
     table = pd.DataFrame(rows)
     ranking, best = ranked(table), winners(table)
     path = stamped(output, "leaderboard")
-    with filled_in_place(path) as folder:
+    with new_folder(path) as folder:
         write_versions(folder)
         table.to_csv(folder / "scenarios.csv", index=False)
         ranking.to_csv(folder / "ranking.csv", index=False)

@@ -13,6 +13,7 @@ from policies.evaluation.plan import seed as seed_of
 from policies.research.reproduction.campaign import Campaign, reproduce
 from policies.research.reproduction.published import TABLES
 from policies.research.reproduction.records import Record, RecordKeeper
+from policies.stepping import steps
 from slipgym.config import Overrides
 from slipgym.envs import LinearSlipEnv
 
@@ -83,12 +84,8 @@ def record_linear(
         options = {name: scenario[name] for name in ("distance", "duration")}
         observation, _ = env.reset(seed=scenario["seed"], options=options)
         keeper = RecordKeeper(env.simulation)
-        state, over = None, False
-        while not over:
-            action, state = policy.predict(observation, state=state)
-            observation, _, terminated, truncated, _ = env.step(action)
+        for _ in steps(env, policy, observation):
             keeper.take()
-            over = terminated or truncated
         return keeper.finish(scenario)
     finally:
         env.close()

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from policies.evaluation.experiment import Experiment, PolicyChoice
-from policies.evaluation.files import checked
 from policies.play.screenshot import own_policy
 from policies.research.study.changes import UNCHANGED, Change, changes
 from policies.research.study.config import BLOCKS_MAX, Study, World
 from policies.research.study.learned import TRAINED_WITH
+from slipgym.config.yaml_model import validate
 from slipgym.tasks import find
 
 
@@ -71,7 +71,7 @@ class Cell:
             "randomization": self.change.of(self.preset, self.task),
             "config": {**study.config, "contact": contact},
         }
-        return checked(values, self.name)
+        return validate(values, Experiment, self.name)
 
     def _policy(self) -> PolicyChoice:
         if self.kind == "classic" and self.source == "none":

@@ -12,8 +12,6 @@ import pandas as pd
 import yaml
 from tqdm import tqdm
 
-from policies.atomic_io import replace_durably
-from policies.evaluation.folder import versions
 from policies.evaluation.frames import distinct, records, where, without
 from policies.evaluation.plots.style import styled
 from policies.research.study import figures
@@ -26,6 +24,8 @@ from policies.research.study.formats import FILTERS
 from policies.research.study.sentences import answers
 from policies.research.study.store import sources
 from policies.research.study.tables import ALL, by
+from policies.versions import versions
+from slipgym import atomic_io
 
 _TEMPLATE = Path(__file__).parent / "report.html.j2"
 
@@ -55,7 +55,7 @@ def write_page(
     bar = tqdm(study.videos, desc="films", unit="task", disable=not progress)
     scenes = [scene(study, task, cells, episodes, folder / "films") for task in bar]
     page = render(study, episodes, tables, [each for each in scenes if each], missing, command)
-    replace_durably(folder / "report.html", page.encode())
+    atomic_io.write(folder / "report.html", page.encode())
 
 
 def render(

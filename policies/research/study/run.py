@@ -8,8 +8,6 @@ from pathlib import Path
 import pandas as pd
 import yaml
 
-from policies.atomic_io import replace_durably
-from policies.evaluation.folder import write_versions
 from policies.research.study import tables
 from policies.research.study.cells import cells
 from policies.research.study.config import Study
@@ -17,6 +15,8 @@ from policies.research.study.episodes import episodes
 from policies.research.study.learned import missing, policies_of
 from policies.research.study.page import write_page
 from policies.research.study.store import Store
+from policies.versions import write_versions
+from slipgym import atomic_io
 
 
 def run_study(
@@ -55,10 +55,10 @@ def run_study(
     }
     write_versions(folder)
     text = yaml.safe_dump(study.model_dump(mode="json"), sort_keys=False, allow_unicode=True)
-    replace_durably(folder / "study.yaml", text.encode())
-    replace_durably(folder / "episodes.parquet", done.to_parquet(index=False))
+    atomic_io.write(folder / "study.yaml", text.encode())
+    atomic_io.write(folder / "episodes.parquet", done.to_parquet(index=False))
     for name, table in made.items():
-        replace_durably(folder / f"{name}.csv", _csv(table))
+        atomic_io.write(folder / f"{name}.csv", _csv(table))
     write_page(study, chosen, done, made, missing(study, learned), command, folder, progress)
     return folder
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import pandas as pd
 
 import policies
-from policies.atomic_io import filled_in_place
 from policies.research.study.cells import Cell
 from policies.research.study.config import Study
+from slipgym.atomic_io import new_folder
 from slipgym.config import files
 
 _TOP = Path(policies.__file__).parents[1]
@@ -51,7 +51,7 @@ class Store:
 
     def write(self, cell: Cell, episodes: pd.DataFrame) -> None:
         """Keeps a cell, whole or not at all."""
-        with filled_in_place(self._place(cell)) as folder:
+        with new_folder(self._place(cell)) as folder:
             episodes.to_parquet(folder / _TABLE, index=False)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.play.video import Film
+from policies.play.video import Video
 from policies.research.study.films import Film as Clip
 from policies.research.study.films import Scene
 from policies.research.study.page import render
@@ -25,7 +25,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome")
 @pytest.fixture(scope="module")
 def clip(tmp_path_factory):
     path = tmp_path_factory.mktemp("films") / "film.mp4"
-    with Film(path) as film:
+    with Video(path) as film:
         for grey in range(0, 250, 25):
             film.add(np.full((HEIGHT, WIDTH, 3), grey, np.uint8))
     return path
