@@ -19,7 +19,7 @@ def main(
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core.")] = 1,
 ) -> None:
     """Prints what each policy achieves in the same episodes, what learning adds, what friction adds."""
-    from policies.evaluation import compare_learned
+    from policies.research import compare_learned
     from policies.research.leaderboard.tables import markdown
 
     try:

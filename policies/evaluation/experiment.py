@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 import estimator as estimators
 import policies
+from policies.evaluation.rate import common_frame_skip
 from policies.task_names import canonical
 from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen, as_tuple
@@ -93,6 +94,10 @@ class Experiment(Frozen):
     randomization: str | Mapping[str, Any] = Field(
         default="none", description="What is drawn per episode: a preset, a file or a mapping [-]"
     )
+    frame_skip: Count | None = Field(
+        default=None,
+        description="Control steps per action; null: as of the learned policies, or 1 [-]",
+    )
     config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
 
     @field_validator("task")
@@ -120,7 +125,17 @@ class Experiment(Frozen):
             raise ValueError("materials are listed under materials, not among the options")
         for options in self.combinations():
             find(self.task).options.parse(options)
+        _ = self.steps_per_action
         return self
+
+    @property
+    def steps_per_action(self) -> int:
+        """Control steps per action, the same for every policy.
+
+        Raises:
+            ValueError: The learned policies were trained with different ones, or not with `frame_skip`.
+        """
+        return common_frame_skip((policy.name for policy in self.policies), self.frame_skip)
 
     def environment_config(self) -> configuration.Config:
         """The environment's configuration with this experiment's overrides."""

@@ -15,15 +15,15 @@ from tqdm import tqdm
 from policies.evaluation.frames import distinct, records, where, without
 from policies.evaluation.plots.style import styled
 from policies.research.study import figures
-from policies.research.study.cells import Cell
+from policies.research.study.conditions import Condition
 from policies.research.study.config import Study
 from policies.research.study.figures.differences import TRANSFER_MOST
 from policies.research.study.figures.inline import inline
-from policies.research.study.films import Scene, scene
 from policies.research.study.formats import FILTERS
 from policies.research.study.sentences import answers
 from policies.research.study.store import sources
 from policies.research.study.tables import ALL, by
+from policies.research.study.videos import Scene, scene
 from policies.versions import versions
 from slipgym import atomic_io
 
@@ -32,7 +32,7 @@ _TEMPLATE = Path(__file__).parent / "report.html.j2"
 
 def write_page(
     study: Study,
-    cells: Sequence[Cell],
+    conditions: Sequence[Condition],
     episodes: pd.DataFrame,
     tables: Mapping[str, pd.DataFrame],
     missing: Sequence[str],
@@ -44,16 +44,16 @@ def write_page(
 
     Args:
         study: The study.
-        cells: All its cells.
+        conditions: All its conditions.
         episodes: Their episodes.
-        tables: "outcomes", "shares" and "transfer".
+        tables: "outcomes", "shares", "transfer" and "constant_grip".
         missing: What was left out, in words.
         command: What it was made by.
-        folder: The study's folder; films are kept in its "films".
+        folder: The study's folder; videos are kept in its "videos".
         progress: Whether to show a progress bar.
     """
-    bar = tqdm(study.videos, desc="films", unit="task", disable=not progress)
-    scenes = [scene(study, task, cells, episodes, folder / "films") for task in bar]
+    bar = tqdm(study.videos, desc="videos", unit="task", disable=not progress)
+    scenes = [scene(study, task, conditions, episodes, folder / "videos") for task in bar]
     page = render(study, episodes, tables, [each for each in scenes if each], missing, command)
     atomic_io.write(folder / "report.html", page.encode())
 
@@ -89,9 +89,10 @@ def render(
         places=places,
         shares=records(fractions),
         transfer=records(transfer),
+        constant=records(tables["constant_grip"]),
         transfer_most=TRANSFER_MOST,
         scenes=scenes,
-        film=_film,
+        embedded=_embedded,
         missing=missing,
         command=command,
         digest=sources(),
@@ -145,5 +146,5 @@ def _pictures(
     return pictures
 
 
-def _film(path: Path) -> str:
+def _embedded(path: Path) -> str:
     return "data:video/mp4;base64," + base64.b64encode(path.read_bytes()).decode("ascii")

@@ -1,4 +1,4 @@
-"""What a finished study says on a terminal."""
+"""Prints a finished study."""
 
 from __future__ import annotations
 
@@ -42,6 +42,11 @@ def words(study: Study, folder: Path) -> str:
             share = _text(row, "share", "[%]")
             rows.append([row["task"], row["preset"], row["kind"], row["figure"], share, row["verdict"]])
         parts.append(aligned(rows))
+    rows = [["task", "force [N]", "success [%]", "dropped [%]", "return, mean"]]
+    for row in pd.read_csv(folder / "constant_grip.csv").to_dict("records"):
+        figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
+        rows.append([row["task"], f"{row['force_N']:.2f}", *figures])
+    parts += ["The best constant grip, without any sensor, planar engine:", aligned(rows)]
     return "\n\n".join([*parts, f"Look at:\n  {folder / 'report.html'}"])
 
 

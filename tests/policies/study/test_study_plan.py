@@ -5,8 +5,8 @@ import policies
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.evaluation.plan import plan
 from policies.research.study import load_study, narrowed, study_names
-from policies.research.study.cells import cells
 from policies.research.study.changes import Change
+from policies.research.study.conditions import conditions
 from policies.research.study.learned import missing, policies_of
 from slipgym.config import load, load_randomization
 from slipgym.envs.observation import columns
@@ -88,8 +88,8 @@ def test_two_folders_of_one_seed_are_an_error(small, shelf):
 
 def test_a_learned_policy_is_told_nominal_values_by_that_of_the_truth(small, shelf):
     study = small(learned=shelf("linear_slip_true_0", "linear_slip_true_1"), kinds=["learned"], blocks=3)
-    found = cells(study, policies_of(study))
-    assert {(cell.source, cell.block, cell.policy[-1]) for cell in found} == {
+    found = conditions(study, policies_of(study))
+    assert {(condition.source, condition.block, condition.policy[-1]) for condition in found} == {
         (source, block, str(block % 2)) for source in ("nominal", "true") for block in range(3)
     }
 
@@ -97,10 +97,10 @@ def test_a_learned_policy_is_told_nominal_values_by_that_of_the_truth(small, she
 def test_episodes_come_in_pairs(small):
     study = small(kinds=["classic"])
     seeds = {}
-    for cell in cells(study, {}):
-        experiment = cell.experiment(study)
-        assert experiment.environment_config().contact.model == cell.world.contact
-        seeds.setdefault(cell.block, set()).update(trial.seed for trial in plan(experiment))
+    for condition in conditions(study, {}):
+        experiment = condition.experiment(study)
+        assert experiment.environment_config().contact.model == condition.world.contact
+        seeds.setdefault(condition.block, set()).update(trial.seed for trial in plan(experiment))
     assert len(seeds) == 2
     assert all(len(each) == 1 for each in seeds.values())
     assert not seeds[0] & seeds[1]

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.evaluation import compare_learned
+from policies.research import compare_learned
 
 
 def table(true, estimated, none):
@@ -50,12 +50,12 @@ def test_gains_are_those_of_the_same_episodes_and_the_same_friction():
     assert list(found.columns) == ["estimated", "true"]
     assert found.loc["sum of rewards", "true"] == "2.0 (2.0 to 2.0)"
     assert found.loc["sum of rewards", "estimated"] == "-0.5 (-0.5 to -0.5)"
-    assert found.loc["solved [%]", "estimated"] == "0.0 (0.0 to 0.0)"
+    assert found.loc["success [%]", "estimated"] == "0.0 (0.0 to 0.0)"
 
 
 def test_outcomes_have_a_row_for_each_source():
     found = compare_learned.outcomes(table([1.0, 2.0], [1.0, -2.0], [-1.0, -1.0])).set_index("friction")
-    assert [text.split()[0] for text in found["solved [%]"]] == ["100.0", "50.0", "0.0"]
+    assert [text.split()[0] for text in found["success [%]"]] == ["100.0", "50.0", "0.0"]
     assert list(found["grip force [N]"]) == ["5.0 (5.0 to 5.0)"] * 3
 
 
@@ -64,5 +64,5 @@ def test_the_controller_runs_in_the_experiments_episodes():
     controller = trials[trials["policy"] == compare_learned.CONTROLLER]
     assert list(controller["friction"]) == ["estimated", "estimated", "true", "true"]
     assert list(controller["seed"])[:2] == list(controller["seed"])[2:]
-    with pytest.raises(ValueError, match="'hole'"):
+    with pytest.raises(ValueError, match="hole"):
         compare_learned.trials_of("hole")

@@ -1,4 +1,8 @@
-"""The learned policies that come with slipgym beside the controllers; what knowing friction is worth."""
+"""Compares pretrained policies with controllers and the best constant grip, at the same rate of action.
+
+The benefit of knowing friction is measured against policies without friction information: each changes what a
+conservative controller does, which has no memory of earlier episodes. Another baseline gives another benefit.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +12,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from policies.evaluation.constant_grip import best_force
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.files import load_experiment
 from policies.evaluation.frames import groups, values
 from policies.evaluation.plan import plan
+from policies.evaluation.rate import common_frame_skip
 from policies.evaluation.statistics import Interval, mean_interval, share_interval
 from policies.evaluation.trial import run_trials
 from policies.learned import pretrained
@@ -19,7 +25,7 @@ from slipgym.config.yaml_model import validate
 from slipgym.tasks import find
 
 SOURCES = ("estimated", "true", "none")
-CONTROLLER, LEARNED = "controller", "learned"
+CONTROLLER, LEARNED, CONSTANT = "controller", "learned", "constant grip"
 _OUTCOMES = {"success": "success [%]", "return": "sum of rewards", "mean_force_N": "grip force [N]"}
 
 
@@ -42,26 +48,31 @@ def trials_of(
         progress: Whether to show a progress bar.
 
     Returns:
-        A row per trial, as in an experiment's table; the column "policy" has CONTROLLER or LEARNED.
+        A row per trial, as in an experiment's table; the column "policy" has CONTROLLER, LEARNED, or CONSTANT
+        with its force. All act at the rate of the learned policies. The best constant grip is chosen on other
+        episodes (`policies.evaluation.constant_grip`).
 
     Raises:
-        ValueError: The task, or a value, is unknown.
+        ValueError: The task, or a value, is unknown, or the learned policies act at different rates.
     """
     key = find(task).key
     base = load_experiment(f"{key}_train")
+    per_condition = -(-trials // len(base.combinations()))
+    names = {source: f"{key}_{source}" for source in SOURCES if f"{key}_{source}" in pretrained.folders()}
+    learned = [({"name": name, "label": LEARNED}, (source,)) for source, name in names.items()]
+    skip = common_frame_skip(names.values())
+    selection = base.model_copy(update={"trials": per_condition, "randomization": randomization})
+    force = best_force(selection, progress=progress)
+    constant = {"name": "constant_force", "parameters": {"force": force}, "label": f"{CONSTANT}, {force:g} N"}
     known = ({"name": key, "label": CONTROLLER}, ("estimated", "true"))
-    learned = [
-        ({"name": f"{key}_{s}", "label": LEARNED}, (s,))
-        for s in SOURCES
-        if f"{key}_{s}" in pretrained.folders()
-    ]
     rows = []
-    for policy, sources in (known, *learned):
+    for policy, sources in (known, *learned, (constant, ("none",))):
         given = {
             **base.model_dump(exclude_unset=True),
             "policies": [policy],
             "friction": [{"source": source} for source in sources],
-            "trials": -(-trials // len(base.combinations())),
+            "trials": per_condition,
+            "frame_skip": skip,
             "engine": engine,
             "randomization": randomization,
         }
@@ -118,7 +129,7 @@ def gains(trials: pd.DataFrame) -> pd.DataFrame:
 
 
 def benefit(trials: pd.DataFrame) -> pd.DataFrame:
-    """What knowing friction is worth to the learned policies, over paired episodes.
+    """The benefit of knowing friction to the learned policies, over paired episodes.
 
     Args:
         trials: From `trials_of`; needs learned policies of all three sources.
