@@ -1,7 +1,46 @@
-"""Gymnasium environments for slip-aware in-hand manipulation, with a friction estimator in the loop."""
+"""Gymnasium environments for slip-aware in-hand manipulation, with a friction estimator in the loop.
 
-from slipgym.registration import register, register_task
+`import slipgym` registers the environments with Gymnasium:
 
-__all__ = ["register_task"]
+    slipgym/LinearSlip-v0      slide the object down by a given distance
+    slipgym/RotationalSlip-v0  turn it by a given angle
+    slipgym/Hinge-v0           let it hang upright while the wrist pitches
+    slipgym/PlanarSlip-v0      bring it to a pose (x, y, theta) in the grip
+    slipgym/Hold-v0            keep it still while something shakes and pokes it
+
+    gym.make("slipgym/LinearSlip-v0", friction_source="estimated")
+    gym.make_vec("slipgym/LinearSlip-v0", num_envs=1024)
+
+Public modules:
+
+    slipgym.envs         the environment classes, scalar and vector
+    slipgym.contact      friction of one pad on its own
+    slipgym.config       configuration, presets, randomization
+    slipgym.tasks        the tasks; what a task of your own is made of
+    slipgym.vector_checker  a checker of vector environments
+    slipgym.synthetic    records of one finger without a simulator
+"""
+
+from typing import TYPE_CHECKING, Any
+
+from slipgym.registration import register
+
+if TYPE_CHECKING:
+    from slipgym.envs.environment import register_task
+
+__all__ = ["__version__", "register_task"]
+__version__ = "0.1.0"
 
 register()
+
+
+def __getattr__(name: str) -> Any:
+    if name == "register_task":  # loads numba: on first use
+        from slipgym.envs.environment import register_task
+
+        return register_task
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

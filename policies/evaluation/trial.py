@@ -21,7 +21,7 @@ from policies.evaluation.plan import Trial
 from policies.evaluation.recording import Recorder, Recording
 from policies.learned import LearnedPolicy
 from policies.stepping import steps
-from slipgym.tasks import find
+from slipgym.tasks import configure, find
 
 
 @dataclass(frozen=True)
@@ -64,9 +64,11 @@ def run_trial(experiment: Experiment, trial: Trial) -> Result:
     except Exception as error:
         error.add_note(f"in trial {trial.keys}")
         raise
-    options, task = find(experiment.task).options.parse(trial.options), _task(experiment)
+    task = find(experiment.task)
+    settings = configure(task, experiment.config, experiment.sensors)[1]
+    settings = task.options.parse(trial.options).applied_to(settings)
     limits = {
-        limit.column: limit.scale * options.choose(limit.option, task)
+        limit.column: limit.scale * getattr(settings, limit.option)
         for limit in measures(experiment.task).tolerances
     }
     drawn = {f"drawn_{name}": value for name, value in recording.drawn.items()}
@@ -131,7 +133,3 @@ def _present(env: Any, observation: Any) -> np.ndarray:
     """The newest of the observations, without privileged columns."""
     newest = observation["policy"] if isinstance(observation, Mapping) else observation
     return newest[-len(env.unwrapped.columns) :]
-
-
-def _task(experiment: Experiment) -> Any:
-    return getattr(experiment.environment_config().tasks, find(experiment.task).key)

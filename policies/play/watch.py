@@ -140,7 +140,7 @@ def watch(
         if video is None:
             window = Window(f"slipgym {task}", (WIDTH, HEIGHT))
             stack.callback(window.close)
-            force = getattr(env.config.tasks, env.task.key).initial_force
+            force = env.settings.initial_force
             player = player or Keyboard(window, env.config, force)
             rate: float = WINDOW_RATE
 

@@ -124,7 +124,7 @@ def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
         interpret(actions[k], env._actions.table, simulation.episode, simulation.commands)
         begin_step(simulation.episode, simulation.commands)
         disturb(simulation.episode, plant.world, plant.pads, simulation.truth)
-        simulation.task.plan(simulation.episode, plant.world)
+        simulation.task.script_wrist(simulation.episode, plant.world)
 
     def advance(_: int) -> None:
         nonlocal counted
@@ -139,7 +139,7 @@ def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
 
     def judge(_: int) -> None:
         simulation.episode["step"] += 1
-        simulation.task.judge(simulation.episode, plant.world, plant.fingers, simulation.task_part)
+        simulation.task.evaluate_step(simulation.episode, plant.world, plant.fingers, simulation.task_part)
 
     def see(_: int) -> None:
         arrays = (

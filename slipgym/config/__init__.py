@@ -1,13 +1,12 @@
 """The configuration of the environments: typed, frozen, validated, with its defaults in configs/."""
 
-from slipgym.config.assembly import config_model
 from slipgym.config.hardware import GripperConfig, ObjectConfig
 from slipgym.config.load import Overrides, load, load_randomization, names
 from slipgym.config.physics import ContactConfig, Material, NominalConfig, PhysicsConfig
 from slipgym.config.randomization import Randomization, Ranges
 from slipgym.config.root import Config
 from slipgym.config.sensors import ForceTorqueConfig, SensorsConfig, SlipConfig
-from slipgym.config.tasks import TaskConfig, TasksConfig
+from slipgym.config.task import TaskConfig
 
 __all__ = [
     "Config",
@@ -24,8 +23,6 @@ __all__ = [
     "SensorsConfig",
     "SlipConfig",
     "TaskConfig",
-    "TasksConfig",
-    "config_model",
     "load",
     "load_randomization",
     "names",

@@ -23,7 +23,7 @@ class Disturbance(Frozen):
 class Push(Disturbance):
     """A force on the object for a short time."""
 
-    kind: Literal["push"] = Field(description="A name [-]")
+    kind: Literal["push"] = Field(description="A name")
     time: Time = Field(description="When it begins [s]")
     duration: Annotated[Distribution, within(1e-3, 10.0)] = Field(description="How long it lasts [s]")
     impulse: Annotated[Distribution, within(0.0, 10.0)] = Field(description="Force times duration [N s]")
@@ -38,7 +38,7 @@ class Push(Disturbance):
 class Shake(Disturbance):
     """The wrist swings along x, z and in pitch; each axis has a frequency and a phase of its own."""
 
-    kind: Literal["shake"] = Field(description="A name [-]")
+    kind: Literal["shake"] = Field(description="A name")
     amplitude: Annotated[Distribution, within(0.0, 0.05)] = Field(description="Along x and z [m]")
     pitch: Annotated[Distribution, within(0.0, 0.5)] = Field(description="In pitch [rad]")
     frequency: Annotated[Distribution, within(0.01, 20.0)] = Field(description="Of each axis [Hz]")
@@ -47,28 +47,28 @@ class Shake(Disturbance):
 class MassChange(Disturbance):
     """The object becomes heavier or lighter at once, its shape of mass the same."""
 
-    kind: Literal["mass_change"] = Field(description="A name [-]")
+    kind: Literal["mass_change"] = Field(description="A name")
     time: Time = Field(description="When [s]")
-    factor: Factor = Field(description="Mass and inertia after over before [-]")
+    factor: Factor = Field(description="Mass and inertia after over before")
 
 
 class FrictionJump(Disturbance):
     """Friction changes at once, as when a pad gets wet."""
 
-    kind: Literal["friction_jump"] = Field(description="A name [-]")
+    kind: Literal["friction_jump"] = Field(description="A name")
     time: Time = Field(description="When [s]")
-    factor: Factor = Field(description="mu_s and mu_c after over before [-]")
+    factor: Factor = Field(description="mu_s and mu_c after over before")
 
 
 class Patch(Disturbance):
     """A stretch of the object's surface with another friction."""
 
-    kind: Literal["patch"] = Field(description="A name [-]")
+    kind: Literal["patch"] = Field(description="A name")
     start: Annotated[Distribution, within(0.0, 1.0)] = Field(
         description="Distance from the grasp at which it begins [m]"
     )
     length: Annotated[Distribution, within(0.0, 1.0)] = Field(description="Its length [m]")
-    factor: Factor = Field(description="mu_s and mu_c on it over elsewhere [-]")
+    factor: Factor = Field(description="mu_s and mu_c on it over elsewhere")
 
 
 AnyDisturbance = Annotated[Push | Shake | MassChange | FrictionJump | Patch, Field(discriminator="kind")]

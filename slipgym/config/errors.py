@@ -34,22 +34,26 @@ def unknown(what: str, name: object, valid: Iterable[str]) -> str:
     return f"unknown {what} {name!r}; {guess}valid: {', '.join(valid)}"
 
 
-def explain(error: ValidationError, source_of: SourceOf, model: type[BaseModel]) -> ValueError:
+def explain(
+    error: ValidationError, source_of: SourceOf, model: type[BaseModel], prefix: tuple[str, ...] = ()
+) -> ValueError:
     """Turns pydantic's report into a ValueError with one line per fault.
 
     Args:
         error: The report of a failed ``model_validate``.
         source_of: Names the file or argument that a location in the configuration came from.
         model: What it was validated against.
+        prefix: Where the model stands in the whole configuration.
     """
-    return ValueError("\n".join(f"{source_of(e['loc'])}: {_describe(e, model)}" for e in error.errors()))
+    faults = error.errors()
+    return ValueError("\n".join(f"{source_of(e['loc'])}: {_describe(e, model, prefix)}" for e in faults))
 
 
-def _describe(error: ErrorDetails, model: type[BaseModel]) -> str:
+def _describe(error: ErrorDetails, model: type[BaseModel], prefix: tuple[str, ...]) -> str:
     location = error["loc"]
-    dotted = ".".join(str(part) for part in location)
+    dotted = ".".join(str(part) for part in (*prefix, *location))
     if location and location[-1] == "[key]":
-        return f"{'.'.join(map(str, location[:-2]))}: names must be text, got {error['input']!r}"
+        return f"{'.'.join(map(str, (*prefix, *location[:-2])))}: names must be text, got {error['input']!r}"
     if error["type"] in ("extra_forbidden", "invalid_key"):
         options = _Schema(model).options(_Schema(model).at(location[:-1]))
         keys = [key for option in options for key in option.get("properties", ())]

@@ -1,7 +1,7 @@
 """Defaults, a sensor preset and the user's overrides become one validated configuration."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,6 @@ from typing import Any
 from pydantic import ValidationError
 
 from slipgym.config import files
-from slipgym.config.assembly import config_model, tasks
 from slipgym.config.errors import SourceOf, explain, unknown
 from slipgym.config.randomization import Randomization
 from slipgym.config.root import Config
@@ -20,11 +19,12 @@ Overrides = str | os.PathLike[str] | Mapping[str, Any]
 def load(
     overrides: Overrides | None = None, sensors: str = "realistic", contact: str | None = None
 ) -> Config:
-    """Loads the configuration of an environment.
+    """Loads the configuration of an environment, without the settings of its task.
 
     Args:
         overrides: What differs from the defaults, as a mapping or as the path of a YAML file; merged into
-            them key by key, at every depth. Lists are replaced as a whole.
+            them key by key, at every depth. Lists are replaced as a whole. A group "tasks" is left to
+            `slipgym.tasks.configure`.
         sensors: The sensor preset to start from, one of ``names("sensors")``.
         contact: The friction model to start from, "ellipsoid" or "distributed"; None: the default one.
 
@@ -36,29 +36,38 @@ def load(
     if sensors not in names("sensors"):
         raise ValueError(unknown("sensors", sensors, names("sensors")))
     defaults, sources = _files(sensors)
-    own = {key: task.defaults_with_scales for key, task in tasks().items()}
-    defaults = {**defaults, "tasks": _merge(own, defaults.get("tasks", {}))}
     config = _validate(defaults, lambda location: sources.get(location[0] if location else "", "defaults"))
     if contact is not None:
-        defaults = _merge(defaults, {"contact": {"model": contact}})
+        defaults = merge(defaults, {"contact": {"model": contact}})
         config = _validate(defaults, lambda _: "contact argument")
     if overrides is None:
         return config
+    source, values = read_overrides(overrides)
+    common = {key: value for key, value in values.items() if key != "tasks"}
+    return _validate(merge(defaults, common), lambda _: source)
+
+
+def read_overrides(overrides: Overrides) -> tuple[str, Mapping[str, Any]]:
+    """Where overrides come from, for messages, and what they are.
+
+    Raises:
+        FileNotFoundError: The overrides' file does not exist.
+        ValueError: They are neither a mapping nor a path.
+    """
     if isinstance(overrides, Mapping):
-        source = "config argument"
-    elif isinstance(overrides, str | os.PathLike):
-        source, overrides = os.fspath(overrides), files.read(Path(overrides))
-    else:
-        raise ValueError(f"config argument: must be a mapping or a path, got {overrides!r}")
-    return _validate(_merge(defaults, overrides), lambda _: source)
+        return "config argument", overrides
+    if isinstance(overrides, str | os.PathLike):
+        return os.fspath(overrides), files.read(Path(overrides))
+    raise ValueError(f"config argument: must be a mapping or a path, got {overrides!r}")
 
 
-def load_randomization(choice: Overrides = "none") -> Randomization:
-    """Loads what is drawn per episode.
+def load_randomization(choice: Overrides = "none", tasks: Iterable[str] | None = None) -> Randomization:
+    """Loads what is sampled anew in every episode.
 
     Args:
         choice: A preset, one of ``names("randomization")``, the path of a YAML file, or a mapping of the same
             shape.
+        tasks: Keys that the group "tasks" may have; None: any.
 
     Raises:
         FileNotFoundError: The file does not exist.
@@ -81,7 +90,7 @@ def load_randomization(choice: Overrides = "none") -> Randomization:
             f"presets: {', '.join(names('randomization'))}"
         )
     try:
-        return Randomization.model_validate(values)
+        return Randomization.model_validate(values, context={"tasks": tasks})
     except ValidationError as error:
         raise explain(error, lambda _: source, Randomization) from error
 
@@ -111,19 +120,19 @@ def _files(sensors: str) -> tuple[dict[str, Any], dict[str | int, str]]:
     return values, {key: str(files.folder() / name) for key, name in sources.items()}
 
 
-def _merge(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+def merge(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """A mapping with another merged into it, key by key, at every depth."""
     merged = dict(base)
     for key, value in overrides.items():
         if isinstance(value, Mapping):
             old = merged.get(key)
-            value = _merge(old if isinstance(old, Mapping) else {}, value)
+            value = merge(old if isinstance(old, Mapping) else {}, value)
         merged[key] = value
     return merged
 
 
 def _validate(values: dict[str, Any], source_of: SourceOf) -> Config:
-    model = config_model()
     try:
-        return model.model_validate(values)
+        return Config.model_validate(values)
     except ValidationError as error:
-        raise explain(error, source_of, model) from error
+        raise explain(error, source_of, Config) from error

@@ -35,9 +35,9 @@ class ContactConfig(Frozen):
     patch with another r than that of the whole pad is smaller in proportion.
     """
 
-    model: Literal["ellipsoid", "distributed"] = Field(description="Friction model of the pads: a name [-]")
+    model: Literal["ellipsoid", "distributed"] = Field(description="Friction model of the pads: a name")
     pressure: Literal["uniform", "hertz", "rim"] = Field(
-        description="Pressure over the patch: constant, Hertz's, or on its edge alone [-]"
+        description="Pressure over the patch: constant, Hertz's, or on its edge alone"
     )
     cells: int = Field(
         ge=2,

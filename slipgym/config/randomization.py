@@ -6,9 +6,8 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
-from slipgym.config.assembly import tasks
 from slipgym.config.base import Frozen, as_tuple
 from slipgym.config.distribution import Distribution, within
 from slipgym.config.disturbances import AnyDisturbance
@@ -26,16 +25,16 @@ class Ranges(Frozen):
     """What is drawn; a field that is null or left out stays what the configuration says."""
 
     materials: Names | None = Field(
-        default=None, description="Materials to draw from, if no other friction is [-]"
+        default=None, description="Materials to draw from, if no other friction is"
     )
     mu_c: Annotated[Distribution | None, within(0.01, 5.0)] = Field(
-        default=None, description="Coulomb friction, whatever the material [-]"
+        default=None, description="Coulomb friction, whatever the material"
     )
     mu_s: Annotated[Distribution | None, within(0.01, 5.0)] = Field(
-        default=None, description="Static friction; not below mu_c [-]"
+        default=None, description="Static friction; not below mu_c"
     )
     friction_ratio: Annotated[Distribution | None, within(1.0, 5.0)] = Field(
-        default=None, description="Static over Coulomb friction, instead of mu_s [-]"
+        default=None, description="Static over Coulomb friction, instead of mu_s"
     )
     friction_drift: Annotated[Distribution | None, within(-1.0, 1.0)] = Field(
         default=None, description="Relative rate at which both change [1/s]"
@@ -47,20 +46,20 @@ class Ranges(Frozen):
         default=None, description="Bristle stiffness [1/m]"
     )
     radius_scale: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
-        default=None, description="Contact radius r over the task's [-]"
+        default=None, description="Contact radius r over the task's"
     )
-    pressure: Pressures | None = Field(default=None, description="Pressures over the patch to draw from [-]")
+    pressure: Pressures | None = Field(default=None, description="Pressures over the patch to draw from")
     mass_scale: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
-        default=None, description="Object's mass over the task's [-]"
+        default=None, description="Object's mass over the task's"
     )
     size_scale: Annotated[Distribution | None, within(0.5, 2.0)] = Field(
-        default=None, description="Object's extents along x and z, grasp included, over the task's [-]"
+        default=None, description="Object's extents along x and z, grasp included, over the task's"
     )
     com_x: Annotated[Distribution | None, within(-0.4, 0.4)] = Field(
-        default=None, description="Centre of mass along x off the task's, over the extent [-]"
+        default=None, description="Centre of mass along x off the task's, over the extent"
     )
     com_z: Annotated[Distribution | None, within(-0.4, 0.4)] = Field(
-        default=None, description="Centre of mass along z off the task's, over the extent [-]"
+        default=None, description="Centre of mass along z off the task's, over the extent"
     )
     lag: Annotated[Distribution | None, within(0.0, 0.2)] = Field(
         default=None, description="Time constant of the force loop [s]"
@@ -69,17 +68,17 @@ class Ranges(Frozen):
         default=None, description="Dead time of the force loop [s]"
     )
     noise_scale: Annotated[Distribution | None, within(0.0, 10.0)] = Field(
-        default=None, description="White noise of all sensors over the configured [-]"
+        default=None, description="White noise of all sensors over the configured"
     )
     bias_scale: Annotated[Distribution | None, within(0.0, 100.0)] = Field(
         default=None,
-        description="Spread of force and torque biases beyond the configured, over the configured noise [-]",
+        description="Spread of force and torque biases beyond the configured, over the configured noise",
     )
     slip_latency: Annotated[Distribution | None, within(0.0, 6.0)] = Field(
         default=None, description="Age of a slip velocity when it arrives, rounded [samples]"
     )
     disturbances: Annotated[tuple[AnyDisturbance, ...], BeforeValidator(as_tuple)] = Field(
-        default=(), description="What can happen during an episode [-]"
+        default=(), description="What can happen during an episode"
     )
 
     @model_validator(mode="after")
@@ -104,13 +103,13 @@ class Ranges(Frozen):
 class Randomization(Ranges):
     """Ranges for all tasks, and what differs from them in single tasks."""
 
-    tasks: Mapping[str, Ranges] = Field(default={}, description="Fields that differ, by task [-]")
+    tasks: Mapping[str, Ranges] = Field(default={}, description="Fields that differ, by task")
 
     @model_validator(mode="after")
-    def _tasks_exist(self) -> Self:
-        known = tasks()
+    def _tasks_exist(self, info: ValidationInfo) -> Self:
+        known = (info.context or {}).get("tasks")
         for name in self.tasks:
-            if name not in known:
+            if known is not None and name not in known:
                 raise ValueError(unknown("task", name, known))
             self.of(name)
         return self

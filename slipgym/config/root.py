@@ -1,7 +1,7 @@
 """The whole configuration of an environment."""
 
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Self
 
 from pydantic import Field, model_validator
 
@@ -9,29 +9,22 @@ from slipgym.config.base import Frozen
 from slipgym.config.hardware import GripperConfig, ObjectConfig
 from slipgym.config.physics import ContactConfig, Material, NominalConfig, PhysicsConfig
 from slipgym.config.sensors import SensorsConfig
-from slipgym.config.tasks import TasksConfig
 from slipgym.contact.pressure import OUTER_RADII
 
 
 class Config(Frozen):
-    """Everything that an environment can be told.
+    """Gripper, object, friction, sensors and rates of an environment; defaults are in ``configs/``.
 
-    The defaults live in ``configs/``, those of a task in its file. `config_model` adds the tasks' settings.
+    A task's own settings are no part of it: see `slipgym.tasks.configure`.
     """
 
-    gripper: GripperConfig = Field(description="The gripper [-]")
-    object: ObjectConfig = Field(description="The object in the grip [-]")
-    contact: ContactConfig = Field(description="The friction model [-]")
-    materials: Mapping[str, Material] = Field(description="Friction coefficients, by the material's name [-]")
-    nominal: NominalConfig = Field(description="The friction that controllers may assume [-]")
-    physics: PhysicsConfig = Field(description="Gravity and rates [-]")
-    sensors: SensorsConfig = Field(description="The sensors of each finger [-]")
-    tasks: TasksConfig = Field(description="Parameters of the tasks [-]")
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        from slipgym.config.assembly import restored  # which imports this file
-
-        return restored, (self.model_dump(mode="json"),)
+    gripper: GripperConfig = Field(description="The gripper")
+    object: ObjectConfig = Field(description="The object in the grip")
+    contact: ContactConfig = Field(description="The friction model")
+    materials: Mapping[str, Material] = Field(description="Friction coefficients, by the material's name")
+    nominal: NominalConfig = Field(description="The friction that controllers may assume")
+    physics: PhysicsConfig = Field(description="Gravity and rates")
+    sensors: SensorsConfig = Field(description="The sensors of each finger")
 
     @model_validator(mode="after")
     def _rates_fit(self) -> Self:
@@ -60,28 +53,15 @@ class Config(Frozen):
                 f"must be at most {pad / OUTER_RADII[pressure]:g} m"
             )
 
-    @model_validator(mode="after")
-    def _contact_fits_pad(self) -> Self:
-        radii = {f"tasks.{name}.radius": task.radius for name, task in self.tasks}
-        for name, radius in {"contact.radius": self.contact_radius, **radii}.items():
-            if radius is None:
-                continue
-            if radius > self.gripper.pad_radius:
-                raise ValueError(
-                    f"{name} must not exceed gripper.pad_radius, "
-                    f"got {radius:g} and {self.gripper.pad_radius:g} m"
-                )
-            self.check_patch(name, radius)
-        return self
+    def check_radius(self, name: str, r: float) -> None:
+        """Raise ValueError if the pad has no room for a contact radius r [m]; `name` says whose it is."""
+        if r > self.gripper.pad_radius:
+            raise ValueError(
+                f"{name} must not exceed gripper.pad_radius, got {r:g} and {self.gripper.pad_radius:g} m"
+            )
+        self.check_patch(name, r)
 
     @model_validator(mode="after")
-    def _initial_forces_in_range(self) -> Self:
-        low, high = self.gripper.force_min, self.gripper.force_max
-        for name, task in self.tasks:
-            force = task.initial_force
-            if not low <= force <= high:
-                raise ValueError(
-                    f"tasks.{name}.initial_force must lie within the gripper's {low:g} to {high:g} N, "
-                    f"got {force:g} N"
-                )
+    def _contact_fits_pad(self) -> Self:
+        self.check_radius("contact.radius", self.contact_radius)
         return self

@@ -33,7 +33,7 @@ class SlipConfig(Frozen):
 
     rate: Count = Field(description="Samples per second; one per control step [Hz]")
     counts: bool = Field(
-        description="Whether the chips report whole counts; if not, exact motion: true or false [-]"
+        description="Whether the chips report whole counts; if not, exact motion: true or false"
     )
     count: Positive = Field(description="Motion per count [m]")
     chip_radius: Positive = Field(description="Distance of the chips from the pad's centre [m]")
@@ -47,5 +47,5 @@ class SlipConfig(Frozen):
 class SensorsConfig(Frozen):
     """The sensors of each finger."""
 
-    force_torque: ForceTorqueConfig = Field(description="Force/torque sensor [-]")
-    slip: SlipConfig = Field(description="Slip-velocity sensor [-]")
+    force_torque: ForceTorqueConfig = Field(description="Force/torque sensor")
+    slip: SlipConfig = Field(description="Slip-velocity sensor")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.config import Config, Randomization
+from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import interpret
 from slipgym.envs.guard import Guard
 from slipgym.envs.observation import Sight, combine, observe
@@ -26,6 +26,7 @@ class BulletSimulation(Simulation):
 
     Args:
         config: As of `Simulation`, like the others.
+        settings: The task's settings.
         task: The task.
         estimator: The estimator.
         randomization: What is drawn.
@@ -37,11 +38,12 @@ class BulletSimulation(Simulation):
     def __init__(
         self,
         config: Config,
+        settings: TaskConfig,
         task: Task,
         estimator: str | Mapping[str, Any],
         randomization: Randomization | None = None,
     ) -> None:
-        super().__init__(config, task, estimator, randomization)
+        super().__init__(config, settings, task, estimator, randomization)
         self.world = BulletWorld(config, self.plant)
         self._guard = Guard()
         self._wrench_rows, self._twist_rows = self.wrenches.reshape(2, 4), self.twists.reshape(2, 3)
@@ -102,7 +104,7 @@ class BulletSimulation(Simulation):
             self._advance(force)
         open_episodes(starts, *self._fresh, *self._opened, self.told.terms)
         combine(self.estimator.estimates, self.per_finger, self.estimated)
-        self.task.judge(episode, self.plant.world, self.plant.fingers, self.task_part)
+        self.task.evaluate_step(episode, self.plant.world, self.plant.fingers, self.task_part)
         self._tell()
 
     def _sample(self) -> None:
@@ -111,12 +113,12 @@ class BulletSimulation(Simulation):
         begin_step(episode, self.commands)
         disturb(episode, plant.world, plant.pads, self.truth)
         self.world.weigh()
-        self.task.plan(episode, plant.world)
+        self.task.script_wrist(episode, plant.world)
         self._advance(self.commands.item(0))
         episode["step"] += 1
         self.estimator.update(self.time, self._wrench_rows, self._twist_rows)
         combine(self.estimator.estimates, self.per_finger, self.estimated)
-        self.task.judge(episode, plant.world, plant.fingers, self.task_part)
+        self.task.evaluate_step(episode, plant.world, plant.fingers, self.task_part)
         arrays = plant.world, plant.pads, plant.fingers, self.wrenches, self.twists, self.per_finger, episode
         try:
             self._guard.watch(self.time, 0, *arrays)

@@ -160,7 +160,7 @@ def _observation(config: Config, task: Task) -> str:
 def _rewards(task: Task) -> str:
     where = f"`tasks.{task.key}.reward` in the configuration"
     head = textwrap.fill(f"The sum of these terms, each times its scale ({where}), per sample:", 106)
-    rows = [(f"`{term.name}`", f"{term.scale:g}", term.meaning) for term in task.reward]
+    rows = [(f"`{term.name}`", f"{term.scale:g}", term.meaning) for term in task.terms]
     return f"{head}\n\n{_table(('Term', 'Scale', 'Value before scaling'), rows)}"
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.config import Config, Material, Randomization, Ranges
+from slipgym.config import Config, Material, Randomization, Ranges, TaskConfig
 from slipgym.config.disturbances import AnyDisturbance
 from slipgym.config.errors import unknown
 from slipgym.envs.equipment import with_pressure
@@ -94,7 +94,8 @@ class Randomizer:
 
     Args:
         config: The environment's configuration.
-        task: Key of the task in it.
+        settings: The task's settings.
+        task: Its key.
         randomization: What is drawn.
 
     Attributes:
@@ -106,7 +107,7 @@ class Randomizer:
         ValueError: A material is unknown, or the pads have no room for the largest contact radius.
     """
 
-    def __init__(self, config: Config, task: str, randomization: Randomization) -> None:
+    def __init__(self, config: Config, settings: TaskConfig, task: str, randomization: Randomization) -> None:
         self._ranges = randomization.of(task)
         self._nominal = nominal_values(config)
         self.active = self._ranges != Ranges()
@@ -125,9 +126,8 @@ class Randomizer:
         for material in self._ranges.materials or ():
             if material not in config.materials:
                 raise ValueError(f"randomization: {unknown('material', material, config.materials)}")
-        own = getattr(config.tasks, task).radius
         for variant in self._configs.values():
-            r = self.most["radius_scale"] * (own or variant.contact_radius)
+            r = self.most["radius_scale"] * (settings.radius or variant.contact_radius)
             if self.active:
                 _check_radius(variant, r)
 

@@ -9,7 +9,7 @@ import numpy as np
 from slipgym.config import Config
 from slipgym.config.errors import unknown
 from slipgym.config.hardware import box_inertia
-from slipgym.config.tasks import TaskConfig
+from slipgym.config.task import TaskConfig
 from slipgym.envs.draw import Draw
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.world.scene import Box
@@ -116,13 +116,13 @@ def _check_inside(
         )
 
 
-def choose_force(config: Config, options: EpisodeOptions, task: TaskConfig) -> float:
+def checked_force(config: Config, settings: TaskConfig) -> float:
     """Grip force per finger at reset [N].
 
     Raises:
         ValueError: The gripper's force loop cannot hold it.
     """
-    gripper, force = config.gripper, options.choose("initial_force", task)
+    gripper, force = config.gripper, settings.initial_force
     if not gripper.force_min <= force <= gripper.force_max:
         raise ValueError(
             f"option initial_force = {force:g} N must lie within the gripper's "

@@ -24,7 +24,7 @@ class Information:
     """
 
     def __init__(self, simulation: Simulation) -> None:
-        self._simulation, self._terms = simulation, simulation.task.terms
+        self._simulation, self._terms = simulation, simulation.task.term_names
         self._rooms = Rooms(simulation.n, self._terms)
 
     def one(self, i: int) -> dict[str, Any]:

@@ -149,7 +149,7 @@ def _friction_part(simulation: Simulation, source: str) -> np.ndarray:
     if source in ("estimated", "true"):
         return simulation.estimated if source == "estimated" else simulation.truth
     nominal = simulation.config.nominal
-    radius = getattr(simulation.config.tasks, simulation.task.key).radius or nominal.r
+    radius = simulation.settings.radius or nominal.r
     return np.tile([nominal.mu_s, nominal.mu_c, radius, 1.0, 1.0, 1.0], (simulation.n, 1))
 
 

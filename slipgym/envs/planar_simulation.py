@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from estimator.registry import specification
-from slipgym.config import Config, Randomization
+from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.guard import Guard
 from slipgym.envs.observation import Sight
 from slipgym.envs.planar_step import compiled_batch
@@ -22,6 +22,7 @@ class PlanarSimulation(Simulation):
 
     Args:
         config: As of `Simulation`, like the others.
+        settings: The task's settings.
         task: The task.
         estimator: The estimator.
         randomization: What is drawn.
@@ -38,13 +39,14 @@ class PlanarSimulation(Simulation):
     def __init__(
         self,
         config: Config,
+        settings: TaskConfig,
         task: Task,
         estimator: str | Mapping[str, Any],
         randomization: Randomization | None = None,
         n: int = 1,
         threads: int | None = None,
     ) -> None:
-        super().__init__(config, task, estimator, randomization, n)
+        super().__init__(config, settings, task, estimator, randomization, n)
         self._threads = Threads(n, threads)
         self._closed, self.tells_all = False, True
         self._blank()

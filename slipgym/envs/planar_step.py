@@ -223,7 +223,7 @@ def compiled_batch(
     plan = types.void(episode, world)
     judge = types.void(episode, world, finger, f2)
     learn = types.void(state, parameter, types.float64, f2, f2, estimate)
-    for function, signature in ((task.plan, plan), (task.judge, judge)):
+    for function, signature in ((task.script_wrist, plan), (task.evaluate_step, judge)):
         function.compile(signature)
     cells = types.Array(types.float64, 4, "C") if patches else types.none
     arrays = types.Tuple([
@@ -246,7 +246,8 @@ def compiled_batch(
         _drive.compile(drive)
         _start.compile(start)
         pointers = [
-            Pointer(*function) for function in ((task.plan, plan), (task.judge, judge), (update, learn))
+            Pointer(*function)
+            for function in ((task.script_wrist, plan), (task.evaluate_step, judge), (update, learn))
         ]
     return (
         partial(_drive.overloads[drive.args].entry_point, *pointers),

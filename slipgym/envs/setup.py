@@ -6,14 +6,15 @@ import os
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from slipgym.config import Config, Randomization, load, load_randomization
+from slipgym.config import Config, Randomization, TaskConfig, load_randomization
 from slipgym.envs.actions import ACTION_MODES, Actions
 from slipgym.envs.choices import DEFAULT_ESTIMATOR, one_of, whole
 from slipgym.envs.observer import Observer
 from slipgym.envs.simulation import Simulation
-from slipgym.tasks import Task
+from slipgym.tasks import TASKS, Task, configure
+from slipgym.tasks.configure import recorded
 
-MakeSimulation = Callable[[Config, Task, Any, Randomization], Simulation]
+MakeSimulation = Callable[[Config, TaskConfig, Task, Any, Randomization], Simulation]
 
 
 class Setup:
@@ -36,6 +37,7 @@ class Setup:
 
     Attributes:
         config: The configuration.
+        settings: The task's settings.
         randomization: What is drawn.
         actions: What actions mean.
         simulation: The simulation.
@@ -64,12 +66,12 @@ class Setup:
     ) -> None:
         one_of("contact", contact, ("ellipsoid", "distributed"))
         action_mode = one_of("action_mode", action_mode or task.action_mode, ACTION_MODES)
-        self.config = load(config, sensors, contact)
-        self.randomization = load_randomization(randomization)
+        self.config, self.settings = configure(task, config, sensors, contact)
+        self.randomization = load_randomization(randomization, [each.key for each in TASKS.values()])
         self.material = one_of("material", material, ("random", *self.config.materials))
         self.frame_skip = whole("frame_skip", frame_skip, 1)
         self.actions = Actions(action_mode, self.config)
-        self.simulation = make_simulation(self.config, task, estimator, self.randomization)
+        self.simulation = make_simulation(self.config, self.settings, task, estimator, self.randomization)
         self.observer = Observer(self.simulation, friction_source, action_mode, observation_mode, history)
         self.arguments: dict[str, Any] = {
             "friction_source": friction_source,
@@ -82,11 +84,5 @@ class Setup:
             "history": history,
             "randomization": self.randomization.model_dump(mode="json", exclude_unset=True),
             "frame_skip": frame_skip,
-            "config": _own(self.config, task.key),
+            "config": recorded(self.config, self.settings, task.key),
         }
-
-
-def _own(config: Config, key: str) -> dict[str, Any]:
-    """A configuration as far as it matters to a task: without the other tasks' settings."""
-    values = config.model_dump(mode="json")
-    return {**values, "tasks": {key: values["tasks"][key]}}

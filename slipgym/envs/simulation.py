@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 import estimator as estimators
-from slipgym.config import Config, Randomization
+from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
 from slipgym.envs.choices import LATENCY, chosen_estimator
 from slipgym.envs.draw import Randomizer
@@ -51,6 +51,7 @@ class Simulation(ABC):
 
     Args:
         config: Configuration.
+        settings: The task's settings.
         task: The task.
         estimator: Name of an estimator, or a mapping with its `name` and parameters.
         randomization: What is drawn per episode; None: nothing.
@@ -77,14 +78,15 @@ class Simulation(ABC):
     def __init__(
         self,
         config: Config,
+        settings: TaskConfig,
         task: Task,
         estimator: str | Mapping[str, Any],
         randomization: Randomization | None = None,
         n: int = 1,
     ) -> None:
-        self.config, self.task, self.n = config, task, n
+        self.config, self.settings, self.task, self.n = config, settings, task, n
         self.plant = build(config, n)
-        randomizer = Randomizer(config, task.key, randomization or Randomization())
+        randomizer = Randomizer(config, settings, task.key, randomization or Randomization())
         equipment = Equipment(config, self.plant, randomizer.pressures)
         equipment.check(randomizer.most)
         self.estimator_choice = chosen_estimator(estimator)
@@ -99,12 +101,12 @@ class Simulation(ABC):
         self.task_part = np.zeros((n, len(task.columns)))
         self.truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
         self.per_finger = np.zeros((n, 2, 3))
-        self.told = Told.zeros(n, len(task.terms))
+        self.told = Told.zeros(n, len(task.term_names))
         bodies = self.plant.world, self.plant.pads, self.plant.fingers
         self._told_from = *bodies, self.episode, self.truth, self.estimated, self.per_finger
         self.step_time = 1.0 / config.physics.control_rate
         told = self.estimator.parameters_array if tells_latency else None
-        self._starter = Starter(config, task, randomizer, equipment, self.episode, told)
+        self._starter = Starter(config, settings, task, randomizer, equipment, self.episode, told)
         self.materials, self.boxes = self._starter.materials, self._starter.boxes
         self.drawn = self._starter.drawn
         plant, learned = self.plant, (self.estimator.states, self.estimator.estimates)

@@ -95,7 +95,8 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             frame_skip,
             config,
         )
-        self.config, self.randomization, self.material = setup.config, setup.randomization, setup.material
+        self.config, self.settings = setup.config, setup.settings
+        self.randomization, self.material = setup.randomization, setup.material
         self.render_mode, self._frame_skip = render_mode, setup.frame_skip
         modes = [mode for mode in self.metadata["render_modes"] if mode != "human" or not obstacle()]
         rate = self.config.physics.control_rate / frame_skip
@@ -155,7 +156,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             self.simulation.check_open()
             raise RuntimeError("call reset() before step()")
         simulation, episode, observer = self.simulation, self.simulation.episode, self._observer
-        total = np.zeros(len(self.task.terms))
+        total = np.zeros(len(self.task.term_names))
         dropped = finished = self._ready = False
         # a picture's strip shows every sample
         at_once = self._frame_skip if self._renderer is None else 1

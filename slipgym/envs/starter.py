@@ -8,10 +8,10 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.config.tasks import TaskConfig
+from slipgym.config.task import TaskConfig
 from slipgym.envs.choices import LATENCY
 from slipgym.envs.draw import Draw, Randomizer
-from slipgym.envs.episode import Friction, choose_force, draw_friction, make_box
+from slipgym.envs.episode import Friction, checked_force, draw_friction, make_box
 from slipgym.envs.equipment import Equipment
 from slipgym.envs.happenings import enter
 from slipgym.envs.start import NUMBERS, START, begin_episode
@@ -30,6 +30,7 @@ class Starter:
 
     Args:
         config: Configuration.
+        settings: The task's settings.
         task: The task.
         randomizer: Of the randomization.
         equipment: Fitted to what it draws.
@@ -46,6 +47,7 @@ class Starter:
     def __init__(
         self,
         config: Config,
+        settings: TaskConfig,
         task: Task,
         randomizer: Randomizer,
         equipment: Equipment,
@@ -55,8 +57,8 @@ class Starter:
         n = len(episode)
         self._config, self._task, self._randomizer = config, task, randomizer
         self._equipment, self._episode, self._parameters = equipment, episode, parameters
-        self._task_config: TaskConfig = getattr(config.tasks, task.key)
-        self._blank = _blank_episode(config, task)
+        self._settings = settings
+        self._blank = _blank_episode(config, settings, task)
         self.materials: list[str] = [""] * n
         self.boxes: list[Any] = [None] * n
         self.drawn: list[dict[str, Any]] = [{} for _ in range(n)]
@@ -76,12 +78,13 @@ class Starter:
         for k, (i, options, rng) in enumerate(rows):
             scale = 1.0 if options.randomization_scale is None else options.randomization_scale
             draw = self._randomizer.draw(rng, scale)
-            friction = draw_friction(self._config, options, self._task_config, material, draw, rng)
-            box = make_box(self._config, options, self._task_config, draw, rng)
-            numbers[k] = self._numbers(i, options, draw, friction, box)
+            settings = options.applied_to(self._settings)
+            friction = draw_friction(self._config, options, settings, material, draw, rng)
+            box = make_box(self._config, options, settings, draw, rng)
+            numbers[k] = self._numbers(i, settings, draw, friction, box)
             begin_episode(self._episode, self._blank, starts, k)
             episode = self._episode[i]
-            self._task.start(self._config, options, rng, episode)
+            self._task.start(settings, options, rng, episode)
             for disturbance, luck in draw.happenings:
                 enter(disturbance, luck, episode)
             rng.standard_normal(out=biases[k])
@@ -90,13 +93,13 @@ class Starter:
         return starts
 
     def _numbers(
-        self, i: int, options: EpisodeOptions, draw: Draw, friction: Friction, box: Box
+        self, i: int, settings: TaskConfig, draw: Draw, friction: Friction, box: Box
     ) -> tuple[Any, ...]:
         """Fields `NUMBERS` of START."""
         pad = self._config.gripper.pad_radius
         return (
             i,
-            choose_force(self._config, options, self._task_config),
+            checked_force(self._config, settings),
             box.mass,
             box.inertia,
             box.size[1] / 2,
@@ -120,14 +123,13 @@ class Starter:
             self._equipment.fit(i, draw.values, draw.config.contact.pressure)
 
 
-def _blank_episode(config: Config, task: Task) -> np.ndarray:
+def _blank_episode(config: Config, settings: TaskConfig, task: Task) -> np.ndarray:
     """What all episodes of a task begin with, EPISODE (1,)."""
     episode = np.zeros(1, EPISODE)
     episode["step_time"] = 1.0 / config.physics.control_rate
     for field in ("force_min", "force_max", "wrist_speed_max", "wrist_pitch_rate_max", "pad_radius"):
         episode[field] = getattr(config.gripper, field)
-    reward = getattr(config.tasks, task.key).reward
-    scales = [getattr(reward, term) for term in task.terms]
+    scales = [settings.reward[term] for term in task.term_names]
     episode["scales"][0, : len(scales)] = scales
     episode["mass_factor"] = episode["jump_factor"] = episode["patch_factor"] = 1.0
     return episode

@@ -13,7 +13,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from slipgym.config import Config, Randomization
+from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.choices import DEFAULT_ESTIMATOR, autoreset, one_of, whole
 from slipgym.envs.information import Information, final
 from slipgym.envs.pictures import Pictures
@@ -87,9 +87,9 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self.num_envs = whole("num_envs", num_envs, 1)
 
         def make_simulation(
-            config: Config, task: Task, estimator: Any, randomization: Randomization
+            config: Config, settings: TaskConfig, task: Task, estimator: Any, randomization: Randomization
         ) -> PlanarSimulation:
-            return PlanarSimulation(config, task, estimator, randomization, num_envs, threads)
+            return PlanarSimulation(config, settings, task, estimator, randomization, num_envs, threads)
 
         setup = Setup(
             self.task,
@@ -107,7 +107,8 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             config,
         )
         assert isinstance(setup.simulation, PlanarSimulation)
-        self.config, self._frame_skip, self._material = setup.config, setup.frame_skip, setup.material
+        self.config, self.settings = setup.config, setup.settings
+        self._frame_skip, self._material = setup.frame_skip, setup.material
         self.simulation, self._actions, self._observer = setup.simulation, setup.actions, setup.observer
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns

@@ -1,6 +1,8 @@
 """The tasks, one file each."""
 
+from slipgym.config.task import Option, TaskConfig, setting
+from slipgym.tasks.configure import configure
 from slipgym.tasks.table import TASKS, find
-from slipgym.tasks.task import Column, Task, Term
+from slipgym.tasks.task import Column, Task, Term, term
 
-__all__ = ["TASKS", "Column", "Task", "Term", "find"]
+__all__ = ["TASKS", "Column", "Option", "Task", "TaskConfig", "Term", "configure", "find", "setting", "term"]

@@ -3,19 +3,39 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections import namedtuple
+from typing import Any, Protocol
 
 import numpy as np
 
 from slipgym._numba.compiled import compiled
 from slipgym.tasks.disturbance import FIELDS, shake_velocity
-from slipgym.tasks.options import EpisodeOptions
 from slipgym.world.wrist import ramp_wrist
 
 TERMS_MAX = 8
 """Reward terms that a task can have."""
 OWN_MAX = 8
 """Numbers that a task can keep beside what all tasks have."""
+
+
+class TimedSettings(Protocol):
+    """Settings of a task that settles, follows a reference and holds."""
+
+    @property
+    def settle(self) -> float:
+        """Time before the motion [s]."""
+        ...
+
+    @property
+    def duration(self) -> float:
+        """Time for the motion [s]."""
+        ...
+
+    @property
+    def hold(self) -> float:
+        """Time after the motion [s]."""
+        ...
+
 
 EPISODE = np.dtype(
     [
@@ -47,7 +67,7 @@ EPISODE = np.dtype(
         ("goal", "f8"),  # where it ends [m or rad]
         ("duration", "f8"),  # [s]
         ("settle", "f8"),  # [s]
-        ("own", "f8", OWN_MAX),  # whatever else a task keeps, zero before its start
+        ("own", "f8", OWN_MAX),  # what else a task keeps, named by `scratch`; zero before its start
         *FIELDS,
     ],
     align=True,
@@ -55,11 +75,32 @@ EPISODE = np.dtype(
 """One episode: clock, reference, reward terms, outcome and the tasks' own parameters."""
 
 
-def schedule(options: EpisodeOptions, task: Any, episode: np.void) -> None:
+def scratch(**sizes: int) -> Any:
+    """Names for the numbers of `episode.own`, in which a task keeps what has no field of its own.
+
+    `SCRATCH = scratch(target=3, rest_speed=1)` gives `SCRATCH.target`, the slice of the first three numbers,
+    and `SCRATCH.rest_speed`, the index of the fourth; both work in Python and in compiled functions:
+    `episode.own[SCRATCH.rest_speed]`. All numbers are zero before the task's `start`.
+
+    Args:
+        **sizes: Name -> how many numbers.
+
+    Raises:
+        ValueError: A size is below 1, or there are more than `OWN_MAX` numbers.
+    """
+    if min(sizes.values(), default=1) < 1 or sum(sizes.values()) > OWN_MAX:
+        raise ValueError(f"scratch sizes {sizes} must be at least 1 each and {OWN_MAX} together at most")
+    places, end = {}, 0
+    for name, size in sizes.items():
+        places[name] = end if size == 1 else slice(end, end + size)
+        end += size
+    return namedtuple("Scratch", places)(**places)
+
+
+def schedule(settings: TimedSettings, episode: np.void) -> None:
     """Fill in settle, duration and length of an episode that settles, follows a reference and holds."""
-    settle, duration = options.choose("settle", task), options.choose("duration", task)
-    episode["settle"], episode["duration"] = settle, duration
-    total = settle + duration + options.choose("hold", task)
+    episode["settle"], episode["duration"] = settings.settle, settings.duration
+    total = settings.settle + settings.duration + settings.hold
     episode["steps"] = max(1, round(total / episode["step_time"].item()))
 
 
@@ -116,24 +157,15 @@ def detect_drop(episode, world, fingers):
 
 
 @compiled
-def note_slip(episode, world):
-    """Distance of the object from the grasp at the pad centre [m]; the largest is kept."""
-    slip = math.hypot(world.slip[0], world.slip[1])
-    episode.largest_slip = max(episode.largest_slip, slip)
-    return slip
+def slip_distance(world):
+    """Distance of the object from the grasp at the pad centre [m]."""
+    return math.hypot(world.slip[0], world.slip[1])
 
 
 @compiled
-def effort(episode, fingers):
-    """Mean actuator force of both fingers over the end of the action's range [-]."""
-    return 0.5 * (fingers[0].force + fingers[1].force) / episode.force_max
-
-
-@compiled
-def roughness(episode):
-    """Squared change of the command over the end of the action's range [-]."""
-    change = (episode.command - episode.last_command) / episode.force_max
-    return change * change
+def track_slip(episode, world):
+    """Keep the largest slip at the pad centre."""
+    episode.largest_slip = max(episode.largest_slip, slip_distance(world))
 
 
 @compiled
@@ -161,3 +193,12 @@ def trapezoid(t, distance, duration):
         left = duration - t
         return distance - 0.5 * acceleration * left * left, acceleration * left, -acceleration
     return distance, 0.0, 0.0
+
+
+@compiled
+def follow_trapezoid(episode):
+    """Write the trapezoidal reference of this moment, over `duration` after `settle`, to `goal`."""
+    time = episode.step * episode.step_time
+    reference = trapezoid(time - episode.settle, episode.goal, episode.duration)
+    for k in range(3):
+        episode.reference[k] = reference[k]

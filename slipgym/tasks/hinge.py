@@ -52,168 +52,128 @@ slid further than `slide_tolerance` (2 mm) at the pad centre and never tilted by
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
 
 from slipgym._numba.compiled import compiled
-from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
+from slipgym.config.hardware import ObjectConfig
+from slipgym.config.task import InitialForce, TaskConfig, TaskObject, TaskRadius, setting
 from slipgym.tasks.disturbance import shake_velocity
-from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness, schedule, trapezoid
+from slipgym.tasks.episode import schedule, scratch, slip_distance, track_slip, trapezoid
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
+from slipgym.tasks.task import Column, Task, term
+from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
 
-_SCRIPTED_PITCH = 0  # place in the episode's own numbers: of the wrist, as the script alone turns it [rad]
+SCRATCH = scratch(scripted_pitch=1)
+"""`scripted_pitch`: pitch of the wrist as the script alone turns it [rad]."""
 
 
 class Settings(TaskConfig):
     """The object hangs upright between the pads while the wrist pitches."""
 
-    turn: Positive = Field(description="Angle by which the wrist pitches [rad]")
-    duration: Positive = Field(description="Time for it [s]")
-    settle: NonNegative = Field(description="Time before the wrist moves [s]")
-    hold: NonNegative = Field(description="Time after it has moved [s]")
-    slide_tolerance: Positive = Field(description="Largest slip at the pad centre for success [m]")
-    tilt_tolerance: Positive = Field(description="Largest tilt of the object for success [rad]")
+    turn: Annotated[Positive, setting("Angle by which the wrist pitches", "rad", reset=True, le=3.0)] = 1.0472
+    direction: Annotated[
+        Literal[-1, 1] | None, setting("Sign of the turn, 1 or -1; null: drawn at random", reset=True)
+    ] = None
+    duration: Annotated[Positive, setting("Time for the turn", "s", reset=True, le=120.0)] = 5.0
+    settle: Annotated[NonNegative, setting("Time held before the turn", "s", reset=True, le=60.0)] = 0.5
+    hold: Annotated[NonNegative, setting("Time held after the turn", "s", reset=True, le=60.0)] = 1.0
+    slide_tolerance: Annotated[Positive, setting("Largest slip for success", "m", reset=True)] = 0.002
+    tilt_tolerance: Annotated[Positive, setting("Largest tilt for success", "rad", reset=True)] = 0.0873
+    initial_force: InitialForce = 5.0
+    object: TaskObject = ObjectConfig(
+        mass=0.2, size=(0.05, 0.03, 0.25), com_offset=(0.0, 0.0), inertia=None, grasp_offset=(0.0, 0.1)
+    )
+    radius: TaskRadius = 0.003  # a rounded fingertip: see docs/environments/hinge.md
 
 
-DEFAULTS = {
-    "turn": 1.0472,  # 60 degrees
-    "duration": 5.0,
-    "settle": 0.5,
-    "hold": 1.0,
-    "slide_tolerance": 0.002,
-    "tilt_tolerance": 0.0873,  # 5 degrees
-    "initial_force": 5.0,
-    "object": {
-        "mass": 0.2,
-        "size": [0.05, 0.03, 0.25],
-        "com_offset": [0.0, 0.0],
-        "inertia": None,
-        "grasp_offset": [0.0, 0.1],
-    },
-    "radius": 0.003,  # a rounded fingertip: see docs/environments/hinge.md
-}
-REWARD = (
-    Term("still", 1.0, "exp(-(s / slide_tolerance)^2), s = slip at the pad centre"),
-    Term(
-        "upright", 1.0, "exp(-(tilt / tilt_tolerance)^2), tilt = turn of the box since reset or, if larger, e"
-    ),
-    Term("effort", 0.1, EFFORT),
-    Term("smoothness", 0.1, SMOOTHNESS),
-    Term("drop", 100.0, DROP),
-)
-COLUMNS = (
-    Column("wrist_pitch", -10.0, 10.0, "rad", "pitch of the wrist since the start"),
-    Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "its rate"),
-    Column("wrist_pitch_acceleration", -100.0, 100.0, "rad/s^2", "its second rate"),
-    Column("wrist_pitch_goal", -10.0, 10.0, "rad", "pitch at the end of the turn"),
-    Column("time_left", 0.0, 1000.0, "s", "time until the episode ends"),
-)
-
-
-class Options(EpisodeOptions):
-    """What `reset(options=...)` can fix."""
-
-    turn: Positive | None = Field(default=None, le=3.0, description="Angle by which the wrist pitches [rad]")
-    direction: Literal[-1, 1] | None = Field(default=None, description="Its sign, 1 or -1 [-]")
-    duration: Positive | None = Field(default=None, le=120.0, description="Time for the turn [s]")
-    settle: NonNegative | None = Field(default=None, le=60.0, description="Time held before the turn [s]")
-    hold: NonNegative | None = Field(default=None, le=60.0, description="Time held after the turn [s]")
-    slide_tolerance: Positive | None = Field(default=None, description="Largest slip for success [m]")
-    tilt_tolerance: Positive | None = Field(default=None, description="Largest tilt for success [rad]")
-
-
-def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
-    """Fill one EPISODE row; the direction of the turn is drawn.
+def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
+    """Fill one EPISODE row; the direction of the turn is drawn at random.
 
     Raises:
         ValueError: The wrist cannot turn so fast.
     """
-    task = config.tasks.hinge
-    schedule(options, task, episode)
-    turn, fastest = options.choose("turn", task), config.gripper.wrist_pitch_rate_max
+    schedule(settings, episode)
+    turn, fastest = settings.turn, episode["wrist_pitch_rate_max"]
     rate = trapezoid(0.5 * episode["duration"], turn, episode["duration"])[1]
     if rate > fastest:
         raise ValueError(
             f"a turn of {turn:g} rad in duration = {episode['duration']:g} s needs {rate:.3g} rad/s; "
             f"gripper.wrist_pitch_rate_max is {fastest:g} rad/s"
         )
-    drawn = (-1, 1)[rng.integers(2)]  # drawn always, so that options do not shift later draws
-    episode["goal"] = turn * (getattr(options, "direction", None) or drawn)
-    for field in ("slide_tolerance", "tilt_tolerance"):
-        episode[field] = options.choose(field, task)
+    random = (-1, 1)[rng.integers(2)]  # drawn always, so that options do not shift later draws
+    episode["goal"] = turn * (settings.direction or random)
+    episode["slide_tolerance"], episode["tilt_tolerance"] = settings.slide_tolerance, settings.tilt_tolerance
+
+
+def wrist_velocity(episode, world):
+    """The wrist pitches along a trapezoid; where the script alone would bring it is kept."""
+    time = (episode.step + 1) * episode.step_time - episode.settle
+    last = trapezoid(time - episode.step_time, episode.goal, episode.duration)[1]
+    rate = trapezoid(time, episode.goal, episode.duration)[1]
+    shaken = shake_velocity(episode, 2, episode.step * episode.step_time)
+    shaken += shake_velocity(episode, 2, (episode.step + 1) * episode.step_time)
+    episode.own[SCRATCH.scripted_pitch] += 0.5 * (last + rate + shaken) * episode.step_time
+    return 0.0, 0.0, rate
+
+
+def track(episode, world):
+    """The reference is the wrist's pitch; the largest slip and tilt are kept."""
+    episode.reference[0] = world.wrist[2]
+    episode.reference[1] = world.wrist_velocity[2]
+    episode.reference[2] = world.wrist_acceleration[2]
+    track_slip(episode, world)
+    episode.largest_tilt = max(episode.largest_tilt, tilt(episode, world))
 
 
 @compiled
-def plan(episodes, worlds):
-    """Before a control step: the wrist's motion over the coming step."""
-    for i in range(episodes.shape[0]):
-        episode, world = episodes[i], worlds[i]
-        time = (episode.step + 1) * episode.step_time - episode.settle
-        last = trapezoid(time - episode.step_time, episode.goal, episode.duration)[1]
-        rate = trapezoid(time, episode.goal, episode.duration)[1]
-        shaken = shake_velocity(episode, 2, episode.step * episode.step_time)
-        shaken += shake_velocity(episode, 2, (episode.step + 1) * episode.step_time)
-        episode.own[_SCRIPTED_PITCH] += 0.5 * (last + rate + shaken) * episode.step_time
-        drive_wrist(episode, world, 0.0, 0.0, rate)
+def tilt(episode, world):
+    """Turn of the object since reset or, if larger, how far the wrist strayed from its script [rad].
 
-
-@compiled
-def judge(episodes, worlds, fingers, columns):
-    """After a control step: wrist motion, reward terms, outcome, observation.
-
-    Args:
-        episodes: EPISODE (n,).
-        worlds: WORLD (n,).
-        fingers: FINGER (n, 2).
-        columns: Output (n, 5), see `COLUMNS`.
+    An agent that moves the wrist cannot just undo the turn.
     """
-    for i in range(episodes.shape[0]):
-        episode, world = episodes[i], worlds[i]
-        episode.reference[0] = world.wrist[2]
-        episode.reference[1] = world.wrist_velocity[2]
-        episode.reference[2] = world.wrist_acceleration[2]
-        slip = note_slip(episode, world)
-        # an agent that moves the wrist cannot just undo the turn: straying from it counts as tilt
-        tilt = max(abs(world.angle), abs(world.wrist_plan[2] - episode.own[_SCRIPTED_PITCH]))
-        episode.largest_tilt = max(episode.largest_tilt, tilt)
-        episode.dropped = detect_drop(episode, world, fingers[i])
-        episode.success = (
-            episode.step >= episode.steps
-            and not episode.dropped
-            and episode.largest_slip <= episode.slide_tolerance
-            and episode.largest_tilt <= episode.tilt_tolerance
-        )
-        terms = (
-            math.exp(-((slip / episode.slide_tolerance) ** 2)),
-            math.exp(-((tilt / episode.tilt_tolerance) ** 2)),
-            -effort(episode, fingers[i]),
-            -roughness(episode),
-            -1.0 if episode.dropped else 0.0,
-        )
-        for k in range(5):
-            episode.terms[k] = episode.scales[k] * terms[k]
-        for k in range(3):
-            columns[i, k] = episode.reference[k]
-        columns[i, 3] = episode.goal
-        columns[i, 4] = (episode.steps - episode.step) * episode.step_time
+    return max(abs(world.angle), abs(world.wrist_plan[2] - episode.own[SCRATCH.scripted_pitch]))
+
+
+def success(episode, world):
+    """Whether the object neither slid nor tilted far."""
+    return episode.largest_slip <= episode.slide_tolerance and episode.largest_tilt <= episode.tilt_tolerance
+
+
+@term(scale=1.0)
+def still(episode, world, fingers):
+    """exp(-(s / slide_tolerance)^2), s = slip at the pad centre."""
+    return math.exp(-((slip_distance(world) / episode.slide_tolerance) ** 2))
+
+
+@term(scale=1.0)
+def upright(episode, world, fingers):
+    """exp(-(tilt / tilt_tolerance)^2), tilt = turn of the box since reset or, if larger, e."""
+    return math.exp(-((tilt(episode, world) / episode.tilt_tolerance) ** 2))
 
 
 TASK = Task(
     id="slipgym/Hinge-v0",
-    key="hinge",
     settings=Settings,
-    defaults=DEFAULTS,
-    options=Options,
-    reward=REWARD,
-    columns=COLUMNS,
     start=start,
-    plan=plan,
-    judge=judge,
+    wrist_velocity=wrist_velocity,
+    track=track,
+    success=success,
+    terms=(still, upright, effort, smoothness, drop),
+    columns=(
+        Column(
+            "wrist_pitch", -10.0, 10.0, "rad", "pitch of the wrist since the start", "episode.reference[0]"
+        ),
+        Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "its rate", "episode.reference[1]"),
+        Column(
+            "wrist_pitch_acceleration", -100.0, 100.0, "rad/s^2", "its second rate", "episode.reference[2]"
+        ),
+        Column("wrist_pitch_goal", -10.0, 10.0, "rad", "pitch at the end of the turn", "episode.goal"),
+        TIME_LEFT,
+    ),
     motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), sign=-1.0, goal="wrist_pitch_goal"),
     page=__doc__,
 )

@@ -37,99 +37,65 @@ slipped further than `tolerance` (2 mm).
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
-from pydantic import Field
 
-from slipgym._numba.compiled import compiled
-from slipgym.config import Config, TaskConfig
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval
+from slipgym.config.task import MassRange, TaskConfig, setting
 from slipgym.tasks.disturbance import POKES_MAX
-from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness
+from slipgym.tasks.episode import slip_distance, track_slip
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
+from slipgym.tasks.task import Column, Task, term
+from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
 
 
 class Settings(TaskConfig):
     """The object is to stay in the grip while the wrist shakes and something pokes the object."""
 
-    duration: Positive = Field(description="Length of an episode [s]")
-    tolerance: Positive = Field(description="Largest slip for success [m]")
-    shake_amplitude: NonNegative = Field(description="Amplitude of the wrist's shaking along x and z [m]")
-    shake_pitch: NonNegative = Field(description="Amplitude of the wrist's shaking in pitch [rad]")
-    shake_frequency: PositiveInterval = Field(
-        description="The shaking's frequency is drawn from this range [Hz]"
+    duration: Annotated[Positive, setting("Length of an episode", "s", reset=True, le=600.0)] = 8.0
+    tolerance: Annotated[Positive, setting("Largest slip for success", "m", reset=True)] = 0.002
+    mass_range: MassRange = (0.1, 0.4)
+    shake_amplitude: Annotated[
+        NonNegative, setting("Amplitude of the wrist's shaking along x and z", "m", reset=True, le=0.05)
+    ] = 0.004
+    shake_pitch: Annotated[
+        NonNegative, setting("Amplitude of the wrist's shaking in pitch", "rad", reset=True, le=0.5)
+    ] = 0.03
+    shake_frequency: Annotated[
+        PositiveInterval, setting("The shaking's frequency is sampled from this range", "Hz", reset=True)
+    ] = (1.0, 3.0)
+    poke_impulse: Annotated[
+        Interval, setting("The impulse of a poke is sampled from this range", "N s", reset=True)
+    ] = (0.01, 0.05)
+    poke_offset: Annotated[NonNegative, setting("Largest lever of a poke about the centre of mass", "m")] = (
+        0.02
     )
-    poke_impulse: Interval = Field(description="The impulse of a poke is drawn from this range [N s]")
-    poke_offset: NonNegative = Field(description="Lever of a poke about the centre of mass, at most [m]")
-    poke_interval: PositiveInterval = Field(description="The time between pokes is drawn from this range [s]")
-    poke_duration: Positive = Field(description="Length of a poke [s]")
+    poke_interval: Annotated[
+        PositiveInterval, setting("The time between pokes is sampled from this range", "s", reset=True)
+    ] = (0.8, 1.6)
+    poke_duration: Annotated[Positive, setting("Length of a poke", "s")] = 0.02
 
 
-DEFAULTS = {
-    "duration": 8.0,
-    "tolerance": 0.002,
-    "mass_range": [0.1, 0.4],
-    "initial_force": 15.0,
-    "shake_amplitude": 0.004,
-    "shake_pitch": 0.03,
-    "shake_frequency": [1.0, 3.0],
-    "poke_impulse": [0.01, 0.05],
-    "poke_offset": 0.02,
-    "poke_interval": [0.8, 1.6],
-    "poke_duration": 0.02,
-}
-REWARD = (
-    Term("still", 1.0, "exp(-(s / tolerance)^2), s = slip displacement at the pad centre"),
-    Term("effort", 1.0, EFFORT),
-    Term("smoothness", 0.1, SMOOTHNESS),
-    Term("drop", 100.0, DROP),
-)
-COLUMNS = (
-    Column("wrist_velocity_x", -2.0, 2.0, "m/s", "commanded wrist velocity along world x"),
-    Column("wrist_velocity_z", -2.0, 2.0, "m/s", "commanded wrist velocity along world z"),
-    Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "commanded wrist pitch rate"),
-    Column("time_left", 0.0, 1000.0, "s", "time until the episode ends"),
-)
-
-
-class Options(EpisodeOptions):
-    """What `reset(options=...)` can fix."""
-
-    duration: Positive | None = Field(default=None, le=600.0, description="Length of the episode [s]")
-    tolerance: Positive | None = Field(default=None, description="Largest slip for success [m]")
-    shake_amplitude: NonNegative | None = Field(
-        default=None, le=0.05, description="Amplitude of the wrist's shaking along x and z [m]"
-    )
-    shake_pitch: NonNegative | None = Field(default=None, le=0.5, description="Its amplitude in pitch [rad]")
-    shake_frequency: PositiveInterval | None = Field(default=None, description="Range of its frequency [Hz]")
-    poke_impulse: Interval | None = Field(default=None, description="Range of a poke's impulse [N s]")
-    poke_interval: PositiveInterval | None = Field(default=None, description="Range of their distance [s]")
-
-
-def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
+def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
     """Fill one EPISODE row: draw the shaking and the pokes."""
-    task = config.tasks.hold
-    dt = float(episode["step_time"])
-    episode["tolerance"] = options.choose("tolerance", task)
-    episode["steps"] = max(1, round(options.choose("duration", task) / dt))
-    amplitude, pitch = options.choose("shake_amplitude", task), options.choose("shake_pitch", task)
-    frequency = rng.uniform(*options.choose("shake_frequency", task), size=3)
+    episode["tolerance"] = settings.tolerance
+    episode["steps"] = max(1, round(settings.duration / float(episode["step_time"])))
+    amplitude, pitch = settings.shake_amplitude, settings.shake_pitch
+    frequency = rng.uniform(*settings.shake_frequency, size=3)
     phase = rng.uniform(0.0, 2.0 * math.pi, 3)
     episode["shakes"][0] = np.column_stack(([amplitude, amplitude, pitch], 2.0 * math.pi * frequency, phase))
-    _draw_pokes(config, options, rng, episode)
+    _draw_pokes(settings, rng, episode)
 
 
-def _draw_pokes(config: Config, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
-    task = config.tasks.hold
+def _draw_pokes(settings: Settings, rng: np.random.Generator, episode: np.void) -> None:
     dt = float(episode["step_time"])
-    steps = max(1, round(task.poke_duration / dt))
-    impulse = np.asarray(options.choose("poke_impulse", task))
-    gaps = rng.uniform(*options.choose("poke_interval", task), size=POKES_MAX)
+    steps = max(1, round(settings.poke_duration / dt))
+    gaps = rng.uniform(*settings.poke_interval, size=POKES_MAX)
     begin = np.rint(np.cumsum(gaps) / dt).astype(np.int64)
     heading = rng.uniform(0.0, 2.0 * math.pi, POKES_MAX)
-    size = rng.uniform(*impulse, size=POKES_MAX) / (steps * dt)
-    lever = rng.uniform(-task.poke_offset, task.poke_offset, POKES_MAX)
+    size = rng.uniform(*settings.poke_impulse, size=POKES_MAX) / (steps * dt)
+    lever = rng.uniform(-settings.poke_offset, settings.poke_offset, POKES_MAX)
     wrench = np.column_stack((size * np.cos(heading), size * np.sin(heading), size * lever))
     n = episode["pushes"] = np.count_nonzero(begin < episode["steps"])
     episode["push_start"][:n] = begin[:n]
@@ -137,52 +103,37 @@ def _draw_pokes(config: Config, options: EpisodeOptions, rng: np.random.Generato
     episode["push_wrench"][:n] = wrench[:n]
 
 
-@compiled
-def plan(episodes, worlds):
-    """Before a control step: the wrist is shaken, and moves as the agent commands."""
-    for i in range(episodes.shape[0]):
-        drive_wrist(episodes[i], worlds[i], 0.0, 0.0, 0.0)
+def success(episode, world):
+    """Whether the object never slid far."""
+    return episode.largest_slip <= episode.tolerance
 
 
-@compiled
-def judge(episodes, worlds, fingers, columns):
-    """After a control step: reward terms, outcome, observation.
-
-    Args:
-        episodes: EPISODE (n,).
-        worlds: WORLD (n,).
-        fingers: FINGER (n, 2).
-        columns: Output (n, 4), see `COLUMNS`.
-    """
-    for i in range(episodes.shape[0]):
-        episode, world = episodes[i], worlds[i]
-        slip = note_slip(episode, world)
-        episode.dropped = detect_drop(episode, world, fingers[i])
-        finished = episode.step >= episode.steps and not episode.dropped
-        episode.success = finished and episode.largest_slip <= episode.tolerance
-        terms = (
-            math.exp(-((slip / episode.tolerance) ** 2)),
-            -effort(episode, fingers[i]),
-            -roughness(episode),
-            -1.0 if episode.dropped else 0.0,
-        )
-        for k in range(4):
-            episode.terms[k] = episode.scales[k] * terms[k]
-        for k in range(3):
-            columns[i, k] = world.wrist_velocity[k]
-        columns[i, 3] = (episode.steps - episode.step) * episode.step_time
+@term(scale=1.0)
+def still(episode, world, fingers):
+    """exp(-(s / tolerance)^2), s = slip displacement at the pad centre."""
+    return math.exp(-((slip_distance(world) / episode.tolerance) ** 2))
 
 
 TASK = Task(
     id="slipgym/Hold-v0",
-    key="hold",
     settings=Settings,
-    defaults=DEFAULTS,
-    options=Options,
-    reward=REWARD,
-    columns=COLUMNS,
     start=start,
-    plan=plan,
-    judge=judge,
+    track=track_slip,
+    success=success,
+    terms=(still, effort._replace(scale=1.0), smoothness, drop),
+    columns=(
+        Column(
+            "wrist_velocity_x", -2.0, 2.0, "m/s", "commanded wrist velocity along world x",
+            "world.wrist_velocity[0]",
+        ),
+        Column(
+            "wrist_velocity_z", -2.0, 2.0, "m/s", "commanded wrist velocity along world z",
+            "world.wrist_velocity[1]",
+        ),
+        Column(
+            "wrist_pitch_rate", -10.0, 10.0, "rad/s", "commanded wrist pitch rate", "world.wrist_velocity[2]"
+        ),
+        TIME_LEFT,
+    ),
     page=__doc__,
-)
+)  # fmt: skip

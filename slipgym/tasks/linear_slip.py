@@ -35,127 +35,80 @@ mm) of `distance`, and the box was not dropped.
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
-from pydantic import Field
 
-from slipgym._numba.compiled import compiled
-from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
-from slipgym.tasks.episode import detect_drop, drive_wrist, effort, roughness, schedule, trapezoid
+from slipgym.config.task import TaskConfig, setting
+from slipgym.tasks.episode import follow_trapezoid, schedule
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
+from slipgym.tasks.task import Column, Task, term
+from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
 
 
 class Settings(TaskConfig):
     """The object slides down between the pads by a given distance in a given time, then stays."""
 
-    distance: Positive = Field(description="Distance to slide [m]")
-    duration: Positive = Field(description="Time for the slide [s]")
-    settle: NonNegative = Field(description="Time before the slide, during which the object is held [s]")
-    hold: NonNegative = Field(description="Time after the slide, during which the object is held [s]")
-    tolerance: Positive = Field(description="Largest error of the final position for success [m]")
+    distance: Annotated[Positive, setting("Distance to slide", "m", reset=True, le=0.2)] = 0.04
+    duration: Annotated[Positive, setting("Time for the slide", "s", reset=True, le=120.0)] = 5.0
+    settle: Annotated[NonNegative, setting("Time held before the slide", "s", reset=True, le=60.0)] = 0.5
+    hold: Annotated[NonNegative, setting("Time held after the slide", "s", reset=True, le=60.0)] = 1.0
+    tolerance: Annotated[Positive, setting("Largest final error for success", "m", reset=True)] = 0.002
 
 
-DEFAULTS = {
-    "distance": 0.04,
-    "duration": 5.0,
-    "settle": 0.5,
-    "hold": 1.0,
-    "tolerance": 0.002,
-    "initial_force": 15.0,
-}
-REWARD = (
-    Term("tracking", 1.0, "exp(-(e / tolerance)^2), e = distance slid less the reference's"),
-    Term("sideways", 0.1, "-(abs(x) + gripper.pad_radius abs(theta)) / tolerance, at least -10"),
-    Term("effort", 0.1, EFFORT),
-    Term("smoothness", 0.1, SMOOTHNESS),
-    Term("drop", 100.0, DROP),
-)
-COLUMNS = (
-    Column("reference_position", 0.0, 1.0, "m", "distance the object should have slid"),
-    Column("reference_velocity", 0.0, 1.0, "m/s", "its rate"),
-    Column("reference_acceleration", -5.0, 5.0, "m/s^2", "its second rate"),
-    Column("distance", 0.0, 1.0, "m", "distance to slide in the episode"),
-    Column("time_left", 0.0, 1000.0, "s", "time until the episode ends"),
-)
-
-
-class Options(EpisodeOptions):
-    """What `reset(options=...)` can fix."""
-
-    distance: Positive | None = Field(default=None, le=0.2, description="Distance to slide [m]")
-    duration: Positive | None = Field(default=None, le=120.0, description="Time for the slide [s]")
-    settle: NonNegative | None = Field(default=None, le=60.0, description="Time held before the slide [s]")
-    hold: NonNegative | None = Field(default=None, le=60.0, description="Time held after the slide [s]")
-    tolerance: Positive | None = Field(default=None, description="Largest final error for success [m]")
-
-
-def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
+def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
     """Fill one EPISODE row; nothing here is drawn at random."""
-    task = config.tasks.linear_slip
-    episode["goal"] = options.choose("distance", task)
-    episode["tolerance"] = options.choose("tolerance", task)
-    schedule(options, task, episode)
+    episode["goal"], episode["tolerance"] = settings.distance, settings.tolerance
+    schedule(settings, episode)
 
 
-@compiled
-def plan(episodes, worlds):
-    """Before a control step: the wrist stays where it is, but for what the agent commands."""
-    for i in range(episodes.shape[0]):
-        drive_wrist(episodes[i], worlds[i], 0.0, 0.0, 0.0)
+def track(episode, world):
+    """The reference moves on."""
+    follow_trapezoid(episode)
 
 
-@compiled
-def judge(episodes, worlds, fingers, columns):
-    """After a control step: reference, reward terms, outcome, observation.
+def success(episode, world):
+    """Whether the object slid as far as asked."""
+    return abs(-world.slip[1] - episode.goal) <= episode.tolerance
 
-    Args:
-        episodes: EPISODE (n,).
-        worlds: WORLD (n,).
-        fingers: FINGER (n, 2).
-        columns: Output (n, 5), see `COLUMNS`.
-    """
-    for i in range(episodes.shape[0]):
-        episode, world = episodes[i], worlds[i]
-        time = episode.step * episode.step_time
-        reference = trapezoid(time - episode.settle, episode.goal, episode.duration)
-        for k in range(3):
-            episode.reference[k] = reference[k]
-        error = -world.slip[1] - reference[0]
-        sideways = abs(world.slip[0]) + episode.pad_radius * abs(world.slip[2])
-        episode.dropped = detect_drop(episode, world, fingers[i])
-        final = -world.slip[1] - episode.goal
-        episode.success = (
-            episode.step >= episode.steps and not episode.dropped and abs(final) <= episode.tolerance
-        )
-        terms = (
-            math.exp(-((error / episode.tolerance) ** 2)),
-            -min(sideways / episode.tolerance, 10.0),
-            -effort(episode, fingers[i]),
-            -roughness(episode),
-            -1.0 if episode.dropped else 0.0,
-        )
-        for k in range(5):
-            episode.terms[k] = episode.scales[k] * terms[k]
-        for k in range(3):
-            columns[i, k] = reference[k]
-        columns[i, 3] = episode.goal
-        columns[i, 4] = (episode.steps - episode.step) * episode.step_time
+
+@term(scale=1.0)
+def tracking(episode, world, fingers):
+    """exp(-(e / tolerance)^2), e = distance slid less the reference's."""
+    error = -world.slip[1] - episode.reference[0]
+    return math.exp(-((error / episode.tolerance) ** 2))
+
+
+@term(scale=0.1)
+def sideways(episode, world, fingers):
+    """-(abs(x) + gripper.pad_radius abs(theta)) / tolerance, at least -10."""
+    away = abs(world.slip[0]) + episode.pad_radius * abs(world.slip[2])
+    return -min(away / episode.tolerance, 10.0)
 
 
 TASK = Task(
     id="slipgym/LinearSlip-v0",
-    key="linear_slip",
     settings=Settings,
-    defaults=DEFAULTS,
-    options=Options,
-    reward=REWARD,
-    columns=COLUMNS,
     start=start,
-    plan=plan,
-    judge=judge,
+    track=track,
+    success=success,
+    terms=(tracking, sideways, effort, smoothness, drop),
+    columns=(
+        Column(
+            "reference_position",
+            0.0,
+            1.0,
+            "m",
+            "distance the object should have slid",
+            "episode.reference[0]",
+        ),
+        Column("reference_velocity", 0.0, 1.0, "m/s", "its rate", "episode.reference[1]"),
+        Column("reference_acceleration", -5.0, 5.0, "m/s^2", "its second rate", "episode.reference[2]"),
+        Column("distance", 0.0, 1.0, "m", "distance to slide in the episode", "episode.goal"),
+        TIME_LEFT,
+    ),
     motion=Motion("slid down", axis=(0.0, -1.0, 0.0), goal="distance"),
     page=__doc__,
 )

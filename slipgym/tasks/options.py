@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, create_model
 
 from slipgym.config.base import Frozen, Point, Positive, Size
 from slipgym.config.errors import unknown
+from slipgym.config.task import Reset, SettingsT, TaskConfig
 
 
 class EpisodeOptions(Frozen):
-    """Options of every task; what is not given is drawn or taken from the configuration."""
+    """Options of every task; what is not given is sampled or taken from the settings."""
 
-    material: str | None = Field(default=None, description='Name of a material, or "random" [-]')
+    settings_fields: ClassVar[frozenset[str]] = frozenset()
+    """Options that replace the setting of the same name."""
+
+    material: str | None = Field(default=None, description='Name of a material, or "random"')
     mu_s: Positive | None = Field(default=None, le=5.0, description="Static friction, >= mu_c [-]")
     mu_c: Positive | None = Field(default=None, le=5.0, description="Coulomb friction [-]")
     r: Positive | None = Field(default=None, le=0.1, description="Radius of the equivalent rim contact [m]")
@@ -23,9 +27,8 @@ class EpisodeOptions(Frozen):
     com_offset: Point | None = Field(
         default=None, description="Centre of mass (x, z) from the geometric centre [m]"
     )
-    initial_force: Positive | None = Field(default=None, le=40.0, description="Force per finger at reset [N]")
     randomization_scale: float | None = Field(
-        default=None, ge=0.0, le=1.0, description="Share of the randomization's ranges: 0 none, 1 all [-]"
+        default=None, ge=0.0, le=1.0, description="Fraction of the randomization's ranges: 0 none, 1 all [-]"
     )
 
     @classmethod
@@ -51,7 +54,40 @@ class EpisodeOptions(Frozen):
         meaning = cls.model_fields[name].description if name in cls.model_fields else ""
         return f"option {name} = {fault['input']!r}: {fault['msg']} ({meaning})"
 
-    def choose(self, field: str, defaults: Any) -> Any:
-        """The option if it was given, else the field of the same name of the configuration."""
-        value = getattr(self, field)
-        return getattr(defaults, field) if value is None else value
+    def applied_to(self, settings: SettingsT) -> SettingsT:
+        """The settings of an episode: those given, with the options in place of those of the same name."""
+        given = {name: getattr(self, name) for name in self.settings_fields & self.model_fields_set}
+        given = {name: value for name, value in given.items() if value is not None}
+        return settings.model_copy(update=given) if given else settings
+
+
+def derive_options(name: str, settings: type[TaskConfig]) -> type[EpisodeOptions]:
+    """The options of a task: those of every task, and each setting that is declared with `reset`.
+
+    Args:
+        name: Name of the task.
+        settings: Its settings.
+    """
+    fields: dict[str, Any] = {}
+    replaced = set()
+    for key, field in settings.model_fields.items():
+        extra = field.json_schema_extra
+        reset = extra.get("reset") if isinstance(extra, dict) else None
+        if not isinstance(reset, Reset):
+            continue
+        option = reset.option
+        if option is not None:
+            bounds: dict[str, Any] = dict(option.bounds or {})
+            kind: Any = Annotated[option.annotation, Field(**bounds)]
+            fields[key] = (kind | None, Field(default=None, description=option.meaning))
+            continue
+        kind = field.annotation
+        for constraint in field.metadata:
+            kind = Annotated[kind, constraint]
+        fields[key] = (kind | None, Field(default=None, description=field.description))
+        replaced.add(key)
+    made = create_model(
+        f"{name}Options", __base__=EpisodeOptions, __doc__="What `reset(options=...)` can fix.", **fields
+    )
+    made.settings_fields = frozenset(replaced)
+    return made

@@ -69,103 +69,72 @@ its slip displacement is within `tolerance` (2 mm) of the target in (x, y) and w
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
-from pydantic import Field
 
 from slipgym._numba.compiled import compiled
-from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive, PositiveInterval
-from slipgym.tasks.episode import detect_drop, drive_wrist, effort, roughness
+from slipgym.config.hardware import ObjectConfig
+from slipgym.config.task import InitialForce, Option, TaskConfig, TaskObject, TaskRadius, setting
+from slipgym.tasks.episode import scratch
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
+from slipgym.tasks.task import Column, Task, term
+from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
+
+SCRATCH = scratch(target=3, angle_tolerance=1, rest_speed=1)
+"""`target`: slip displacement to reach [m, m, rad]; `angle_tolerance` [rad]; `rest_speed` [m/s]."""
+_SLIDE = Option(Positive, "Length of the target's slide [m]", {"le": 0.1})
+_HEADING = Option(float, "Pitch of the wrist during that slide [rad]", {"ge": -1.6, "le": 1.6})
+_TURN = Option(float, "Angle of the target's turn [rad]", {"ge": -1.6, "le": 1.6})
 
 
 class Settings(TaskConfig):
     """The object is moved in the grip to a given pose (x, y, theta)."""
 
-    slide: PositiveInterval = Field(description="The target's slide is drawn from this range [m]")
-    heading: NonNegative = Field(description="Largest pitch of the wrist during the target's slide [rad]")
-    turn: PositiveInterval = Field(
-        description="The target's turn, either way, is drawn from this range [rad]"
+    slide: Annotated[
+        PositiveInterval, setting("The target's slide is sampled from this range", "m", reset=_SLIDE)
+    ] = (0.010, 0.018)
+    heading: Annotated[
+        NonNegative, setting("Largest pitch of the wrist during the target's slide", "rad", reset=_HEADING)
+    ] = 1.0472  # 60 degrees
+    turn: Annotated[
+        PositiveInterval,
+        setting("The target's turn, either way, is sampled from this range", "rad", reset=_TURN),
+    ] = (0.1745, 0.6981)  # 10 to 40 degrees
+    duration: Annotated[Positive, setting("Length of an episode", "s", reset=True, le=120.0)] = 12.0
+    tolerance: Annotated[Positive, setting("Largest final error in (x, y) for success", "m", reset=True)] = (
+        0.002
     )
-    duration: Positive = Field(description="Length of an episode [s]")
-    tolerance: Positive = Field(description="Largest final error in (x, y) for success [m]")
-    angle_tolerance: Positive = Field(description="Largest final error in theta for success [rad]")
-    rest_speed: Positive = Field(description="Largest final slip speed at the pad's rim for success [m/s]")
-
-
-DEFAULTS = {
-    "slide": [0.010, 0.018],
-    "heading": 1.0472,  # 60 degrees
-    "turn": [0.1745, 0.6981],  # 10 to 40 degrees
-    "duration": 12.0,
-    "tolerance": 0.002,
-    "angle_tolerance": 0.0524,  # 3 degrees
-    "rest_speed": 0.001,
-    "initial_force": 10.0,
-    "object": {  # large and flat, gripped at its centre of mass
-        "mass": 0.2,
-        "size": [0.16, 0.03, 0.2],
-        "com_offset": [0.0, 0.0],
-        "inertia": None,
-        "grasp_offset": [0.0, 0.0],
-    },
-    "radius": 0.005,  # a rounded fingertip: see docs/environments/planar_slip.md
-}
-REWARD = (
-    Term("position", 1.0, "exp(-e^2), e = error in (x, y) / tolerance"),
-    Term("angle", 1.0, "exp(-a^2), a = error in theta / angle_tolerance"),
-    Term("distance", 0.1, "-(e + a) / 2, at least -10"),
-    Term("effort", 0.1, EFFORT),
-    Term("smoothness", 0.1, SMOOTHNESS),
-    Term("wrist", 0.1, "-(commanded speed / its limit)^2 - (commanded pitch rate / its limit)^2"),
-    Term("drop", 100.0, DROP),
-)
-TARGET, ANGLE_TOLERANCE, REST_SPEED = slice(0, 3), 3, 4
-"""Places in the episode's own numbers: slip displacement to reach [m, m, rad], angle [rad], speed [m/s]."""
-COLUMNS = (
-    Column("target_x", -1.0, 1.0, "m", "slip displacement to reach, along the pads' x axis"),
-    Column("target_y", -1.0, 1.0, "m", "the same along the pads' y axis"),
-    Column("target_theta", -10.0, 10.0, "rad", "the same about the grip axis"),
-    Column("time_left", 0.0, 1000.0, "s", "time until the episode ends"),
-)
-
-
-class Options(EpisodeOptions):
-    """What `reset(options=...)` can fix."""
-
-    slide: Positive | None = Field(default=None, le=0.1, description="Length of the target's slide [m]")
-    heading: float | None = Field(
-        default=None, ge=-1.6, le=1.6, description="Pitch of the wrist during that slide [rad]"
+    angle_tolerance: Annotated[
+        Positive, setting("Largest final error in theta for success", "rad", reset=True)
+    ] = 0.0524  # 3 degrees
+    rest_speed: Annotated[
+        Positive, setting("Largest final slip speed at the pad's rim for success", "m/s")
+    ] = 0.001
+    initial_force: InitialForce = 10.0
+    object: TaskObject = ObjectConfig(  # large and flat, gripped at its centre of mass
+        mass=0.2, size=(0.16, 0.03, 0.2), com_offset=(0.0, 0.0), inertia=None, grasp_offset=(0.0, 0.0)
     )
-    turn: float | None = Field(default=None, ge=-1.6, le=1.6, description="Angle of the target's turn [rad]")
-    duration: Positive | None = Field(default=None, le=120.0, description="Length of the episode [s]")
-    tolerance: Positive | None = Field(
-        default=None, description="Largest final error in (x, y) for success [m]"
-    )
-    angle_tolerance: Positive | None = Field(
-        default=None, description="Largest final error in theta for success [rad]"
-    )
+    radius: TaskRadius = 0.005  # a rounded fingertip: see docs/environments/planar_slip.md
 
 
-def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
-    """Fill one EPISODE row; the target is the end of a plan that is drawn: slide, then turn."""
-    task = config.tasks.planar_slip
+def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
+    """Fill one EPISODE row; the target is the end of a random plan: slide, then turn."""
     # drawn always, so that options do not shift later draws
     drawn = {
-        "slide": rng.uniform(*task.slide),
-        "heading": rng.uniform(-task.heading, task.heading),
-        "turn": rng.uniform(*task.turn) * (-1, 1)[rng.integers(2)],
+        "slide": rng.uniform(*settings.slide),
+        "heading": rng.uniform(-settings.heading, settings.heading),
+        "turn": rng.uniform(*settings.turn) * (-1, 1)[rng.integers(2)],
     }
-    plan = {name: getattr(options, name) for name in drawn}
-    slide, heading, turn = (drawn[name] if plan[name] is None else plan[name] for name in drawn)
-    episode["own"][TARGET] = hang(slide, heading, turn)
-    episode["tolerance"] = options.choose("tolerance", task)
-    episode["own"][ANGLE_TOLERANCE] = options.choose("angle_tolerance", task)
-    episode["own"][REST_SPEED] = task.rest_speed
-    episode["steps"] = max(1, round(options.choose("duration", task) / episode["step_time"]))
+    fixed = {name: getattr(options, name) for name in drawn}
+    slide, heading, turn = (drawn[name] if fixed[name] is None else fixed[name] for name in drawn)
+    own = episode["own"]
+    own[SCRATCH.target] = hang(slide, heading, turn)
+    own[SCRATCH.angle_tolerance], own[SCRATCH.rest_speed] = settings.angle_tolerance, settings.rest_speed
+    episode["tolerance"] = settings.tolerance
+    episode["steps"] = max(1, round(settings.duration / episode["step_time"]))
 
 
 def hang(slide: float, heading: float, turn: float) -> tuple[float, float, float]:
@@ -183,68 +152,81 @@ def hang(slide: float, heading: float, turn: float) -> tuple[float, float, float
     return -slide * math.sin(down), -slide * math.cos(down), turn
 
 
-@compiled
-def plan(episodes, worlds):
-    """Before a control step: the wrist moves as the agent commands."""
-    for i in range(episodes.shape[0]):
-        drive_wrist(episodes[i], worlds[i], 0.0, 0.0, 0.0)
+def track(episode, world):
+    """The reference is the target."""
+    target = episode.own[SCRATCH.target]
+    for k in range(3):
+        episode.reference[k] = target[k]
 
 
 @compiled
-def judge(episodes, worlds, fingers, columns):
-    """After a control step: distance to the target, reward terms, outcome, observation.
+def position_error(episode, world):
+    """Distance from the target in (x, y) over the tolerance [-]."""
+    target = episode.reference
+    return math.hypot(world.slip[0] - target[0], world.slip[1] - target[1]) / episode.tolerance
 
-    Args:
-        episodes: EPISODE (n,).
-        worlds: WORLD (n,).
-        fingers: FINGER (n, 2).
-        columns: Output (n, 4), see `COLUMNS`.
-    """
-    for i in range(episodes.shape[0]):
-        episode, world = episodes[i], worlds[i]
-        own, slip, twist, wrist = episode.own, world.slip, world.slip_twist, episode.wrist_command
-        target = own[TARGET]
-        for k in range(3):
-            episode.reference[k] = columns[i, k] = target[k]
-        columns[i, 3] = (episode.steps - episode.step) * episode.step_time
-        away = math.hypot(slip[0] - target[0], slip[1] - target[1]) / episode.tolerance
-        askew = abs(slip[2] - target[2]) / own[ANGLE_TOLERANCE]
-        speed = math.hypot(math.hypot(twist[0], twist[1]), episode.pad_radius * twist[2])
-        episode.dropped = detect_drop(episode, world, fingers[i])
-        episode.success = (
-            episode.step >= episode.steps
-            and not episode.dropped
-            and away <= 1.0
-            and askew <= 1.0
-            and speed <= own[REST_SPEED]
-        )
-        moved = math.hypot(wrist[0], wrist[1]) / episode.wrist_speed_max
-        pitched = wrist[2] / episode.wrist_pitch_rate_max
-        terms = (
-            math.exp(-(away**2)),
-            math.exp(-(askew**2)),
-            -min(0.5 * (away + askew), 10.0),
-            -effort(episode, fingers[i]),
-            -roughness(episode),
-            -(moved**2 + pitched**2),
-            -1.0 if episode.dropped else 0.0,
-        )
-        for k in range(7):
-            episode.terms[k] = episode.scales[k] * terms[k]
+
+@compiled
+def angle_error(episode, world):
+    """Distance from the target in theta over the tolerance [-]."""
+    return abs(world.slip[2] - episode.reference[2]) / episode.own[SCRATCH.angle_tolerance]
+
+
+def success(episode, world):
+    """Whether the object rests at the target."""
+    twist = world.slip_twist
+    speed = math.hypot(math.hypot(twist[0], twist[1]), episode.pad_radius * twist[2])
+    return (
+        position_error(episode, world) <= 1.0
+        and angle_error(episode, world) <= 1.0
+        and speed <= episode.own[SCRATCH.rest_speed]
+    )
+
+
+@term(scale=1.0)
+def position(episode, world, fingers):
+    """exp(-e^2), e = error in (x, y) / tolerance."""
+    return math.exp(-(position_error(episode, world) ** 2))
+
+
+@term(scale=1.0)
+def angle(episode, world, fingers):
+    """exp(-a^2), a = error in theta / angle_tolerance."""
+    return math.exp(-(angle_error(episode, world) ** 2))
+
+
+@term(scale=0.1)
+def distance(episode, world, fingers):
+    """-(e + a) / 2, at least -10."""
+    return -min(0.5 * (position_error(episode, world) + angle_error(episode, world)), 10.0)
+
+
+@term(scale=0.1)
+def wrist(episode, world, fingers):
+    """-(commanded speed / its limit)^2 - (commanded pitch rate / its limit)^2."""
+    command = episode.wrist_command
+    speed = math.hypot(command[0], command[1]) / episode.wrist_speed_max
+    rate = command[2] / episode.wrist_pitch_rate_max
+    return -(speed**2 + rate**2)
 
 
 TASK = Task(
     id="slipgym/PlanarSlip-v0",
-    key="planar_slip",
     settings=Settings,
-    defaults=DEFAULTS,
-    options=Options,
-    reward=REWARD,
-    columns=COLUMNS,
     start=start,
-    plan=plan,
-    judge=judge,
+    track=track,
+    success=success,
+    terms=(position, angle, distance, effort, smoothness, wrist, drop),
+    columns=(
+        Column(
+            "target_x", -1.0, 1.0, "m", "slip displacement to reach, along the pads' x axis",
+            "episode.reference[0]",
+        ),
+        Column("target_y", -1.0, 1.0, "m", "the same along the pads' y axis", "episode.reference[1]"),
+        Column("target_theta", -10.0, 10.0, "rad", "the same about the grip axis", "episode.reference[2]"),
+        TIME_LEFT,
+    ),
     action_mode="grip_force_pitch",
     motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), entry=2, goal="target_theta"),
     page=__doc__,
-)
+)  # fmt: skip

@@ -50,145 +50,88 @@ centre.
 from __future__ import annotations
 
 import math
+from typing import Annotated
 
 import numpy as np
-from pydantic import Field
 
-from slipgym._numba.compiled import compiled
-from slipgym.config import Config, TaskConfig
 from slipgym.config.base import NonNegative, Positive
-from slipgym.tasks.episode import detect_drop, drive_wrist, effort, note_slip, roughness, schedule, trapezoid
+from slipgym.config.hardware import ObjectConfig
+from slipgym.config.task import InitialForce, TaskConfig, TaskObject, setting
+from slipgym.tasks.episode import follow_trapezoid, schedule, slip_distance, track_slip
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import DROP, EFFORT, SMOOTHNESS, Column, Task, Term
+from slipgym.tasks.task import Column, Task, term
+from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
 
 
 class Settings(TaskConfig):
     """The object turns between the pads by a given angle in a given time, then stays."""
 
-    angle: Positive = Field(description="Angle to turn [rad]")
-    duration: Positive = Field(description="Time for the turn [s]")
-    settle: NonNegative = Field(description="Time before the turn, during which the object is held [s]")
-    hold: NonNegative = Field(description="Time after the turn, during which the object is held [s]")
-    tolerance: Positive = Field(description="Largest error of the final angle for success [rad]")
-    slide_tolerance: Positive = Field(description="Largest slip at the pad centre for success [m]")
+    angle: Annotated[Positive, setting("Angle to turn", "rad", reset=True, le=1.6)] = 1.0472  # 60 degrees
+    duration: Annotated[Positive, setting("Time for the turn", "s", reset=True, le=120.0)] = 5.0
+    settle: Annotated[NonNegative, setting("Time held before the turn", "s", reset=True, le=60.0)] = 0.5
+    hold: Annotated[NonNegative, setting("Time held after the turn", "s", reset=True, le=60.0)] = 1.0
+    tolerance: Annotated[Positive, setting("Largest final error for success", "rad", reset=True)] = 0.0349
+    slide_tolerance: Annotated[Positive, setting("Largest slip for success", "m", reset=True)] = 0.001
+    initial_force: InitialForce = 25.0
+    object: TaskObject = ObjectConfig(  # light and long: see docs/environments/rotational_slip.md
+        mass=0.06, size=(0.46, 0.03, 0.04), com_offset=(0.0, 0.0), inertia=None, grasp_offset=(-0.18, 0.0)
+    )
 
 
-DEFAULTS = {
-    "angle": 1.0472,  # 60 degrees, symmetric about horizontal
-    "duration": 5.0,
-    "settle": 0.5,
-    "hold": 1.0,
-    "tolerance": 0.0349,  # 2 degrees
-    "slide_tolerance": 0.001,
-    "initial_force": 25.0,
-    "object": {  # light and long: see docs/environments/rotational_slip.md
-        "mass": 0.06,
-        "size": [0.46, 0.03, 0.04],
-        "com_offset": [0.0, 0.0],
-        "inertia": None,
-        "grasp_offset": [-0.18, 0.0],
-    },
-}
-REWARD = (
-    Term("tracking", 1.0, "exp(-(e / tolerance)^2), e = -theta - reference"),
-    Term("sliding", 0.1, "-min(slip at the pad centre / slide_tolerance, 10)"),
-    Term("effort", 0.1, EFFORT),
-    Term("smoothness", 0.1, SMOOTHNESS),
-    Term("drop", 100.0, DROP),
-)
-COLUMNS = (
-    Column("reference_position", 0.0, 2.0, "rad", "angle the object should have turned, clockwise"),
-    Column("reference_velocity", 0.0, 10.0, "rad/s", "its rate"),
-    Column("reference_acceleration", -100.0, 100.0, "rad/s^2", "its second rate"),
-    Column("angle", 0.0, 2.0, "rad", "angle to turn in the episode"),
-    Column("time_left", 0.0, 1000.0, "s", "time until the episode ends"),
-)
-
-
-class Options(EpisodeOptions):
-    """What `reset(options=...)` can fix."""
-
-    angle: Positive | None = Field(default=None, le=1.6, description="Angle to turn [rad]")
-    duration: Positive | None = Field(default=None, le=120.0, description="Time for the turn [s]")
-    settle: NonNegative | None = Field(default=None, le=60.0, description="Time held before the turn [s]")
-    hold: NonNegative | None = Field(default=None, le=60.0, description="Time held after the turn [s]")
-    tolerance: Positive | None = Field(default=None, description="Largest final error for success [rad]")
-    slide_tolerance: Positive | None = Field(default=None, description="Largest slip for success [m]")
-
-
-def start(config: Config, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
+def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
     """Fill one EPISODE row; nothing here is drawn at random.
 
     The wrist starts pitched by half the angle, so that the turn is symmetric about horizontal.
     """
-    task = config.tasks.rotational_slip
-    episode["goal"] = options.choose("angle", task)
-    for field in ("tolerance", "slide_tolerance"):
-        episode[field] = options.choose(field, task)
-    schedule(options, task, episode)
+    episode["goal"] = settings.angle
+    episode["tolerance"], episode["slide_tolerance"] = settings.tolerance, settings.slide_tolerance
+    schedule(settings, episode)
     episode["wrist_start"] = 0.0, 0.0, 0.5 * episode["goal"]
 
 
-@compiled
-def plan(episodes, worlds):
-    """Before a control step: the wrist stays where it is, but for what the agent commands."""
-    for i in range(episodes.shape[0]):
-        drive_wrist(episodes[i], worlds[i], 0.0, 0.0, 0.0)
+def track(episode, world):
+    """The reference moves on; the largest slip is kept."""
+    follow_trapezoid(episode)
+    track_slip(episode, world)
 
 
-@compiled
-def judge(episodes, worlds, fingers, columns):
-    """After a control step: reference, reward terms, outcome, observation.
+def success(episode, world):
+    """Whether the object turned as far as asked and never slid far."""
+    error = -world.slip[2] - episode.goal
+    return abs(error) <= episode.tolerance and episode.largest_slip <= episode.slide_tolerance
 
-    Args:
-        episodes: EPISODE (n,).
-        worlds: WORLD (n,).
-        fingers: FINGER (n, 2).
-        columns: Output (n, 5), see `COLUMNS`.
-    """
-    for i in range(episodes.shape[0]):
-        episode, world = episodes[i], worlds[i]
-        time = episode.step * episode.step_time
-        reference = trapezoid(time - episode.settle, episode.goal, episode.duration)
-        for k in range(3):
-            episode.reference[k] = reference[k]
-        turned = -world.slip[2]
-        error = turned - reference[0]
-        slip = note_slip(episode, world)
-        episode.dropped = detect_drop(episode, world, fingers[i])
-        episode.success = (
-            episode.step >= episode.steps
-            and not episode.dropped
-            and abs(turned - episode.goal) <= episode.tolerance
-            and episode.largest_slip <= episode.slide_tolerance
-        )
-        terms = (
-            math.exp(-((error / episode.tolerance) ** 2)),
-            -min(slip / episode.slide_tolerance, 10.0),
-            -effort(episode, fingers[i]),
-            -roughness(episode),
-            -1.0 if episode.dropped else 0.0,
-        )
-        for k in range(5):
-            episode.terms[k] = episode.scales[k] * terms[k]
-        for k in range(3):
-            columns[i, k] = reference[k]
-        columns[i, 3] = episode.goal
-        columns[i, 4] = (episode.steps - episode.step) * episode.step_time
+
+@term(scale=1.0)
+def tracking(episode, world, fingers):
+    """exp(-(e / tolerance)^2), e = -theta - reference."""
+    error = -world.slip[2] - episode.reference[0]
+    return math.exp(-((error / episode.tolerance) ** 2))
+
+
+@term(scale=0.1)
+def sliding(episode, world, fingers):
+    """-min(slip at the pad centre / slide_tolerance, 10)."""
+    return -min(slip_distance(world) / episode.slide_tolerance, 10.0)
 
 
 TASK = Task(
     id="slipgym/RotationalSlip-v0",
-    key="rotational_slip",
     settings=Settings,
-    defaults=DEFAULTS,
-    options=Options,
-    reward=REWARD,
-    columns=COLUMNS,
     start=start,
-    plan=plan,
-    judge=judge,
+    track=track,
+    success=success,
+    terms=(tracking, sliding, effort, smoothness, drop),
+    columns=(
+        Column(
+            "reference_position", 0.0, 2.0, "rad", "angle the object should have turned, clockwise",
+            "episode.reference[0]",
+        ),
+        Column("reference_velocity", 0.0, 10.0, "rad/s", "its rate", "episode.reference[1]"),
+        Column("reference_acceleration", -100.0, 100.0, "rad/s^2", "its second rate", "episode.reference[2]"),
+        Column("angle", 0.0, 2.0, "rad", "angle to turn in the episode", "episode.goal"),
+        TIME_LEFT,
+    ),
     motion=Motion("turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle"),
     page=__doc__,
-)
+)  # fmt: skip

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import importlib
 
+from pydantic import ValidationError
+
 from estimator.reference import is_reference, referenced
-from slipgym.config import load
-from slipgym.config.errors import unknown
+from slipgym.config.errors import explain, unknown
 from slipgym.registration import ENVIRONMENTS, TASK_MODULES
 from slipgym.tasks.episode import TERMS_MAX
 from slipgym.tasks.task import Task
@@ -18,7 +19,10 @@ TASKS: dict[str, Task] = {
 
 
 def find(name: str) -> Task:
-    """A task by its name, or one of your own by "module:attribute", which imports the module.
+    """A task by its key ("linear_slip"), its name ("LinearSlip") or the id of its environment.
+
+    Args:
+        name: One of these, or "module:attribute" for a task of your own, which imports the module.
 
     Raises:
         ValueError: There is no such task, or it is not registered.
@@ -28,17 +32,18 @@ def find(name: str) -> Task:
         if not isinstance(task, Task) or TASKS.get(task.name) is not task:
             raise ValueError(f"{name!r} is no task that slipgym.register_task knows")
         return task
-    if name not in TASKS:
-        raise ValueError(unknown("task", name, TASKS))
-    return TASKS[name]
+    for task in TASKS.values():
+        if name in (task.key, task.name, task.id):
+            return task
+    raise ValueError(unknown("task", name, [task.key for task in TASKS.values()]))
 
 
 def add(task: Task) -> None:
     """Put a task into the table, in place of one of the same id.
 
     Raises:
-        ValueError: The id is one of slipgym's own, another task has the name or the key, there
-            are too many reward terms, or the defaults do not fit the settings.
+        ValueError: The id is one of slipgym's own, another task has the name or the key, there are too many
+            reward terms, two of the same name, or a default is not allowed.
     """
     name = task.name
     if task.id in ENVIRONMENTS:
@@ -49,14 +54,17 @@ def add(task: Task) -> None:
         for other in TASKS.values():
             if other.id != task.id and getattr(other, what) == value:
                 raise ValueError(f"{what} = {value!r} of {task.id} is taken by {other.id}")
-    if len(task.reward) > TERMS_MAX:
-        raise ValueError(f"{task.id} has {len(task.reward)} reward terms; at most {TERMS_MAX}")
-    before = TASKS.get(name)
-    TASKS[name] = task
+    for what, rows in (("reward term", task.terms), ("column", task.columns)):
+        names = [row.name for row in rows]
+        twice = next((each for each in names if names.count(each) > 1), None)
+        if twice is not None:
+            raise ValueError(f"{task.id} has two {what}s of the name {twice!r}")
+    if len(task.terms) > TERMS_MAX:
+        raise ValueError(f"{task.id} has {len(task.terms)} reward terms; at most {TERMS_MAX}")
     try:
-        load()
-    except ValueError:
-        del TASKS[name]
-        if before is not None:
-            TASKS[name] = before
-        raise
+        task.settings()
+    except ValidationError as error:
+        raise explain(
+            error, lambda _: f"defaults of {task.id}", task.settings, ("tasks", task.key)
+        ) from error
+    TASKS[name] = task

@@ -1,50 +1,73 @@
-"""What makes a task."""
+"""What makes a task: settings, the start of an episode, what is rewarded, what is observed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+import sys
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, Generic, NamedTuple
 
 from gymnasium.envs.registration import parse_env_id
 from gymnasium.error import Error
 
-from slipgym.config.tasks import TaskConfig
+from slipgym.config.task import SettingsT
+from slipgym.tasks.compile import compile_evaluate_step, compile_script_wrist
 from slipgym.tasks.motion import Motion
-from slipgym.tasks.options import EpisodeOptions
+from slipgym.tasks.options import EpisodeOptions, derive_options
 
-EFFORT = "-(mean actuator force / gripper.force_max)"
-"""Meaning of the reward term that is minus `slipgym.tasks.episode.effort`."""
-SMOOTHNESS = "-(change of the commanded force / gripper.force_max)^2"
-"""Meaning of the reward term that is minus `slipgym.tasks.episode.roughness`."""
-DROP = "-1 on a drop, else 0"
-"""Meaning of the reward term that punishes a drop."""
+Value = Callable[..., Any]
+"""A function of (episode, world, fingers): EPISODE and WORLD records, FINGER (2,); compiled by numba."""
 
 
 class Column(NamedTuple):
-    """One entry of the observation."""
+    """One entry of the observation, and how it is read."""
 
     name: str
     low: float
     high: float
     unit: str
     meaning: str
+    read: str | Value = ""
+    """An expression of `episode`, `world` and `fingers`, or a function of them that is compiled."""
 
 
 class Term(NamedTuple):
-    """One term of the reward."""
+    """One term of the reward, and how it is computed."""
 
     name: str
     scale: float
     """Its default scale."""
     meaning: str
     """Its value before scaling."""
+    value: Value
+    """Computes it, not scaled."""
+
+
+def term(scale: float) -> Callable[[Value], Term]:
+    """Decorator that makes a reward term of a function (episode, world, fingers).
+
+    The term has the function's name, and its meaning is the function's docstring.
+
+    Args:
+        scale: Default scale of the term.
+    """
+
+    def declare(value: Value) -> Term:
+        meaning = " ".join((value.__doc__ or "").split()).removesuffix(".")
+        return Term(value.__name__, scale, meaning, value)
+
+    return declare
 
 
 @dataclass(frozen=True, eq=False)
-class Task:
-    """A task as functions over a leading batch axis, so that every world can run it.
+class Task(Generic[SettingsT]):
+    """A task, for every engine and every number of environments.
+
+    The functions `track`, `success` and `wrist_velocity`, and those of terms and columns, are plain Python
+    that is compiled by numba. They work on one environment: `episode` is an EPISODE record, `world` a WORLD
+    record.
 
     Raises:
         ValueError: The id is malformed.
@@ -52,36 +75,36 @@ class Task:
 
     id: str
     """Id of its environment."""
-    key: str
-    """Its group under `tasks` in the configuration."""
-    settings: type[TaskConfig]
-    """That group, but for the reward's scales."""
-    defaults: Mapping[str, Any]
-    """Their values; what every task has and is left out is null."""
-    options: type[EpisodeOptions]
-    """What `reset(options=...)` can fix."""
-    reward: tuple[Term, ...]
+    settings: type[SettingsT]
+    """Its settings, which stand under `tasks.<key>` in overrides of the configuration."""
+    start: Callable[..., None]
+    """Fills one EPISODE row: (settings, options, rng, episode). The settings hold the options already."""
+    success: Value
+    """Whether an episode that is over, without a drop, was a success: (episode, world) -> bool."""
+    terms: tuple[Term, ...]
     """Terms of the reward, at most `slipgym.tasks.episode.TERMS_MAX`."""
     columns: tuple[Column, ...]
     """The task's part of the observation."""
-    start: Callable[..., None]
-    """Fills one EPISODE row: (config, options, rng, episode)."""
-    plan: Callable[..., None]
-    """Compiled, before a control step: (episodes, worlds) sets wrist motion and disturbance."""
-    judge: Callable[..., None]
-    """Compiled, after a control step: (episodes, worlds, fingers, columns)."""
+    track: Value | None = None
+    """After each control step, first: (episode, world) updates `episode.reference` and what is kept."""
+    wrist_velocity: Value | None = None
+    """Before each control step: (episode, world) -> scripted velocity (x, z, pitch) at its end; None: 0."""
     action_mode: str = "grip_force"
     """Of its environment, unless another is asked for."""
     motion: Motion = field(default_factory=Motion)
     """What pictures, tables and figures show of the object's slip."""
     page: str | None = None
     """What is written by hand of its environment's documentation: see `slipgym.envs.docstring`."""
+    key: str = ""
+    """Its name in configuration and command lines; empty: the id's name in snake case, "linear_slip"."""
 
     def __post_init__(self) -> None:
         try:
-            _ = self.name
+            name = self.name
         except Error as error:
             raise ValueError(f"id = {self.id!r}: {error}") from error
+        if not self.key:
+            object.__setattr__(self, "key", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower())
 
     @cached_property
     def name(self) -> str:
@@ -89,12 +112,40 @@ class Task:
         return parse_env_id(self.id)[1]
 
     @cached_property
-    def terms(self) -> tuple[str, ...]:
+    def term_names(self) -> tuple[str, ...]:
         """Names of the reward terms."""
-        return tuple(term.name for term in self.reward)
+        return tuple(term.name for term in self.terms)
+
+    @cached_property
+    def options(self) -> type[EpisodeOptions]:
+        """What `reset(options=...)` can fix: derived from the settings."""
+        return derive_options(self.name, self.settings)
+
+    @cached_property
+    def default_settings(self) -> dict[str, Any]:
+        """Every value of the settings by its name, as plain data."""
+        scales = {term.name: term.scale for term in self.terms}
+        return {**self.settings().model_dump(mode="json"), "reward": scales}
 
     @property
-    def defaults_with_scales(self) -> dict[str, Any]:
-        """Every value of the task's group in the configuration."""
-        scales = {term.name: term.scale for term in self.reward}
-        return {**dict.fromkeys(("object", "mass_range", "radius")), **self.defaults, "reward": scales}
+    def module(self) -> str:
+        """Module that defines the task: that of its `start`."""
+        return self.start.__module__
+
+    @cached_property
+    def script_wrist(self) -> Any:
+        """Compiled, before a control step: (episodes, worlds) sets the wrist's acceleration."""
+        return compile_script_wrist(self.key, self.wrist_velocity, self._file)
+
+    @cached_property
+    def evaluate_step(self) -> Any:
+        """Compiled, after a control step: (episodes, worlds, fingers, columns) evaluates it.
+
+        It writes `dropped`, `success` and the scaled reward terms into the episodes, and the task's part of
+        the observation into `columns` (n, k).
+        """
+        return compile_evaluate_step(self.key, self.track, self.success, self.terms, self.columns, self._file)
+
+    @property
+    def _file(self) -> str:
+        return getattr(sys.modules[self.module], "__file__", None) or __file__

@@ -10,14 +10,14 @@ import pytest
 
 import estimator
 from policies.research.reproduction import mechanism, reproduce_linear
-from policies.research.reproduction.hanging import TASK, Options
+from policies.research.reproduction.hanging import TASK
 from policies.research.reproduction.linear import record_linear
 from policies.research.reproduction.published import TABLES
 from policies.research.reproduction.records import Record, RecordKeeper
 from policies.research.reproduction.rerun import Variant, estimates, explorations, rows, variants
 from policies.research.reproduction.tables import nine_columns
-from slipgym.config import load
 from slipgym.envs.bullet_simulation import BulletSimulation
+from slipgym.tasks import configure
 
 SCENARIO = {"material": "plastic", "distance": 0.02, "duration": 2.0, "trial": 0, "seed": 3}
 
@@ -57,8 +57,8 @@ def test_the_same_seed_gives_the_same_record(record):
 
 
 def test_the_estimator_on_a_record_ends_where_it_ended_in_the_loop():
-    simulation, rng = BulletSimulation(load(), TASK, "rls"), np.random.default_rng(1)
-    simulation.reset(Options(duration=1.0, initial_force=10.0), "wood", rng)
+    simulation, rng = BulletSimulation(*configure(TASK), TASK, "rls"), np.random.default_rng(1)
+    simulation.reset(TASK.options.parse({"duration": 1.0, "initial_force": 10.0}), "wood", rng)
     keeper = RecordKeeper(simulation)
     for _ in range(150):
         simulation.sample(3.2)

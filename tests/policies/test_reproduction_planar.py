@@ -7,11 +7,11 @@ import pandas as pd
 import pytest
 
 from policies.research.reproduction import mechanism, reproduce_planar
-from policies.research.reproduction.hanging import TASK, Options
+from policies.research.reproduction.hanging import TASK
 from policies.research.reproduction.planar import hinge_force, record_planar
 from policies.research.reproduction.rerun import Variant, rows
-from slipgym.config import load
 from slipgym.envs.bullet_simulation import BulletSimulation
+from slipgym.tasks import configure
 
 SCENARIO = {"material": "wood", "trial": 0, "seed": 5}
 
@@ -22,8 +22,9 @@ def record():
 
 
 def test_the_wrist_turns_by_the_angle_and_a_firmly_held_object_with_it():
-    simulation, rng = BulletSimulation(load(sensors="ideal"), TASK, "rls"), np.random.default_rng(0)
-    simulation.reset(Options(turn=0.3, duration=1.0, initial_force=20.0), "wood", rng)
+    simulation = BulletSimulation(*configure(TASK, sensors="ideal"), TASK, "rls")
+    rng = np.random.default_rng(0)
+    simulation.reset(TASK.options.parse({"turn": 0.3, "duration": 1.0, "initial_force": 20.0}), "wood", rng)
     for _ in range(int(simulation.episode["steps"][0])):
         simulation.sample(20.0)
     assert simulation.time == pytest.approx(2.0)

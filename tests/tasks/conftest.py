@@ -4,8 +4,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slipgym.config import load
-from slipgym.tasks import TASKS
+from slipgym.tasks import TASKS, configure
 from slipgym.tasks.episode import EPISODE
 from slipgym.world.records import FINGER, WORLD
 
@@ -15,8 +14,6 @@ class Hand:
 
     def __init__(self, name: str, **options: Any) -> None:
         self.task = TASKS[name]
-        config = load()
-        self.settings = getattr(config.tasks, self.task.key)
         self.episodes, self.worlds = np.zeros(1, EPISODE), np.zeros(1, WORLD)
         self.fingers = np.zeros((1, 2), FINGER)
         self.fingers["contact_force"] = self.fingers["force"] = 5.0
@@ -27,15 +24,16 @@ class Hand:
         self.episode["wrist_speed_max"], self.episode["wrist_pitch_rate_max"] = 0.5, 3.0
         self.episode["scales"] = 1.0
         parsed = self.task.options.parse(options)
-        self.task.start(config, parsed, np.random.default_rng(0), self.episode)
+        self.settings = parsed.applied_to(configure(self.task)[1])
+        self.task.start(self.settings, parsed, np.random.default_rng(0), self.episode)
 
-    def judge(self, step: int, **world: Any) -> dict[str, float]:
+    def evaluate(self, step: int, **world: Any) -> dict[str, float]:
         """Reward terms before scaling, of a step in a state."""
         self.episode["step"] = step
         for field, value in world.items():
             self.world[field] = value
-        self.task.judge(self.episodes, self.worlds, self.fingers, self.columns)
-        return dict(zip(self.task.terms, self.episode["terms"].tolist(), strict=False))
+        self.task.evaluate_step(self.episodes, self.worlds, self.fingers, self.columns)
+        return dict(zip(self.task.term_names, self.episode["terms"].tolist(), strict=False))
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ def test_the_script_turns_the_wrist_and_rests(hand, direction):
     turned = 0.0
     for step in range(END):
         state.episode["step"] = step
-        state.task.plan(state.episodes, state.worlds)
+        state.task.script_wrist(state.episodes, state.worlds)
         before = state.world["wrist_velocity"][2]
         state.world["wrist_velocity"] += state.world["wrist_acceleration"] / 120.0
         turned += 0.5 * (before + state.world["wrist_velocity"][2]) / 120.0
@@ -32,7 +32,7 @@ def test_a_turn_faster_than_the_wrist_is_refused(hand):
 def test_terms_and_columns(hand):
     state = hand("Hinge", **OPTIONS, direction=-1, slide_tolerance=0.001, tilt_tolerance=0.1)
     motion = {"wrist": (0.0, 0.0, -0.4), "wrist_velocity": (0.0, 0.0, -1.0)}
-    terms = state.judge(120, **motion, slip=(0.0006, -0.0008, 0.3), angle=-0.1)
+    terms = state.evaluate(120, **motion, slip=(0.0006, -0.0008, 0.3), angle=-0.1)
     assert terms["still"] == pytest.approx(math.exp(-1.0))
     assert terms["upright"] == pytest.approx(math.exp(-1.0))
     assert state.columns[0].tolist() == pytest.approx([-0.4, -1.0, 0.0, -0.8, 1.0])
@@ -50,6 +50,6 @@ def test_terms_and_columns(hand):
 )
 def test_success_is_upright_and_in_place_throughout(hand, slid, angle, success):
     state = hand("Hinge", **OPTIONS)
-    state.judge(100, slip=(0.0, -slid, 0.0), angle=angle)
-    state.judge(END, slip=(0.0, 0.0, 0.0), angle=0.0)
+    state.evaluate(100, slip=(0.0, -slid, 0.0), angle=angle)
+    state.evaluate(END, slip=(0.0, 0.0, 0.0), angle=0.0)
     assert state.episode["success"] == success

@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from slipgym.config import load
-from slipgym.tasks import TASKS
-from slipgym.tasks.planar_slip import TARGET, hang
+from slipgym.tasks import TASKS, configure
+from slipgym.tasks.planar_slip import SCRATCH, hang
 
 PLAN = {"slide": 0.015, "heading": 0.4, "turn": -0.3}
 END = 1440
@@ -21,12 +20,12 @@ def test_the_target_is_where_the_plan_ends():
 
 
 def test_the_target_is_drawn_within_its_ranges(hand):
-    settings = load().tasks.planar_slip
+    settings = configure(TASKS["PlanarSlip"])[1]
     state, rng = hand("PlanarSlip"), np.random.default_rng(1)
     targets = []
     for _ in range(500):
-        TASKS["PlanarSlip"].start(load(), TASKS["PlanarSlip"].options.parse({}), rng, state.episode)
-        targets.append(state.episode["own"][TARGET].copy())
+        TASKS["PlanarSlip"].start(settings, TASKS["PlanarSlip"].options.parse({}), rng, state.episode)
+        targets.append(state.episode["own"][SCRATCH.target].copy())
     x, y, theta = np.array(targets).T
     slide, heading = np.hypot(x, y), theta + np.arctan2(-x, -y)
     assert settings.slide[0] <= slide.min() < slide.max() <= settings.slide[1]
@@ -39,22 +38,23 @@ def test_the_target_is_drawn_within_its_ranges(hand):
 def test_an_option_shifts_no_other_draw(hand):
     drawn, fixed = hand("PlanarSlip"), hand("PlanarSlip", turn=0.0)
     np.testing.assert_allclose(
-        np.hypot(*fixed.episode["own"][TARGET][:2]), np.hypot(*drawn.episode["own"][TARGET][:2])
+        np.hypot(*fixed.episode["own"][SCRATCH.target][:2]),
+        np.hypot(*drawn.episode["own"][SCRATCH.target][:2]),
     )
-    assert fixed.episode["own"][TARGET][2] == 0.0
+    assert fixed.episode["own"][SCRATCH.target][2] == 0.0
 
 
 def test_terms_and_columns(hand):
     state = hand("PlanarSlip", **PLAN, tolerance=0.001, angle_tolerance=0.1)
     x, y, theta = target = hang(**PLAN)
     state.episode["wrist_command"] = 0.3, -0.4, 1.5
-    terms = state.judge(120, slip=(x + 0.0012, y - 0.0016, theta + 0.05))
+    terms = state.evaluate(120, slip=(x + 0.0012, y - 0.0016, theta + 0.05))
     assert terms["position"] == pytest.approx(math.exp(-4.0))
     assert terms["angle"] == pytest.approx(math.exp(-0.25))
     assert terms["distance"] == pytest.approx(-1.25)
     assert terms["wrist"] == pytest.approx(-1.25)
     assert state.columns[0].tolist() == pytest.approx([*target, 11.0])
-    assert state.judge(120, slip=(0.1, 0.1, 0.0))["distance"] == -10.0
+    assert state.evaluate(120, slip=(0.1, 0.1, 0.0))["distance"] == -10.0
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_success_is_at_the_target_and_at_rest(hand, off, twist, success):
     state = hand("PlanarSlip", **PLAN)
     state.episode["pad_radius"] = 0.015
     slip = np.add(hang(**PLAN), off)
-    state.judge(END - 1, slip=slip, slip_twist=twist)
+    state.evaluate(END - 1, slip=slip, slip_twist=twist)
     assert not state.episode["success"]
-    state.judge(END, slip=slip, slip_twist=twist)
+    state.evaluate(END, slip=slip, slip_twist=twist)
     assert state.episode["success"] == success

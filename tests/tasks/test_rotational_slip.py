@@ -17,9 +17,9 @@ def test_the_turn_is_symmetric_about_horizontal(hand):
 def test_tracking_falls_with_the_error_and_sliding_with_the_slip(hand):
     state = hand("RotationalSlip", **OPTIONS, tolerance=0.1, slide_tolerance=0.001)
     middle = 120  # half way: 0.4 rad
-    assert state.judge(middle, slip=(0.0, 0.0, -0.4))["tracking"] == pytest.approx(1.0)
-    assert state.judge(middle, slip=(0.0, 0.0, -0.3))["tracking"] == pytest.approx(math.exp(-1.0))
-    assert state.judge(middle, slip=(0.0003, -0.0004, -0.4))["sliding"] == pytest.approx(-0.5)
+    assert state.evaluate(middle, slip=(0.0, 0.0, -0.4))["tracking"] == pytest.approx(1.0)
+    assert state.evaluate(middle, slip=(0.0, 0.0, -0.3))["tracking"] == pytest.approx(math.exp(-1.0))
+    assert state.evaluate(middle, slip=(0.0003, -0.0004, -0.4))["sliding"] == pytest.approx(-0.5)
     assert state.columns[0].tolist() == pytest.approx([0.4, 1.0, 0.0, 0.8, 1.0])
 
 
@@ -35,16 +35,16 @@ def test_tracking_falls_with_the_error_and_sliding_with_the_slip(hand):
 )
 def test_success_is_the_angle_without_sliding(hand, slip, success):
     state = hand("RotationalSlip", **OPTIONS)
-    state.judge(END - 1, slip=slip)
+    state.evaluate(END - 1, slip=slip)
     assert not state.episode["success"]
-    state.judge(END, slip=slip)
+    state.evaluate(END, slip=slip)
     assert state.episode["success"] == success
 
 
 def test_sliding_back_does_not_help(hand):
     state = hand("RotationalSlip", **OPTIONS)
-    state.judge(100, slip=(0.002, 0.0, -0.3))
-    state.judge(END, slip=(0.0, 0.0, -0.8))
+    state.evaluate(100, slip=(0.002, 0.0, -0.3))
+    state.evaluate(END, slip=(0.0, 0.0, -0.8))
     assert not state.episode["success"]
 
 
@@ -55,7 +55,7 @@ def test_a_bar_is_dropped_when_a_pad_reaches_its_edge(hand, along, dropped):
     state.episode["object_centre"] = 0.18, 0.0
     state.episode["reach"] = 0.215, 0.005
     turned = -0.7  # first the bar moves along itself, then across
-    state.judge(100, slip=(0.014 * math.cos(turned), 0.014 * math.sin(turned), turned))
+    state.evaluate(100, slip=(0.014 * math.cos(turned), 0.014 * math.sin(turned), turned))
     assert not state.episode["dropped"]
-    state.judge(100, slip=(along * math.sin(turned), -along * math.cos(turned), turned))
+    state.evaluate(100, slip=(along * math.sin(turned), -along * math.cos(turned), turned))
     assert state.episode["dropped"] == dropped

@@ -3,58 +3,50 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from typing import Annotated
 
 import numpy as np
-from pydantic import Field
 
-from slipgym._numba.compiled import compiled
-from slipgym.config import Config
 from slipgym.config.base import Positive
-from slipgym.tasks import TASKS
-from slipgym.tasks.episode import detect_drop, trapezoid
+from slipgym.config.task import MassRange, TaskConfig, setting
+from slipgym.tasks import Task
+from slipgym.tasks.episode import schedule, trapezoid
 from slipgym.tasks.options import EpisodeOptions
 
-SETTLE, REST = 0.5, 0.5  # [s] before and after the turn
+
+class Settings(TaskConfig):
+    """The wrist pitches by an angle in a given time."""
+
+    turn: Annotated[float, setting("Angle that the wrist pitches by", "rad", reset=True)] = math.radians(60.0)
+    duration: Annotated[Positive, setting("Time for the turn", "s", reset=True)] = 5.0
+    settle: Annotated[Positive, setting("Time before the turn", "s")] = 0.5
+    hold: Annotated[Positive, setting("Time after the turn", "s")] = 0.5
+    mass_range: MassRange = (0.1, 0.4)
 
 
-class Options(EpisodeOptions):
-    """What a trial fixes."""
-
-    turn: float = Field(default=math.radians(60.0), description="Angle that the wrist pitches by [rad]")
-    duration: Positive = Field(default=5.0, description="Time for the turn [s]")
-
-
-def start(config: Config, options: Options, rng: np.random.Generator, episode: np.void) -> None:
+def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
     """Fill one EPISODE row; nothing here is drawn at random."""
-    episode["goal"], episode["duration"], episode["settle"] = options.turn, options.duration, SETTLE
-    episode["steps"] = round((SETTLE + options.duration + REST) / episode["step_time"])
+    episode["goal"] = settings.turn
+    schedule(settings, episode)
 
 
-@compiled
-def plan(episodes, worlds):
-    """Before a control step: the wrist's pitch follows the trapezoid, its place stays."""
-    for i in range(episodes.shape[0]):
-        episode, world = episodes[i], worlds[i]
-        time = (episode.step + 1) * episode.step_time - episode.settle
-        _, rate, _ = trapezoid(time, episode.goal, episode.duration)
-        world.wrist_acceleration[2] = (rate - world.wrist_velocity[2]) / episode.step_time
+def wrist_velocity(episode, world):
+    """The wrist's pitch follows the trapezoid, its place stays."""
+    time = (episode.step + 1) * episode.step_time - episode.settle
+    return 0.0, 0.0, trapezoid(time, episode.goal, episode.duration)[1]
 
 
-@compiled
-def judge(episodes, worlds, fingers, columns):
-    """After a control step: whether the object was lost. No rewards, no observation."""
-    for i in range(episodes.shape[0]):
-        episodes[i].dropped = detect_drop(episodes[i], worlds[i], fingers[i])
+def success(episode, world):
+    """Nothing is judged here."""
+    return False
 
 
-TASK = replace(
-    TASKS["Hold"],  # whose group of the configuration holds what the options leave open
+TASK = Task(
     id="policies/Hanging-v0",
-    options=Options,
-    reward=(),
-    columns=(),
+    settings=Settings,
     start=start,
-    plan=plan,
-    judge=judge,
+    wrist_velocity=wrist_velocity,
+    success=success,
+    terms=(),
+    columns=(),
 )

@@ -12,11 +12,11 @@ import numpy as np
 
 from policies.evaluation.plan import seed as seed_of
 from policies.research.reproduction.campaign import Campaign, reproduce
-from policies.research.reproduction.hanging import TASK, Options
+from policies.research.reproduction.hanging import TASK
 from policies.research.reproduction.published import TABLES
 from policies.research.reproduction.records import Record, RecordKeeper
-from slipgym.config import load
 from slipgym.envs.bullet_simulation import BulletSimulation
+from slipgym.tasks import configure
 
 MASS, LEVER, ASIDE = (0.15, 0.25), (0.03, 0.05), (-0.003, 0.003)  # [kg], [m], [m]
 DURATION = (2.0, 5.0)  # [s] for the turn
@@ -68,10 +68,9 @@ def record_planar(scenario: Mapping[str, Any], contact: str) -> Record:
     rng = np.random.default_rng(scenario["seed"])
     mass, lever, aside, duration = (rng.uniform(*limits) for limits in (MASS, LEVER, ASIDE, DURATION))
     drawn = {"mass": mass, "lever": lever, "aside": aside, "duration": duration}
-    options = Options(
-        object_mass=mass, com_offset=(aside, -lever), duration=duration, initial_force=INITIAL_FORCE
-    )
-    simulation = BulletSimulation(load(contact=contact), TASK, "rls")
+    fixed = {"object_mass": mass, "com_offset": (aside, -lever), "duration": duration}
+    options = TASK.options.parse({**fixed, "initial_force": INITIAL_FORCE})
+    simulation = BulletSimulation(*configure(TASK, contact=contact), TASK, "rls")
     try:
         simulation.reset(options, scenario["material"], rng)
         keeper, mu_c, episode = (

@@ -1,0 +1,101 @@
+"""What every task can be configured with, and how a task declares a parameter of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, TypeVar
+
+from pydantic import ConfigDict, Field
+
+from slipgym.config.base import Frozen, Positive, PositiveInterval
+from slipgym.config.hardware import ObjectConfig
+from slipgym.config.root import Config
+
+
+@dataclass(frozen=True)
+class Option:
+    """A reset option of another type than the setting of the same name, for `setting(reset=...)`."""
+
+    annotation: Any
+    """Type of the option's value."""
+    meaning: str
+    """What it fixes."""
+    bounds: Mapping[str, Any] | None = None
+    """Bounds in pydantic's words: gt, ge, lt, le."""
+
+
+@dataclass(frozen=True)
+class Reset:
+    """Metadata of a setting that `reset(options=...)` can fix."""
+
+    option: Option | None
+    """The option, where it is not of the setting's own type."""
+
+
+def setting(meaning: str, unit: str = "", *, reset: bool | Option = False, **bounds: Any) -> Any:
+    """Metadata of a task's parameter.
+
+    `distance: Annotated[Positive, setting("Distance to slide", "m")] = 0.04` declares one, with its default.
+
+    Args:
+        meaning: What the parameter is; it stands in errors and in the documentation.
+        unit: SI unit; empty for a plain number.
+        reset: Whether `reset(options=...)` can fix it for one episode; an `Option` where the option has
+            another type than the setting.
+        **bounds: Bounds in pydantic's words: gt, ge, lt, le.
+    """
+    option = reset if isinstance(reset, Option) else None
+    extra: Any = {"reset": Reset(option)} if reset else None
+    return Field(description=f"{meaning} [{unit}]" if unit else meaning, json_schema_extra=extra, **bounds)
+
+
+InitialForce = Annotated[Positive, setting("Grip force per finger at reset", "N", reset=True)]
+TaskObject = Annotated[ObjectConfig | None, setting("The object of this task; null: the common one")]
+MassRange = Annotated[
+    PositiveInterval | None,
+    setting("The object's mass is sampled from this range; null: the object's own", "kg"),
+]
+TaskRadius = Annotated[
+    Positive | None,
+    setting("Radius r of the equivalent rim contact in this task, also nominal; null: the common", "m"),
+]
+
+
+class TaskConfig(Frozen):
+    """Settings of every task; a task's own are fields of a subclass.
+
+    A subclass gives a common setting another default by naming it again with its type:
+    `initial_force: InitialForce = 5.0`.
+    """
+
+    model_config = ConfigDict(validate_default=True)
+
+    initial_force: InitialForce = 15.0
+    object: TaskObject = None
+    mass_range: MassRange = None
+    radius: TaskRadius = None
+    reward: Annotated[Mapping[str, float], setting("Scales of the reward terms, by their names")] = {}
+
+    def check(self, config: Config, name: str) -> None:
+        """Check the settings against gripper and pads.
+
+        Args:
+            config: Configuration of the environment.
+            name: Where the settings stand, for messages: "tasks.hold".
+
+        Raises:
+            ValueError: The pad has no room for the contact radius, or the gripper cannot hold the initial
+                force.
+        """
+        if self.radius is not None:
+            config.check_radius(f"{name}.radius", self.radius)
+        low, high = config.gripper.force_min, config.gripper.force_max
+        if not low <= self.initial_force <= high:
+            raise ValueError(
+                f"{name}.initial_force must lie within the gripper's {low:g} to {high:g} N, "
+                f"got {self.initial_force:g} N"
+            )
+
+
+SettingsT = TypeVar("SettingsT", bound=TaskConfig)

@@ -1,0 +1,105 @@
+"""Compiles what a task declares: its terms and columns become the two functions that a simulation calls."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
+from numba import njit
+from numba.core.dispatcher import Dispatcher
+
+from slipgym._numba.compiled import compiled
+from slipgym._numba.generate import generate
+from slipgym.tasks.episode import detect_drop, drive_wrist
+
+
+class _Term(Protocol):
+    @property
+    def name(self) -> str: ...
+    @property
+    def value(self) -> Callable[..., Any]: ...
+
+
+class _Column(Protocol):
+    @property
+    def name(self) -> str: ...
+    @property
+    def read(self) -> str | Callable[..., Any]: ...
+
+
+def inlined(function: Any) -> Any:
+    """A function for use in compiled ones; one that is compiled already stays as it is.
+
+    It is not kept on disk: the functions that use it are, and know its source file.
+    """
+    return (
+        function
+        if isinstance(function, Dispatcher)
+        else njit(error_model="numpy", forceinline=True)(function)
+    )
+
+
+def compile_script_wrist(key: str, wrist_velocity: Callable[..., Any] | None, file: str) -> Any:
+    """Builds `script_wrist(episodes, worlds)` of a task.
+
+    Args:
+        key: The task's.
+        wrist_velocity: The task's, or None: the wrist rests.
+        file: The task's source file.
+    """
+    velocity = "0.0, 0.0, 0.0" if wrist_velocity is None else "wrist_velocity(episodes[i], worlds[i])"
+    body = [
+        "for i in range(episodes.shape[0]):",
+        f"    x, z, pitch = {velocity}",
+        "    drive_wrist(episodes[i], worlds[i], x, z, pitch)",
+    ]
+    namespace: dict[str, Any] = {"drive_wrist": drive_wrist}
+    if wrist_velocity is not None:
+        namespace["wrist_velocity"] = inlined(wrist_velocity)
+    doc = "Before a control step: the wrist moves as the task scripts and as the agent commands."
+    return generate(f"script_wrist_{key}", ("episodes", "worlds"), body, namespace, compiled, file, doc)
+
+
+def compile_evaluate_step(
+    key: str,
+    track: Callable[..., Any] | None,
+    success: Callable[..., Any],
+    terms: Sequence[_Term],
+    columns: Sequence[_Column],
+    file: str,
+) -> Any:
+    """Builds `evaluate_step(episodes, worlds, grippers, columns)` of a task.
+
+    Args:
+        key: The task's.
+        track: The task's, or None.
+        success: The task's.
+        terms: The task's; term k is written, scaled, to `episode.terms[k]`.
+        columns: The task's; column k is written to `columns[i, k]`.
+        file: The task's source file.
+    """
+    namespace: dict[str, Any] = {"detect_drop": detect_drop, "success": inlined(success)}
+    if track is not None:
+        namespace["track"] = inlined(track)
+    body = [
+        "for i in range(episodes.shape[0]):",
+        "    episode, world, fingers = episodes[i], worlds[i], grippers[i]",
+        *(["    track(episode, world)"] if track is not None else []),
+        "    episode.dropped = detect_drop(episode, world, fingers)",
+        "    finished = episode.step >= episode.steps and not episode.dropped",
+        "    episode.success = finished and success(episode, world)",
+    ]
+    for k, term in enumerate(terms):
+        namespace[f"term_{term.name}"] = inlined(term.value)
+        body.append(
+            f"    episode.terms[{k}] = episode.scales[{k}] * term_{term.name}(episode, world, fingers)"
+        )
+    for k, column in enumerate(columns):
+        read = column.read
+        if not isinstance(read, str):
+            namespace[f"column_{column.name}"] = inlined(read)
+            read = f"column_{column.name}(episode, world, fingers)"
+        body.append(f"    columns[i, {k}] = {read}  # {column.name}")
+    arguments = "episodes", "worlds", "grippers", "columns"
+    doc = "After a control step: drop, success, scaled reward terms, the task's part of the observation."
+    return generate(f"evaluate_step_{key}", arguments, body, namespace, compiled, file, doc)

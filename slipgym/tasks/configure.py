@@ -1,0 +1,74 @@
+"""Configuration and settings of a task's environment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+from slipgym.config import Config, Overrides, load
+from slipgym.config.errors import explain, unknown
+from slipgym.config.load import merge, read_overrides
+from slipgym.config.task import SettingsT, TaskConfig
+from slipgym.tasks.table import TASKS
+from slipgym.tasks.task import Task
+
+
+def configure(
+    task: Task[SettingsT],
+    overrides: Overrides | None = None,
+    sensors: str = "realistic",
+    contact: str | None = None,
+) -> tuple[Config, SettingsT]:
+    """Loads the configuration and the settings of a task.
+
+    Args:
+        task: The task.
+        overrides: What differs from the defaults, as a mapping or as the path of a YAML file. Its group
+            "tasks" holds settings by the tasks' keys: `{"tasks": {"hold": {"duration": 2.0}}}`. Those of
+            other tasks are checked as well, and left.
+        sensors: As of `slipgym.config.load`.
+        contact: As of `slipgym.config.load`.
+
+    Raises:
+        FileNotFoundError: The overrides' file does not exist.
+        ValueError: A key is unknown or a value is not allowed; the message names file or argument, key, value
+            and what is valid there.
+    """
+    config = load(overrides, sensors, contact)
+    source, values = ("defaults", {}) if overrides is None else read_overrides(overrides)
+    groups = values.get("tasks", {})
+    if not isinstance(groups, Mapping):
+        raise ValueError(f"{source}: tasks = {groups!r:.80} must be a mapping of names to values")
+    known: dict[Any, Task[Any]] = {each.key: each for each in TASKS.values()} | {task.key: task}
+    for key, group in groups.items():
+        if key not in known:
+            raise ValueError(f"{source}: tasks.{key}: {unknown('key', key, known)}")
+        _settings(known[key], group, source)
+    settings = _settings(task, groups.get(task.key, {}), source)
+    try:
+        settings.check(config, f"tasks.{task.key}")
+    except ValueError as error:
+        raise ValueError(f"{source}: {error}") from None
+    return config, settings
+
+
+def _settings(task: Task[SettingsT], group: Any, source: str) -> SettingsT:
+    place = f"tasks.{task.key}"
+    if not isinstance(group, Mapping):
+        raise ValueError(f"{source}: {place} = {group!r:.80} must be a mapping of names to values")
+    values = merge(task.default_settings, group)
+    try:
+        settings = task.settings.model_validate(values)
+    except ValidationError as error:
+        raise explain(error, lambda _: source, task.settings, ("tasks", task.key)) from error
+    for name in settings.reward:
+        if name not in task.term_names:
+            raise ValueError(f"{source}: {place}.reward.{name}: {unknown('key', name, task.term_names)}")
+    return settings
+
+
+def recorded(config: Config, settings: TaskConfig, key: str) -> dict[str, Any]:
+    """Configuration and settings as plain data, in the shape of overrides that bring both back."""
+    return {**config.model_dump(mode="json"), "tasks": {key: settings.model_dump(mode="json")}}
