@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -14,7 +16,9 @@ from slipgym.tasks import find
 
 
 @pytest.fixture
-def shelf(tmp_path):
+def shelf(tmp_path, monkeypatch):
+    monkeypatch.setattr("policies.evaluation.rate.frame_skip_of", lambda name: 1)
+
     def make(*names):
         for name in names:
             (tmp_path / name).mkdir(parents=True)
@@ -94,6 +98,20 @@ def test_a_learned_policy_is_told_nominal_values_by_that_of_the_truth(small, she
     }
 
 
+def test_all_policies_of_a_task_act_at_the_same_rate(small, monkeypatch):
+    skips = {"a": 2, "b": 2, "c": 1}
+    monkeypatch.setattr("policies.evaluation.rate.frame_skip_of", skips.get)
+    study = small(tasks=["LinearSlip", "Hold"])
+    found = conditions(study, {("LinearSlip", "true"): [Path("a")], ("LinearSlip", "none"): [Path("b")]})
+    assert {each.kind for each in found if each.task == "LinearSlip"} == {"classic", "learned"}
+    assert {each.frame_skip for each in found if each.task == "LinearSlip"} == {2}
+    assert {each.frame_skip for each in found if each.task == "Hold"} == {1}
+    classic = next(each for each in found if each.task == "LinearSlip" and each.kind == "classic")
+    assert classic.experiment(study).steps_per_action == 2
+    with pytest.raises(ValueError, match=r"same rate of action only.*a 2, c 1"):
+        conditions(study, {("LinearSlip", "true"): [Path("a"), Path("c")]})
+
+
 def test_episodes_come_in_pairs(small):
     study = small(kinds=["classic"])
     seeds = {}
@@ -123,7 +141,7 @@ def test_one_thing_is_changed_and_the_rest_is_as_it_was(task):
 
 
 def test_a_controller_that_learns_nothing_acts_as_before_the_first_slip():
-    controller, unaware = policies.make("hold", probe=None), NoFrictionInfo("hold")
+    controller, unaware = policies.make("hold", exploration=None), NoFrictionInfo("hold")
     width = len(columns(load(), find("Hold"), "true"))
     observations = np.random.default_rng(0).normal(0.0, 0.01, (5, width)).astype(np.float32)
     observations[:, -3:] = 0.0  # no support: what the estimate is does not count
