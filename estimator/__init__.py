@@ -1,31 +1,61 @@
 """Online estimation of contact properties from wrench and slip velocity.
 
 Estimates static friction mu_s, Coulomb friction mu_c and the radius r of the equivalent rim contact, one
-estimator per finger, from what a sensorised gripper measures. Needs numpy and numba only: it runs beside a
-simulator as well as on a real gripper.
+estimator per finger, from the measurements of a sensorised gripper. Needs only numpy and numba, so it runs
+beside a simulator as well as on a real gripper.
 
     import estimator
 
-    est = estimator.make("rls")
+    est = estimator.make(estimator.DEFAULT)
     e = est.update(t, wrench, twist)
     e.mu_s, e.mu_c, e.r
 """
 
-from estimator.disc.parameters import DiscParameters
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from estimator.batch import BatchEstimator, make_batch
 from estimator.estimate import ESTIMATE, Estimate
-from estimator.joint.parameters import JointParameters
-from estimator.registry import make, make_batch, names
-from estimator.rls.parameters import RlsParameters
-from estimator.ukf.parameters import UkfParameters
+from estimator.online import OnlineEstimator, make
+from estimator.registry import DEFAULT, FilterMatrices, Specification, names
+
+if TYPE_CHECKING:
+    from estimator.disc import DiscParameters
+    from estimator.joint import JointParameters
+    from estimator.rls import RlsParameters
+    from estimator.ukf import UkfParameters
+
+_PARAMETERS = {
+    "DiscParameters": "estimator.disc",
+    "JointParameters": "estimator.joint",
+    "RlsParameters": "estimator.rls",
+    "UkfParameters": "estimator.ukf",
+}
+"""Class -> its module; imported on first use, because numba is slow to import."""
 
 __all__ = [
+    "DEFAULT",
     "ESTIMATE",
+    "BatchEstimator",
     "DiscParameters",
     "Estimate",
+    "FilterMatrices",
     "JointParameters",
+    "OnlineEstimator",
     "RlsParameters",
+    "Specification",
     "UkfParameters",
     "make",
     "make_batch",
     "names",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _PARAMETERS:
+        return getattr(importlib.import_module(_PARAMETERS[name]), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

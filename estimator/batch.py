@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.estimate import ESTIMATE
-from estimator.registry import specification
+from estimator.registry import FilterMatrices, specification
 
 
 class BatchEstimator:
@@ -16,15 +16,17 @@ class BatchEstimator:
     `states` and `estimates` are plain data: `copy()` saves them, assigning to `[:]` restores every bit.
 
     Attributes:
+        name: The name that `estimator.make` knows it by.
         parameters: The checked parameter dataclass.
-        parameters_array: Structured array (1,), shared by all rows. For parameters of their own put an
-            array (n,) of the same dtype in its place and call `reset()`.
-        states: Structured array (n,), everything an estimator remembers.
+        parameters_array: Structured array (1,), shared by all rows. For different parameters in each row put
+            an array (n,) of the same dtype in its place and call `reset()`.
+        states: Structured array (n,), all memory of the estimators.
         estimates: Structured array (n,) of dtype ESTIMATE, rewritten by every update.
     """
 
     def __init__(self, name: str, n: int, **parameters: Any) -> None:
         """See `estimator.make_batch`."""
+        self.name = name
         self._specification = specification(name)
         if isinstance(n, bool) or not isinstance(n, Integral) or n < 1:
             raise ValueError(f"n = {n!r}: expected an integer in [1, inf)")
@@ -38,8 +40,8 @@ class BatchEstimator:
     def update(self, t: float, wrenches: NDArray[np.float64], twists: NDArray[np.float64]) -> None:
         """Takes one sample of every finger; results are in `estimates`.
 
-        The hot path: nothing is allocated, nothing validated beyond types and shapes. A row that holds NaN or
-        infinity, or whose t is not later than that row's last sample, is skipped: nothing of it changes.
+        This is the hot path: it allocates nothing and checks only types and shapes. A row that holds NaN or
+        infinity, or whose t is not later than the last sample of that row, is skipped: it does not change.
 
         Args:
             t: Time [s].
@@ -64,3 +66,45 @@ class BatchEstimator:
         for name in ("mu_s", "mu_c", "r"):
             self.estimates[name][rows] = self.states[name][rows]
             self.estimates[f"sd_{name}"][rows] = self.states[name][rows]
+        self.estimates["mu_s"][rows] = np.maximum(self.states["mu_s"][rows], self.states["mu_c"][rows])
+
+    @property
+    def matrices(self) -> FilterMatrices:
+        """Residual, gain, covariance and innovation covariance of the filters, copied.
+
+        Shapes and units are those of `FilterMatrices`; an entry is None if this estimator does not have it.
+        """
+        found = self._specification.filter_matrices
+        return FilterMatrices() if found is None else found(self.states)
+
+    def __len__(self) -> int:
+        return len(self.states)
+
+    def __repr__(self) -> str:
+        changed = "".join(f", {name}={value!r}" for name, value in self.parameters.changed().items())
+        lines = [f"BatchEstimator({self.name!r}, n={len(self)}{changed})"]
+        if len(self.parameters_array) > 1:
+            lines.append("  parameters: different in each row")
+        for name, unit in (("mu_s", ""), ("mu_c", ""), ("r", " m")):
+            values, confidence = self.estimates[name], self.estimates[f"confidence_{name}"]
+            lines.append(
+                f"  {name:<4}  {np.median(values):.4g}{unit} ({values.min():.4g} to {values.max():.4g}), "
+                f"confidence {np.median(confidence):.2f} ({confidence.min():.2f} to {confidence.max():.2f})"
+            )
+        slipping, halted = self.estimates["slipping"].sum(), self.estimates["halted"].sum()
+        lines.append(f"  slipping {slipping}, halted {halted} of {len(self)}; values are medians (range)")
+        return "\n".join(lines)
+
+
+def make_batch(name: str, n: int, **parameters: Any) -> BatchEstimator:
+    """Makes n independent estimators that one compiled call updates together.
+
+    Args:
+        name: One of `estimator.names()`, or "module:attribute" for your own Specification.
+        n: Number of fingers.
+        **parameters: As for `estimator.make`; all n share them.
+
+    Raises:
+        ValueError: As for `estimator.make`, or n is not a positive integer.
+    """
+    return BatchEstimator(name, n, **parameters)

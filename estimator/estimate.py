@@ -1,5 +1,6 @@
-"""The result every estimator publishes, and the state fields they all share."""
+"""The result that every estimator publishes, and the state fields that all share."""
 
+import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,26 +9,27 @@ import numpy as np
 class Estimate(NamedTuple):
     """Contact properties of one finger after the newest sample.
 
-    `updates_*` and `events_mu_s` count the data behind a value since the last reset; `support_*` puts that in
-    [0, 1]: 0 is the start value, untouched; near 1 the start value is forgotten. Be cautious until it is.
+    `updates_*` and `events_mu_s` count the data behind a value since the last reset. `confidence_*` maps that
+    to [0, 1]: 0 is the untouched start value, near 1 data has replaced the start value. Do not act on a value
+    before its confidence has grown.
     """
 
     mu_s: float
-    """Static friction coefficient [-]."""
+    """Static friction coefficient [-], never below mu_c."""
     mu_c: float
     """Coulomb friction coefficient [-]."""
     r: float
     """Radius of the equivalent rim contact [m]."""
     gamma_t: float
-    """Share of translation in this sample: v_t / v or, at low speed, from the force [-]; 0 out of contact."""
+    """Fraction of translation: v_t / v or, at low speed, from the force [-]; 0 out of contact."""
     gamma_tau: float
-    """Share of rotation in this sample: |r omega| / v or, at low speed, from the torque [-]."""
+    """Fraction of rotation: |r omega| / v or, at low speed, from the torque [-]."""
     confidence_mu_s: float
     """events_mu_s / (events_mu_s + 1) [-]."""
     confidence_mu_c: float
-    """Share of mu_c's fading memory that is filled by data, 1 - forgetting**updates_mu_c [-]."""
+    """Fraction of mu_c's fading memory that is filled by data, 1 - forgetting**updates_mu_c [-]."""
     confidence_r: float
-    """Share of r's fading memory that is filled by data, 1 - forgetting**updates_r [-]."""
+    """Fraction of r's fading memory that is filled by data, 1 - forgetting**updates_r [-]."""
     events_mu_s: int
     """Stick-slip events that set mu_s."""
     updates_mu_c: int
@@ -37,17 +39,37 @@ class Estimate(NamedTuple):
     slipping: bool
     """State of the stick-slip machine."""
     halted: bool
-    """Whether the heuristic held all updates back on this sample."""
+    """Whether the heuristic halted all updates on this sample."""
     sd_mu_s: float
-    """Standard deviation of mu_s [-], from the scatter of its events; untouched: as large as the value."""
+    """Standard deviation of mu_s [-], from the scatter of its events; initialised to the value itself."""
     sd_mu_c: float
-    """Standard deviation of mu_c [-], of noise alone; untouched: as large as the value."""
+    """Standard deviation of mu_c [-], due to noise alone; initialised to the value itself."""
     sd_r: float
-    """Standard deviation of r [m], of noise alone; untouched: as large as the value."""
+    """Standard deviation of r [m], due to noise alone; initialised to the value itself."""
     observable_mu_c: bool
-    """Whether mu_c learnt on this sample."""
+    """Whether this sample updated mu_c."""
     observable_r: bool
-    """Whether r learnt on this sample."""
+    """Whether this sample updated r."""
+
+    @property
+    def support_mu_s(self) -> float:
+        """Deprecated name of `confidence_mu_s`."""
+        return self._renamed("mu_s")
+
+    @property
+    def support_mu_c(self) -> float:
+        """Deprecated name of `confidence_mu_c`."""
+        return self._renamed("mu_c")
+
+    @property
+    def support_r(self) -> float:
+        """Deprecated name of `confidence_r`."""
+        return self._renamed("r")
+
+    def _renamed(self, value: str) -> float:
+        message = f"Estimate.support_{value} is now Estimate.confidence_{value}"
+        warnings.warn(message, DeprecationWarning, stacklevel=3)
+        return getattr(self, f"confidence_{value}")
 
 
 ESTIMATE = np.dtype(list(Estimate.__annotations__.items()), align=True)
@@ -60,4 +82,4 @@ COMMON_STATE: list[tuple[Any, ...]] = [
     ("t", np.float64),
     ("samples", np.int64),
 ]
-"""Fields every state dtype begins with: the estimates, the last sample's time [s], how many were taken."""
+"""First fields of every state dtype: the estimates, time of the last sample [s], number of samples."""

@@ -17,7 +17,7 @@ _NUMBERS = (float, int, np.floating, np.integer)
 
 
 def _fill(row: NDArray[np.float64], values: Any, what: str, components: Sequence[str]) -> None:
-    """Copies finite numbers into a row; the usual case, a flat sequence, is tried first: that is quick."""
+    """Copies finite numbers into a row; a flat sequence, the usual case, is tried first for speed."""
     try:
         listed = values.tolist() if isinstance(values, np.ndarray) else values
         plain = len(listed) == len(components) and math.isfinite(sum(listed))
@@ -43,6 +43,9 @@ def _fill(row: NDArray[np.float64], values: Any, what: str, components: Sequence
 class OnlineEstimator:
     """Estimates the contact properties of one finger, sample by sample.
 
+    `residual`, `gain`, `covariance` and `innovation_covariance` are y, K, P and S of a recursive filter: new
+    arrays with the values of the last update, or None if the estimator does not have them.
+
     Attributes:
         batch: The one-row `BatchEstimator` inside; its `states` and `estimates` save and restore this object.
     """
@@ -61,6 +64,11 @@ class OnlineEstimator:
         self._wrench, self._twist = self._wrenches[0], self._twists[0]
 
     @property
+    def name(self) -> str:
+        """The name that `estimator.make` knows it by."""
+        return self.batch.name
+
+    @property
     def parameters(self) -> Parameters:
         """The checked parameters."""
         return self.batch.parameters
@@ -70,14 +78,44 @@ class OnlineEstimator:
         """The newest estimate; the start values before the first sample."""
         return Estimate._make(self.batch.estimates.item())
 
+    @property
+    def residual(self) -> NDArray[np.float64] | None:
+        """y, innovation of (f_t, |tau|) at the last update, (2,) [N, N m]; 0 before the first update.
+
+        "rls" and "ukf" have it.
+        """
+        return _first(self.batch.matrices.residual)
+
+    @property
+    def gain(self) -> NDArray[np.float64] | None:
+        """K of the last update, (2, 2); rows mu_c and r, columns f_t and |tau|; 0 before the first update.
+
+        "rls": diagonal [1/N]. "ukf": of (ln mu_c, ln r), columns in [1/N] and [1/(N m)].
+        """
+        return _first(self.batch.matrices.gain)
+
+    @property
+    def covariance(self) -> NDArray[np.float64] | None:
+        """P of (mu_c, r) after the last update, (2, 2).
+
+        "rls": diagonal, without the variance of the noise [1/N^2]. "ukf": of (ln mu_c, ln r) [-]. "joint" and
+        "disc": diagonal [1, m^2], because mu_c and r are averaged separately.
+        """
+        return _first(self.batch.matrices.covariance)
+
+    @property
+    def innovation_covariance(self) -> NDArray[np.float64] | None:
+        """S, covariance of the residual, (2, 2) [N^2, N^2 m, N^2 m^2]; only "ukf" has it."""
+        return _first(self.batch.matrices.innovation_covariance)
+
     def update(self, t: float, wrench: ArrayLike, twist: ArrayLike) -> Estimate:
         """Takes one sample.
 
-        Call it once per slip-velocity sample (nominally 120 Hz) with the newest force. Only magnitudes enter,
-        so the sign convention and the mirroring of the second finger do not matter.
+        Call it once per sample of the slip-velocity sensor (nominally 120 Hz) with the newest force. Only
+        magnitudes enter, so the sign convention and the mirroring of the second finger do not matter.
 
         Args:
-            t: Time [s], later than the last sample's.
+            t: Time [s], later than that of the last sample.
             wrench: (f_x, f_y, f_n, tau) [N, N, N, N m] at the centre of pressure (CoP).
             twist: (v_x, v_y, omega) [m/s, m/s, rad/s] of the slip at the CoP.
 
@@ -96,3 +134,37 @@ class OnlineEstimator:
     def reset(self) -> None:
         """Returns to the start values and forgets every sample."""
         self.batch.reset()
+
+    def __repr__(self) -> str:
+        e = self.estimate
+        changed = "".join(f", {name}={value!r}" for name, value in self.parameters.changed().items())
+        samples = int(self._samples[0])
+        when = f"{samples} samples, the last at t = {self._t[0]:.6g} s" if samples else "no samples"
+        lines = [
+            f"OnlineEstimator({self.name!r}{changed})",
+            f"  mu_s  {e.mu_s:.4g}, sd {e.sd_mu_s:.2g}, confidence {e.confidence_mu_s:.2f}",
+            f"  mu_c  {e.mu_c:.4g}, sd {e.sd_mu_c:.2g}, confidence {e.confidence_mu_c:.2f}",
+            f"  r     {e.r:.4g} m, sd {e.sd_r:.2g} m, confidence {e.confidence_r:.2f}",
+            f"  slipping {e.slipping}, halted {e.halted}, {when}",
+        ]
+        for name, matrix in self.batch.matrices._asdict().items():
+            if matrix is not None:
+                lines.append(f"  {name} {np.array2string(matrix[0], precision=3).replace(chr(10), '')}")
+        return "\n".join(lines)
+
+
+def _first(matrices: NDArray[np.float64] | None) -> NDArray[np.float64] | None:
+    return None if matrices is None else matrices[0]
+
+
+def make(name: str, **parameters: Any) -> OnlineEstimator:
+    """Makes the estimator of one finger.
+
+    Args:
+        name: One of `estimator.names()`, or "module:attribute" for your own Specification.
+        **parameters: Fields of its parameter dataclass, for example `RlsParameters`.
+
+    Raises:
+        ValueError: The name or a parameter is unknown, or a value is of the wrong type or out of range.
+    """
+    return OnlineEstimator(name, **parameters)

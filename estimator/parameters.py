@@ -11,7 +11,7 @@ _KINDS = {
     int: ((int, np.integer), "an integer in"),
     float: ((float, int, np.floating, np.integer), "a number in"),
 }
-"""Field type -> value types it takes, and how to ask for one. A bool is an int to Python, but not here."""
+"""Field type -> accepted value types and the words for them; an int field does not accept a bool."""
 
 
 def parameter(default: float | int | bool, doc: str, within: str = "", unit: str = "") -> Any:
@@ -19,8 +19,8 @@ def parameter(default: float | int | bool, doc: str, within: str = "", unit: str
 
     Args:
         default: Default value.
-        doc: What it means; one sentence or two.
-        within: Valid interval such as "(0, 1]"; a round bracket leaves the end out. Empty for a bool.
+        doc: Its meaning, in one or two sentences.
+        within: Valid interval such as "(0, 1]"; a round bracket excludes the end. Empty for a bool.
         unit: SI unit; empty if it has none.
     """
     return dataclasses.field(default=default, metadata={"doc": doc, "within": within, "unit": unit})
@@ -67,6 +67,13 @@ class Parameters:
         if unknown:
             raise ValueError(f"unknown parameter {', '.join(unknown)}; valid: {', '.join(valid)}")
         return cls(**values)
+
+    def changed(self) -> dict[str, Any]:
+        """The fields that differ from their defaults: name -> value."""
+        fields = {field.name: field.default for field in dataclasses.fields(self)}
+        return {
+            name: getattr(self, name) for name, default in fields.items() if getattr(self, name) != default
+        }
 
     @classmethod
     def dtype(cls) -> np.dtype[np.void]:

@@ -1,16 +1,16 @@
-"""Things of one's own by where they are: "module:attribute"."""
+"""Looks up an object by a "module:attribute" reference."""
 
 import importlib
 from typing import Any
 
 
 def is_reference(name: object) -> bool:
-    """Whether a name says where something is, instead of what it is called."""
+    """Whether a name is a "module:attribute" reference rather than a registered name."""
     return isinstance(name, str) and ":" in name
 
 
 def referenced(name: str) -> Any:
-    """What a reference stands for; its module is imported.
+    """Imports the module of a reference and returns the attribute.
 
     Args:
         name: "module:attribute".

@@ -1,9 +1,8 @@
-"""The table of estimators, and how to make one by name."""
+"""The table of estimators: what makes an estimator, and how to look one up by name."""
 
-import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +10,27 @@ from numpy.typing import NDArray
 from estimator.parameters import Parameters
 from estimator.reference import is_reference, referenced
 
-if TYPE_CHECKING:
-    from estimator.batch import BatchEstimator
-    from estimator.online import OnlineEstimator
+DEFAULT = "disc"
+"""Name of the default estimator, also of the environments: first of the leaderboard (docs/leaderboard.md)."""
 
-_MODULES = {name: f"estimator.{name}.specification" for name in ("disc", "joint", "rls", "ukf")}
+_MODULES = {name: f"estimator.{name}" for name in ("disc", "joint", "rls", "ukf")}
 """Name -> module that holds its SPECIFICATION; imported on first use, because numba is slow to import."""
+
+
+class FilterMatrices(NamedTuple):
+    """Matrices of n filters; None for what an estimator does not have.
+
+    The units are those of the estimator: its module and docs/estimator.md give them.
+    """
+
+    residual: NDArray[np.float64] | None = None
+    """y, innovation of (f_t, |tau|) at the last update, (n, 2) [N, N m]; 0 before the first update."""
+    gain: NDArray[np.float64] | None = None
+    """K of the last update, (n, 2, 2): rows mu_c and r, columns f_t and |tau|; 0 before the first update."""
+    covariance: NDArray[np.float64] | None = None
+    """P of (mu_c, r) after the last update, (n, 2, 2)."""
+    innovation_covariance: NDArray[np.float64] | None = None
+    """S of the residual at the last update, (n, 2, 2) [N^2, N^2 m, N^2 m^2]; 0 before the first update."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +45,8 @@ class Specification:
     """parameters (m,) -> states (m,) before the first sample; the state dtype begins with COMMON_STATE."""
     update_batch: Callable[..., None]
     """Compiled: (states (n,), parameters (1,) or (n,), t, wrenches (n, 4), twists (n, 3), estimates (n,))."""
+    filter_matrices: Callable[[NDArray[np.void]], FilterMatrices] | None = None
+    """states (n,) -> matrices of the filters; None: it has no such matrices."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         return specification, (self.name,)
@@ -45,7 +61,7 @@ def specification(name: str) -> Specification:
     """Looks an estimator up.
 
     Args:
-        name: One of `names()`, or "module:attribute" for a Specification of your own that has it as its name.
+        name: One of `names()`, or "module:attribute" for your own Specification, which must have this name.
 
     Raises:
         ValueError: No estimator has this name.
@@ -57,35 +73,4 @@ def specification(name: str) -> Specification:
         return found
     if name not in names():
         raise ValueError(f"unknown estimator {name!r}; valid: {', '.join(names())}")
-    return importlib.import_module(_MODULES[name]).SPECIFICATION
-
-
-def make(name: str, **parameters: Any) -> "OnlineEstimator":
-    """Makes the estimator of one finger.
-
-    Args:
-        name: As for `specification`.
-        **parameters: Fields of its parameter dataclass, for example `RlsParameters`.
-
-    Raises:
-        ValueError: The name or a parameter is unknown, or a value is of the wrong type or out of range.
-    """
-    from estimator.online import OnlineEstimator
-
-    return OnlineEstimator(name, **parameters)
-
-
-def make_batch(name: str, n: int, **parameters: Any) -> "BatchEstimator":
-    """Makes n independent estimators that one compiled call updates together.
-
-    Args:
-        name: As for `specification`.
-        n: How many fingers.
-        **parameters: As for `make`; all n share them.
-
-    Raises:
-        ValueError: As for `make`, or n is not a positive integer.
-    """
-    from estimator.batch import BatchEstimator
-
-    return BatchEstimator(name, n, **parameters)
+    return referenced(f"{_MODULES[name]}:SPECIFICATION")

@@ -5,6 +5,8 @@ from typing import Annotated
 
 try:
     import typer
+
+    from estimator import DEFAULT
 except ModuleNotFoundError as error:
     raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
 
@@ -14,11 +16,11 @@ Examples:\n
   python scripts/estimate.py examples/linear_slip_wood.csv.gz
   python scripts/estimate.py log.csv --columns examples/columns.yaml
   python scripts/estimate.py forces.parquet --velocity velocities.parquet --allow-gaps
-  python scripts/estimate.py log.csv --set heuristic=false --set r0=0.01 --output /tmp/runs
+  python scripts/estimate.py log.csv --estimator rls --set heuristic=false --output /tmp/runs
 \n
 A record holds one finger: the time t [s], the wrench f_x, f_y, f_n, tau [N, N, N, N m] and the slip
 twist v_x, v_y, omega [m/s, m/s, rad/s]; cells are empty where a stream has no sample. Other names,
-units and signs: --columns. docs/records.md says all of it, and what a run writes.
+units and signs: --columns. docs/records.md describes the format and the files of a run.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
@@ -32,7 +34,7 @@ def main(
     velocity: Annotated[
         Path | None, typer.Option(help="A file of its own for the velocities.", show_default=False)
     ] = None,
-    estimator: Annotated[str, typer.Option(help="Name of the estimator.")] = "rls",
+    estimator: Annotated[str, typer.Option(help="Name of the estimator.")] = DEFAULT,
     set_: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Its parameters; repeatable.")
     ] = None,
@@ -43,8 +45,9 @@ def main(
 ) -> None:
     """Run a friction estimator on a record of one finger.
 
-    It sees each velocity sample with the newest force at or before it. Writes a folder with the estimates, a
-    summary and a figure, and prints the final values and what the record could not tell.
+    Each velocity sample is paired with the newest force at or before it. Writes a folder with the estimates,
+    a summary and a figure. Prints the final values, warnings about implausible ones, and what was not
+    observable.
     """
     try:
         from estimator import records

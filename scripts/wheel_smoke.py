@@ -15,6 +15,8 @@ ROOT = Path(__file__).resolve().parents[1]
 SHIPPED = ROOT / "policies" / "learned" / "pretrained_policies"
 PACKAGES = {"slipgym", "estimator", "policies"}
 EPISODE = """
+import importlib.util
+import pathlib
 import sys
 import gymnasium as gym
 import policies
@@ -28,6 +30,9 @@ while not over:
     observation, reward, terminated, truncated, info = env.step(action)
     steps, over = steps + 1, terminated or truncated
 env.close()
+for package in ("estimator", "policies", "slipgym"):
+    origin = importlib.util.find_spec(package).origin
+    assert pathlib.Path(origin).with_name("py.typed").is_file(), f"{package} is not marked as typed"
 assert "torch" not in sys.modules, "the base installation must not load torch"
 print(f"one episode: {steps} steps, slip {info['slip']}")
 """
@@ -80,7 +85,7 @@ def build(folder: Path) -> Path:
 
 
 def check_contents(wheel: Path) -> None:
-    """Exactly the three packages at top level, and every default file and learned policy inside."""
+    """Exactly the three packages at top level; every default file, learned policy and py.typed inside."""
     with zipfile.ZipFile(wheel) as archive:
         files = set(archive.namelist())
     top = {name.split("/")[0] for name in files if ".dist-info/" not in name}
@@ -89,6 +94,7 @@ def check_contents(wheel: Path) -> None:
     wanted = {f"slipgym/{path.relative_to(ROOT).as_posix()}" for path in (ROOT / "configs").rglob("*.yaml")}
     if not wanted:
         sys.exit("there is no configuration to look for")
+    wanted |= {f"{package}/py.typed" for package in PACKAGES}
     wanted |= {path.relative_to(ROOT).as_posix() for path in SHIPPED.rglob("*") if path.is_file()}
     if wanted - files:
         sys.exit(f"missing from the wheel: {sorted(wanted - files)}")

@@ -1,14 +1,14 @@
-"""The exact limit surface of a uniformly loaded disc.
+"""The exact limit surface of a uniformly loaded disc, and friction of a slip on it or on the ellipsoid.
 
 A disc of radius R slips about a centre of rotation at the distance v_t / |omega| from its own. Friction of
 each area element opposes its velocity; integrated over the disc (Farkas, Bartels, Unger & Wolf, Frictional
 coupling between sliding and spinning motion, Phys. Rev. Lett. 90, 2003; Goyal, Ruina & Papadopoulos, Planar
-sliding with dry friction, Wear 143, 1991) it is made of complete elliptic integrals. With
+sliding with dry friction, Wear 143, 1991) it consists of complete elliptic integrals. With
 
     B = integral cos^2 / Delta,    D = integral sin^2 / Delta,    C = (D - B) / k^2,
     Delta = sqrt(1 - k^2 sin^2) over a quarter turn,    k the smaller of ratio and 1 / ratio,
 
-every term is positive and nothing cancels, however close to pure translation or spin.
+every term is positive and nothing cancels, even close to pure translation or pure spin.
 """
 
 import math
@@ -35,8 +35,8 @@ def _elliptic(k_squared):
         weight *= 2.0
         total += weight * gap * gap
     k_integral = 0.5 * math.pi / a
-    share = k_squared * total
-    return k_integral * (0.5 - share), k_integral * (0.5 + share), 2.0 * k_integral * total
+    part = k_squared * total
+    return k_integral * (0.5 - part), k_integral * (0.5 + part), 2.0 * k_integral * total
 
 
 @njit
@@ -62,3 +62,23 @@ def disc_friction(ratio):
         force = 2.0 * b + (1.0 - k_squared) * d
         torque = k * (3.0 * b - d + c)
     return 4.0 / (3.0 * math.pi) * force, 4.0 / (9.0 * math.pi) * torque
+
+
+@njit
+def slip_friction(disc, v_t, rim_speed):
+    """Steady friction of a slip as fractions of mu_c f_n and of mu_c f_n r.
+
+    Args:
+        disc: Whether the surface is a uniform disc's; else the ellipsoid.
+        v_t: Speed of translation [m/s], >= 0.
+        rim_speed: r |omega| [m/s], >= 0; not both speeds are zero.
+
+    Returns:
+        f_t / (mu_c f_n) and |tau| / (mu_c f_n r) [-].
+    """
+    if not disc:
+        speed = math.sqrt(v_t * v_t + rim_speed * rim_speed)
+        return v_t / speed, rim_speed / speed
+    ratio = DISC_RADIUS * v_t / rim_speed if rim_speed > 0.0 else math.inf
+    force, torque = disc_friction(ratio)
+    return force, torque / DISC_RADIUS

@@ -1,12 +1,12 @@
 """From the friction and the twist of a slip back to mu_c and r, on the ellipsoid or on a uniform disc.
 
-Both surfaces are told by q = tau omega / (f_t v_t), which holds neither mu_c nor r. On the ellipsoid
-(Waltersson & Karayiannidis, arXiv 2507.06824, eqs. 1-2) in closed form:
+On both surfaces q = tau omega / (f_t v_t), which contains neither mu_c nor r, determines the position of the
+slip. On the ellipsoid (Waltersson & Karayiannidis, arXiv 2507.06824, eqs. 1-2) the solution is
 
     mu_c f_n / f_t = sqrt(1 + q),    r = sqrt(q) v_t / omega.
 
-A disc's differ by factors that depend on s = 1 / (1 + q) alone, are bounded and smooth, and are tabulated
-here from its exact surface (`disc_friction`), once. Between knots they are linear: off by at most 2e-5.
+On a disc both have additional factors that depend on s = 1 / (1 + q) alone. They are bounded and smooth, and
+are tabulated here once from the exact surface (`disc_friction`). Linear interpolation is off by at most 2e-5.
 """
 
 import math
@@ -24,7 +24,7 @@ def _factors() -> tuple[np.ndarray, np.ndarray]:
 
     Returns:
         Over s: the factor of mu_c, the derivative of its logarithm, the same of r; (knots, 4).
-        Over the square of f_t's share of the load: the factor of mu_c; (knots,).
+        Over the squared fraction f_t / load: the factor of mu_c; (knots,).
     """
     ratio = np.concatenate(
         [np.geomspace(1e-4, 0.5, 400), np.linspace(0.5, 2.0, 1200), np.geomspace(2.0, 1e4, 400)]
@@ -49,14 +49,14 @@ _SLIP, _LOAD = _factors()
 
 @njit
 def _place(s):
-    """Interval of s in [0, 1], and where in it."""
+    """Interval of the table that holds s in [0, 1], and the position in it."""
     at = min(int(s * _INTERVALS), _INTERVALS - 1)
     return at, s * _INTERVALS - at
 
 
 @njit
 def slip_factors(disc, s):
-    """How mu_c and r of a slip differ from those on the ellipsoid.
+    """Factors of mu_c and r of a slip relative to the ellipsoid.
 
     Args:
         disc: Whether the surface is a uniform disc's; else the ellipsoid.
@@ -82,7 +82,7 @@ def slip_factors(disc, s):
 
 @njit
 def spin_radius(disc, arm, pivot):
-    """Radius of the equivalent rim contact of a spin whose f_t is too small to be seen.
+    """Radius of the equivalent rim contact of a spin whose f_t is within its noise.
 
     Args:
         disc: As in `slip_factors`.
@@ -91,13 +91,13 @@ def spin_radius(disc, arm, pivot):
     """
     if not disc:
         return math.sqrt(0.5 * arm * (arm + math.sqrt(arm * arm + 4.0 * pivot * pivot)))
-    # tau / (mu_c f_n R) = 2/3 - ratio^2 / 2, of which the first term left out is ratio^4 / 16
+    # tau / (mu_c f_n R) = 2/3 - ratio^2 / 2, the next term is ratio^4 / 16
     return 0.5 * (arm + math.sqrt(arm * arm + 4.0 / 3.0 * pivot * pivot))
 
 
 @njit
 def load_size(disc, f_t, rim):
-    """Least mu f_n that carries a load.
+    """Smallest mu f_n that carries a load.
 
     Args:
         disc: As in `slip_factors`.
@@ -110,6 +110,6 @@ def load_size(disc, f_t, rim):
     size = math.sqrt(f_t * f_t + rim * rim)
     if not disc or size == 0.0:
         return size
-    share = f_t / size
-    at, x = _place(share * share)
+    fraction = f_t / size
+    at, x = _place(fraction * fraction)
     return size * (_LOAD[at] + x * (_LOAD[at + 1] - _LOAD[at]))

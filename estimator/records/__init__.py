@@ -1,9 +1,9 @@
-"""The estimator on a record: a table of forces and slip velocities from a simulator or a real gripper.
+"""Runs an estimator on a record: a table of forces and slip velocities from a simulator or a real gripper.
 
     from estimator import records
 
     record = records.load("log.csv", records.load_columns("mapping.yaml"))
-    result = records.estimate(record, "rls")
+    result = records.estimate(record)
     print(records.report(result))
 
 pandas, PyYAML and matplotlib are imported when a function needs them: the extra `slipgym[eval]`.

@@ -1,4 +1,4 @@
-"""Two rates, one estimator: at each velocity sample the newest force."""
+"""Pairs each velocity sample with the newest force."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ GAP_PERIODS = 5.0
 
 @dataclass(frozen=True)
 class Samples:
-    """What the estimator gets, one row for each velocity sample that has a force."""
+    """The inputs of the estimator, one row for each velocity sample that has a force."""
 
     t: Array
     """(k,) [s]."""
@@ -45,7 +45,7 @@ def newest(force_t: Array, t: Array) -> NDArray[np.int64]:
 
 
 def align(record: Record, allow_gaps: bool = False) -> Samples:
-    """Puts both streams on the velocity's clock.
+    """Resamples the forces at the times of the velocities.
 
     Args:
         record: The record.

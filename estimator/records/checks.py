@@ -1,6 +1,6 @@
-"""What no record of a finger can be: refusals that say what to do.
+"""Checks of a record; the message of a refusal says what to do.
 
-Plausible records pass whatever they show; the bounds are an order of magnitude beyond a gripper's finger.
+The bounds are an order of magnitude beyond the finger of a gripper, so every plausible record passes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Which column of a record is what: the mapping."""
+"""The mapping of columns: names, units and signs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Packages that only records need, imported on first use."""
+"""Imports packages that only records need, on first use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run over time: forces, slip speed, friction, radius."""
+"""Plots a run over time: forces, slip speed, friction, radius."""
 
 from __future__ import annotations
 

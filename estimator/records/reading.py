@@ -1,4 +1,4 @@
-"""From files to a checked record."""
+"""Reads and checks a record."""
 
 from __future__ import annotations
 

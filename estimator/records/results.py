@@ -1,4 +1,4 @@
-"""The files of a run."""
+"""Writes the files of a run."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def write(result: Result, folder: Path) -> None:
 
 
 def table(result: Result) -> dict[str, NDArray[Any]]:
-    """Columns, a row for each velocity sample: what the estimator got, and what it said then."""
+    """Columns with a row for each velocity sample: inputs and outputs of the estimator, ground truth."""
     samples, estimates = result.samples, result.estimates
     columns: dict[str, NDArray[Any]] = {"t": samples.t, "segment": samples.segment}
     columns |= {name: samples.wrench[:, k] for k, name in enumerate(WRENCH)}

@@ -1,4 +1,4 @@
-"""The estimator over a record."""
+"""Runs an estimator over a record."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from estimator.batch import make_batch
 from estimator.estimate import ESTIMATE
 from estimator.parameters import Parameters
 from estimator.records.alignment import Samples, align
 from estimator.records.record import Record
-from estimator.registry import make_batch
+from estimator.registry import DEFAULT
 
 
 @dataclass(frozen=True)
@@ -20,20 +21,20 @@ class Result:
     """A record with its estimates."""
 
     record: Record
-    """What was read."""
+    """The record as read."""
     samples: Samples
-    """What the estimator got, (k,) rows."""
+    """The inputs of the estimator, (k,) rows."""
     estimates: np.ndarray
-    """What it said, ESTIMATE (k,)."""
+    """Its output at each of them, ESTIMATE (k,)."""
     estimator: str
     """Its name."""
     parameters: Parameters
     """All its parameters."""
     given: Mapping[str, Any] = field(default_factory=dict)
-    """Those that are not at their default."""
+    """The parameters that were given."""
 
 
-def estimate(record: Record, estimator: str = "rls", allow_gaps: bool = False, **parameters: Any) -> Result:
+def estimate(record: Record, estimator: str = DEFAULT, allow_gaps: bool = False, **parameters: Any) -> Result:
     """Runs an estimator over a record, once per velocity sample with the newest force at or before it.
 
     Args:

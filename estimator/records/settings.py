@@ -1,4 +1,4 @@
-"""What the command line passes on."""
+"""Parses settings of the command line, and names the folder of a run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run found, in words and numbers."""
+"""Summarises a run: final values, warnings, what was not observable, facts about the record."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from estimator.records.alignment import period
+from estimator.records.plausibility import warnings
 from estimator.records.reading import CONTACT
 from estimator.records.run import Result
 
@@ -21,18 +22,18 @@ _SPARSE = {
 
 
 def report(result: Result) -> str:
-    """The findings for a terminal: final values with their support, and what was not observable."""
+    """The summary for a terminal: final values with confidence, warnings, and what was not observable."""
     rows = final_rows(result)
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     lines = [
         "  ".join([row[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True))])
         for row in rows
     ]
-    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:], "", *not_observable(result)])
+    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:], "", *findings(result)])
 
 
 def markdown(result: Result) -> str:
-    """The findings as a page."""
+    """The summary as a Markdown page."""
     heading, *rows = final_rows(result)
     facts = record_facts(result)
     settings = (
@@ -43,9 +44,9 @@ def markdown(result: Result) -> str:
         f"Estimator `{result.estimator}`; parameters: {settings}.",
         "## Final values",
         "\n".join([_row(heading), "| --- |" + " ---: |" * (len(heading) - 1), *map(_row, rows)]),
-        "Support is 0 for an untouched start value and near 1 once data has replaced it.",
-        "## What was not observable",
-        "\n".join(f"- {line}" for line in not_observable(result)),
+        "Confidence is 0 for an untouched start value and near 1 once data has replaced it.",
+        "## Warnings, and what was not observable",
+        "\n".join(f"- {line}" for line in findings(result)),
         "## The record",
         "\n".join(["| | |", "| --- | ---: |", *(_row(fact) for fact in facts)]),
     ]
@@ -53,10 +54,10 @@ def markdown(result: Result) -> str:
 
 
 def final_rows(result: Result) -> list[list[str]]:
-    """A heading, then mu_s, mu_c and r as cells: value, support, data behind it, and truth where known."""
+    """A heading, then mu_s, mu_c and r as cells: value, confidence, data behind it, ground truth if known."""
     last, truth = result.estimates[-1], result.samples.truth
     known = truth is not None and not np.isnan(truth[-1]).all()
-    rows = [["", "final", "support", "data", *(["true", "error"] if known else [])]]
+    rows = [["", "final", "confidence", "data", *(["true", "error"] if known else [])]]
     for k, name in enumerate(_NAMES):
         scale, digits = (1e3, 2) if name == "r" else (1.0, 3)
         data = f"{last[_COUNTS[name]]} {'events' if name == 'mu_s' else 'samples'}"
@@ -76,14 +77,19 @@ def final_rows(result: Result) -> list[list[str]]:
     return rows
 
 
+def findings(result: Result) -> list[str]:
+    """Warnings, then a line for each value that was not observable; "Everything was observed" if none."""
+    return [*warnings(result), *not_observable(result)] or ["Everything was observed."]
+
+
 def not_observable(result: Result) -> list[str]:
-    """A line for each value that the record says little or nothing about."""
+    """A line for each value about which the record holds little or no information."""
     last, lines = result.estimates[-1], []
     if not (result.samples.wrench[:, 2] >= CONTACT).any():
         return [f"f_n never reaches {CONTACT} N: there was no contact."]
     for name in _NAMES:
-        count, support = int(last[_COUNTS[name]]), float(last[f"confidence_{name}"])
-        if support >= _LITTLE:
+        count, confidence = int(last[_COUNTS[name]]), float(last[f"confidence_{name}"])
+        if confidence >= _LITTLE:
             continue
         seen = (
             "not observed: this is the start value" if count == 0 else f"little data ({count}): be cautious"
@@ -91,13 +97,13 @@ def not_observable(result: Result) -> list[str]:
         lines.append(f"{name}: {seen}; {_SPARSE[name]}.")
     if result.samples.segment[-1] > 0:
         lines.append(
-            "After a gap the estimator starts afresh: the final values know only what came after the last."
+            "The estimator starts afresh after a gap: the final values come from what follows the last gap."
         )
-    return lines or ["Everything was observed."]
+    return lines
 
 
 def record_facts(result: Result) -> list[list[str]]:
-    """What the record holds, as pairs of cells."""
+    """Facts about the record, as pairs of cells."""
     record, samples, estimates = result.record, result.samples, result.estimates
     halted, slipping = estimates["halted"], estimates["slipping"]
     ends = np.append(np.flatnonzero(np.diff(samples.segment)), len(estimates) - 1)
@@ -109,15 +115,15 @@ def record_facts(result: Result) -> list[list[str]]:
         ("velocity samples without a new enough force", samples.left_out),
         ("gaps", samples.segment[-1]),
         ("centre of pressure", "the origin" if record.cop is None else "from the record"),
-        ("in contact", _share(contact)),
-        ("slipping", _share(slipping)),
+        ("in contact", _percent(contact)),
+        ("slipping", _percent(slipping)),
         (
             "normal force in contact, median",
             f"{np.median(samples.wrench[contact, 2]):.2f} N" if contact.any() else "–",
         ),
         ("slip speed, largest", f"{1e3 * np.hypot(*samples.twist[:, :2].T).max():.1f} mm/s"),
         ("stick-slip events that set mu_s", estimates["events_mu_s"][ends].sum()),
-        ("halts by the heuristic", f"{_starts(halted)}, {_share(halted)} of the samples"),
+        ("halts by the heuristic", f"{_starts(halted)}, {_percent(halted)} of the samples"),
     ]
     return [[name, str(value)] for name, value in facts]
 
@@ -126,7 +132,7 @@ def _row(cells: list[str]) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def _share(flags: np.ndarray) -> str:
+def _percent(flags: np.ndarray) -> str:
     return f"{100.0 * flags.mean():.0f} %"
 
 

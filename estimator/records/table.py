@@ -1,4 +1,4 @@
-"""Files as columns of numbers."""
+"""Reads files as columns of numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a record can hold, and the units it may come in."""
+"""The columns that a record can have, and their units."""
 
 from __future__ import annotations
 

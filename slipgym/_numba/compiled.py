@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from estimator.caching import compiler
+from estimator._numba.caching import compiler
 
 _HERE = Path(__file__).parents[1]
 

@@ -32,6 +32,9 @@ class Reset:
     option: Option | None
     """The option, where it is not of the setting's own type."""
 
+    def __call__(self, schema: dict[str, Any]) -> None:
+        """Pydantic calls this for a JSON schema, to which it adds nothing."""
+
 
 def setting(meaning: str, unit: str = "", *, reset: bool | Option = False, **bounds: Any) -> Any:
     """Metadata of a task's parameter.
@@ -46,11 +49,11 @@ def setting(meaning: str, unit: str = "", *, reset: bool | Option = False, **bou
         **bounds: Bounds in pydantic's words: gt, ge, lt, le.
     """
     option = reset if isinstance(reset, Option) else None
-    extra: Any = {"reset": Reset(option)} if reset else None
+    extra = Reset(option) if reset else None
     return Field(description=f"{meaning} [{unit}]" if unit else meaning, json_schema_extra=extra, **bounds)
 
 
-InitialForce = Annotated[Positive, setting("Grip force per finger at reset", "N", reset=True)]
+InitialForce = Annotated[Positive, setting("Grip force per finger at reset", "N", reset=True, le=40.0)]
 TaskObject = Annotated[ObjectConfig | None, setting("The object of this task; null: the common one")]
 MassRange = Annotated[
     PositiveInterval | None,

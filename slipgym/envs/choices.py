@@ -12,8 +12,7 @@ import estimator as estimators
 from estimator.registry import specification
 from slipgym.config.errors import unknown
 
-DEFAULT_ESTIMATOR = "disc"
-"""First of the leaderboard (docs/leaderboard.md), at a sixth of the cost of the filter beside it."""
+DEFAULT_ESTIMATOR = estimators.DEFAULT
 LATENCY = "velocity_delay"
 """Parameter by which an estimator is told how old a velocity is."""
 

@@ -110,6 +110,7 @@ def combine(estimates, per_finger, friction):
             per_finger[i, f, 0], per_finger[i, f, 1], per_finger[i, f, 2] = finger.mu_s, finger.mu_c, finger.r
         friction[i, 0] = weigh(a.mu_s, b.mu_s, a.confidence_mu_s, b.confidence_mu_s)
         friction[i, 1] = weigh(a.mu_c, b.mu_c, a.confidence_mu_c, b.confidence_mu_c)
+        friction[i, 0] = max(friction[i, 0], friction[i, 1])  # their weights differ: the means may cross
         friction[i, 2] = weigh(a.r, b.r, a.confidence_r, b.confidence_r)
         friction[i, 3] = max(a.confidence_mu_s, b.confidence_mu_s)
         friction[i, 4] = max(a.confidence_mu_c, b.confidence_mu_c)

@@ -71,8 +71,7 @@ def derive_options(name: str, settings: type[TaskConfig]) -> type[EpisodeOptions
     fields: dict[str, Any] = {}
     replaced = set()
     for key, field in settings.model_fields.items():
-        extra = field.json_schema_extra
-        reset = extra.get("reset") if isinstance(extra, dict) else None
+        reset = field.json_schema_extra
         if not isinstance(reset, Reset):
             continue
         option = reset.option

@@ -64,8 +64,7 @@ def test_the_observation_table_is_the_observation_space(env):
 
 
 def test_the_reward_table_is_the_configuration(env):
-    scales = getattr(env.config.tasks, env.task.key).reward
-    expected = [[f"`{term}`", f"{getattr(scales, term):g}"] for term in env.task.terms]
+    expected = [[f"`{name}`", f"{env.settings.reward[name]:g}"] for name in env.task.term_names]
     assert [row[:2] for row in rows(section(env, "Rewards"))] == expected
 
 
@@ -89,7 +88,7 @@ def test_every_key_of_info_is_listed(env):
 
 
 def test_the_numbers_in_the_text_are_the_defaults(env):
-    gripper, task = env.config.gripper, getattr(env.config.tasks, env.task.key)
+    gripper, task = env.config.gripper, env.settings
     action, end = (" ".join(section(env, title).split()) for title in ("Action Space", "Episode End"))
     assert f"-1 is `gripper.force_min` ({gripper.force_min:g} N)" in action
     assert f"+1 is `gripper.force_max` ({gripper.force_max:g} N)" in action

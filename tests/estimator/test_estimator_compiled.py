@@ -30,10 +30,24 @@ def test_an_edited_shared_function_is_compiled_again(tmp_path):
 
     before = gamma_t()
     assert before == gamma_t() == 1.0
-    kernel = copy / "stick_slip" / "kernel.py"  # called from rls/kernel.py
+    kernel = copy / "sample.py"  # called from rls.py
     law = kernel.read_text()
     assert "return min(translation * scale, 1.0)," in law
     kernel.write_text(
         law.replace("return min(translation * scale, 1.0),", "return 0.5 * translation * scale,")
     )
     assert gamma_t() == pytest.approx(0.5 * before)
+
+
+def test_a_touched_file_with_the_same_contents_keeps_the_cache(tmp_path):
+    copy = tmp_path / "estimator"
+    shutil.copytree(Path(estimator.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))
+
+    def kernels() -> dict[Path, int]:
+        subprocess.run([sys.executable, "-c", CALL], cwd=tmp_path, capture_output=True, check=True)
+        return {path: path.stat().st_mtime_ns for path in copy.rglob("*.nbc")}
+
+    before = kernels()
+    assert before
+    (copy / "sample.py").touch()
+    assert kernels() == before

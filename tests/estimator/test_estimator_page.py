@@ -9,7 +9,8 @@ import pytest
 import estimator
 from slipgym.validation.records import ellipsoid
 
-PAGE = (Path(__file__).parents[2] / "docs" / "estimator.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "estimator.md").read_text(encoding="utf-8")
 FIELDS = [
     pytest.param(field, id=f"{kind.__name__}.{field.name}")
     for kind in (
@@ -51,9 +52,24 @@ def test_the_log_loop_runs(tmp_path, monkeypatch, capsys):
     (tmp_path / "finger_1.csv").write_text("\n".join(["t,f_x,f_y,f_n,tau,v_x,v_y,omega", *rows]))
     monkeypatch.chdir(tmp_path)
     exec(compile(code_blocks()[0], "log loop", "exec"), {})
-    assert capsys.readouterr().out == "mu_s 1.500  mu_c 0.400  r 0.0100 m\nsupport: 0.00  1.00  1.00\n"
+    printed = capsys.readouterr().out
+    assert printed.startswith("mu_s 1.500  mu_c 0.400  r 0.0100 m\nconfidence: 0.00  1.00  1.00\n")
+    assert "OnlineEstimator('rls')\n" in printed
 
 
 def test_the_figures_on_locking_out_are_printed_by_their_code(capsys):
     exec(compile(code_blocks()[1], "locking out", "exec"), {})
     assert f"```text\n{capsys.readouterr().out}```" in PAGE
+
+
+def test_the_files_that_the_pages_name_exist():
+    docs = ROOT / "docs"
+    named = {
+        path
+        for page in ("estimator.md", "adding_an_estimator.md", "records.md")
+        for path in re.findall(
+            r"`((?:estimator|scripts|tests|examples)/[\w./]+\.\w+)`", (docs / page).read_text()
+        )
+    }
+    assert len(named) > 10
+    assert {path for path in named if not (ROOT / path).exists()} == set()

@@ -48,7 +48,7 @@ def test_rls_measures_the_noise():
 
 
 @pytest.mark.parametrize("name", estimator.names())
-def test_before_any_sample_a_value_stands_for_its_own_doubt(name):
+def test_standard_deviations_start_at_the_values_themselves(name):
     e = estimator.make(name).estimate
     assert (e.sd_mu_s, e.sd_mu_c, e.sd_r) == (e.mu_s, e.mu_c, e.r)
     assert (e.observable_mu_c, e.observable_r) == (False, False)

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from estimator import records
+from estimator.records.plausibility import FRICTION, RADIUS
 from estimator.records.units import UNITS
 
 ROOT = Path(__file__).parents[2]
@@ -32,5 +33,12 @@ def test_the_figures_on_the_page_are_those_of_the_shipped_record():
     (printed,) = re.findall(r"```text\n(.*?)```", PAGE, flags=re.DOTALL)
     record = records.load(ROOT / "examples" / "linear_slip_wood.csv.gz")
     assert printed.split() == records.report(records.estimate(record)).split()
-    plain = records.estimate(record, heuristic=False).estimates[-1]["mu_c"]
-    assert f"mu_c ends at\n{plain:.3f}:" in PAGE
+    page = " ".join(PAGE.split())
+    rls, plain = (records.estimate(record, "rls", heuristic=on).estimates[-1]["mu_c"] for on in (True, False))
+    assert f"With `--estimator rls` mu_c ends at {rls:.3f}," in page
+    assert f"`--estimator rls --set heuristic=false` mu_c ends at {plain:.3f}:" in page
+
+
+def test_the_plausible_ranges_are_documented():
+    assert f"| mu_s, mu_c | outside {FRICTION[0]:g} to {FRICTION[1]:g} |" in PAGE
+    assert f"outside {1e3 * RADIUS[0]:g} to {1e3 * RADIUS[1]:g} mm |" in PAGE

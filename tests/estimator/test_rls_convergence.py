@@ -78,7 +78,7 @@ def test_rls_is_weighted_least_squares():
     assert run(est, record)[-1].mu_c == pytest.approx(expected, rel=1e-12)  # 200 steps of rounding
 
 
-def test_support_counts_the_data_behind_each_value():
+def test_confidence_counts_the_data_behind_each_value():
     est = estimator.make("rls")
     assert est.estimate[5:13] == (0.0, 0.0, 0.0, 0, 0, 0, False, False)
     estimates = run(est, ellipsoid(50, *planar(0.707, R), MU_C, R))

@@ -81,7 +81,8 @@ def test_halted_samples_stay_out_of_the_buffer():
         est.update(k / RATE, (f_t, 0.0, f_n, 0.0), (v_x, 0.0, 0.0))
     assert est.estimate.slipping
     assert not est.estimate.halted
-    assert est.estimate.mu_s == pytest.approx(0.3)
+    assert est.batch.states["mu_s"] == pytest.approx(0.3)
+    assert est.estimate.mu_s == est.estimate.mu_c > 0.3
 
 
 def test_the_heuristic_keeps_stuck_samples_out():

@@ -52,7 +52,7 @@ def test_a_large_normal_force_locks_r_out(gamma_t):
     last = run(estimator.make("rls"), ellipsoid(SAMPLES, *planar(gamma_t, R), MU_C, R, f_n=20.0))[-1]
     assert last.updates_r == 1
     assert last.r < 0.6 * R
-    assert last.confidence_r == pytest.approx(1.0 - DEFAULTS.forgetting)  # which the support shows
+    assert last.confidence_r == pytest.approx(1.0 - DEFAULTS.forgetting)  # which the confidence shows
 
 
 def test_the_same_slip_at_a_small_normal_force_is_learnt():

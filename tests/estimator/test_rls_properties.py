@@ -43,8 +43,8 @@ def test_estimates_stay_finite_positive_and_in_bounds(rows):
         assert limits.r_min <= e.r <= limits.r_max
         assert 0.0 <= e.gamma_t <= 1.0
         assert 0.0 <= e.gamma_tau <= 1.0
-        for support in (e.confidence_mu_s, e.confidence_mu_c, e.confidence_r):
-            assert 0.0 <= support <= 1.0
+        for confidence in (e.confidence_mu_s, e.confidence_mu_c, e.confidence_r):
+            assert 0.0 <= confidence <= 1.0
 
 
 def test_a_sample_whose_squares_overflow_teaches_nothing():

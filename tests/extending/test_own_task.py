@@ -17,13 +17,20 @@ from gymnasium.utils.env_checker import check_env
 
 import slipgym
 from policies.play import own_policy, take_screenshot
-from slipgym.config import load
+from slipgym.config.task import InitialForce, TaskConfig
 from slipgym.envs import HoldEnv
 from slipgym.registration import ENVIRONMENTS, TASK_MODULES
-from slipgym.tasks import TASKS, Term, find
+from slipgym.tasks import TASKS, Term, configure, find
+from slipgym.tasks.terms import TIME_LEFT, drop
 
 ROOT = Path(__file__).parents[2]
 ID = "my/SlideToLine-v0"
+
+
+class WrongDefault(TaskConfig):
+    """Settings whose default is not allowed."""
+
+    initial_force: InitialForce = -1.0
 
 
 def test_gymnasiums_checker(own_task):
@@ -68,7 +75,7 @@ def test_the_line_is_drawn_or_given(own_task):
         ({"lime": 1.0}, "tasks.slide_to_line.lime: unknown key 'lime'; did you mean 'line'"),
         ({"tolerance": -1.0}, "tasks.slide_to_line.tolerance = -1.0: must be a finite number > 0 (Largest"),
         ({"reward": {"nearr": 1.0}}, "did you mean 'near'? valid: drop, effort, near"),
-        ({"initial_force": 99.0}, "tasks.slide_to_line.initial_force must lie within"),
+        ({"initial_force": 30.0}, "tasks.slide_to_line.initial_force must lie within"),
     ],
 )
 def test_its_settings_are_checked(own_task, config, said):
@@ -108,18 +115,20 @@ def test_into_another_process(own_task, own_task_folder):
     assert done.stdout.decode().split()[-1] == repr(env.step([-0.9])[1])
 
 
-def test_the_configuration_goes_back_when_it_is_gone(own_task):
-    config = load()
-    assert pickle.loads(pickle.dumps(config)) == config
+def test_the_settings_go_when_the_task_goes(own_task):
+    task = own_task.TASK
     held = gym.make("slipgym/Hold-v0").unwrapped.get_state()
     assert "slide_to_line" not in held.made_of["config"]["tasks"]
-    assert hasattr(config.tasks, "slide_to_line")
+    overrides = {"tasks": {"slide_to_line": {"duration": 1.0}}}
+    assert configure(task, overrides)[1].duration == 1.0
+    configure(TASKS["Hold"], overrides)
     before = TASKS.pop("SlideToLine")
-    assert not hasattr(load().tasks, "slide_to_line")
+    with pytest.raises(ValueError, match="unknown key 'slide_to_line'"):
+        configure(TASKS["Hold"], overrides)
     with pytest.raises(ValueError, match="'slide_to_line:TASK' is no task that"):
         find("slide_to_line:TASK")
     TASKS["SlideToLine"] = before
-    assert find("slide_to_line:TASK") is find("SlideToLine") is own_task.TASK
+    assert find("slide_to_line:TASK") is find("SlideToLine") is find("slide_to_line") is task
 
 
 def test_the_picture_shows_its_motion(own_task):
@@ -135,8 +144,13 @@ def test_the_picture_shows_its_motion(own_task):
         ({"id": "my/Line-v0", "key": "hold"}, "key = 'hold' of my/Line-v0 is taken by slipgym/Hold-v0"),
         ({"id": "my/A Line"}, "id = 'my/A Line'"),
         ({"key": "slide-to-line"}, "key = 'slide-to-line' of my/SlideToLine-v0 must be a word"),
-        ({"reward": 9 * (Term("near", 1.0, ""),)}, "has 9 reward terms; at most 8"),
-        ({"defaults": {"line": [0.01, 0.03]}}, "tasks.slide_to_line.duration is missing"),
+        (
+            {"terms": tuple(Term(f"near_{k}", 1.0, "", lambda e, w, f: 0.0) for k in range(9))},
+            "has 9 reward terms; at most 8",
+        ),
+        ({"terms": 2 * (drop,)}, "has two reward terms of the name 'drop'"),
+        ({"columns": 2 * (TIME_LEFT,)}, "has two columns of the name 'time_left'"),
+        ({"settings": WrongDefault}, "tasks.slide_to_line.initial_force = -1.0: must be a finite number > 0"),
     ],
 )
 def test_what_is_refused_changes_nothing(own_task, changes, said):
@@ -147,9 +161,13 @@ def test_what_is_refused_changes_nothing(own_task, changes, said):
 
 
 def test_registering_again_replaces(own_task):
-    longer = dataclasses.replace(own_task.TASK, defaults={**own_task.TASK.defaults, "duration": 7.0})
-    slipgym.register_task(longer)
-    assert load().tasks.slide_to_line.duration == 7.0
+    class Longer(own_task.Settings):
+        """Another default."""
+
+        duration: float = 7.0
+
+    own_task.SlideToLineEnv = slipgym.register_task(dataclasses.replace(own_task.TASK, settings=Longer))
+    assert gym.make(ID).unwrapped.settings.duration == 7.0
 
 
 @pytest.mark.slow

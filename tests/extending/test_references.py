@@ -25,5 +25,5 @@ def test_only_a_class_with_predict_is_a_policy():
 
 def test_a_specification_has_the_name_it_is_asked_by():
     with pytest.raises(ValueError, match="no Specification of this name"):
-        estimator.make("estimator.rls.specification:SPECIFICATION")
+        estimator.make("estimator.rls:SPECIFICATION")
     assert pickle.loads(pickle.dumps(specification("rls"))) is specification("rls")

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+import slipgym
+
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
@@ -34,7 +36,7 @@ def test_only_the_train_extra_installs_learning_libraries():
 
 def test_the_changelog_opens_with_this_version():
     versions = re.findall(r"^## \[(.+?)\]", (ROOT / "CHANGELOG.md").read_text(), re.MULTILINE)
-    assert next(version for version in versions if version != "Unreleased") == PROJECT["version"]
+    assert next(version for version in versions if version != "Unreleased") == slipgym.__version__
 
 
 @pytest.mark.parametrize("target", ["demo", "test", "test-all", "lint", "types", "wheel-smoke", "check"])

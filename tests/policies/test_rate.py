@@ -54,12 +54,7 @@ def test_constant_grips_run_in_the_episodes_of_the_experiment():
     assert firm.success.all()
     force = best_force(each, 4, progress=False)
     assert 0.6 < force <= 25.0
-    trials = plan(
-        validate(
-            {**dict(each), "policies": [{"name": "constant_force", "parameters": {"force": 20.0}}]},
-            Experiment,
-            "test",
-        )
-    )
-    rewards = [run_trial(each.model_copy(update={"policies": (t.policy,)}), t).row["return"] for t in trials]
+    choice = {"name": "constant_force", "parameters": {"force": 20.0}}
+    same = validate({**dict(each), "policies": [choice]}, Experiment, "test")
+    rewards = [run_trial(same, trial).row["return"] for trial in plan(same)]
     np.testing.assert_allclose(firm.reward, rewards, rtol=1e-6)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from filterpy.kalman import MerweScaledSigmaPoints, UnscentedKalmanFilter
 
-from estimator.rls.parameters import RlsParameters
-from estimator.ukf.kernel import expected, measurement_noise
-from estimator.ukf.parameters import UkfParameters
+from estimator.rls import RlsParameters
+from estimator.ukf import UkfParameters, expected, measurement_noise
 
 Pair = tuple[float, float]
 

@@ -6,7 +6,7 @@ import numpy as np
 from tqdm import tqdm
 
 import estimator
-from estimator.limit_surface.forward import slip_friction
+from estimator.limit_surface import slip_friction
 from policies.research.reproduction.fixed_point import Slip
 
 RATE = 120.0

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from estimator.rls.parameters import RlsParameters
+from estimator.rls import RlsParameters
 from policies.research.reproduction.records import Record
 
 STILL = 1e-4  # [m/s]; a tenth of the Stribeck velocity, and ten times the elastic motion of a stuck contact

@@ -1,4 +1,4 @@
-"""Compiled entry points of the estimators."""
+"""Compiles the function of an estimator that Python calls."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 from numba import from_dtype, types
 
-from estimator.caching import compiler
+from estimator._numba.caching import compiler
 from estimator.estimate import ESTIMATE
 
-_compiled = compiler(
-    Path(__file__).parent, error_model="numpy", forceinline=True
-)  # inf and NaN are refused where they matter
+# error_model="numpy": a division by zero gives inf or NaN; the kernels refuse both where it matters
+_compiled = compiler(Path(__file__).parents[1], error_model="numpy", forceinline=True)
 
 
 def _array(dtype: Any, ndim: int) -> Any:
@@ -22,7 +21,8 @@ def _array(dtype: Any, ndim: int) -> Any:
 def entry_point(state: np.dtype[np.void], parameters: np.dtype[np.void]) -> Callable[[Any], Any]:
     """Decorates an `update_batch(states, parameters, t, wrenches, twists, estimates)`.
 
-    It is compiled at import, or read from the cache: no first call is slow. Other types are a TypeError.
+    The function is compiled at import, or read from the cache, so the first call is not slow. Arguments of
+    other types are a TypeError.
 
     Args:
         state: The dtype of a state.

@@ -1,1 +1,0 @@
-"""The "joint" estimator on the exact limit surface of a uniform disc."""

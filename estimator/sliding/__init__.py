@@ -1,1 +1,0 @@
-"""Estimators that learn from each instant of true sliding: what they share."""
