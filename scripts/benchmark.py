@@ -4,24 +4,26 @@ import argparse
 from pathlib import Path
 
 from slipgym.benchmarking.run import benchmark
+from slipgym.tasks import find
 
 
 def main() -> None:
     """Prints the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "--env", default="slipgym/LinearSlip-v0", help="environment id (default: %(default)s)"
+        "--env", default="linear_slip", help="task, also LinearSlip or an id (default: %(default)s)"
     )
     parser.add_argument("--pairs", type=int, default=300, help="pairs of timed blocks (default: %(default)s)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there, too")
     parser.add_argument("--learning", action="store_true", help="learning instead; needs the extra train")
     arguments = parser.parse_args()
+    env_id = find(arguments.env).id
     if arguments.learning:
         from policies.training.benchmark import benchmark as learning
 
-        learning(arguments.env, arguments.pairs, arguments.json)
+        learning(env_id, arguments.pairs, arguments.json)
     else:
-        benchmark(arguments.env, arguments.pairs, arguments.json)
+        benchmark(env_id, arguments.pairs, arguments.json)
 
 
 if __name__ == "__main__":

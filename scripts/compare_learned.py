@@ -1,4 +1,4 @@
-"""Compares the learned policies that come with slipgym with the controllers."""
+"""Compares the pretrained policies with the controllers and with the best constant grip."""
 
 from typing import Annotated
 
@@ -11,7 +11,10 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 @app.command()
 def main(
     tasks: Annotated[
-        list[str] | None, typer.Argument(help=f"Of {', '.join(TASKS)}; all if none.", show_default=False)
+        list[str] | None,
+        typer.Argument(
+            help=f"Of {', '.join(TASKS)} (also LinearSlip or ids); all if none.", show_default=False
+        ),
     ] = None,
     trials: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
     engine: Annotated[str, typer.Option(help="What moves the bodies: bullet or planar.")] = "bullet",

@@ -19,7 +19,7 @@ def test_linear_slip_has_160_trials_for_each_friction_choice():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"task": "LinearSlop"}, r"task: unknown task 'LinearSlop'.*LinearSlip"),
+        ({"task": "LinearSlop"}, r"task: unknown task 'LinearSlop'.*linear_slip"),
         ({"trials": 0}, r"trials = 0: .*1"),
         ({"materials": ["wod"]}, r"unknown material 'wod'.*wood"),
         ({"materials": []}, r"materials"),
