@@ -15,7 +15,7 @@ class Estimate(NamedTuple):
     """
 
     mu_s: float
-    """Static friction coefficient [-], never below mu_c."""
+    """Static friction coefficient [-], never below mu_c; see also `confidence_mu_c`."""
     mu_c: float
     """Coulomb friction coefficient [-]."""
     r: float

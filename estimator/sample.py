@@ -54,14 +54,16 @@ def count_r(state, p):
 def publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate):
     """Closes a sample: stores t [s] and f_n [N], writes the ESTIMATE record.
 
-    Static friction is never below Coulomb friction, but each is estimated from other samples. The published
-    mu_s is therefore at least the published mu_c; the state keeps its own value.
+    Static friction is never below Coulomb friction, but each is estimated from other samples. Where they
+    contradict each other, the start value of mu_c yields to a measured mu_s, and else mu_s is raised to mu_c. The
+    state keeps its own values.
     """
     state.t = t
     state.f_n = f_n
     state.samples += 1
-    estimate.mu_s = max(state.mu_s, state.mu_c)
-    estimate.mu_c = state.mu_c
+    unknown_mu_c = state.updates_mu_c == 0 and state.events_mu_s > 0
+    estimate.mu_c = min(state.mu_c, state.mu_s) if unknown_mu_c else state.mu_c
+    estimate.mu_s = max(state.mu_s, estimate.mu_c)
     estimate.r = state.r
     estimate.gamma_t = gamma_t
     estimate.gamma_tau = gamma_tau

@@ -1,5 +1,5 @@
-"""What only serves slipgym's own pages: the paper's reproduction, the leaderboard, the study, comparisons.
+"""What only serves slipgym's own pages: reproduction of the paper, leaderboard, study, comparisons.
 
-Nothing outside this package imports it, except `scripts/`: none of it is needed to use environments, controllers,
-training or evaluation.
+Nothing outside this package imports it, except `scripts/`. Environments, controllers, training and evaluation do
+not need it.
 """

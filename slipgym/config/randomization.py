@@ -25,7 +25,7 @@ class Ranges(Frozen):
     """What is drawn; a field that is null or left out stays what the configuration says."""
 
     materials: Names | None = Field(
-        default=None, description="Materials to draw from, if no other friction is"
+        default=None, description="Materials to draw from, where no other friction is randomized"
     )
     mu_c: Annotated[Distribution | None, within(0.01, 5.0)] = Field(
         default=None, description="Coulomb friction, whatever the material"

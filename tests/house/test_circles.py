@@ -1,4 +1,4 @@
-"""Files of a package import each other one way: there are no circles, in functions and for type checkers included."""
+"""Files of a package import each other one way, imports in functions and for type checkers included."""
 
 import ast
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ def modules(folder: Path) -> dict[str, Path]:
 
 
 def imported(source: str, known: dict[str, Path]) -> Iterator[str]:
-    """Modules of the package that a source imports anywhere, by a statement or by a call with a literal name."""
+    """Modules that a source imports anywhere, by a statement or by a call with a literal name."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -37,12 +37,10 @@ def imported(source: str, known: dict[str, Path]) -> Iterator[str]:
 def circles(folder: Path) -> list[list[str]]:
     """Groups of modules that import each other, directly or by way of others (Tarjan's algorithm)."""
     known = modules(folder)
-    arrows = {
-        name: sorted(
-            {other for other in imported(path.read_text(), known) if other in known and other != name}
-        )
-        for name, path in known.items()
-    }
+    arrows = {}
+    for name, path in known.items():
+        others = set(imported(path.read_text(), known)) - {name}
+        arrows[name] = sorted(others & set(known))
     order: dict[str, int] = {}
     lowest: dict[str, int] = {}
     stack: list[str] = []

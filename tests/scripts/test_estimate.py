@@ -122,7 +122,7 @@ def test_a_record_gives_the_environments_own_estimates(tmp_path, finger):
 
 
 def test_a_record_of_nothing_known_is_refused():
-    with pytest.raises(ValueError, match="did you mean 'LinearSlip'"):
+    with pytest.raises(ValueError, match="did you mean 'linear_slip'"):
         record_sensors("LinearSlp", "linear_slip")
     with pytest.raises(ValueError, match="must be 1 or 2"):
         record_sensors("LinearSlip", "linear_slip", finger=3)
