@@ -38,7 +38,7 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     seed: Annotated[int | None, typer.Option(help="Seed instead of the experiment's.")] = None,
 ) -> None:
-    """Run experiments: policies x what they are told about friction x materials.
+    """Run experiments: policies x friction information x materials.
 
     Each writes one folder with the table of trials, a summary with confidence intervals and figures, and
     prints where to look.

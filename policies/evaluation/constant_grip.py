@@ -22,7 +22,7 @@ from slipgym.tasks import find
 CANDIDATES = 24
 """Forces that are tried, spaced geometrically over the gripper's range."""
 _SELECTION_SEED = 1000
-"""Added to the seed of an experiment: the force is chosen on other episodes than those it is judged by."""
+"""Added to the seed of an experiment: the force is chosen on other episodes than those it is evaluated on."""
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ class PolicyChoice(Frozen):
 
 
 class FrictionChoice(Frozen):
-    """What a policy is told about friction."""
+    """Friction information of a policy."""
 
     source: str = Field(description="friction_source of the environment [-]")
     estimator: Mapping[str, Any] = Field(
@@ -80,7 +80,7 @@ class Experiment(Frozen):
         description="The policies to compare [-]"
     )
     friction: Annotated[tuple[FrictionChoice, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
-        description="What they are told about friction; the first is the one compared with [-]"
+        description="Friction information; the first is the one compared with [-]"
     )
     materials: Annotated[tuple[str, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
         default=("random",), description='Materials, or "random" [-]'

@@ -22,7 +22,7 @@ class Underlying:
 
     Args:
         residual: The controller, and how far its actions may be changed.
-        arguments: Keyword arguments of the environment; told no friction, the controller is `NoFrictionInfo`.
+        arguments: Keyword arguments of the environment; without friction, the controller is `NoFrictionInfo`.
         columns: Numbers in one observation, without the earlier ones.
         rate: Actions per second.
 

@@ -1,5 +1,5 @@
 """What only serves slipgym's own pages: reproduction of the paper, leaderboard, study, comparisons.
 
-Nothing outside this package imports it, except `scripts/`. Environments, controllers, training and evaluation do
+Nothing outside this package imports it, except `scripts/`: environments, controllers, training and evaluation
 not need it.
 """

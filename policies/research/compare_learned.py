@@ -102,7 +102,7 @@ def outcomes(trials: pd.DataFrame) -> pd.DataFrame:
 
 
 def gains(trials: pd.DataFrame) -> pd.DataFrame:
-    """What the learned policies have over the controller that is told the same, over paired episodes.
+    """Differences of the learned policies to the controller with the same friction information, over pairs.
 
     Args:
         trials: From `trials_of`.
@@ -135,8 +135,8 @@ def benefit(trials: pd.DataFrame) -> pd.DataFrame:
         trials: From `trials_of`; needs learned policies of all three sources.
 
     Returns:
-        For success [%] and the sum of rewards: what the policy that is told the truth has over the one that
-        is told nothing, what the one with estimates has over it, and the share of the former that this is;
+        For success [%] and the sum of rewards: the difference of the policy with true friction to the one
+        without friction information, that of the policy with estimates, and the latter over the former;
         no share where the former's 95 % interval holds 0.
     """
     learned = trials[trials["policy"] == LEARNED]

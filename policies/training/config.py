@@ -32,7 +32,9 @@ def trainable() -> list[str]:
 class Environment(Frozen):
     """Keyword arguments of the environment; see its page in docs/environments/."""
 
-    friction_source: str = Field(default="estimated", description="What it tells about friction [-]")
+    friction_source: str = Field(
+        default="estimated", description="Friction information of the observation [-]"
+    )
     estimator: str | Mapping[str, Any] = Field(default=DEFAULT_ESTIMATOR, description="Its estimator [-]")
     contact: Literal["ellipsoid", "distributed"] = Field(
         default="ellipsoid", description="Friction model [-]"

@@ -27,7 +27,7 @@ def second_version(monkeypatch):
 @pytest.mark.parametrize("package", ["policies", "scripts"])
 def test_no_id_is_glued_together(package):
     glued = re.compile(r"slipgym/\{|-v0[\"']|-v\{")
-    allowed = re.compile(r"^\s*(\"\"\"|#)|slipgym:slipgym/\w+-v0|\"slipgym/\w+-v0\"")
+    allowed = re.compile(r"^\s*(\"\"\"|#)|slipgym:slipgym/\w+-v0|\"\w+/\w+-v0\"")
     found = [
         f"{path.relative_to(ROOT)}: {line.strip()}"
         for path in (ROOT / package).rglob("*.py")

@@ -55,7 +55,7 @@ def run_leaderboard(
         for group in groups:
             for scenario in group(effort):
                 groups.set_postfix_str(f"{scenario.group} {scenario.name}")
-                rows += judge(scenario)
+                rows += evaluate(scenario)
     table = pd.DataFrame(rows)
     ranking, best = ranked(table), winners(table)
     path = stamped(output, "leaderboard")
@@ -69,12 +69,12 @@ def run_leaderboard(
     return path
 
 
-def judge(scenario: Scenario) -> list[dict[str, object]]:
+def evaluate(scenario: Scenario) -> list[dict[str, object]]:
     """A row for each entrant."""
     rows = []
     for label, (name, parameters) in entrants().items():
         made = [
-            replay(name, run.record, scenario.told, scenario.starts, **parameters) for run in scenario.runs
+            replay(name, run.record, scenario.assumed, scenario.starts, **parameters) for run in scenario.runs
         ]
         figures = score(scenario, made)
         rows.append({"group": scenario.group, "scenario": scenario.name, "estimator": label, **figures})

@@ -83,9 +83,9 @@ def record_linear(
     try:
         options = {name: scenario[name] for name in ("distance", "duration")}
         observation, _ = env.reset(seed=scenario["seed"], options=options)
-        keeper = RecordKeeper(env.simulation)
+        recorder = RecordKeeper(env.simulation)
         for _ in steps(env, policy, observation):
-            keeper.take()
-        return keeper.finish(scenario)
+            recorder.take()
+        return recorder.finish(scenario)
     finally:
         env.close()

@@ -1,4 +1,4 @@
-"""The conditions of a study: one policy, one thing it is told, one world, one block of episodes."""
+"""The conditions of a study: one policy, friction source, world and block of episodes."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Condition:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What tells its episodes from the others', for tables."""
+        """What distinguishes its episodes from the others', for tables."""
         return {
             "world": self.world.label,
             "task": self.task,

@@ -62,17 +62,17 @@ class Study(Frozen):
     )
     learned: str = Field(default="", description="Folder of learned policies; empty: those shipped [-]")
     estimators: Annotated[Names, Field(min_length=1)] = Field(
-        default=("disc",), description="Estimators; the first is the one judged by [-]"
+        default=("disc",), description="Estimators; the first is the main one [-]"
     )
     presets: Annotated[Names, Field(min_length=1)] = Field(
-        default=("train", "eval_ood"), description="Presets of randomization; the first is judged by [-]"
+        default=("train", "eval_ood"), description="Presets of randomization; the first is the main one [-]"
     )
     worlds: Annotated[tuple[World, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
-        description="Worlds; the first is the one judged by [-]"
+        description="Worlds; the first is the main one [-]"
     )
     degradation: Degradation | None = Field(default=None, description="What gets worse step by step [-]")
-    videos: Names = Field(default=(), description="Tasks that the report shows films of [-]")
-    video_speed: Positive = Field(default=1.0, description="Of the films over the real one [-]")
+    videos: Names = Field(default=(), description="Tasks that the report shows videos of [-]")
+    video_speed: Positive = Field(default=1.0, description="Of the videos over the real one [-]")
     config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
 
     @field_validator("tasks", "videos")

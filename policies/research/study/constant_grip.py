@@ -23,7 +23,7 @@ def constant_grips(
 ) -> pd.DataFrame:
     """Success, drops and return of the best constant grip of each task of a study.
 
-    The episodes are those of the preset judged by, on the planar engine, as many as a condition has.
+    The episodes are those of the first preset, on the planar engine, as many as a condition has.
 
     Args:
         study: The study.

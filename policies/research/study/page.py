@@ -70,7 +70,7 @@ def render(
     outcomes, shares, transfer = (tables[name] for name in ("outcomes", "shares", "transfer"))
     plain, changed = where(outcomes, change=""), without(outcomes, "change", "")
     fractions = where(shares, world=study.worlds[0].label)
-    judged = where(plain, world=study.worlds[0].label, preset=study.presets[0])
+    main = where(plain, world=study.worlds[0].label, preset=study.presets[0])
     places = [
         {
             "world": world,
@@ -84,7 +84,7 @@ def render(
     return environment.from_string(_TEMPLATE.read_text(encoding="utf-8")).render(
         study=study,
         answers=answers(study, outcomes, shares),
-        tiles=_tiles(judged),
+        tiles=_tiles(main),
         pictures=_pictures(study, plain, changed, fractions, transfer),
         places=places,
         shares=records(fractions),
@@ -102,10 +102,10 @@ def render(
     )
 
 
-def _tiles(judged: pd.DataFrame) -> list[tuple[str, str, list[dict[str, Any]]]]:
+def _tiles(main: pd.DataFrame) -> list[tuple[str, str, list[dict[str, Any]]]]:
     """Kind, task and the rows of its sources: of all tasks together, or of the only one."""
     tiles = []
-    for (kind,), group in by(judged, ["kind"]):
+    for (kind,), group in by(main, ["kind"]):
         task = ALL if ALL in distinct(group, "task") else distinct(group, "task")[0]
         rows = where(group, task=task).drop_duplicates("source")
         tiles.append((str(kind), task, records(rows)))
@@ -141,7 +141,7 @@ def _pictures(
             pictures["degradation"][kind] = inline(worse, f"Episodes solved as things get worse, {kind}")
         if len(transfer):
             pictures["transfer"] = inline(
-                figures.plot_transfer(transfer), "From the batched core to PyBullet"
+                figures.plot_transfer(transfer), "From the planar engine to PyBullet"
             )
     return pictures
 

@@ -57,8 +57,8 @@ class Store:
 
 def fingerprint(condition: Condition, study: Study) -> str:
     """Sixteen digits that change with the experiment, the learned policy and the sources that run it."""
-    told = json.dumps(condition.experiment(study).model_dump(mode="json"), sort_keys=True)
-    parts = [told, _folder(Path(condition.policy)) if Path(condition.policy).is_dir() else "", sources()]
+    asked = json.dumps(condition.experiment(study).model_dump(mode="json"), sort_keys=True)
+    parts = [asked, _folder(Path(condition.policy)) if Path(condition.policy).is_dir() else "", sources()]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 
 

@@ -25,7 +25,7 @@ class Clip:
     """A video of an episode."""
 
     source: str
-    """What the policy is told."""
+    """Friction information of the policy."""
     path: Path
     success: bool
     dropped: bool
@@ -46,7 +46,7 @@ class Scene:
 def scene(
     study: Study, task: str, conditions: Sequence[Condition], episodes: pd.DataFrame, folder: Path
 ) -> Scene | None:
-    """Makes videos of a task in the world judged by; learned policies, if they have every source.
+    """Makes videos of a task in the first world; learned policies, if they have every source.
 
     Args:
         study: The study.
@@ -75,20 +75,20 @@ def scene(
     else:
         return None
     rows = where(episodes, world=world, task=task, preset=study.presets[0], kind=kind, change="")
-    told = {source: _told(rows, source, study.estimators[0]) for source in SOURCES}
-    number, chosen = _choose(told["none"], told["estimated"])
+    parts = {source: _of_source(rows, source, study.estimators[0]) for source in SOURCES}
+    number, chosen = _choose(parts["none"], parts["estimated"])
     clips = []
     for source in SOURCES:
-        row = told[source].iloc[number]
+        row = parts[source].iloc[number]
         condition = found[source, int(row["block"])]
         path = folder / f"{condition.name}__{fingerprint(condition, study)}__{row['seed']}.mp4"
         if not path.exists():
             _write_clip(study, condition, int(row["episode"]), path)
         clips.append(Clip(source, path, bool(row["success"]), bool(row["dropped"])))
-    return Scene(task, kind, int(told["none"]["seed"].iloc[number]), chosen, tuple(clips))
+    return Scene(task, kind, int(parts["none"]["seed"].iloc[number]), chosen, tuple(clips))
 
 
-def _told(rows: pd.DataFrame, source: str, estimator: str) -> pd.DataFrame:
+def _of_source(rows: pd.DataFrame, source: str, estimator: str) -> pd.DataFrame:
     return where(rows, source=source, estimator=estimator if source == "estimated" else "")
 
 
