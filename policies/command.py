@@ -10,6 +10,7 @@ import policies
 from estimator.records import parse_settings
 from policies.episodes import FRESH, episodes
 
+SPELLINGS = "linear_slip, for example; LinearSlip, slipgym/LinearSlip-v0 or module:attribute name a task, too"
 EPILOG = """
 examples:
   slipgym-evaluate linear_slip
@@ -38,10 +39,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--episodes", type=int, default=100, help="how many (default: 100)")
     fresh = f"number of the first held-out seed (default: {FRESH}, which no training chooses by)"
     parser.add_argument("--first", type=int, default=FRESH, help=fresh)
-    parser.add_argument("--task", help="for a controller that serves every task")
+    parser.add_argument("--task", help=f"for a controller that serves every task: {SPELLINGS}")
     parser.add_argument(
         "--set",
         nargs="+",
+        action="extend",
         default=[],
         metavar="NAME=VALUE",
         help="arguments of the environment instead of those of the training",

@@ -1,4 +1,4 @@
-"""Episodes of one policy, with no more than the base installation."""
+"""Runs episodes of one policy with the base installation only."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import policies
 from estimator.reference import is_reference
 from policies.learned import LearnedPolicy
 from policies.registry import Policy
+from policies.stepping import steps
 from policies.training import seeds
 from slipgym.tasks import find
 
@@ -93,11 +94,9 @@ def episodes(
             policy.check(env)
         for number in range(first, first + count):
             observation, info = env.reset(seed=seeds.held_out(number))
-            state, over, total = None, False, 0.0
-            while not over:
-                action, state = policy.predict(observation, state=state)
-                observation, reward, terminated, truncated, info = env.step(action)
-                total, over = total + float(reward), terminated or truncated
+            total = 0.0
+            for step in steps(env, policy, observation):
+                total, info = total + float(step.reward), step.info
             yield Outcome(info["is_success"], info["dropped"], total, info["time"])
     finally:
         env.close()

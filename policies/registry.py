@@ -8,7 +8,7 @@ import numpy as np
 
 from estimator.reference import is_reference
 from policies.controllers import table as controllers
-from policies.learned import LearnedPolicy, shipped
+from policies.learned import LearnedPolicy, pretrained
 
 
 class Policy(Protocol):
@@ -34,7 +34,7 @@ class Policy(Protocol):
 
 def names() -> list[str]:
     """Names that `make` knows: controllers, and the learned policies that come with slipgym."""
-    return sorted({*controllers.CLASSES, *shipped()})
+    return sorted({*controllers.CLASSES, *pretrained.folders()})
 
 
 def modes(policy: Any) -> dict[str, Any]:
@@ -71,9 +71,9 @@ def make(name: str, **parameters: Any) -> Policy:
     Raises:
         ValueError: The name or a parameter is unknown, or a value is not allowed.
     """
-    if name in shipped():
+    if name in pretrained.folders():
         controllers.refuse(name, parameters, [])
-        return LearnedPolicy(shipped()[name])
+        return LearnedPolicy(pretrained.folders()[name])
     return controllers.make(name, parameters, names())
 
 

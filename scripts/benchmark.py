@@ -4,13 +4,14 @@ import argparse
 from pathlib import Path
 
 from slipgym.benchmarking.run import benchmark
+from slipgym.tasks import find
 
 
 def main() -> None:
     """Prints the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "--env", default="slipgym/LinearSlip-v0", help="environment id (default: %(default)s)"
+        "--env", default="linear_slip", help="task, also LinearSlip or an id (default: %(default)s)"
     )
     parser.add_argument("--pairs", type=int, default=300, help="pairs of timed blocks (default: %(default)s)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there, too")
@@ -21,18 +22,19 @@ def main() -> None:
         help="what slipgym._numba's optimisations are worth instead",
     )
     arguments = parser.parse_args()
+    env_id = find(arguments.env).id
     if arguments.optimisations:
         from slipgym.benchmarking.optimisations import optimisations
         from slipgym.benchmarking.report import line, machine, publish
 
         print(line(machine()))
-        publish(optimisations(arguments.env, max(3, arguments.pairs // 20)), arguments.json)
+        publish(optimisations(env_id, max(3, arguments.pairs // 20)), arguments.json)
     elif arguments.learning:
         from policies.training.benchmark import benchmark as learning
 
-        learning(arguments.env, arguments.pairs, arguments.json)
+        learning(env_id, arguments.pairs, arguments.json)
     else:
-        benchmark(arguments.env, arguments.pairs, arguments.json)
+        benchmark(env_id, arguments.pairs, arguments.json)
 
 
 if __name__ == "__main__":

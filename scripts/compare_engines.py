@@ -12,7 +12,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 def main(
     experiments: Annotated[
         list[str] | None,
-        typer.Argument(help=f"Experiments; those of {', '.join(TASKS)} if none.", show_default=False),
+        typer.Argument(help=f"Experiments; {', '.join(TASKS)} (or LinearSlip) if none.", show_default=False),
     ] = None,
     trials: Annotated[int, typer.Option(min=1, help="Trials of each.")] = 200,
     sensors: Annotated[str, typer.Option(help="Sensor preset.")] = "realistic",

@@ -1,4 +1,4 @@
-"""Compares the learned policies that come with slipgym with the controllers."""
+"""Compares the pretrained policies with the controllers and with the best constant grip."""
 
 from typing import Annotated
 
@@ -11,7 +11,10 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 @app.command()
 def main(
     tasks: Annotated[
-        list[str] | None, typer.Argument(help=f"Of {', '.join(TASKS)}; all if none.", show_default=False)
+        list[str] | None,
+        typer.Argument(
+            help=f"Of {', '.join(TASKS)} (also LinearSlip or ids); all if none.", show_default=False
+        ),
     ] = None,
     trials: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
     engine: Annotated[str, typer.Option(help="What moves the bodies: bullet or planar.")] = "bullet",
@@ -19,13 +22,17 @@ def main(
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core.")] = 1,
 ) -> None:
     """Prints what each policy achieves in the same episodes, what learning adds, what friction adds."""
-    from policies.evaluation import compare_learned as shelf
+    from policies.research import compare_learned
     from policies.research.leaderboard.tables import markdown
 
     try:
         for task in tasks or TASKS:
-            found = shelf.trials_of(task, trials, engine, randomization, jobs)
-            tables = (shelf.outcomes(found), shelf.gains(found), shelf.worth(found))
+            found = compare_learned.trials_of(task, trials, engine, randomization, jobs)
+            tables = (
+                compare_learned.outcomes(found),
+                compare_learned.gains(found),
+                compare_learned.benefit(found),
+            )
             typer.echo("\n".join([f"\n{task}\n", *map(markdown, tables)]))
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error

@@ -51,12 +51,12 @@ def main(
     """
     try:
         from estimator import records
-        from policies.evaluation.folder import filled_in_place
+        from slipgym.atomic_io import new_folder
 
         record = records.load(log, records.load_columns(columns), velocity)
         result = records.estimate(record, estimator, allow_gaps, **records.parse_settings(set_ or ()))
         path = output.expanduser().resolve() / records.run_name(log)
-        with filled_in_place(path) as folder:
+        with new_folder(path) as folder:
             records.write(result, folder)
     except ModuleNotFoundError as error:
         raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error

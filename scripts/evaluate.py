@@ -24,7 +24,10 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 def main(
     experiments: Annotated[
         list[str] | None,
-        typer.Argument(help="Names of experiments, or paths of YAML files.", show_default=False),
+        typer.Argument(
+            help="Names of experiments (a task's: linear_slip, also LinearSlip), or paths of YAML files.",
+            show_default=False,
+        ),
     ] = None,
     demo: Annotated[bool, typer.Option("--demo", help="Run the experiment 'demo': under a minute.")] = False,
     trials: Annotated[int | None, typer.Option(help="Trials per cell instead of the experiment's.")] = None,
@@ -35,7 +38,7 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     seed: Annotated[int | None, typer.Option(help="Seed instead of the experiment's.")] = None,
 ) -> None:
-    """Run experiments: policies x what they are told about friction x materials.
+    """Run experiments: policies x friction information x materials.
 
     Each writes one folder with the table of trials, a summary with confidence intervals and figures, and
     prints where to look.

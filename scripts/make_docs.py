@@ -14,14 +14,14 @@ def main(
     pictures: Annotated[bool, typer.Option(help="Whether to make the pictures too.")] = True,
 ) -> None:
     """Write a page and a picture for every registered environment."""
-    from policies.play import write_portraits
+    from policies.play import write_screenshots
     from slipgym.envs.docstring import pages
 
     for name, text in pages().items():
         (DOCS / "environments" / name).write_text(text, encoding="utf-8")
         typer.echo(DOCS / "environments" / name)
     if pictures:
-        for path in write_portraits(DOCS / "images"):
+        for path in write_screenshots(DOCS / "images"):
             typer.echo(path)
 
 

@@ -1,4 +1,4 @@
-"""Watches a policy: in a window, or as a film where there is none."""
+"""Watches a policy: in a window, or as a video where there is none."""
 
 from pathlib import Path
 from typing import Annotated
@@ -8,20 +8,24 @@ import typer
 EPILOG = """
 Examples:\n
 \b
-  python scripts/play.py LinearSlip
-  python scripts/play.py LinearSlip --policy keyboard --material wood --speed 0.5
-  python scripts/play.py LinearSlip --policy linear_slip --video slide.mp4 --option distance=0.02
-  python scripts/play.py Hold --policy constant_force --video hold.gif --episodes 2 --speed 2
+  python scripts/play.py linear_slip
+  python scripts/play.py linear_slip --policy keyboard --material wood --speed 0.5
+  python scripts/play.py linear_slip --policy linear_slip --video slide.mp4 --option distance=0.02
+  python scripts/play.py hold --policy constant_force --video hold.gif --episodes 2 --speed 2
 \n
 In a window, --policy keyboard leaves the grip force to you: up grips harder, down more loosely; Escape ends.
 A window needs pygame (pip install 'slipgym[window]'). docs/rendering.md explains the picture.
 """
+TASK = (
+    "Task: linear_slip, rotational_slip, hinge, planar_slip or hold; "
+    "LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
+)
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 @app.command(epilog=EPILOG)
 def main(
-    task: Annotated[str, typer.Argument(help="LinearSlip, Hold, …", show_default=False)],
+    task: Annotated[str, typer.Argument(help=TASK, show_default=False)],
     policy: Annotated[
         str | None,
         typer.Option(
@@ -65,7 +69,7 @@ def main(
     for outcome in outcomes:
         typer.echo(outcome.words())
     if video is not None:
-        typer.echo(f"film: {video}")
+        typer.echo(f"video: {video}")
 
 
 if __name__ == "__main__":

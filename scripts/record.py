@@ -8,20 +8,35 @@ import typer
 EPILOG = """
 Examples:\n
 \b
-  python scripts/record.py LinearSlip linear_slip slide.csv.gz --material wood --option duration=3
-  python scripts/record.py LinearSlip linear_slip forces.parquet --velocity velocities.parquet --finger 2
+  python scripts/record.py linear_slip slide.csv.gz --material wood --option duration=3
+  python scripts/record.py linear_slip forces.parquet --velocity velocities.parquet --finger 2
+  python scripts/record.py hold hold.csv --policy constant_force
 \n
 Forces come at 1000 Hz and velocities at 120 Hz, at the pad centre, with the true friction beside them;
 cells are empty where a sensor has no sample. docs/records.md describes the format.
 """
+TASK = (
+    "Task: linear_slip, rotational_slip, hinge, planar_slip or hold; "
+    "LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
+)
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 @app.command(epilog=EPILOG)
 def main(
-    task: Annotated[str, typer.Argument(help="LinearSlip, Hold, …", show_default=False)],
-    policy: Annotated[str, typer.Argument(help="Name of a policy, or its folder.", show_default=False)],
-    record: Annotated[Path, typer.Argument(help="csv, csv.gz or parquet to write.", show_default=False)],
+    task: Annotated[str, typer.Argument(help=TASK, show_default=False)],
+    files: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="[POLICY] RECORD",
+            help="csv, csv.gz or parquet to write; a policy before it is the same as --policy.",
+            show_default=False,
+        ),
+    ],
+    policy: Annotated[
+        str | None,
+        typer.Option(help="Name of a policy, or its folder; the task's own by default.", show_default=False),
+    ] = None,
     velocity: Annotated[
         Path | None, typer.Option(help="A file of its own for the velocities.", show_default=False)
     ] = None,
@@ -37,8 +52,14 @@ def main(
     from estimator.records import parse_settings
     from policies.evaluation.record_files import save_record
     from policies.evaluation.sensor_record import record_sensors
+    from policies.play import own_policy
 
+    *before, last = files
+    if len(before) > (policy is None):
+        raise typer.BadParameter(f"one RECORD, and at most one POLICY before it, got {' '.join(files)}")
+    record = Path(last)
     try:
+        policy = policy or (before[0] if before else own_policy(task))
         options = parse_settings(option or (), "--option")
         frame = record_sensors(task, policy, finger, seed, options, material=material, sensors=sensors)
         save_record(frame, record, velocity)

@@ -1,4 +1,4 @@
-"""Puts trained policies on the shelf of those that come with slipgym."""
+"""Adds trained policies to the pretrained ones that come with slipgym."""
 
 from pathlib import Path
 from typing import Annotated

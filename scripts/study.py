@@ -1,4 +1,4 @@
-"""What knowing friction is worth: controllers and learned policies x what they are told about it."""
+"""Studies the benefit of friction information: controllers and learned policies with and without it."""
 
 import shlex
 import sys
@@ -12,7 +12,7 @@ Examples:\n
 \b
   python scripts/study.py quick
   python scripts/study.py full --jobs 2
-  python scripts/study.py full --episodes 20 --task LinearSlip --task Hold
+  python scripts/study.py full --episodes 20 --task linear_slip --task hold
   python scripts/study.py my_study.yaml --learned runs/policies
 \n
 A study is a YAML file; configs/studies/ holds quick, short and full, and docs/study.md says what their keys
@@ -27,7 +27,10 @@ def main(
     episodes: Annotated[
         int | None, typer.Option(min=1, help="Episodes per block instead of the study's.")
     ] = None,
-    task: Annotated[list[str] | None, typer.Option(help="Keep only this task; repeatable.")] = None,
+    task: Annotated[
+        list[str] | None,
+        typer.Option(help="Keep only this task: linear_slip, also LinearSlip or its id; repeatable."),
+    ] = None,
     kind: Annotated[list[str] | None, typer.Option(help="Only classic, or only learned; repeatable.")] = None,
     learned: Annotated[str, typer.Option(help="Folder of learned policies instead of those shipped.")] = "",
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,

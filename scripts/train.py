@@ -10,7 +10,7 @@ EPILOG = """
 Examples:\n
 \b
   python scripts/train.py linear_slip
-  python scripts/train.py --task LinearSlip --algorithm sac --budget 300000
+  python scripts/train.py --task linear_slip --algorithm sac --budget 300000
   python scripts/train.py linear_slip --seeds 0 1 2 --friction-source estimated true none --jobs 2
   python scripts/train.py linear_slip --set ppo.gamma=0.98 num_envs=16
   python scripts/train.py --resume runs/linear_slip__ppo__20260101-120000-000
@@ -36,9 +36,15 @@ class Command(TyperCommand):
 def main(
     configuration: Annotated[
         str | None,
-        typer.Argument(help="Name of a configuration, or path of a YAML file.", show_default=False),
+        typer.Argument(
+            help="Name of a configuration (a task's: linear_slip, also LinearSlip), or path of a YAML file.",
+            show_default=False,
+        ),
     ] = None,
-    task: Annotated[str | None, typer.Option(help="Task, instead of the configuration's.")] = None,
+    task: Annotated[
+        str | None,
+        typer.Option(help="Task, instead of the configuration's: linear_slip, also LinearSlip or its id."),
+    ] = None,
     algorithm: Annotated[str | None, typer.Option(help="ppo, recurrent_ppo, sac or tqc.")] = None,
     friction_source: Annotated[list[str] | None, typer.Option(help="One or several: runs with each.")] = None,
     randomization: Annotated[str | None, typer.Option(help="A preset or a YAML file.")] = None,

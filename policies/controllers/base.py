@@ -1,4 +1,4 @@
-"""What the controllers share: columns by name, memory by row, newtons to actions."""
+"""Base of the controllers: columns by name, memory by row, newtons to actions."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ class ForcePolicy(ABC):
     """Task whose observations it reads; None for one that runs in every task."""
     action_mode: ClassVar[str] = "grip_force"
     """Action mode of the environments it acts in, one of `slipgym.envs.actions.ACTION_MODES`."""
-    unaware: ClassVar[Mapping[str, Any]] = {}
+    without_friction: ClassVar[Mapping[str, Any]] = {}
     """Arguments of the controller without friction information (`policies.controllers.no_friction_info`)."""
 
     def __init__(self, config: Overrides | None = None) -> None:

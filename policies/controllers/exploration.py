@@ -1,18 +1,19 @@
-"""Finding friction out by letting the object slip a little: active sensing for a controller that holds.
+"""Active exploration: lets the object slip a little so that the estimator learns its friction.
 
-An object that never slips teaches an estimator nothing. A probe lowers the grip until the object slips by
-a tenth of a millimetre or two, and catches it.
+An object that never slips teaches an estimator nothing. The exploration lowers the grip until the object
+slips by a tenth of a millimetre or two, and catches it.
 
-**Catching.** Of a load L a slip leaves L mu_c / mu_s to friction: the object falls with
-a = g (1 - mu_c / mu_s), 2.5 m/s^2 at a ratio of 1.35. The slip velocity arrives up to two samples late,
+**Catching.** When a load L slips, friction carries L mu_c / mu_s of it: the object falls with
+a = g (1 - mu_c / mu_s), 2.5 m/s^2 at a ratio of 1.35. The slip velocity arrives up to two control steps late,
 17 ms, in which a slip grows to a millimetre and more; but the tangential force drops by a quarter at once,
-which is read at the next sample. The wait for it (4 ms in the mean), the dead time (4 ms) and the rise of the
-force by the ratio (under 1 ms at the gripper's largest command) make 9 ms, 0.1 mm; the braking adds a third.
+which is read at the next control step. The wait for it (4 ms in the mean), the dead time (4 ms) and the rise
+of the force by the ratio (under 1 ms at the gripper's largest command) make 9 ms, 0.1 mm; the braking adds a
+third.
 
-**Rocking.** In every other sample the command is twice the level, in between less than half of it. At a lag
-of 12 ms the force then swings between 0.9 and 1.5 levels and comes back by itself while a slip begins, which
-about halves the slip of a smooth ramp. An estimator learns from a slip that reaches from one window of the
-slip sensor into the next; the shortest do not, and the probe goes on until it has learnt.
+**Rocking.** In every other control step the command is twice the level, in between less than half of it. At a
+lag of 12 ms the force then swings between 0.9 and 1.5 levels and comes back by itself while a slip begins,
+which about halves the slip of a smooth ramp. An estimator learns from a slip that reaches from one window
+of the slip sensor into the next. The shortest do not, so the exploration goes on until it has learnt.
 """
 
 from __future__ import annotations
@@ -25,22 +26,22 @@ import numpy as np
 _OPEN = {"slips": (0, np.inf), "keep": (0, 1), "low": (0, 1), "high": (1, np.inf), "catch": (1, np.inf)}
 
 
-class ProbeState(NamedTuple):
-    """What a probe remembers, arrays (n,)."""
+class ExplorationState(NamedTuple):
+    """Memory of an exploration, arrays (n,)."""
 
     load: np.ndarray
     """Smoothed load per finger [N]."""
     slips: np.ndarray
     """Slips caught so far."""
     rest: np.ndarray
-    """Samples that the grip still rests after a slip."""
+    """Control steps that the grip still rests after a slip."""
     high: np.ndarray
-    """Whether the last command of a probe was the high one, 0 or 1."""
+    """Whether the last command of an exploration was the high one, 0 or 1."""
 
 
 @dataclass(frozen=True)
-class Probe:
-    """How a controller finds friction out that it is not told.
+class ActiveExploration:
+    """How a controller explores friction that it does not know.
 
     Raises:
         ValueError: A value is out of range.
@@ -49,11 +50,11 @@ class Probe:
     slips: int = 8
     """Slips to provoke at most; an estimator that has learnt from none of them does not get another."""
     keep: float = 0.95
-    """Share of the level that is left a sample later, in (0, 1)."""
+    """Fraction of the level that is left a control step later, in (0, 1)."""
     low: float = 0.4
-    """Command over level in every other sample, in (0, 1)."""
+    """Command over level in every other control step, in (0, 1)."""
     high: float = 2.0
-    """Command over level in the samples between, > 1."""
+    """Command over level in the control steps between, > 1."""
     fall: float = 0.08
     """Fall of the load that is a slip, over the smoothed load and at least in newtons."""
     speed: float = 2e-3
@@ -63,7 +64,7 @@ class Probe:
     catch: float = 1.6
     """Level after a slip over that at which it happened, > 1."""
     rest: int = 5
-    """Samples at that level, while sensor and estimator follow: latency, two windows, one more."""
+    """Control steps at that level, while sensor and estimator follow: latency, two windows, one more."""
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -71,11 +72,13 @@ class Probe:
             value = getattr(self, field.name)
             low, high = _OPEN.get(field.name, (0, np.inf))
             if not low < value < high:
-                raise ValueError(f"{field.name} = {value!r} of a probe must lie in ({low:g}, {high:g})")
+                raise ValueError(
+                    f"{field.name} = {value!r} of an exploration must lie in ({low:g}, {high:g})"
+                )
         if self.smoothing > 1.0:
-            raise ValueError(f"smoothing = {self.smoothing!r} of a probe must be at most 1")
+            raise ValueError(f"smoothing = {self.smoothing!r} of an exploration must be at most 1")
 
-    def slipping(self, state: ProbeState, load: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    def slipping(self, state: ExplorationState, load: np.ndarray, speed: np.ndarray) -> np.ndarray:
         """Whether the object slips, (n,) bool.
 
         Args:
@@ -88,31 +91,31 @@ class Probe:
 
     def act(
         self,
-        state: ProbeState,
+        state: ExplorationState,
         level: np.ndarray,
         slips: np.ndarray,
         wanted: np.ndarray,
         limits: tuple[float, float],
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, ProbeState]:
-        """One sample of probing where it is wanted, and of the rest after a slip.
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, ExplorationState]:
+        """One control step of exploration where it is wanted, and of the rest after a slip.
 
         Args:
             state: Memory of n rows; `load` is taken as it is.
-            level: Grip that the probe is about, (n,) [N].
+            level: Grip that the exploration varies, (n,) [N].
             slips: Whether the object slips, (n,).
-            wanted: Whether to probe, (n,).
-            limits: The smallest and the largest command [N]. What the smallest holds is not probed further.
+            wanted: Whether to explore, (n,).
+            limits: The smallest and the largest command [N]. What the smallest holds is not explored further.
 
         Returns:
-            Which rows the probe commands (n,), their commands and levels (n,) [N], and the new memory.
+            Which rows the exploration commands (n,), their commands and levels (n,) [N], and the new memory.
         """
         resting = state.rest > 0
-        probing = wanted & ~resting & (state.slips < self.slips)
-        caught, ramp = probing & slips, probing & ~slips
+        exploring = wanted & ~resting & (state.slips < self.slips)
+        caught, ramp = exploring & slips, exploring & ~slips
         high = np.where(ramp, 1.0 - state.high, 1.0)
         level = np.where(ramp, self.keep * level, np.where(caught, self.catch * level, level))
         command = np.where(ramp, np.where(high > 0.0, self.high, self.low) * level, level)
         rest = np.where(caught, self.rest, np.maximum(state.rest - 1, 0))
         held = ramp & (self.high * level <= limits[0])
-        memory = ProbeState(state.load, np.where(held, self.slips, state.slips + caught), rest, high)
-        return probing | resting, np.where(caught, limits[1], command), level, memory
+        memory = ExplorationState(state.load, np.where(held, self.slips, state.slips + caught), rest, high)
+        return exploring | resting, np.where(caught, limits[1], command), level, memory

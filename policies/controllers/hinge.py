@@ -1,20 +1,52 @@
-"""Letting the object hang upright while the wrist pitches."""
+"""Lets the object hang upright while the wrist pitches."""
 
 from __future__ import annotations
 
+from typing import Self
+
 import numpy as np
+from pydantic import Field, model_validator
 
-from policies.controllers.base import Columns, ForcePolicy, State
-from policies.controllers.sensing import Caution, both, tangential
-from slipgym.config import Overrides
+from policies.controllers.base import Columns, State
+from policies.controllers.gains import Fraction, GainPolicy
+from policies.controllers.sensing import ConservativePrior, both, tangential
+from slipgym.config.base import Frozen, NonNegative, Positive
 
 
-class HingePolicy(ForcePolicy):
+class HingeGains(Frozen):
+    """Gains of `HingePolicy`."""
+
+    k_stick: Positive = Field(
+        default=1.2, description="Ratio k before the object first turns in the grip [-]"
+    )
+    k_blind: Positive = Field(default=0.95, description="The same with the conservative mu_c [-]")
+    release: Positive = Field(default=0.05, description="Tilt from which k_blind falls [rad]")
+    k_slip: Positive = Field(default=2.0, description="Ratio k at the target tilt [-]")
+    k_min: Positive = Field(default=1.1, description="Least ratio k while the object turns in the grip [-]")
+    k_max: Positive = Field(default=3.0, description="Largest ratio k [-]")
+    k_a: NonNegative = Field(default=45.0, description="Gain on the tilt [1/rad]")
+    k_w: NonNegative = Field(default=6.0, description="Gain on the rate of the tilt [s/rad]")
+    target: float = Field(default=0.065, description="Tilt to hold [rad]")
+    onset: NonNegative = Field(
+        default=0.005, description="Turn from which the object counts as turning in the grip [rad]"
+    )
+    smoothing: Fraction = Field(
+        default=0.9, description="Weight of the old tangential force in each control step [-]"
+    )
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if self.k_min > self.k_max:
+            raise ValueError(f"needs k_min <= k_max, got k_min = {self.k_min!r}, k_max = {self.k_max!r}")
+        return self
+
+
+class HingePolicy(GainPolicy[HingeGains]):
     """Grip as hard as keeps the object's tilt where slide and tilt are both allowed.
 
     With k = mu_c f_n / f_t the limit surface lets the object slide r / sqrt(k^2 - 1) per radian of the
     turn, and drags it to a tilt of about r sqrt(k^2 - 1) / d under its centre of mass, d deep. Neither r
-    nor d needs to be known: the tilt itself, wrist pitch plus travel, says how k has to change.
+    nor d needs to be known: the tilt itself, wrist pitch plus measured slip, says how k has to change.
 
         f = k f_t / mu_c,    k = k_slip + k_a (target - tilt) - k_w tilt',    within [k_min, k_max]
 
@@ -22,23 +54,13 @@ class HingePolicy(ForcePolicy):
     grip it holds by static friction, which is larger: with the same k the wrist would take it along
     beyond what is allowed, and it would swing when it breaks away. So k is then k_stick, between 1 and
     mu_s / mu_c, and the first degrees of the turn show when friction lets go. Where friction is not known
-    yet it is k_blind, by a cautious mu_c. What then still holds at the tilt `release` has a larger friction,
-    and the grip falls with the tilt from there, so that it lets go in time.
+    yet it is k_blind, with the prior's mu_c. If friction still holds at the tilt `release`, it is larger than
+    that, and the grip falls with the tilt from there, so that it lets go in time.
 
     Args:
-        k_stick: Ratio k before the object first turns in the grip [-].
-        k_blind: The same by the cautious mu_c [-].
-        release: Tilt from which that falls [rad].
-        k_slip: Ratio k at the target tilt [-].
-        k_min: Least ratio k while the object turns in the grip [-].
-        k_max: Largest ratio k [-].
-        k_a: Gain on the tilt [1/rad].
-        k_w: Gain on its rate [s/rad].
-        target: Tilt to hold [rad].
-        onset: Travel from which the object counts as turning in the grip [rad].
-        smoothing: Share of the old tangential force kept per sample, in [0, 1).
-        caution: Friction assumed until the estimate has support; more than elsewhere, as the first samples
-            after the break-away, near static friction, say too much.
+        gains: See `HingeGains`; each is a keyword argument of its own, too.
+        prior: Friction assumed until the estimate has confidence; more than elsewhere, as the first
+            samples after the break-away, near static friction, say too much.
         config: Overrides of the environment's configuration.
 
     Raises:
@@ -46,35 +68,8 @@ class HingePolicy(ForcePolicy):
     """
 
     task = "Hinge"
-
-    def __init__(
-        self,
-        k_stick: float = 1.2,
-        k_blind: float = 0.95,
-        release: float = 0.05,
-        k_slip: float = 2.0,
-        k_min: float = 1.1,
-        k_max: float = 3.0,
-        k_a: float = 45.0,
-        k_w: float = 6.0,
-        target: float = 0.065,
-        onset: float = 0.005,
-        smoothing: float = 0.9,
-        caution: Caution | None = None,
-        config: Overrides | None = None,
-    ) -> None:
-        super().__init__(config)
-        if not 0.0 <= smoothing < 1.0:
-            raise ValueError(f"smoothing = {smoothing!r} must lie in [0, 1)")
-        if not 0.0 < k_min <= k_max:
-            raise ValueError(f"needs 0 < k_min <= k_max, got k_min = {k_min!r}, k_max = {k_max!r}")
-        if not 0.0 < release < np.inf:
-            raise ValueError(f"release = {release!r} must be finite and > 0")
-        self.k_stick, self.k_blind, self.release = k_stick, k_blind, release
-        self.k_slip, self.k_min, self.k_max = k_slip, k_min, k_max
-        self.k_a, self.k_w, self.target, self.onset = k_a, k_w, target, onset
-        self.smoothing = smoothing
-        self.caution = caution or Caution(support=0.2)
+    Gains = HingeGains
+    prior_default = ConservativePrior(confidence=0.2)
 
     def initial_state(self, n: int) -> np.ndarray:
         """Filtered tangential force, (n, 1) [N]; a negative one has no sample yet."""
@@ -82,15 +77,16 @@ class HingePolicy(ForcePolicy):
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
+        g = self.gains
         old, load = np.asarray(state)[:, 0], tangential(columns)
-        load = np.where(old < 0.0, load, self.smoothing * old + (1.0 - self.smoothing) * load)
+        load = np.where(old < 0.0, load, g.smoothing * old + (1.0 - g.smoothing) * load)
         turned, side = columns["measured_slip_theta"], np.sign(columns["wrist_pitch_goal"])
         tilt = side * (columns["wrist_pitch"] + turned)
         rate = side * (columns["wrist_pitch_rate"] + both(columns, "omega"))
-        k = self.k_slip + self.k_a * (self.target - tilt) - self.k_w * rate
-        k = np.clip(k, self.k_min, self.k_max)
-        trust = self.caution.trust(columns, "mu_c")
-        blind = self.k_blind * self.release / np.maximum(np.abs(tilt), self.release)
-        start = trust * self.k_stick + (1.0 - trust) * blind
-        k = np.where(np.abs(turned) > self.onset, k, start)
-        return k * load / self.caution.blend(columns, "mu_c"), load[:, np.newaxis]
+        k = g.k_slip + g.k_a * (g.target - tilt) - g.k_w * rate
+        k = np.clip(k, g.k_min, g.k_max)
+        weight = self.prior.confidence_weight(columns, "mu_c")
+        blind = g.k_blind * g.release / np.maximum(np.abs(tilt), g.release)
+        start = weight * g.k_stick + (1.0 - weight) * blind
+        k = np.where(np.abs(turned) > g.onset, k, start)
+        return k * load / self.prior.blend(columns, "mu_c"), load[:, np.newaxis]

@@ -1,4 +1,4 @@
-"""Holding an object against disturbances with little force."""
+"""Holds an object against disturbances with little force."""
 
 from __future__ import annotations
 
@@ -6,17 +6,31 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
+from pydantic import Field
 
-from policies.controllers.base import Columns, ForcePolicy, State
-from policies.controllers.exploration import Probe, ProbeState
-from policies.controllers.sensing import Caution, scaled_load, scaled_speed
+from policies.controllers.base import Columns, State
+from policies.controllers.exploration import ActiveExploration, ExplorationState
+from policies.controllers.gains import Fraction, GainPolicy, renamed
+from policies.controllers.sensing import ConservativePrior, scaled_load, scaled_speed
 from slipgym.config import Overrides
+from slipgym.config.base import Frozen, NonNegative, Positive
 
-_PROBE = Probe()
-_FIRST = 0.01  # support: less than that of one update, 0.02
+_EXPLORATION = ActiveExploration()
+_FIRST = 0.01  # confidence: less than that of one update, 0.02
 
 
-class HoldPolicy(ForcePolicy):
+class HoldGains(Frozen):
+    """Gains of `HoldPolicy`."""
+
+    reserve: NonNegative = Field(default=1.0, description="Disturbance per finger to be ready for [N]")
+    margin: Positive = Field(default=1.0, description="Safety factor on load and reserve [-]")
+    k_v: NonNegative = Field(default=100.0, description="Force per scaled slip speed [N s/m]")
+    decay: Fraction = Field(
+        default=0.95, description="Fraction of the force that is left a control step later when it falls [-]"
+    )
+
+
+class HoldPolicy(GainPolicy[HoldGains]):
     """Grip as hard as the load needs at Coulomb friction, with room for a disturbance.
 
         f = margin (|load| + reserve) / mu_c + k_v |slip twist|
@@ -25,21 +39,18 @@ class HoldPolicy(ForcePolicy):
     gripper's public controller doubles the load instead (and assumes at least 2 N); a reserve
     that is added serves light objects, which a poke upsets more, and spares heavy ones.
 
-    Where nothing is known about friction it begins by lowering the grip until the object slips a little
-    (`policies.controllers.exploration`), and holds on what the estimator learns from that. It is not poked at
-    first, and the earlier friction is known the longer it saves force. Told friction with full support, it
-    never probes.
-    Probing is for estimators whose first update is the answer, "disc" and "joint": "rls" and "ukf" go there
-    step by step from a start value, and what they say after a slip or two holds less than the load.
+    While friction is not known it explores: it lowers the grip until the object slips a little
+    (`policies.controllers.exploration`), and then holds with the new estimate. The task does not poke the
+    object at first, and the earlier friction is known, the longer force is saved. With full confidence in the
+    observed friction it never explores.
+    Exploration suits estimators whose first update gives the answer, "disc" and "joint". "rls" and "ukf"
+    converge step by step from a start value; after a slip or two their estimate holds less than the load.
 
     Args:
-        reserve: Disturbance per finger to be ready for [N].
-        margin: Safety factor on load and reserve [-].
-        k_v: Force per scaled slip speed [N s/m].
-        decay: Share of the force kept per sample when it falls, in [0, 1).
-        caution: Friction assumed until the estimate has support; None: for as long as it has none if it
-            probes, since it then holds on the first slip, and `Caution()` if not.
-        probe: How to find friction out; None: not at all, for as long as it does not slip by itself.
+        gains: See `HoldGains`; each is a keyword argument of its own, too.
+        exploration: How to explore; None: not at all, for as long as it does not slip by itself.
+        prior: Friction assumed until the estimate has confidence; None: for as long as it has none if it
+            explores, since it then holds on the first slip, and `ConservativePrior()` if not.
         config: Overrides of the environment's configuration.
 
     Raises:
@@ -47,46 +58,44 @@ class HoldPolicy(ForcePolicy):
     """
 
     task = "Hold"
-    unaware: ClassVar[Mapping[str, Any]] = {"probe": None}
+    Gains = HoldGains
+    without_friction: ClassVar[Mapping[str, Any]] = {"exploration": None}
 
     def __init__(
         self,
-        reserve: float = 1.0,
-        margin: float = 1.0,
-        k_v: float = 100.0,
-        decay: float = 0.95,
-        caution: Caution | None = None,
-        probe: Probe | None = _PROBE,
+        gains: HoldGains | None = None,
+        exploration: ActiveExploration | None = _EXPLORATION,
+        prior: ConservativePrior | None = None,
         config: Overrides | None = None,
+        **parameters: Any,
     ) -> None:
-        super().__init__(config)
-        if not 0.0 <= decay < 1.0:
-            raise ValueError(f"decay = {decay!r} must lie in [0, 1)")
-        self.reserve, self.margin, self.k_v, self.decay = reserve, margin, k_v, decay
-        self.caution = caution or (Caution() if probe is None else Caution(support=_FIRST))
-        self.probe = probe
+        parameters = renamed(parameters)
+        self.exploration = parameters.pop("exploration", exploration)
+        own = ConservativePrior() if self.exploration is None else ConservativePrior(confidence=_FIRST)
+        super().__init__(gains, parameters.pop("prior", prior) or own, config, **parameters)
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Level of the grip in the last sample [N], 0 before the first, and the probe's memory, (n, 5)."""
-        state = np.zeros((n, 1 + len(ProbeState._fields)))
+        """Last level of the grip [N], 0 before the first, and the columns of `ExplorationState`, (n, 5)."""
+        state = np.zeros((n, 1 + len(ExplorationState._fields)))
         state[:, -1] = 1.0
         return state
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
-        mu_c, r = self.caution.blend(columns, "mu_c"), self.caution.blend(columns, "r")
+        g = self.gains
+        mu_c, r = self.prior.blend(columns, "mu_c"), self.prior.blend(columns, "r")
         load, speed = scaled_load(columns, r), scaled_speed(columns, r)
         level, *rest = np.asarray(state).T
-        force = self.margin * (load + self.reserve) / mu_c + self.k_v * speed
-        force = np.maximum(force, self.decay * level)
-        if self.probe is None:
+        force = g.margin * (load + g.reserve) / mu_c + g.k_v * speed
+        force = np.maximum(force, g.decay * level)
+        if self.exploration is None:
             return force, np.column_stack([force, *rest])
-        begun, memory = level > 0.0, ProbeState(*rest)
+        begun, memory = level > 0.0, ExplorationState(*rest)
         memory = memory._replace(load=np.where(begun, memory.load, load))
-        wanted = begun & (columns["confidence_mu_c"] < self.caution.support)
-        slips = self.probe.slipping(memory, load, speed)
+        wanted = begun & (columns["confidence_mu_c"] < self.prior.confidence)
+        slips = self.exploration.slipping(memory, load, speed)
         limits = self.config.gripper.force_min, self.config.gripper.force_max
-        probes, command, lower, memory = self.probe.act(memory, level, slips, wanted, limits)
-        memory = memory._replace(load=memory.load + self.probe.smoothing * (load - memory.load))
+        probes, command, lower, memory = self.exploration.act(memory, level, slips, wanted, limits)
+        memory = memory._replace(load=memory.load + self.exploration.smoothing * (load - memory.load))
         level = np.where(probes, lower, force)
         return np.where(probes, command, force), np.column_stack([level, *memory])

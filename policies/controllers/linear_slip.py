@@ -1,16 +1,35 @@
-"""Linear slip along gravity by grip force alone."""
+"""Controls linear slip along gravity by grip force alone."""
 
 from __future__ import annotations
 
 import numpy as np
+from pydantic import Field
 
-from policies.controllers.base import Columns, ForcePolicy, State
-from policies.controllers.sensing import Caution, both, tangential
+from policies.controllers.base import Columns, State
+from policies.controllers.gains import Fraction, GainPolicy
+from policies.controllers.sensing import ConservativePrior, both, tangential
 from slipgym.config import Overrides
+from slipgym.config.base import Frozen, NonNegative, Positive
 
 
-class LinearSlipPolicy(ForcePolicy):
-    """Slip controller of the gripper's paper (arXiv 2410.19660) on the friction it is told.
+class LinearSlipGains(Frozen):
+    """Gains of `LinearSlipPolicy`."""
+
+    k_x: NonNegative = Field(default=2.0, description="Position gain [1/s]")
+    k_e: NonNegative = Field(default=1000.0, description="Integral gain [N/m]")
+    k_a: NonNegative = Field(default=0.1, description="Feed-forward of the reference acceleration [s^2/m]")
+    k_v: NonNegative = Field(default=50.0, description="Velocity gain over f_slip [s/m]")
+    stop_band: NonNegative = Field(
+        default=0.001, description="Distance left at the end that is not worth another slip [m]"
+    )
+    hold_margin: Positive = Field(
+        default=1.3, description="Grip there, over what the load needs at Coulomb friction [-]"
+    )
+    smoothing: Fraction = Field(default=0.95, description="Weight of the old f_slip in each control step [-]")
+
+
+class LinearSlipPolicy(GainPolicy[LinearSlipGains]):
+    """Slip controller of the gripper's paper (arXiv 2410.19660) with the friction of the observation.
 
     The force that balances the load at Coulomb friction, f_slip, is filtered from the
     tangential force; the integral of the velocity error moves the grip around it:
@@ -22,14 +41,8 @@ class LinearSlipPolicy(ForcePolicy):
     half a leap is left, another one would only overshoot, so the object is then held.
 
     Args:
-        k_x: Position gain [1/s].
-        k_e: Integral gain [N/m].
-        k_a: Feed-forward of the reference acceleration [s^2/m].
-        k_v: Velocity gain, as a share of f_slip [s/m].
-        stop_band: Distance left at the reference's end that is not worth another slip [m].
-        hold_margin: Grip there, as a multiple of what the load needs at Coulomb friction [-].
-        smoothing: Share of the old f_slip kept per sample, in [0, 1).
-        caution: Friction assumed until the estimate has support.
+        gains: See `LinearSlipGains`; each is a keyword argument of its own, too.
+        prior: Friction assumed until the estimate has confidence.
         config: Overrides of the environment's configuration.
 
     Raises:
@@ -37,26 +50,16 @@ class LinearSlipPolicy(ForcePolicy):
     """
 
     task = "LinearSlip"
+    Gains = LinearSlipGains
 
     def __init__(
         self,
-        k_x: float = 2.0,
-        k_e: float = 1000.0,
-        k_a: float = 0.1,
-        k_v: float = 50.0,
-        stop_band: float = 0.001,
-        hold_margin: float = 1.3,
-        smoothing: float = 0.95,
-        caution: Caution | None = None,
+        gains: LinearSlipGains | None = None,
+        prior: ConservativePrior | None = None,
         config: Overrides | None = None,
+        **parameters: float,
     ) -> None:
-        super().__init__(config)
-        if not 0.0 <= smoothing < 1.0:
-            raise ValueError(f"smoothing = {smoothing!r} must lie in [0, 1)")
-        self.k_x, self.k_e, self.k_a, self.k_v = k_x, k_e, k_a, k_v
-        self.stop_band, self.hold_margin = stop_band, hold_margin
-        self.smoothing = smoothing
-        self.caution = caution or Caution()
+        super().__init__(gains, prior, config, **parameters)
         self._dt = 1.0 / self.config.physics.control_rate
 
     def initial_state(self, n: int) -> np.ndarray:
@@ -65,16 +68,17 @@ class LinearSlipPolicy(ForcePolicy):
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
+        g = self.gains
         error, f_slip = np.asarray(state).T
         x, v = -columns["measured_slip_y"], -both(columns, "v_y")
         acceleration = columns["reference_acceleration"]
-        balance = tangential(columns) / self.caution.blend(columns, "mu_c")
-        kept = np.where(acceleration < 0.1, self.smoothing, 1.0)
+        balance = tangential(columns) / self.prior.blend(columns, "mu_c")
+        kept = np.where(acceleration < 0.1, g.smoothing, 1.0)
         f_slip = np.where(f_slip < 0.0, balance, kept * f_slip + (1.0 - kept) * balance)
-        v_cmd = columns["reference_velocity"] + self.k_x * (columns["reference_position"] - x)
+        v_cmd = columns["reference_velocity"] + g.k_x * (columns["reference_position"] - x)
         distance = columns["distance"]
-        arrived = (columns["reference_position"] >= distance) & (x >= distance - self.stop_band)
+        arrived = (columns["reference_position"] >= distance) & (x >= distance - g.stop_band)
         error = np.where(arrived, error, error + (v_cmd - v) * self._dt)
-        force = f_slip * (1.0 + self.k_a * acceleration + self.k_v * (v - v_cmd)) - self.k_e * error
-        force = np.where(arrived, np.maximum(force, self.hold_margin * balance), force)
+        force = f_slip * (1.0 + g.k_a * acceleration + g.k_v * (v - v_cmd)) - g.k_e * error
+        force = np.where(arrived, np.maximum(force, g.hold_margin * balance), force)
         return force, np.column_stack((error, f_slip))

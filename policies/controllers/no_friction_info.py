@@ -1,4 +1,4 @@
-"""A controller that never learns anything about friction."""
+"""Runs a controller without friction information."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from slipgym.envs.observation import FRICTION_COLUMNS
 
 
 class NoFrictionInfo:
-    """A controller in an environment that says nothing about friction.
+    """A controller in an environment whose observation has no friction part.
 
-    It sees what an estimator says before the first slip: values that no data supports. Every controller then
-    acts on its cautious friction (`policies.controllers.sensing.Caution`), here for the whole episode. Those
-    that would look for friction do not: their class says in `unaware` what they are made with.
+    The controller reads friction values with confidence 0, as before the first slip. It then acts on its
+    conservative prior (`policies.controllers.sensing.ConservativePrior`) for the whole episode. Controllers
+    that explore friction do not do so here: their class attribute `without_friction` has the arguments.
 
     Args:
         controller: A name of `policies.names()` or "module:class"; none that is learned.
@@ -25,7 +25,7 @@ class NoFrictionInfo:
     """
 
     def __init__(self, controller: str, config: Overrides | None = None, **parameters: Any) -> None:
-        given = getattr(controllers.find(controller), "unaware", {})
+        given = getattr(controllers.find(controller), "without_friction", {})
         self._controller = controllers.make(controller, {"config": config, **given, **parameters})
         self.modes = {"action_mode": self._controller.action_mode}
 
@@ -42,6 +42,6 @@ class NoFrictionInfo:
     ) -> tuple[np.ndarray, Any]:
         """See `policies.Policy.predict`; the observations are those of friction_source="none"."""
         observation = np.asarray(observation)
-        unsupported = np.zeros((*observation.shape[:-1], len(FRICTION_COLUMNS)), observation.dtype)
-        seen = np.concatenate([observation, unsupported], axis=-1)
+        unknown = np.zeros((*observation.shape[:-1], len(FRICTION_COLUMNS)), observation.dtype)
+        seen = np.concatenate([observation, unknown], axis=-1)
         return self._controller.predict(seen, state, episode_start, deterministic)

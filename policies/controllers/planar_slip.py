@@ -1,19 +1,23 @@
-"""Bringing the object to a pose (x, y, theta) in the grip by gravity, wrist and grip force."""
+"""Brings the object to a pose (x, y, theta) in the grip by gravity, wrist and grip force."""
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import Annotated, Any, NamedTuple, TypeAlias
 
 import numpy as np
+from pydantic import BeforeValidator, Field
 
-from policies.controllers.base import Columns, ForcePolicy, State
-from policies.controllers.sensing import Caution, both, scaled_load, tangential
+from policies.controllers.base import Columns, State
+from policies.controllers.gains import Fraction, GainPolicy
+from policies.controllers.sensing import ConservativePrior, both, scaled_load, tangential
 from slipgym.config import Overrides
+from slipgym.config.base import Frozen, NonNegative, Positive, as_tuple
 
 APPROACH, TURN, FINISH, TRIM, DONE = range(5)
 """Stages: slide, turn, slide the rest, turn the rest, hold."""
 
 Point: TypeAlias = tuple[np.ndarray, np.ndarray]
+Pair = Annotated[tuple[NonNegative, NonNegative], BeforeValidator(as_tuple)]
 
 
 class Memory(NamedTuple):
@@ -24,7 +28,7 @@ class Memory(NamedTuple):
     y: np.ndarray
     """The same along their y axis [m]."""
     measured_slip_x: np.ndarray
-    """Travel in the last sample [m]."""
+    """Measured slip at the last control step [m]."""
     measured_slip_y: np.ndarray
     """The same along y [m]."""
     measured_slip_theta: np.ndarray
@@ -47,7 +51,43 @@ class Memory(NamedTuple):
     """Break-aways in this slip so far."""
 
 
-class PlanarSlipPolicy(ForcePolicy):
+class PlanarSlipGains(Frozen):
+    """Gains of `PlanarSlipPolicy`; pairs are of slide and turn."""
+
+    speeds: Pair = Field(
+        default=(0.006, 0.2), description="Largest speed of a slide [m/s] and rate of a turn [rad/s]"
+    )
+    gain: NonNegative = Field(
+        default=2.0, description="Speed wanted per distance left, down to a quarter of the largest [1/s]"
+    )
+    k_e: Pair = Field(default=(150.0, 10.0), description="Gains on the integral, over f_slip [1/m, 1/rad]")
+    k_v: Pair = Field(default=(50.0, 0.5), description="Gains on the speed, over f_slip [s/m, s/rad]")
+    k_m: NonNegative = Field(
+        default=0.15, description="Rate of the integral while the object moves, over that while it sticks [-]"
+    )
+    keep: Fraction = Field(
+        default=0.6,
+        description="Fraction of the integral at a break-away with which the next is looked for [-]",
+    )
+    leaps: int = Field(default=8, ge=0, description="Break-aways after which a slip is braked less [-]")
+    least: Pair = Field(
+        default=(0.0013, 0.03), description="Least slide [m] and turn [rad] to begin; it stops at half"
+    )
+    short: NonNegative = Field(default=0.0015, description="How far before its goal the first slide ends [m]")
+    lean: float = Field(
+        default=1.5, description="Angle of the centre of mass to straight down, in the middle of a turn [rad]"
+    )
+    ready: Positive = Field(
+        default=0.02, description="Error of the wrist's angle at which the box may slip [rad]"
+    )
+    hold_margin: Positive = Field(default=1.4, description="Grip while holding, over the largest need [-]")
+    wrist_rate: Positive = Field(default=2.0, description="Largest pitch rate of the wrist [rad/s]")
+    wrist_acceleration: Positive = Field(
+        default=12.0, description="Its largest change; the held box has to follow [rad/s^2]"
+    )
+
+
+class PlanarSlipPolicy(GainPolicy[PlanarSlipGains]):
     """Slide, turn, slide the rest, turn the rest; in between hold firmly and point gravity with the wrist.
 
     All is planned on the box: b, the pads' place on it, has to go to the place that the target gives them,
@@ -55,8 +95,8 @@ class PlanarSlipPolicy(ForcePolicy):
     pads, at any pitch of the wrist; with its centre of mass to the side it turns, and the pads creep
     r^2 / |b| per radian along the arc (docs/environments/planar_slip.md). So the first slide goes to where
     that creep will begin, a little short; the turn follows with the centre of mass about level with the
-    pads; then the box hangs again and slides the rest. Every stage goes by the measured travel, so that
-    what one leaves over the next one takes on.
+    pads; then the box hangs again and slides the rest. Every stage uses the measured slip, so that
+    each one corrects what the one before has left over.
 
     A slip is let go by what balances the load at Coulomb friction, f_slip, as in "rotational_slip": v is the
     speed of the slide or the rate of the turn, v_cmd the one wanted,
@@ -64,26 +104,13 @@ class PlanarSlipPolicy(ForcePolicy):
         sticking:  e' = v_cmd - v,           f = f_slip (1 - k_e e)
         moving:    e' = k_m (v_cmd - v),     f = f_slip (1 - k_e e + k_v (v - v_cmd))
 
-    e begins at 0 at a break-away, and at a share of what broke the last one when the object sticks again.
+    e begins at 0 at a break-away. When the object sticks again, it begins at a fraction of its value there.
     After `leaps` break-aways in a slip, which then must be small ones, e keeps more at each. A slip that
     static friction has held back leaps; what is less than half a leap is left as it is.
 
     Args:
-        speeds: Largest speed of a slide [m/s] and rate of a turn [rad/s].
-        gain: Speed wanted per distance left, down to a quarter of the largest [1/s].
-        k_e: Gains on the integral, as a share of f_slip, of slide [1/m] and turn [1/rad].
-        k_v: Gains on the speed of slide [s/m] and turn [s/rad].
-        k_m: How much slower the integral grows while the object moves [-].
-        keep: Share of the integral at the last break-away with which the next one is looked for [-].
-        leaps: Break-aways after which a slip is braked less [-].
-        worth: Distances of slide [m] and turn [rad] from which they are worth a slip; one stops at half.
-        short: How much the first slide ends before its goal [m].
-        lean: Angle of the centre of mass from straight under the pads, in the middle of a turn [rad].
-        ready: Angle [rad] that the wrist may be off when the box is let slip.
-        hold_margin: Grip while holding, as a multiple of what the load needs at worst [-].
-        wrist_rate: Largest pitch rate of the wrist [rad/s].
-        wrist_acceleration: Its largest change; the held box has to follow [rad/s^2].
-        caution: Friction assumed until the estimate has support.
+        gains: See `PlanarSlipGains`; each is a keyword argument of its own, too.
+        prior: Friction assumed until the estimate has confidence.
         config: Overrides of the environment's configuration.
 
     Raises:
@@ -93,35 +120,17 @@ class PlanarSlipPolicy(ForcePolicy):
     task = "PlanarSlip"
     action_mode = "grip_force_pitch"
 
+    Gains = PlanarSlipGains
+    prior_default = ConservativePrior(r=0.004)
+
     def __init__(
         self,
-        speeds: tuple[float, float] = (0.006, 0.2),
-        gain: float = 2.0,
-        k_e: tuple[float, float] = (150.0, 10.0),
-        k_v: tuple[float, float] = (50.0, 0.5),
-        k_m: float = 0.15,
-        keep: float = 0.6,
-        leaps: int = 8,
-        worth: tuple[float, float] = (0.0013, 0.03),
-        short: float = 0.0015,
-        lean: float = 1.5,
-        ready: float = 0.02,
-        hold_margin: float = 1.4,
-        wrist_rate: float = 2.0,
-        wrist_acceleration: float = 12.0,
-        caution: Caution | None = None,
+        gains: PlanarSlipGains | None = None,
+        prior: ConservativePrior | None = None,
         config: Overrides | None = None,
+        **parameters: Any,
     ) -> None:
-        super().__init__(config)
-        for name, value in (("wrist_rate", wrist_rate), ("wrist_acceleration", wrist_acceleration)):
-            if not 0.0 < value < np.inf:
-                raise ValueError(f"{name} = {value!r} must be finite and > 0")
-        self.speeds, self.gain, self.worth = speeds, gain, worth
-        self.k_e, self.k_v, self.k_m, self.keep = k_e, k_v, k_m, keep
-        self.leaps, self.short, self.lean = leaps, short, lean
-        self.ready, self.hold_margin = ready, hold_margin
-        self.wrist_rate, self.wrist_acceleration = wrist_rate, wrist_acceleration
-        self.caution = caution or Caution(r=0.004)
+        super().__init__(gains, prior, config, **parameters)
         self._dt = 1.0 / self.config.physics.control_rate
 
     def initial_state(self, n: int) -> np.ndarray:
@@ -131,7 +140,7 @@ class PlanarSlipPolicy(ForcePolicy):
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger and wrist velocity, (n, 4) [N, m/s, m/s, rad/s]."""
         past = _followed(columns, Memory(*np.asarray(state).T))
-        mu_c, r = self.caution.blend(columns, "mu_c"), self.caution.blend(columns, "r")
+        mu_c, r = self.prior.blend(columns, "mu_c"), self.prior.blend(columns, "r")
         turning = (past.stage == TURN) | (past.stage == TRIM)
         left = columns["target_theta"] - columns["measured_slip_theta"]
         side = np.where(past.slipping > 0.0, past.side, np.sign(left))
@@ -142,18 +151,18 @@ class PlanarSlipPolicy(ForcePolicy):
         # how far to go, and the attitude in which to go there
         along = np.where(past.stage == FINISH, under, attitude)
         distance = np.where(turning, side * left, way[0] * np.sin(along) + way[1] * np.cos(along))
-        near = np.hypot(*way) < 2.0 * self.short
+        near = np.hypot(*way) < 2.0 * self.gains.short
         steer = np.where(near, attitude, np.arctan2(*way))
         wanted = np.where(past.stage == APPROACH, steer, under)
-        wanted = np.where(turning, under - side * (self.lean + 0.5 * np.abs(left)), wanted)
+        wanted = np.where(turning, under - side * (self.gains.lean + 0.5 * np.abs(left)), wanted)
         fixed = (past.stage == DONE) | ((past.slipping > 0.0) & (past.stage != APPROACH))
         off = np.where(fixed, 0.0, wrapped(wanted - attitude))
         speed = np.where(turning, side * both(columns, "omega"), _falling(columns))
         stage, slipping = self._decide(past, turning, distance, speed, off, columns["wrist_pitch_rate"])
         load = scaled_load(columns, r) / mu_c
         motion, share = self._let_slip(past, turning, distance, speed, slipping)
-        lever = np.hypot(*place) + self.short
-        firm = self.hold_margin * past.weight * np.hypot(1.0, lever / r) / mu_c
+        lever = np.hypot(*place) + self.gains.short
+        firm = self.gains.hold_margin * past.weight * np.hypot(1.0, lever / r) / mu_c
         loose = np.minimum(load * share, firm)
         force = np.where(slipping, loose, firm)
         rate, still = self._pitch(off, columns["wrist_pitch_rate"]), np.zeros(len(columns))
@@ -164,8 +173,8 @@ class PlanarSlipPolicy(ForcePolicy):
         """From the pads' place to the next goal, on the box [m]; creep over |b| is the coming arc [m^2]."""
         goal = turned((-columns["target_x"], -columns["target_y"]), -columns["target_theta"])
         reach, bearing = np.hypot(*goal), np.arctan2(*goal)
-        short = np.where(stage == APPROACH, self.short, 0.0)
-        arc = np.where(stage == APPROACH, creep / np.maximum(reach, self.short), 0.0)
+        short = np.where(stage == APPROACH, self.gains.short, 0.0)
+        arc = np.where(stage == APPROACH, creep / np.maximum(reach, self.gains.short), 0.0)
         sin, cos = np.sin(bearing), np.cos(bearing)
         return goal[0] - short * sin + arc * cos - place[0], goal[1] - short * cos - arc * sin - place[1]
 
@@ -180,11 +189,11 @@ class PlanarSlipPolicy(ForcePolicy):
     ) -> tuple[np.ndarray, np.ndarray]:
         """The stage, and whether the object is let slip."""
         slipping = past.slipping > 0.0
-        worth = np.where(turning, self.worth[1], self.worth[0])
-        arrived = distance <= np.where(slipping, 0.5, 1.0) * worth
-        rests = np.abs(speed) < 0.1 * np.where(turning, self.speeds[1], self.speeds[0])
+        least = np.where(turning, self.gains.least[1], self.gains.least[0])
+        arrived = distance <= np.where(slipping, 0.5, 1.0) * least
+        rests = np.abs(speed) < 0.1 * np.where(turning, self.gains.speeds[1], self.gains.speeds[0])
         goes_on = ~slipping & arrived & rests & (past.stage < DONE)
-        ready = (np.abs(off) < self.ready) & (np.abs(rate) < 0.1) & (past.stage < DONE)
+        ready = (np.abs(off) < self.gains.ready) & (np.abs(rate) < 0.1) & (past.stage < DONE)
         return np.where(goes_on, past.stage + 1, past.stage), ~arrived & (slipping | ready)
 
     def _let_slip(
@@ -196,23 +205,25 @@ class PlanarSlipPolicy(ForcePolicy):
         slipping: np.ndarray,
     ) -> tuple[dict[str, np.ndarray], np.ndarray]:
         """What changes in the memory, and the grip over f_slip."""
-        k_e, k_v, top = (np.where(turning, b, a) for a, b in (self.k_e, self.k_v, self.speeds))
-        ahead = np.clip(self.gain * distance, 0.25 * top, top) - speed
+        k_e, k_v, top = (
+            np.where(turning, b, a) for a, b in (self.gains.k_e, self.gains.k_v, self.gains.speeds)
+        )
+        ahead = np.clip(self.gains.gain * distance, 0.25 * top, top) - speed
         moving, moved = speed > 0.15 * top, past.moving > 0.0
         breaks, sticks = moving & ~moved, moved & ~moving
         leaps = np.where(slipping, past.leaps + breaks, 0.0)
         broken = np.where(breaks, past.error, past.broken)
-        left_over = np.clip(0.05 * (leaps - self.leaps), 0.0, self.keep) * broken
-        error = np.where(breaks, left_over, np.where(sticks, self.keep * broken, past.error))
-        error = np.where(slipping, error + np.where(moving, self.k_m, 1.0) * ahead * self._dt, 0.0)
+        left_over = np.clip(0.05 * (leaps - self.gains.leaps), 0.0, self.gains.keep) * broken
+        error = np.where(breaks, left_over, np.where(sticks, self.gains.keep * broken, past.error))
+        error = np.where(slipping, error + np.where(moving, self.gains.k_m, 1.0) * ahead * self._dt, 0.0)
         share = 1.0 - k_e * error - np.where(moving, k_v * ahead, 0.0)
         return {"moving": moving, "error": error, "broken": broken, "leaps": leaps}, share
 
     def _pitch(self, off: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """Pitch rate that turns the wrist by `off` and then rests [rad/s]."""
-        braking = np.minimum(np.sqrt(1.4 * self.wrist_acceleration * np.abs(off)), 8.0 * np.abs(off))
-        change = np.sign(off) * np.minimum(braking, self.wrist_rate) - rate
-        most = self.wrist_acceleration * self._dt
+        braking = np.minimum(np.sqrt(1.4 * self.gains.wrist_acceleration * np.abs(off)), 8.0 * np.abs(off))
+        change = np.sign(off) * np.minimum(braking, self.gains.wrist_rate) - rate
+        most = self.gains.wrist_acceleration * self._dt
         return rate + np.clip(change, -most, most)
 
 
@@ -236,7 +247,7 @@ def _falling(columns: Columns) -> np.ndarray:
 def _followed(columns: Columns, past: Memory) -> Memory:
     """The memory with the slip displacement and the weight as they are now.
 
-    Travel is the sum of velocities at the pad centre; a turn carries the grasped point along.
+    Measured slip is the sum of velocities at the pad centre; a turn carries the grasped point along.
     """
     x, y, theta = (columns[f"measured_slip_{axis}"] for axis in ("x", "y", "theta"))
     dx, dy, turn = x - past.measured_slip_x, y - past.measured_slip_y, theta - past.measured_slip_theta

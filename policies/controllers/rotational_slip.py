@@ -1,16 +1,38 @@
-"""Turning the object about the grip axis by gravity and grip force alone."""
+"""Turns the object about the grip axis by gravity and grip force alone."""
 
 from __future__ import annotations
 
 import numpy as np
+from pydantic import Field
 
-from policies.controllers.base import Columns, ForcePolicy, State
-from policies.controllers.sensing import Caution, both
+from policies.controllers.base import Columns, State
+from policies.controllers.gains import Fraction, GainPolicy
+from policies.controllers.sensing import ConservativePrior, both
 from slipgym.config import Overrides
+from slipgym.config.base import Frozen, NonNegative, Positive
 
 
-class RotationalSlipPolicy(ForcePolicy):
-    """Let the object turn with the reference, on the friction it is told.
+class RotationalSlipGains(Frozen):
+    """Gains of `RotationalSlipPolicy`."""
+
+    k_x: NonNegative = Field(default=3.0, description="Gain on the angle [1/s]")
+    k_v: NonNegative = Field(default=0.5, description="Gain on the rate while turning, over f_slip [s/rad]")
+    k_e: NonNegative = Field(default=33.0, description="Gain on the integral, over f_slip [1/rad]")
+    k_m: NonNegative = Field(
+        default=0.15, description="Rate of the integral while turning, over that while sticking [-]"
+    )
+    moving: NonNegative = Field(
+        default=0.03, description="Rate from which the object counts as turning [rad/s]"
+    )
+    stop_band: NonNegative = Field(
+        default=0.005, description="Angle left at the end that is not worth another slip [rad]"
+    )
+    hold_margin: Positive = Field(default=1.3, description="Grip before and after the turn, over f_slip [-]")
+    smoothing: Fraction = Field(default=0.98, description="Weight of the old torque in each control step [-]")
+
+
+class RotationalSlipPolicy(GainPolicy[RotationalSlipGains]):
+    """Let the object turn with the reference, with the friction of the observation.
 
     The force that balances gravity's torque at Coulomb friction is f_slip = tau / (mu_c r), with tau
     filtered. Static friction asks for less force to let go than Coulomb friction asks for to go on, so
@@ -29,15 +51,8 @@ class RotationalSlipPolicy(ForcePolicy):
     on their own are not.
 
     Args:
-        k_x: Gain on the angle [1/s].
-        k_v: Gain on the rate while turning, as a share of f_slip [s/rad].
-        k_e: Gain on the integral, as a share of f_slip [1/rad].
-        k_m: How much slower the integral grows while turning [-].
-        moving: Rate from which the object counts as turning [rad/s].
-        stop_band: Angle left at the reference's end that is not worth another slip [rad].
-        hold_margin: Grip before and after the turn, as a multiple of f_slip [-].
-        smoothing: Share of the old torque kept per sample, in [0, 1).
-        caution: Friction assumed until the estimate has support.
+        gains: See `RotationalSlipGains`; each is a keyword argument of its own, too.
+        prior: Friction assumed until the estimate has confidence.
         config: Overrides of the environment's configuration.
 
     Raises:
@@ -45,27 +60,16 @@ class RotationalSlipPolicy(ForcePolicy):
     """
 
     task = "RotationalSlip"
+    Gains = RotationalSlipGains
 
     def __init__(
         self,
-        k_x: float = 3.0,
-        k_v: float = 0.5,
-        k_e: float = 33.0,
-        k_m: float = 0.15,
-        moving: float = 0.03,
-        stop_band: float = 0.005,
-        hold_margin: float = 1.3,
-        smoothing: float = 0.98,
-        caution: Caution | None = None,
+        gains: RotationalSlipGains | None = None,
+        prior: ConservativePrior | None = None,
         config: Overrides | None = None,
+        **parameters: float,
     ) -> None:
-        super().__init__(config)
-        if not 0.0 <= smoothing < 1.0:
-            raise ValueError(f"smoothing = {smoothing!r} must lie in [0, 1)")
-        self.k_x, self.k_v, self.k_e, self.k_m = k_x, k_v, k_e, k_m
-        self.moving, self.stop_band, self.hold_margin = moving, stop_band, hold_margin
-        self.smoothing = smoothing
-        self.caution = caution or Caution()
+        super().__init__(gains, prior, config, **parameters)
         self._dt = 1.0 / self.config.physics.control_rate
 
     def initial_state(self, n: int) -> np.ndarray:
@@ -74,21 +78,22 @@ class RotationalSlipPolicy(ForcePolicy):
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
+        g = self.gains
         error, torque, turned = np.asarray(state).T
         angle, omega, tau = (
             -columns["measured_slip_theta"],
             -both(columns, "omega"),
             np.abs(both(columns, "tau")),
         )
-        torque = np.where(torque < 0.0, tau, self.smoothing * torque + (1.0 - self.smoothing) * tau)
-        f_slip = torque / self.caution.blend_lever(columns)
+        torque = np.where(torque < 0.0, tau, g.smoothing * torque + (1.0 - g.smoothing) * tau)
+        f_slip = torque / self.prior.blend_lever(columns)
         reference, goal = columns["reference_position"], columns["angle"]
-        ahead = columns["reference_velocity"] + self.k_x * (reference - angle) - omega
-        turning = omega > self.moving
-        arrived = (reference >= goal) & (angle >= goal - self.stop_band)
+        ahead = columns["reference_velocity"] + g.k_x * (reference - angle) - omega
+        turning = omega > g.moving
+        arrived = (reference >= goal) & (angle >= goal - g.stop_band)
         still = arrived | (reference <= 0.0)
         error = np.where(turning & (turned == 0.0), 0.0, error)
-        error = np.where(still, 0.0, error + np.where(turning, self.k_m, 1.0) * ahead * self._dt)
-        share = 1.0 - self.k_e * error - np.where(turning, self.k_v * ahead, 0.0)
-        share = np.where(still, np.maximum(share, self.hold_margin), share)
+        error = np.where(still, 0.0, error + np.where(turning, g.k_m, 1.0) * ahead * self._dt)
+        share = 1.0 - g.k_e * error - np.where(turning, g.k_v * ahead, 0.0)
+        share = np.where(still, np.maximum(share, g.hold_margin), share)
         return f_slip * share, np.column_stack((error, torque, turning))

@@ -1,7 +1,8 @@
-"""What the controllers read: the mean of both fingers' sensors, and friction with caution."""
+"""Reads sensors and friction for the controllers: means over both fingers, and a conservative prior."""
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,43 +34,53 @@ def scaled_speed(columns: Columns, r: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Caution:
-    """How a controller acts on friction values that no data supports yet.
+class ConservativePrior:
+    """Friction that a controller assumes while the estimate has no confidence.
 
-    The estimator's start values are optimistic (mu_c 1.3); a controller that trusts them
-    drops the object. Until an estimate is supported, a low friction takes its place; in
-    between the two are blended.
+    The estimator's start values are optimistic (mu_c 1.3): a controller that acts on them drops the object.
+    Without confidence the prior replaces the estimate; in between the two are blended.
+
+    Raises:
+        ValueError: A value is out of range.
     """
 
     mu_c: float = 0.3
-    """Coulomb friction to assume without support [-]; below that of the materials at hand."""
+    """Coulomb friction without confidence [-]; below that of the materials at hand."""
     r: float = 0.008
-    """Radius of the rim contact to assume without support [m]."""
-    support: float = 0.1
-    """Support from which an estimate is taken as it is, in (0, 1]; an update is worth 0.02."""
+    """Contact radius without confidence [m]."""
+    confidence: float = 0.1
+    """Confidence from which an estimate is taken as it is, in (0, 1]; one update gives 0.02."""
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        for name in ("mu_c", "r", "support"):
+        for name in ("mu_c", "r", "confidence"):
             value = getattr(self, name)
             if not 0.0 < value < np.inf:
-                raise ValueError(f"cautious {name} = {value!r} must be finite and > 0")
-        if self.support > 1.0:
-            raise ValueError(f"cautious support = {self.support!r} must be at most 1")
+                raise ValueError(f"{name} = {value!r} of a conservative prior must be finite and > 0")
+        if self.confidence > 1.0:
+            raise ValueError(f"confidence = {self.confidence!r} of a conservative prior must be at most 1")
 
-    def trust(self, columns: Columns, name: str) -> np.ndarray:
-        """How far the friction value `name` is taken from the estimate, in [0, 1], (n,)."""
-        return np.minimum(1.0, columns[f"confidence_{name}"] / self.support)
+    def confidence_weight(self, columns: Columns, name: str) -> np.ndarray:
+        """Weight of the estimate of `name` against the prior, in [0, 1], (n,)."""
+        return np.minimum(1.0, columns[f"confidence_{name}"] / self.confidence)
 
     def blend(self, columns: Columns, name: str) -> np.ndarray:
-        """The friction value `name` of the observation ("mu_c" or "r"), with caution, (n,)."""
-        trust = self.trust(columns, name)
-        return trust * columns[name] + (1.0 - trust) * getattr(self, name)
+        """The friction value `name` of the observation ("mu_c" or "r"), blended with the prior, (n,)."""
+        weight = self.confidence_weight(columns, name)
+        return weight * columns[name] + (1.0 - weight) * getattr(self, name)
 
     def blend_lever(self, columns: Columns) -> np.ndarray:
-        """mu_c r, the torque per normal force in rotation, with caution and never below it, (n,) [m].
+        """mu_c r, the torque per normal force in rotation, blended with the prior, at least it, (n,) [m].
 
-        An estimate of r goes with the mu_c that it was found with, so r's support counts for both.
+        An estimate of r goes with the mu_c that it was found with, so r's confidence counts for both.
         """
-        trust, cautious = self.trust(columns, "r"), self.mu_c * self.r
-        return np.maximum(cautious, trust * columns["mu_c"] * columns["r"] + (1.0 - trust) * cautious)
+        weight, least = self.confidence_weight(columns, "r"), self.mu_c * self.r
+        return np.maximum(least, weight * columns["mu_c"] * columns["r"] + (1.0 - weight) * least)
+
+
+def Caution(mu_c: float = 0.3, r: float = 0.008, support: float = 0.1) -> ConservativePrior:
+    """`ConservativePrior` by the names of version 0.1.0; warns."""
+    warnings.warn(
+        "Caution(support=...) is now ConservativePrior(confidence=...)", DeprecationWarning, stacklevel=2
+    )
+    return ConservativePrior(mu_c, r, support)

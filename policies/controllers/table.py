@@ -1,4 +1,4 @@
-"""The table of controllers, and how a class is found by name."""
+"""Finds the class of a controller by its name, and makes controllers."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from estimator.reference import is_reference, referenced
+from policies.controllers.gains import GainPolicy, renamed
 
 CLASSES = {
     "rotational_slip": "policies.controllers.rotational_slip:RotationalSlipPolicy",
@@ -56,8 +57,17 @@ def make(name: str, parameters: Mapping[str, Any], valid: Iterable[str] = tuple(
         ValueError: The name or a parameter is unknown, or a value is not allowed.
     """
     policy = find(name, valid)
-    refuse(name, parameters, list(inspect.signature(policy).parameters))
+    if issubclass(policy, GainPolicy):
+        parameters = renamed(parameters)
+    refuse(name, parameters, parameters_of(policy))
     return policy(**parameters)
+
+
+def parameters_of(policy: type[Any]) -> list[str]:
+    """Names of the parameters that a policy's class is made with; single gains are among them."""
+    own = inspect.signature(policy).parameters.values()
+    names = [each.name for each in own if each.kind is not inspect.Parameter.VAR_KEYWORD]
+    return [*policy.parameters(), *names] if issubclass(policy, GainPolicy) else names
 
 
 def refuse(name: str, parameters: Mapping[str, Any], valid: Sequence[str]) -> None:

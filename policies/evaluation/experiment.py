@@ -11,6 +11,8 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 import estimator as estimators
 import policies
+from policies.evaluation.rate import common_frame_skip
+from policies.task_names import canonical
 from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen, as_tuple
 from slipgym.config.errors import unknown
@@ -18,19 +20,7 @@ from slipgym.envs.arguments import DEFAULT_ESTIMATOR, ENGINES, FRICTION_SOURCES,
 from slipgym.tasks import find
 
 
-class Spelled(Frozen):
-    """A model that names its valid keys when it meets an unknown one."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _known_keys(cls, values: Any) -> Any:
-        for key in values if isinstance(values, Mapping) else ():
-            if key not in cls.model_fields:
-                raise ValueError(unknown("key", key, cls.model_fields))
-        return values
-
-
-class PolicyChoice(Spelled):
+class PolicyChoice(Frozen):
     """A policy of `policies.load`."""
 
     name: str = Field(description="Its name, the folder of a learned one, or module:class [-]")
@@ -54,8 +44,8 @@ class PolicyChoice(Spelled):
         return self.label or Path(self.name).name
 
 
-class FrictionChoice(Spelled):
-    """What a policy is told about friction."""
+class FrictionChoice(Frozen):
+    """Friction information of a policy."""
 
     source: str = Field(description="friction_source of the environment [-]")
     estimator: Mapping[str, Any] = Field(
@@ -77,7 +67,7 @@ class FrictionChoice(Spelled):
         return self.label or self.source
 
 
-class Experiment(Spelled):
+class Experiment(Frozen):
     """Policies × friction × materials × options, each cell with a number of trials."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", description="Names the run folder [-]")
@@ -88,7 +78,7 @@ class Experiment(Spelled):
         description="The policies to compare [-]"
     )
     friction: Annotated[tuple[FrictionChoice, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
-        description="What they are told about friction; the first is the one compared with [-]"
+        description="Friction information; the first is the one compared with [-]"
     )
     materials: Annotated[tuple[str, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
         default=("random",), description='Materials, or "random" [-]'
@@ -102,13 +92,16 @@ class Experiment(Spelled):
     randomization: str | Mapping[str, Any] = Field(
         default="none", description="What is drawn per episode: a preset, a file or a mapping [-]"
     )
+    frame_skip: Count | None = Field(
+        default=None,
+        description="Control steps per action; null: as of the learned policies, or 1 [-]",
+    )
     config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
 
     @field_validator("task")
     @classmethod
     def _task_exists(cls, name: str) -> str:
-        find(name)
-        return name
+        return canonical(name)
 
     @field_validator("engine")
     @classmethod
@@ -130,7 +123,17 @@ class Experiment(Spelled):
             raise ValueError("materials are listed under materials, not among the options")
         for options in self.combinations():
             find(self.task).options.parse(options)
+        _ = self.steps_per_action
         return self
+
+    @property
+    def steps_per_action(self) -> int:
+        """Control steps per action, the same for every policy.
+
+        Raises:
+            ValueError: The learned policies were trained with different ones, or not with `frame_skip`.
+        """
+        return common_frame_skip((policy.name for policy in self.policies), self.frame_skip)
 
     def environment_config(self) -> configuration.Config:
         """The environment's configuration with this experiment's overrides."""

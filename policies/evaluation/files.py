@@ -1,42 +1,35 @@
-"""Experiments as YAML files."""
+"""Reads experiments from YAML files."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any, TypeVar
-
-from pydantic import BaseModel, ValidationError
+from collections.abc import Sequence
 
 from policies.evaluation.experiment import Experiment
-from slipgym.config import files
+from policies.task_names import file_name
 from slipgym.config.errors import unknown
+from slipgym.config.yaml_model import names, read_model, validate
 
-M = TypeVar("M", bound=BaseModel)
+_FOLDER = "experiments"
 
 
 def experiment_names() -> list[str]:
     """Names of the experiments that come with slipgym."""
-    return sorted(path.stem for path in (files.folder() / "experiments").glob("*.yaml"))
+    return names(_FOLDER)
 
 
 def load_experiment(which: str | os.PathLike[str]) -> Experiment:
     """Reads an experiment.
 
     Args:
-        which: One of `experiment_names()`, or the path of a YAML file.
+        which: One of `experiment_names()`, or the path of a YAML file. A task's own experiment also goes by
+            the task's other names, "LinearSlip" for example.
 
     Raises:
         FileNotFoundError: It looks like a path, but there is no such file.
         ValueError: The name is unknown, or the file holds a wrong key or value.
     """
-    path = Path(which)
-    if path.suffix not in (".yaml", ".yml"):
-        if str(which) not in experiment_names():
-            raise ValueError(unknown("experiment", str(which), experiment_names()))
-        path = files.folder() / "experiments" / f"{which}.yaml"
-    return checked(files.read(path), path.name)
+    return read_model(file_name(which, _FOLDER), Experiment, _FOLDER, "experiment")
 
 
 def narrowed(
@@ -49,7 +42,7 @@ def narrowed(
 
     Args:
         experiment: The experiment.
-        trials: Trials per cell; None leaves them.
+        trials: Trials per condition; None leaves them.
         seed: Its seed; None leaves it.
         friction: Labels or sources to keep; none given keeps all.
 
@@ -65,31 +58,4 @@ def narrowed(
         kept = tuple(choice for choice in kept if {choice.title, choice.source} & set(friction))
     values = {**dict(experiment), "friction": kept}
     values.update({key: value for key, value in (("trials", trials), ("seed", seed)) if value is not None})
-    return checked(values, experiment.name)
-
-
-def checked(values: Mapping[str, Any], source: str) -> Experiment:
-    """An experiment from plain values.
-
-    Args:
-        values: As in a YAML file.
-        source: Where they come from, for the message of an error.
-
-    Raises:
-        ValueError: A key or value is wrong; one line per fault says where and what is valid.
-    """
-    return validated(Experiment, values, source)
-
-
-def validated(model: type[M], values: Mapping[str, Any], source: str) -> M:
-    """A model from plain values; arguments and errors as of `checked`."""
-    try:
-        return model.model_validate(dict(values))
-    except ValidationError as error:
-        lines = []
-        for fault in error.errors():
-            at = ".".join(str(part) for part in fault["loc"])
-            message = fault["msg"].removeprefix("Value error, ")
-            given = "" if fault["type"] in ("value_error", "missing") else f" = {fault['input']!r}"
-            lines.append(f"{source}: {at}{given}{': ' if at else ''}{message}")
-        raise ValueError("\n".join(lines)) from error
+    return validate(values, Experiment, experiment.name)

@@ -1,32 +1,15 @@
-"""The folder of a run: it appears when it is complete, or not at all."""
+"""Names the folder of a run and writes where its results come from."""
 
 from __future__ import annotations
 
-import importlib.metadata
-import json
 import os
-import platform
 from datetime import datetime
 from pathlib import Path
 
 import yaml
 
-from policies.atomic_io import filled_in_place as filled_in_place
 from policies.evaluation.experiment import Experiment
-
-_PACKAGES = (
-    "slipgym",
-    "gymnasium",
-    "joblib",
-    "matplotlib",
-    "numba",
-    "numpy",
-    "pandas",
-    "pyarrow",
-    "pybullet",
-    "pydantic",
-    "scipy",
-)
+from policies.versions import write_versions
 
 
 def run_path(experiment: Experiment, output: str | os.PathLike[str]) -> Path:
@@ -47,19 +30,3 @@ def write_origin(experiment: Experiment, folder: Path) -> None:
         text = yaml.safe_dump(model.model_dump(mode="json"), sort_keys=False, allow_unicode=True)
         (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
     write_versions(folder)
-
-
-def write_versions(folder: Path) -> None:
-    """Writes versions.json: what the results were made with."""
-    (folder / "versions.json").write_text(json.dumps(versions(), indent=2) + "\n", encoding="utf-8")
-
-
-def versions() -> dict[str, str | None]:
-    """Versions of Python, the platform and the packages; None for one that is not installed."""
-    found: dict[str, str | None] = {"python": platform.python_version(), "platform": platform.platform()}
-    for package in _PACKAGES:
-        try:
-            found[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            found[package] = None
-    return found

@@ -20,7 +20,7 @@ class Trial:
     policy: PolicyChoice
     """Who acts."""
     friction: FrictionChoice
-    """What it is told about friction."""
+    """Its friction information."""
     material: str
     """Name of a material, or "random"."""
     options: Mapping[str, Any]
@@ -32,7 +32,7 @@ class Trial:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What tells this trial from the others, for tables."""
+        """What distinguishes this trial from the others, for tables."""
         return {
             "policy": self.policy.title,
             "friction": self.friction.title,

@@ -1,9 +1,7 @@
-"""Records as files."""
+"""Writes records of sensors as files."""
 
 from __future__ import annotations
 
-import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +9,7 @@ import pandas as pd
 
 from estimator.records.table import TYPES
 from policies.evaluation.sensor_record import TWIST
+from slipgym.atomic_io import new_file
 
 
 def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -> None:
@@ -38,13 +37,9 @@ def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -
 
 
 def _write(frame: pd.DataFrame, path: Path) -> None:
-    """Writes beside the target and moves into place."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=".partial-", dir=path.parent) as folder:
-        partial = Path(folder) / path.name
+    with new_file(path) as partial:
         if path.suffix == ".parquet":
             frame.to_parquet(partial, index=False)
         else:
             packing: Any = {"method": "gzip", "mtime": 0} if path.suffix == ".gz" else None
             frame.to_csv(partial, index=False, float_format="%.7g", compression=packing)
-        os.replace(partial, path)

@@ -9,11 +9,12 @@ from pathlib import Path
 import pandas as pd
 
 from policies.evaluation.experiment import Experiment
-from policies.evaluation.folder import filled_in_place, run_path, write_origin
+from policies.evaluation.folder import run_path, write_origin
 from policies.evaluation.plan import plan
 from policies.evaluation.plots import draw
 from policies.evaluation.tables import markdown, summarise
 from policies.evaluation.trial import Result, run_trials
+from slipgym.atomic_io import new_folder
 
 
 def evaluate(
@@ -38,7 +39,7 @@ def evaluate(
         OSError: The output cannot be written.
     """
     path = run_path(experiment, output)
-    with filled_in_place(path) as folder:
+    with new_folder(path) as folder:
         write_origin(experiment, folder)
         write_results(experiment, run_trials(experiment, plan(experiment), jobs, progress), folder)
     return path

@@ -11,6 +11,7 @@ import pandas as pd
 
 import policies
 from policies.learned import LearnedPolicy
+from policies.stepping import steps
 from slipgym.envs.observation import ObservationBuffers
 from slipgym.envs.simulation import Simulation
 from slipgym.sensors.force_torque import HISTORY, roomier, sensed
@@ -61,11 +62,8 @@ def record_sensors(
             actor.check(env)
         observation, _ = env.reset(seed=seed, options=dict(options or {}))
         tap = _Tap(env.unwrapped.simulation, finger - 1)  # type: ignore[attr-defined]
-        state, over = None, False
-        while not over:
-            action, state = actor.predict(observation, state=state)
-            observation, _, terminated, truncated, _ = env.step(action)
-            over = terminated or truncated
+        for _ in steps(env, actor, observation):
+            pass
         return tap.frame()
     finally:
         env.close()

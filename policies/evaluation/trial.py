@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -13,11 +14,13 @@ from tqdm import tqdm
 
 import policies
 from policies.controllers.base import ObservationIndex
+from policies.controllers.rate import at_rate
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.metrics import measure, measures
 from policies.evaluation.plan import Trial
 from policies.evaluation.recording import Recorder, Recording
 from policies.learned import LearnedPolicy
+from policies.stepping import steps
 from slipgym.tasks import configure, find
 
 
@@ -93,12 +96,8 @@ def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None 
             policy.check(env)
         observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
         recorder.begin(info)
-        state, over = None, False
-        while not over:
-            action, state = policy.predict(observation, state=state)
-            observation, reward, terminated, truncated, info = env.step(action)
-            recorder.add(_present(env, observation), float(reward), info)
-            over = terminated or truncated
+        for step in steps(env, policy, observation):
+            recorder.add(_present(env, step.observation), float(step.reward), step.info)
     finally:
         env.close()
     return recorder.finish()
@@ -113,15 +112,20 @@ def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:
         "engine": experiment.engine,
         "material": trial.material,
         "randomization": experiment.randomization,
+        "frame_skip": experiment.steps_per_action,
         "config": dict(experiment.config),
     }
 
 
 def make_policy(experiment: Experiment, trial: Trial) -> policies.Policy:
-    """Who acts; a controller gets the environment's configuration, a learned policy is checked against it."""
-    parameters = dict(trial.policy.parameters)
-    if experiment.config and policies.is_controller(trial.policy.name):
-        parameters.setdefault("config", dict(experiment.config))
+    """Who acts; a controller gets the environment's configuration, with the rate at which it acts."""
+    parameters, name, config = dict(trial.policy.parameters), trial.policy.name, dict(experiment.config)
+    if policies.is_controller(name):
+        skip, takes = experiment.steps_per_action, inspect.signature(policies.find(name)).parameters
+        if skip > 1:
+            config = at_rate(experiment.environment_config().physics.control_rate / skip, config)
+        if config and "config" in takes:
+            parameters.setdefault("config", config)
     return policies.load(trial.policy.name, **parameters)
 
 

@@ -7,6 +7,5 @@
 from policies.learned.description import Description
 from policies.learned.files import read_description
 from policies.learned.policy import LearnedPolicy
-from policies.learned.pretrained import shipped
 
-__all__ = ["Description", "LearnedPolicy", "read_description", "shipped"]
+__all__ = ["Description", "LearnedPolicy", "read_description"]

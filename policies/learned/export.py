@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import importlib
-import importlib.metadata
 import os
-import platform
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -26,8 +24,7 @@ from policies.learned.description import (
 from policies.learned.extract import ALGORITHMS, acting_tensors, algorithm_of, array, critic_of, network_of
 from policies.learned.fitting import column_of
 from policies.learned.residual import Underlying
-
-_PACKAGES = ("slipgym", "gymnasium", "numpy", "stable-baselines3", "sb3-contrib", "torch")
+from policies.versions import versions
 
 
 def save(
@@ -91,7 +88,7 @@ def save(
             "command": command,
             "steps": int(model.num_timesteps),
             "seeds": list(seeds),
-            "versions": _versions(),
+            "versions": versions(),
             "critic": critic_of(model).model_dump(mode="json") if training else None,
         },
     }
@@ -219,13 +216,3 @@ def _policy_arguments(description: Description) -> dict[str, Any]:
         arguments |= {"lstm_hidden_size": network.memory.size, "n_lstm_layers": network.memory.layers}
         arguments |= {"shared_lstm": critic.memory == "shared", "enable_critic_lstm": critic.memory == "own"}
     return arguments
-
-
-def _versions() -> dict[str, str | None]:
-    found: dict[str, str | None] = {"python": platform.python_version()}
-    for package in _PACKAGES:
-        try:
-            found[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            found[package] = None
-    return found

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from policies.atomic_io import filled_in_place, write_durably
 from policies.learned import tensors
 from policies.learned.description import FORMAT, TRAINING, WEIGHTS, Description
+from slipgym.atomic_io import new_folder
 from slipgym.config.errors import explain, unknown
 
 DESCRIPTION = "policy.json"
@@ -46,9 +46,9 @@ def write(
         contents[TRAINING] = tensors.pack(training)
     hashes = {name: _sha256(data) for name, data in contents.items()}
     text = json.dumps({"format": FORMAT, **description, "files": hashes}, indent=2, ensure_ascii=False)
-    with filled_in_place(Path(path)) as folder:
+    with new_folder(Path(path)) as folder:
         for name, data in {**contents, DESCRIPTION: f"{text}\n".encode()}.items():
-            write_durably(folder / name, data)
+            (folder / name).write_bytes(data)
         for name in contents:
             read(folder, name)
     return Path(path)

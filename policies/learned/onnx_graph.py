@@ -12,10 +12,10 @@ import numpy as np
 import onnx
 from onnx import TensorProto, helper, numpy_helper
 
-from policies.atomic_io import replace_durably
 from policies.learned import files
 from policies.learned.description import Description, Normalisation
-from policies.learned.pretrained import located
+from policies.learned.pretrained import locate
+from slipgym import atomic_io
 
 OPSET, IR_VERSION = 17, 8
 """Of 2022, so that runtimes on robots know them."""
@@ -39,9 +39,9 @@ def write_onnx(policy: str | os.PathLike[str], path: str | os.PathLike[str]) -> 
         FileNotFoundError: There is no policy.
         ValueError: What lies there is none, or not whole.
     """
-    model = graph_of(*files.read(located(policy)))
+    model = graph_of(*files.read(locate(policy)))
     onnx.checker.check_model(model, full_check=True)
-    replace_durably(Path(path), model.SerializeToString(deterministic=True))
+    atomic_io.write(Path(path), model.SerializeToString(deterministic=True))
 
 
 def graph_of(description: Description, tensors: dict[str, np.ndarray]) -> onnx.ModelProto:

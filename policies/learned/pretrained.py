@@ -1,4 +1,4 @@
-"""The learned policies that come with slipgym."""
+"""Finds the pretrained policies that come with slipgym."""
 
 import os
 from pathlib import Path
@@ -9,22 +9,22 @@ FOLDER = Path(__file__).parent / "pretrained_policies"
 """One folder for each, called by its name."""
 
 
-def shipped() -> dict[str, Path]:
+def folders() -> dict[str, Path]:
     """Their folders by name."""
     return {path.parent.name: path.parent for path in sorted(FOLDER.glob(f"*/{DESCRIPTION}"))}
 
 
-def located(which: str | os.PathLike[str]) -> Path:
+def locate(which: str | os.PathLike[str]) -> Path:
     """The folder of a policy.
 
     Args:
-        which: A name of `shipped()`, or a folder.
+        which: A name of `folders()`, or a folder.
 
     Raises:
         FileNotFoundError: It is neither; the message lists the names.
     """
-    folder = shipped().get(os.fspath(which), Path(which))
+    folder = folders().get(os.fspath(which), Path(which))
     if not folder.exists():
-        known = ", ".join(shipped()) or "none comes with slipgym yet"
+        known = ", ".join(folders()) or "none"
         raise FileNotFoundError(f"no learned policy at {os.fspath(which)!r}; known by name: {known}")
     return folder

@@ -13,21 +13,8 @@ import numpy as np
 
 from policies.controllers import table as controllers
 from policies.controllers.no_friction_info import NoFrictionInfo
+from policies.controllers.rate import at_rate
 from policies.learned.description import Residual
-
-
-def at_rate(rate: float, config: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Configuration of a controller that acts as often as a learner.
-
-    Args:
-        rate: Actions per second, rounded to whole ones.
-        config: Overrides of the environment's configuration.
-    """
-    given = dict(config or {})
-    sensors = dict(given.get("sensors", {}))
-    given["physics"] = {**given.get("physics", {}), "control_rate": round(rate)}
-    given["sensors"] = {**sensors, "slip": {**sensors.get("slip", {}), "rate": round(rate)}}
-    return given
 
 
 class Underlying:
@@ -35,7 +22,7 @@ class Underlying:
 
     Args:
         residual: The controller, and how far its actions may be changed.
-        arguments: Keyword arguments of the environment; told no friction, the controller is `NoFrictionInfo`.
+        arguments: Keyword arguments of the environment; without friction, the controller is `NoFrictionInfo`.
         columns: Numbers in one observation, without the earlier ones.
         rate: Actions per second.
 

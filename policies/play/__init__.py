@@ -1,7 +1,7 @@
-"""Watching policies: in a window, as a film, as one picture."""
+"""Shows policies at work: in a window, as a video, as a screenshot."""
 
-from policies.play.screenshot import own_policy, portrait, write_portraits
-from policies.play.video import FILM_TYPES, Film
+from policies.play.screenshot import own_policy, take_screenshot, write_screenshots
+from policies.play.video import VIDEO_TYPES, Video
 from policies.play.watch import Outcome, watch
 
-__all__ = ["FILM_TYPES", "Film", "Outcome", "own_policy", "portrait", "watch", "write_portraits"]
+__all__ = ["VIDEO_TYPES", "Outcome", "Video", "own_policy", "take_screenshot", "watch", "write_screenshots"]

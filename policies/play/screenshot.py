@@ -1,4 +1,4 @@
-"""One picture of each environment, with its own controller at work."""
+"""Takes a screenshot of an environment while its own controller acts."""
 
 from __future__ import annotations
 
@@ -8,14 +8,15 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.envs.registration import parse_env_id
 from PIL import Image
 
 import policies
+from policies.stepping import steps
+from slipgym.atomic_io import new_file
 from slipgym.registration import ENVIRONMENTS
-from slipgym.tasks import TASKS, find
+from slipgym.tasks import find
 
-_SHARE = 0.62  # of the episode, after which the picture is taken
+_FRACTION = 0.62  # of the episode, after which the picture is taken
 
 
 def own_policy(task: str) -> str:
@@ -28,7 +29,7 @@ def own_policy(task: str) -> str:
     return key if key in policies.names() else "constant_force"
 
 
-def portrait(env_id: str, material: str, seed: int = 0) -> np.ndarray:
+def take_screenshot(env_id: str, material: str, seed: int = 0) -> np.ndarray:
     """A picture from the middle of an episode.
 
     Args:
@@ -39,23 +40,21 @@ def portrait(env_id: str, material: str, seed: int = 0) -> np.ndarray:
     Returns:
         (480, 720, 3) uint8.
     """
-    policy = policies.make(own_policy(parse_env_id(env_id)[1]))
+    policy = policies.make(own_policy(env_id))
     modes = policies.modes(policy)
     env: Any = gym.make(env_id, render_mode="rgb_array", material=material, **modes).unwrapped
     try:
         observation, _ = env.reset(seed=seed)
-        state, over = None, False
-        steps = int(env.simulation.episode["steps"][0])
-        while not over and env.simulation.episode["step"][0] < _SHARE * steps:
-            action, state = policy.predict(observation, state=state)
-            observation, _, terminated, truncated, _ = env.step(action)
-            over = terminated or truncated
+        episode = env.simulation.episode[0]
+        for _ in steps(env, policy, observation):
+            if episode["step"] >= _FRACTION * episode["steps"]:
+                break
         return env.render()
     finally:
         env.close()
 
 
-def write_portraits(folder: Path, seed: int = 0) -> Iterator[Path]:
+def write_screenshots(folder: Path, seed: int = 0) -> Iterator[Path]:
     """Writes <task's key>.png for every registered environment, each with another material.
 
     Args:
@@ -65,9 +64,8 @@ def write_portraits(folder: Path, seed: int = 0) -> Iterator[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     materials = ("wood", "plastic", "case", "cardboard")
     for number, env_id in enumerate(ENVIRONMENTS):
-        picture = portrait(env_id, materials[number % len(materials)], seed)
-        key = TASKS[env_id.removeprefix("slipgym/").rpartition("-")[0]].key
-        partial, path = folder / f".{key}.partial", folder / f"{key}.png"
-        Image.fromarray(picture).save(partial, format="PNG", optimize=True)
-        partial.replace(path)
+        picture = take_screenshot(env_id, materials[number % len(materials)], seed)
+        path = folder / f"{find(env_id).key}.png"
+        with new_file(path) as partial:
+            Image.fromarray(picture).save(partial, format="PNG", optimize=True)
         yield path

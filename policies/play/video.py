@@ -1,17 +1,17 @@
-"""Films as files: MP4 or GIF."""
+"""Writes videos: MP4 or GIF."""
 
 from __future__ import annotations
 
 import os
-import shutil
-import tempfile
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 from PIL import Image
 
+from slipgym.atomic_io import new_file
 from slipgym.config.errors import unknown
 from slipgym.rendering import HEIGHT, WIDTH, palette
 
@@ -65,12 +65,12 @@ class _Gif:
             )
 
 
-FILM_TYPES: dict[str, tuple[Callable[[Path, int], _Writer], int]] = {".mp4": (_Mp4, 30), ".gif": (_Gif, 25)}
+VIDEO_TYPES: dict[str, tuple[Callable[[Path, int], _Writer], int]] = {".mp4": (_Mp4, 30), ".gif": (_Gif, 25)}
 """File type -> writer and frames per second; a GIF counts time in hundredths of a second."""
 
 
-class Film:
-    """A film that appears at its path when it is complete, or not at all.
+class Video:
+    """A video that appears at its path when it is complete, or not at all.
 
     Use it in a `with` statement; an error inside leaves nothing behind.
 
@@ -85,25 +85,20 @@ class Film:
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self._path = Path(path)
         kind = self._path.suffix.lower()
-        if kind not in FILM_TYPES:
-            raise ValueError(unknown("type of film", kind, FILM_TYPES))
-        self._make, self.rate = FILM_TYPES[kind]
+        if kind not in VIDEO_TYPES:
+            raise ValueError(unknown("type of video", kind, VIDEO_TYPES))
+        self._make, self.rate = VIDEO_TYPES[kind]
 
-    def __enter__(self) -> Film:
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        self._folder = Path(tempfile.mkdtemp(prefix=".partial-", dir=self._path.parent))
-        self._partial = self._folder / self._path.name
-        self._writer = self._make(self._partial, self.rate)
+    def __enter__(self) -> Video:
+        with ExitStack() as stack:
+            self._writer = self._make(stack.enter_context(new_file(self._path)), self.rate)
+            self._stack = stack.pop_all()
         return self
 
     def add(self, picture: np.ndarray) -> None:
-        """Append a picture (HEIGHT, WIDTH, 3) uint8."""
+        """Appends a picture (HEIGHT, WIDTH, 3) uint8."""
         self._writer.add(picture)
 
-    def __exit__(self, kind: Any, *_: object) -> None:
-        try:
-            self._writer.finish()
-            if kind is None and self._partial.exists():
-                os.replace(self._partial, self._path)
-        finally:
-            shutil.rmtree(self._folder, ignore_errors=True)
+    def __exit__(self, *error: Any) -> bool | None:
+        self._stack.callback(self._writer.finish)  # before the file takes its place
+        return self._stack.__exit__(*error)

@@ -1,4 +1,4 @@
-"""Plays episodes before someone's eyes."""
+"""Plays episodes in a window or into a video."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ from tqdm import tqdm
 import policies
 from policies.learned import LearnedPolicy
 from policies.play.screenshot import own_policy
-from policies.play.video import Film
+from policies.play.video import Video
 from policies.registry import Policy
+from policies.stepping import steps
 from slipgym.config import Config
 from slipgym.config.errors import unknown
 from slipgym.envs.slip_env import SlipEnv
@@ -95,7 +96,7 @@ def watch(
     progress: bool = True,
     **keywords: Any,
 ) -> list[Outcome]:
-    """Plays a policy in a window, or into a film.
+    """Plays a policy in a window, or into a video.
 
     Args:
         task: "LinearSlip" or whatever else `slipgym.tasks.find` takes.
@@ -106,7 +107,7 @@ def watch(
         seed: Of the first; the others' follow.
         speed: Seconds of simulation per second of watching.
         options: Of every reset.
-        progress: Whether a film's making shows a progress bar.
+        progress: Whether making a video shows a progress bar.
         **keywords: Of the environment.
 
     Returns:
@@ -124,7 +125,7 @@ def watch(
         raise ValueError(f"episodes = {episodes!r} must be at least 1")
     if policy == KEYBOARD and video is not None:
         raise ValueError(
-            f"policy {KEYBOARD!r} needs a window; valid for a film: {', '.join(policies.names())}"
+            f"policy {KEYBOARD!r} needs a window; valid for a video: {', '.join(policies.names())}"
         )
     outcomes = []
     with ExitStack() as stack:
@@ -147,11 +148,11 @@ def watch(
                 window.show(picture, WINDOW_RATE)
                 return not window.closed
         else:
-            film = stack.enter_context(Film(video))
-            rate = film.rate
+            recording = stack.enter_context(Video(video))
+            rate = recording.rate
 
             def show(picture: np.ndarray) -> bool:
-                film.add(picture)
+                recording.add(picture)
                 return True
 
         for number in range(episodes):
@@ -174,18 +175,25 @@ def _episode(
 ) -> Outcome | None:
     """One episode, a picture each interval [s] and at the end; None if it was broken off."""
     observation, info = env.reset(seed=seed, options=dict(options or {}))
-    state, over, shown, reward = None, False, 0, 0.0
-    steps = int(env.simulation.episode["steps"][0])
-    with tqdm(total=steps, desc=f"{env.task.name}, seed {seed}", unit="sample", disable=not progress) as bar:
-        while not over:
-            while info["time"] >= shown * interval - 1e-9:
-                shown += 1
-                if not show(env.render()):  # type: ignore[arg-type]
-                    return None
-            action, state = policy.predict(observation, state=state)
-            observation, gained, terminated, truncated, info = env.step(action)
-            reward, over = reward + gained, terminated or truncated
-            bar.update(int(env.simulation.episode["step"][0]) - bar.n)
+    shown, reward, episode = 0, 0.0, env.simulation.episode[0]
+
+    def show_due(time: float) -> bool:
+        nonlocal shown
+        while time >= shown * interval - 1e-9:
+            shown += 1
+            if not show(env.render()):  # type: ignore[arg-type]
+                return False
+        return True
+
+    if not show_due(info["time"]):
+        return None
+    title = f"{env.task.name}, seed {seed}"
+    with tqdm(total=int(episode["steps"]), desc=title, unit="control step", disable=not progress) as bar:
+        for step in steps(env, policy, observation):
+            reward, info = reward + float(step.reward), step.info
+            bar.update(int(episode["step"]) - bar.n)
+            if not step.over and not show_due(info["time"]):
+                return None
     show(env.render())  # type: ignore[arg-type]
     slip = tuple(info["slip"].tolist())
     return Outcome(seed, info["time"], info["is_success"], info["dropped"], slip, reward)

@@ -1,1 +1,5 @@
-"""Reproduction of the paper, leaderboard and studies: what slipgym's own pages are made with."""
+"""What only serves slipgym's own pages: reproduction of the paper, leaderboard, study, comparisons.
+
+Nothing outside this package imports it, except `scripts/`: environments, controllers, training and evaluation
+not need it.
+"""

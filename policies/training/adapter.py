@@ -81,7 +81,7 @@ class SlipVecEnv(VecEnv):
         """
         observations, rewards, terminated, truncated, infos = self.env.step(self._actions)
         dones = terminated | truncated
-        told: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        returned: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         ended = np.flatnonzero(dones)
         if len(ended):
             if self._scenarios is None:
@@ -96,8 +96,8 @@ class SlipVecEnv(VecEnv):
             for i, info, start in zip(ended.tolist(), *splits, strict=True):
                 info["terminal_observation"] = last[i]
                 info["TimeLimit.truncated"] = truncated.item(i)
-                told[i], self.reset_infos[i] = info, start
-        return observations, rewards.astype(np.float32), dones, told
+                returned[i], self.reset_infos[i] = info, start
+        return observations, rewards.astype(np.float32), dones, returned
 
     def close(self) -> None:
         """End the batch's threads; closing twice is harmless."""

@@ -1,8 +1,9 @@
-"""What happens between two updates: evaluations, checkpoints, the end."""
+"""Evaluates a run between updates, writes its checkpoints, and decides when it ends."""
 
 from __future__ import annotations
 
 import time
+import warnings
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -11,16 +12,22 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.vec_env import VecEnv
 from tqdm import tqdm
 
-from policies.training import checkpoint_io as plain
-from policies.training import checkpoints, folder
+from policies.training import checkpoint_io, checkpoints, folder
 from policies.training import model as learners
 from policies.training.config import Training
 from policies.training.curve import Row, best
 from policies.training.evaluate import evaluate
 
+STOPS_UNTRAINED = (
+    "before any learning the policy solves {:.0%} of the evaluation episodes, and stop.success is {}: the "
+    "run may end without having learned anything. A residual policy begins as its controller. Raise "
+    "stop.success, leave it out, or train from scratch (linear_slip_plain, or --set residual=null)"
+)
+"""Warning for a stopping rule that is met at step 0."""
 
-class Keeper(BaseCallback):
-    """Keeps the record of a run.
+
+class TrainingCallback(BaseCallback):
+    """Writes the curve and the checkpoints of a run.
 
     It acts where a collection of samples begins, when the update before it is complete: there the state of
     the run is its learner, its environments, and the record.
@@ -91,7 +98,7 @@ class Keeper(BaseCallback):
         self.curve.append(row)
         if best(self.curve, self._config.evaluation.episodes) is row:
             state = {"row": asdict(row), "learner": learners.get_state(self.model, replay=False)}
-            plain.write(checkpoints.best(self._path), state)
+            checkpoint_io.write(checkpoints.best(self._path), state)
         folder.write_curve(self._path, self.curve)
         for name, value in asdict(row).items():
             self.logger.record(f"evaluation/{name}", value)
@@ -100,6 +107,8 @@ class Keeper(BaseCallback):
         stop = self._config.stop
         last = self.curve[-stop.evaluations :]
         reached = [stop.success is not None and one.success >= stop.success for one in last]
+        if len(self.curve) == 1 and all(reached):
+            warnings.warn(STOPS_UNTRAINED.format(row.success, stop.success), stacklevel=2)
         if len(last) == stop.evaluations and all(reached):
             self.ended = "success"
 

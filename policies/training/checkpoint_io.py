@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
 import zipfile
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -18,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from slipgym import atomic_io
 from slipgym.envs.simulation import SimulationState
 from slipgym.envs.state import EnvState, VectorState
 from slipgym.world.plant import Plant
@@ -58,7 +58,7 @@ def write(path: Path, tree: Any) -> None:
     with zipfile.ZipFile(content, "w") as archive:
         for name, member in {**members, "sums.json": json.dumps(sums).encode()}.items():
             archive.writestr(zipfile.ZipInfo(name), member)
-    replace(path, content.getvalue())
+    atomic_io.write(path, content.getvalue())
 
 
 def read(path: Path) -> Any:
@@ -80,25 +80,6 @@ def read(path: Path) -> Any:
         return _decoded(json.loads(members["tree.json"]), members)
     except _FAULTS as error:
         raise ValueError(f"{path} is damaged: {error}") from error
-
-
-def replace(path: Path, content: bytes) -> None:
-    """Puts a file in place in one step that survives a loss of power.
-
-    Raises:
-        OSError: It cannot be written.
-    """
-    partial = path.with_name(f".{path.name}.partial")
-    with partial.open("wb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())
-    os.replace(partial, path)
-    folder = os.open(path.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
 
 
 def _encoded(value: Any, arrays: list[np.ndarray]) -> Any:

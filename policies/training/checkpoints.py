@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from policies.training import checkpoint_io as plain
+from policies.training import checkpoint_io
 
 _SUFFIX = ".checkpoint"
 
@@ -31,7 +31,7 @@ def save(run: Path, steps: int, state: Any, keep: int) -> None:
     Raises:
         OSError: It cannot be written.
     """
-    plain.write(folder(run) / f"{steps:012d}{_SUFFIX}", state)
+    checkpoint_io.write(folder(run) / f"{steps:012d}{_SUFFIX}", state)
     for path in kept(run)[:-keep]:
         path.unlink()
 
@@ -45,7 +45,7 @@ def last(run: Path) -> Any:
     damage = None
     for path in reversed(kept(run)):
         try:
-            return plain.read(path)
+            return checkpoint_io.read(path)
         except ValueError as error:
             damage = error
     if damage is not None:

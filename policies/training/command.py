@@ -1,4 +1,4 @@
-"""What `scripts/train.py` was asked for."""
+"""Turns the arguments of `scripts/train.py` into what is to be done."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from typing import Any
 
 from policies.training import files, folder
 from policies.training.config import Training
-from slipgym.config.errors import unknown
-from slipgym.tasks import TASKS
+from slipgym.tasks import find
 
 MANY = ("--seeds", "--friction-source", "--set")
 """Options that take several values, as in --seeds 0 1 2."""
@@ -45,9 +44,7 @@ def chosen(name: str | None, options: Mapping[str, Any], texts: Sequence[str]) -
         task = given.get("task")
         if task is None:
             raise ValueError(f"name a configuration ({', '.join(files.names())}, or a YAML file) or a --task")
-        if task not in TASKS:
-            raise ValueError(unknown("task", task, TASKS))
-        name = TASKS[task].key
+        name = find(task).key
     return files.load(name, {**given, **files.assignments(texts)})
 
 
@@ -58,19 +55,19 @@ def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Calla
         path: Its folder.
         others: Further options by name, none of which may be given.
         jobs: Runs at once.
-        ray: See `scatter.run_all`.
+        ray: See `parallel.run_all`.
 
     Raises:
         FileNotFoundError: The folder holds no run.
         ValueError: Another option is given.
     """
-    from policies.training import run_set as study
+    from policies.training import run_set
 
     for name, value in others.items():
         if value:
             raise ValueError(f"--resume goes on as the run was begun: leave out {name}")
     folder.runs(path)
-    return partial(study.train_all, path, jobs, ray)
+    return partial(run_set.train_all, path, jobs, ray)
 
 
 def begun(
@@ -91,20 +88,18 @@ def begun(
         trials: Runs of a sweep; 0: no sweep.
         output: Folder that the new one goes to.
         jobs: Runs at once.
-        ray: See `scatter.run_all`.
+        ray: See `parallel.run_all`.
 
     Raises:
         ModuleNotFoundError: Ray is asked for and not installed.
         ValueError: A seed or source is wrong, or a sweep has several.
     """
-    from policies.training import parallel as scatter
-    from policies.training import run_set as study
-    from policies.training import sweep
+    from policies.training import parallel, run_set, sweep
 
-    scatter.check(ray)
+    parallel.check(ray)
     if not trials:
-        path = study.begin(config, seeds or [0], sources, output)
-        return path, partial(study.train_all, path, jobs, ray)
+        path = run_set.begin(config, seeds or [0], sources, output)
+        return path, partial(run_set.train_all, path, jobs, ray)
     if len(seeds) > 1 or len(sources) > 1:
         raise ValueError("a sweep takes one seed and one friction source")
     for source in sources:

@@ -18,16 +18,22 @@ from slipgym.config.errors import unknown
 from slipgym.envs.actions import ACTION_MODES
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR, FRICTION_SOURCES
 from slipgym.registration import ENVIRONMENTS
-from slipgym.tasks import TASKS
+from slipgym.tasks import TASKS, find
 
 Algorithm: TypeAlias = Literal["ppo", "recurrent_ppo", "sac", "tqc"]
-TRAINABLE = tuple(name for name in TASKS if f"slipgym/{name}-v0" in ENVIRONMENTS)
+
+
+def trainable() -> list[str]:
+    """Names of the tasks that policies can be trained for: those that come with slipgym."""
+    return [task.name for task in TASKS.values() if task.id in ENVIRONMENTS]
 
 
 class Environment(Frozen):
     """Keyword arguments of the environment; see its page in docs/environments/."""
 
-    friction_source: str = Field(default="estimated", description="What it tells about friction [-]")
+    friction_source: str = Field(
+        default="estimated", description="Friction information of the observation [-]"
+    )
     estimator: str | Mapping[str, Any] = Field(default=DEFAULT_ESTIMATOR, description="Its estimator [-]")
     contact: Literal["ellipsoid", "distributed"] = Field(
         default="ellipsoid", description="Friction model [-]"
@@ -155,9 +161,10 @@ class Training(Frozen):
     @field_validator("task")
     @classmethod
     def _task_exists(cls, name: str) -> str:
-        if name not in TRAINABLE:
-            raise ValueError(unknown("task", name, TRAINABLE))
-        return name
+        task = find(name)
+        if task.id not in ENVIRONMENTS:
+            raise ValueError(unknown("task", name, trainable()))
+        return task.name
 
     @model_validator(mode="after")
     def _can_change_the_controller(self) -> Self:
@@ -166,7 +173,7 @@ class Training(Frozen):
         if self.environment.observation_mode != "flat":
             raise ValueError("residual needs observation_mode 'flat', which its controller reads")
         controller = policies.make(self.residual.controller, **self.residual.parameters)
-        needs, has = policies.modes(controller)["action_mode"], TASKS[self.task].action_mode
+        needs, has = policies.modes(controller)["action_mode"], find(self.task).action_mode
         if needs != (self.environment.action_mode or has):
             raise ValueError(f"residual: {self.residual.controller} needs action_mode {needs!r}")
         if getattr(controller, "task", None) not in (None, self.task):
@@ -176,7 +183,7 @@ class Training(Frozen):
     @model_validator(mode="after")
     def _options_and_shaping_exist(self) -> Self:
         for options in self.combinations():
-            TASKS[self.task].options.parse(options)
+            find(self.task).options.parse(options)
         _ = self.shaped
         return self
 

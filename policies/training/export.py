@@ -1,4 +1,4 @@
-"""The hand-over of a trained policy. Nothing else knows what a policy file looks like."""
+"""Writes the policy of a finished training run."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 from policies.learned import export
 from policies.training import model as learners
 from policies.training.config import Training
+from slipgym.tasks import find
 
 POLICY = "policy"
 """Name of the policy in the run's folder."""
@@ -36,5 +37,5 @@ def write(
     envs = model.get_vec_normalize_env()
     learners.set_normalisation(envs, dict(normalisation))
     arguments = config.environment.model_dump(mode="json")
-    where = f"slipgym/{config.task}-v0"
-    return export.save(model, path, where, arguments, envs, command, [seed], residual=config.residual)
+    env_id = find(config.task).id
+    return export.save(model, path, env_id, arguments, envs, command, [seed], residual=config.residual)

@@ -1,43 +1,40 @@
-"""Training configurations as YAML files, with what the command line says instead."""
+"""Reads training configurations from YAML files, and applies what a command line sets."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 from typing import Any
 
 import yaml
-from pydantic import ValidationError
 
+from policies.task_names import file_name
 from policies.training.config import Training
-from slipgym.config import files
-from slipgym.config.errors import explain, unknown
+from slipgym.config import files, yaml_model
+
+_FOLDER = "training"
 
 
 def names() -> list[str]:
     """Names of the training configurations that come with slipgym."""
-    return sorted(path.stem for path in (files.folder() / "training").glob("*.yaml"))
+    return yaml_model.names(_FOLDER)
 
 
 def load(which: str | os.PathLike[str], overrides: Mapping[str, Any] | None = None) -> Training:
     """Reads a training configuration.
 
     Args:
-        which: One of `names()`, or the path of a YAML file.
-        overrides: What to take instead of the file's values, by dotted key ("ppo.gamma").
+        which: One of `names()`, or the path of a YAML file. A task's own configuration also goes by the
+            task's other names, "LinearSlip" for example.
+        overrides: Values by dotted key ("ppo.gamma") that replace the file's.
 
     Raises:
         FileNotFoundError: It looks like a path, but there is no such file.
         ValueError: The name is unknown, or a key or value is wrong; the message names the file or option,
             the key, and what is valid.
     """
-    path = Path(which)
-    if path.suffix not in (".yaml", ".yml"):
-        if str(which) not in names():
-            raise ValueError(unknown("training configuration", str(which), names()))
-        path = files.folder() / "training" / f"{which}.yaml"
-    return changed(checked(files.read(path), path.name), overrides or {})
+    found = yaml_model.read_model(file_name(which, _FOLDER), Training, _FOLDER, "training configuration")
+    return changed(found, overrides or {})
 
 
 def changed(training: Training, overrides: Mapping[str, Any], source: str = "command line") -> Training:
@@ -88,10 +85,7 @@ def checked(values: Mapping[str, Any], source: str) -> Training:
     Raises:
         ValueError: A key or value is wrong; one line per fault.
     """
-    try:
-        return Training.model_validate(dict(values))
-    except ValidationError as error:
-        raise explain(error, lambda _: source, Training) from error
+    return yaml_model.validate(values, Training, source)
 
 
 def text(training: Training) -> str:

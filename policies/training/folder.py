@@ -12,12 +12,12 @@ from typing import Any
 
 import yaml
 
-from policies.evaluation.folder import versions
-from policies.training import checkpoint_io as plain
 from policies.training import checkpoints, seeds
 from policies.training.config import Training
 from policies.training.curve import Row
 from policies.training.files import checked
+from policies.versions import write_versions
+from slipgym import atomic_io
 from slipgym.config import files
 
 _ORDER, _RESULT, _CURVE = "run.yaml", "result.json", "curve.csv"
@@ -33,9 +33,9 @@ def begin(folder: Path, config: Training, seed: int) -> None:
     seeds.training(seed)
     folder.mkdir(parents=True)
     checkpoints.folder(folder).mkdir()
-    plain.replace(folder / "versions.json", json.dumps(versions(), indent=2).encode())
+    write_versions(folder)
     order = {"seed": seed, "training": config.model_dump(mode="json")}
-    plain.replace(folder / _ORDER, yaml.safe_dump(order, sort_keys=False, allow_unicode=True).encode())
+    atomic_io.write(folder / _ORDER, yaml.safe_dump(order, sort_keys=False, allow_unicode=True).encode())
 
 
 def order(folder: Path) -> tuple[Training, int]:
@@ -75,7 +75,7 @@ def write_curve(folder: Path, curve: Sequence[Row]) -> None:
     writer = csv.DictWriter(text, [field.name for field in fields(Row)], lineterminator="\n")
     writer.writeheader()
     writer.writerows(asdict(row) for row in curve)
-    plain.replace(folder / _CURVE, text.getvalue().encode())
+    atomic_io.write(folder / _CURVE, text.getvalue().encode())
 
 
 def read_curve(folder: Path) -> list[Row]:
@@ -92,7 +92,7 @@ def read_curve(folder: Path) -> list[Row]:
 
 def write_result(folder: Path, result: dict[str, Any]) -> None:
     """Writes result.json, which says that the run is over."""
-    plain.replace(folder / _RESULT, (json.dumps(result, indent=2) + "\n").encode())
+    atomic_io.write(folder / _RESULT, (json.dumps(result, indent=2) + "\n").encode())
 
 
 def result(folder: Path) -> dict[str, Any] | None:

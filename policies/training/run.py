@@ -9,12 +9,11 @@ from stable_baselines3.common.logger import Logger
 from tqdm import tqdm
 
 from policies.evaluation.plots.style import STYLE, styled
-from policies.training import checkpoint_io as plain
-from policies.training import checkpoints, curve, export, folder, seeds, vector
+from policies.training import checkpoint_io, checkpoints, curve, export, folder, seeds, vector
 from policies.training import model as learners
-from policies.training.callback import Keeper
+from policies.training.callback import TrainingCallback
 from policies.training.config import Training
-from policies.training.tensorboard_writer import Board
+from policies.training.tensorboard_writer import TensorboardWriter
 
 _COMMAND = "python scripts/train.py --resume {}"
 """What a policy's file says of its origin: the run's folder holds the rest."""
@@ -48,35 +47,37 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
         model = learners.make(config, learners.normalised(config, training), first)
         state = checkpoints.last(path)
         steps = state["learner"]["counters"]["num_timesteps"] if state else 0
-        board = Board(path / "tensorboard", steps)
-        model.set_logger(Logger(None, [board]))
+        writer = TensorboardWriter(path / "tensorboard", steps)
+        model.set_logger(Logger(None, [writer]))
         with tqdm(
             total=config.budget, initial=steps, desc=path.name, position=position, disable=not progress
         ) as bar:
-            keeper = Keeper(config, path, held_out, bar)
+            callback = TrainingCallback(config, path, held_out, bar)
             if state:
                 learners.set_state(model, state["learner"])
-                keeper.set_state(state["record"])
-            if not keeper.ended:
-                model.learn(config.budget - steps, keeper, reset_num_timesteps=state is None)
-        board.close()
-        return _finish(path, config, seed, model, keeper)
+                callback.set_state(state["record"])
+            if not callback.ended:
+                model.learn(config.budget - steps, callback, reset_num_timesteps=state is None)
+        writer.close()
+        return _finish(path, config, seed, model, callback)
     finally:
         training.close()
         held_out.close()
 
 
-def _finish(path: Path, config: Training, seed: int, model: Any, keeper: Keeper) -> dict[str, Any]:
+def _finish(
+    path: Path, config: Training, seed: int, model: Any, callback: TrainingCallback
+) -> dict[str, Any]:
     """Writes what a run leaves behind; the result last."""
-    best = plain.read(checkpoints.best(path))
+    best = checkpoint_io.read(checkpoints.best(path))
     learners.set_parameters(model, best["learner"])
     export.write(model, best["learner"]["normalisation"], config, path, seed, _COMMAND.format(path.name))
     with styled():
-        curve.plot({path.name: [keeper.curve]}).savefig(path / "curve.png", dpi=STYLE.dpi)
+        curve.plot({path.name: [callback.curve]}).savefig(path / "curve.png", dpi=STYLE.dpi)
     result = {
-        "ended": keeper.ended,
-        "steps": keeper.curve[-1].steps,
-        "seconds": keeper.seconds,
+        "ended": callback.ended,
+        "steps": callback.curve[-1].steps,
+        "seconds": callback.seconds,
         "best": best["row"],
     }
     folder.write_result(path, result)

@@ -7,13 +7,12 @@ from pathlib import Path
 
 from policies.evaluation.folder import stamped
 from policies.evaluation.plots.style import STYLE, styled
-from policies.training import curve, folder
-from policies.training import parallel as scatter
+from policies.training import curve, folder, parallel
 from policies.training import seeds as numbers
 from policies.training.config import Training
 from policies.training.files import changed
 from policies.training.run import train
-from slipgym.tasks import TASKS
+from slipgym.tasks import find
 
 
 def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output: Path) -> Path:
@@ -34,7 +33,7 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
     conditions = [
         changed(config, {"environment.friction_source": source}, "--friction-source") for source in given
     ]
-    path = stamped(output, f"{TASKS[config.task].key}__{config.algorithm}")
+    path = stamped(output, f"{find(config.task).key}__{config.algorithm}")
     for condition in conditions:
         for seed in seeds:
             folder.begin(path / f"{condition.environment.friction_source}__{seed}", condition, seed)
@@ -47,7 +46,7 @@ def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -
     Args:
         path: The study's folder, or that of one run.
         jobs: Runs at once; -1 for one per core.
-        ray: See `scatter.run_all`.
+        ray: See `parallel.run_all`.
         progress: Whether to show progress bars.
 
     Returns:
@@ -58,13 +57,13 @@ def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -
         ModuleNotFoundError: Ray is asked for and not installed.
     """
     runs = folder.runs(path)
-    results = scatter.run_all(train, [(run, progress, k) for k, run in enumerate(runs)], jobs, ray)
+    results = parallel.run_all(train, [(run, progress, k) for k, run in enumerate(runs)], jobs, ray)
     if len(runs) > 1:
         _draw(path, runs)
     lines = [
         f"  {run.name}: solved {result['best']['success']:.0%} of the held-out episodes at step "
         f"{result['best']['steps']}; ended by {result['ended']} at step {result['steps']} "
-        f"after {result['seconds']:.0f} s"
+        f"after {result['seconds']:.0f} s" + ("" if result["steps"] else "; nothing was learned")
         for run, result in zip(runs, results, strict=True)
     ]
     return "\n".join([f"Look at {path}", *lines])

@@ -15,7 +15,7 @@ from policies.learned import files as policy_files
 from policies.learned.pretrained import FOLDER
 from policies.training import curve, export, files, folder
 from policies.training.curve import Row
-from slipgym.tasks import TASKS
+from slipgym.tasks import find
 
 CURVES = Path("docs") / "learned"
 """Where the curves of all seeds go, beside a picture of them."""
@@ -27,7 +27,7 @@ class Run(NamedTuple):
     key: str
     """Its task's key, which is its configuration's name, too."""
     source: str
-    """What it was told about friction."""
+    """Its friction information in training."""
     seed: int
     curve: list[Row]
     episodes: int
@@ -46,14 +46,14 @@ class Run(NamedTuple):
         return curve.best(self.curve, self.episodes)
 
 
-def ship(studies: Sequence[Path], shelf: Path = FOLDER, pages: Path = CURVES) -> list[Path]:
-    """Puts the best seed of each task and friction source on the shelf, and the curves of all into the pages.
+def ship(studies: Sequence[Path], target: Path = FOLDER, pages: Path = CURVES) -> list[Path]:
+    """Adds the best seed of each task and friction source to the pretrained ones, all curves to the pages.
 
     Policies and curves of the same tasks and sources give way.
 
     Args:
         studies: Folders of finished studies or runs.
-        shelf: Folder for the policies.
+        target: Folder for the policies.
         pages: Folder for the curves, a table and a picture for each task.
 
     Returns:
@@ -69,7 +69,7 @@ def ship(studies: Sequence[Path], shelf: Path = FOLDER, pages: Path = CURVES) ->
     for key in sorted({run.key for run in found}):
         runs = sorted(run for run in found if run.key == key)
         conditions = {run.source: [other for other in runs if other.source == run.source] for run in runs}
-        shipped += [_put(_best(same), shelf) for same in conditions.values()]
+        shipped += [_put(_best(same), target) for same in conditions.values()]
         (pages / f"{key}.csv").write_text(_table(runs), encoding="utf-8")
         with styled():
             curves = {source: [run.curve for run in same] for source, same in conditions.items()}
@@ -87,18 +87,18 @@ def _finished(path: Path) -> Run:
     config, seed = folder.order(path)
     if folder.result(path) is None:
         raise ValueError(f"{path} is not finished")
-    key, source = TASKS[config.task].key, config.environment.friction_source
+    key, source = find(config.task).key, config.environment.friction_source
     if config != files.load(key, {"environment.friction_source": source}):
         raise ValueError(f"{path} was not trained as configs/training/{key}.yaml says")
     return Run(key, source, seed, folder.read_curve(path), config.evaluation.episodes, path / export.POLICY)
 
 
-def _put(run: Run, shelf: Path) -> Path:
+def _put(run: Run, target: Path) -> Path:
     """The policy without what only training needs."""
     description, weights = policy_files.read(run.policy)
     values = description.model_dump(mode="json", exclude={"format", "files"})
     values["origin"] |= {"command": run.command, "steps": run.best.steps, "critic": None}
-    path = shelf / f"{run.key}_{run.source}"
+    path = target / f"{run.key}_{run.source}"
     if path.exists():
         shutil.rmtree(path)
     return policy_files.write(path, values, weights)

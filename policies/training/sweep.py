@@ -12,13 +12,12 @@ from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
 
 from policies.evaluation.folder import stamped
-from policies.training import checkpoint_io as plain
-from policies.training import files, folder
-from policies.training import parallel as scatter
+from policies.training import files, folder, parallel
 from policies.training.config import Dimension, Training
 from policies.training.curve import Row
 from policies.training.run import train
-from slipgym.tasks import TASKS
+from slipgym import atomic_io
+from slipgym.tasks import find
 
 _NAME, _JOURNAL = "sweep", "optuna.journal"
 
@@ -31,7 +30,7 @@ def begin(config: Training, output: Path) -> Path:
     """
     if not config.sweep:
         raise ValueError("nothing to try: the configuration has no key sweep, a mapping of dotted keys")
-    path = stamped(output, f"{TASKS[config.task].key}__{config.algorithm}__sweep")
+    path = stamped(output, f"{find(config.task).key}__{config.algorithm}__sweep")
     path.mkdir(parents=True)
     optuna.create_study(storage=_storage(path), study_name=_NAME, direction="maximize")
     return path
@@ -54,17 +53,17 @@ def sweep(
         trials: How many.
         seed: Of all runs, and of the search.
         jobs: Runs at once; with more than one, what is tried depends on which ends first.
-        ray: See `scatter.run_all`.
+        ray: See `parallel.run_all`.
         progress: Whether to show progress bars.
 
     Returns:
         What came out, as text.
     """
     items = [(path, config, seed, k, progress) for k in range(trials)]
-    scatter.run_all(trial, items, jobs, ray)
+    parallel.run_all(trial, items, jobs, ray)
     study = optuna.load_study(storage=_storage(path), study_name=_NAME)
     found = files.changed(config, _values(study.best_params))
-    plain.replace(path / "best.yaml", files.text(found).encode())
+    atomic_io.write(path / "best.yaml", files.text(found).encode())
     return f"Look at {path}\n  best, {study.best_value:.3f}: {_values(study.best_params)}"
 
 

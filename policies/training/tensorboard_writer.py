@@ -9,7 +9,7 @@ from stable_baselines3.common.logger import KVWriter
 from torch.utils.tensorboard import SummaryWriter
 
 
-class Board(KVWriter):
+class TensorboardWriter(KVWriter):
     """Writes a learner's figures for TensorBoard.
 
     Args:

@@ -14,6 +14,7 @@ from policies.training.adapter import SlipVecEnv, make_vec_env
 from policies.training.config import Training
 from policies.training.residual import ResidualVecEnv
 from policies.training.success_bonus import BonusVecEnv
+from slipgym.tasks import find
 
 
 class Scenario(gym.Wrapper):
@@ -50,7 +51,9 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
     scenarios = [combinations[i % len(combinations)] for i in range(count)]
     if config.engine == "planar":
         varied = scenarios if config.vary else None
-        made = make_vec_env(_id(config), count, seed, config.engine_threads, scenarios=varied, **keywords)
+        made = make_vec_env(
+            _id(config.task), count, seed, config.engine_threads, scenarios=varied, **keywords
+        )
     else:
         made = scalar(config.task, count, combinations, config.processes, **keywords)
         made.seed(seed)
@@ -74,9 +77,10 @@ def scalar(
         processes: Whether each has its own process.
         **keywords: Of the environments.
     """
+    env_id = _id(task)
 
     def one(options: Mapping[str, Any]) -> gym.Env:
-        env = gym.make(f"slipgym:slipgym/{task}-v0", disable_env_checker=True, **keywords)
+        env = gym.make(env_id, disable_env_checker=True, **keywords)
         return Scenario(env.unwrapped, options)
 
     makers = [partial(one, combinations[i % len(combinations)]) for i in range(count)]
@@ -118,5 +122,6 @@ def _is_batch(envs: VecMonitor) -> bool:
     return isinstance(envs.venv, SlipVecEnv)
 
 
-def _id(config: Training) -> str:
-    return f"slipgym:slipgym/{config.task}-v0"
+def _id(task: str) -> str:
+    """The id of a task's environment, with the module that registers it."""
+    return f"slipgym:{find(task).id}"

@@ -16,7 +16,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import slipgym
-from policies.play import own_policy, portrait
+from policies.play import own_policy, take_screenshot
 from slipgym.config.task import InitialForce, TaskConfig
 from slipgym.envs import HoldEnv
 from slipgym.registration import ENVIRONMENTS, TASK_MODULES
@@ -133,7 +133,7 @@ def test_the_settings_go_when_the_task_goes(own_task):
 
 def test_the_picture_shows_its_motion(own_task):
     assert own_policy("SlideToLine") == "constant_force"
-    assert portrait(ID, "wood").shape == (480, 720, 3)
+    assert take_screenshot(ID, "wood").shape == (480, 720, 3)
 
 
 @pytest.mark.parametrize(

@@ -90,12 +90,25 @@ def test_a_dataset_is_collected(tmp_path):
     assert printed.endswith("every episode repeats itself bit for bit\n")
 
 
+def test_the_first_policy_learns_something():
+    """A residual policy begins as its controller, which meets the page's stopping rule at step 0."""
+    pytest.importorskip("stable_baselines3")
+    from policies.training import files
+
+    page = (ROOT / "docs" / "first_policy.md").read_text(encoding="utf-8")
+    (name,) = re.findall(r"^    python scripts/train\.py (\w+) --set stop", page, re.MULTILINE)
+    assert files.load(name).residual is None
+    (solved,) = re.findall(r"^\| solved \[%\] \|(.*)\|$", page, re.MULTILINE)
+    first, *_, last = (int(figure) for figure in solved.split("|"))
+    assert first < 10 < 90 <= last
+
+
 @pytest.mark.slow
 def test_the_first_policy(tmp_path):
     """Its commands, with a small budget."""
     pytest.importorskip("stable_baselines3")
     page = (ROOT / "docs" / "first_policy.md").read_text(encoding="utf-8")
-    (train,) = re.findall(r"^    python scripts/(train\.py linear_slip .*)$", page, re.MULTILINE)
+    (train,) = re.findall(r"^    python scripts/(train\.py \w+ --set stop.*)$", page, re.MULTILINE)
     small = ["budget=64", "ppo.n_steps=2", "ppo.batch_size=16", "evaluation.episodes=2"]
     called([sys.executable, ROOT / "scripts" / train.split()[0], *train.split()[1:], *small], tmp_path)
     (policy,) = tmp_path.glob("runs/*/estimated__0/policy")

@@ -1,6 +1,7 @@
 import pytest
 
-from policies.evaluation.files import checked
+from policies.evaluation.experiment import Experiment
+from slipgym.config.yaml_model import validate
 
 
 @pytest.fixture
@@ -18,6 +19,6 @@ def small():
             "policies": [{"name": "constant_force", "parameters": {"force": 2.0}}],
             "friction": [{"source": "estimated"}, {"source": "true"}],
         }
-        return checked({**values, **changes}, "test")
+        return validate({**values, **changes}, Experiment, "test")
 
     return make

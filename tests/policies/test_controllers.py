@@ -5,7 +5,7 @@ import pytest
 
 import policies
 from policies.controllers.base import Columns, ObservationIndex
-from policies.controllers.sensing import Caution
+from policies.controllers.sensing import ConservativePrior
 from slipgym.config import load
 from slipgym.envs import HingeEnv, HoldEnv, LinearSlipEnv, PlanarSlipEnv, RotationalSlipEnv
 from slipgym.tasks import find
@@ -53,9 +53,9 @@ def test_hold_holds(source):
 
 
 def test_a_controller_that_trusts_the_start_values_drops():
-    """Why caution is needed: mu_c 1.3 asks for a third of the force that holds."""
+    """Why the prior is needed: mu_c 1.3 asks for a third of the force that holds."""
     env = HoldEnv(friction_source="estimated", material="wood")
-    trusting = policies.make("hold", caution=Caution(mu_c=1.3, r=0.02), reserve=0.0, k_v=0.0)
+    trusting = policies.make("hold", prior=ConservativePrior(mu_c=1.3, r=0.02), reserve=0.0, k_v=0.0)
     info, largest = play(env, trusting, 0, object_mass=0.4, shake_amplitude=0.0, duration=2.0)
     env.close()
     assert info["dropped"] or largest > 2e-3
@@ -90,17 +90,17 @@ def observation(task="Hold", **values):
 
 
 @pytest.mark.parametrize(("support", "expected"), [(0.0, 0.3), (0.25, 0.35), (0.5, 0.4), (1.0, 0.4)])
-def test_caution_blends_with_support(support, expected):
+def test_the_prior_blends_with_confidence(support, expected):
     columns = observation(mu_c=0.4, confidence_mu_c=support)
-    assert Caution(mu_c=0.3, support=0.5).blend(columns, "mu_c") == pytest.approx(expected)
+    assert ConservativePrior(mu_c=0.3, confidence=0.5).blend(columns, "mu_c") == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(
-    "bad", [{"mu_c": 0.0}, {"mu_c": np.nan}, {"r": -1.0}, {"support": 0.0}, {"support": 1.5}]
+    "bad", [{"mu_c": 0.0}, {"mu_c": np.nan}, {"r": -1.0}, {"confidence": 0.0}, {"confidence": 1.5}]
 )
-def test_caution_refuses_bad_values(bad):
+def test_the_prior_refuses_bad_values(bad):
     with pytest.raises(ValueError, match=next(iter(bad))):
-        Caution(**bad)
+        ConservativePrior(**bad)
 
 
 def test_hold_force_is_load_and_reserve_over_friction():
@@ -189,7 +189,7 @@ def test_hinge_lets_go_with_the_tilt_while_friction_is_unknown(support, tilt, k)
     columns = observation("Hinge", f_y_1=load, f_y_2=load, **seen)
     policy = policies.make("hinge")
     force, _ = policy.control(columns, policy.initial_state(1))
-    assert force == pytest.approx(k * load / (mu_c if support else policy.caution.mu_c))
+    assert force == pytest.approx(k * load / (mu_c if support else policy.prior.mu_c))
 
 
 @pytest.mark.parametrize("source", ["estimated", "true"])

@@ -19,14 +19,14 @@ def test_linear_slip_has_160_trials_for_each_friction_choice():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"task": "LinearSlop"}, r"task: unknown task 'LinearSlop'.*LinearSlip"),
+        ({"task": "LinearSlop"}, r"task: unknown task 'LinearSlop'.*linear_slip"),
         ({"trials": 0}, r"trials = 0: .*1"),
         ({"materials": ["wod"]}, r"unknown material 'wod'.*wood"),
         ({"materials": []}, r"materials"),
         ({"policies": [{"name": "linear_slap"}]}, r"policies\.0: unknown policy.*linear_slip"),
         ({"policies": [{"name": "hold"}, {"name": "hold"}]}, r"distinct labels"),
         ({"friction": [{"source": "guessed"}]}, r"friction\.0: unknown friction source.*nominal"),
-        ({"friction": [{"source": True}]}, r"friction\.0\.source = True: .*string"),
+        ({"friction": [{"source": True}]}, r"friction\.0\.source = True: must be a text"),
         ({"friction": [{"source": "true", "estimator": {"name": "kf"}}]}, r"unknown estimator 'kf'.*rls"),
         ({"friction": [{"source": "true", "estimator": {"name": "rls", "p": 1}}]}, r"unknown parameter"),
         ({"friction": [{"source": "true", "lable": "x"}]}, r"unknown key 'lable'; did you mean 'label'"),

@@ -11,7 +11,7 @@ from estimator.estimate import ESTIMATE
 from policies.research.leaderboard import run_leaderboard
 from policies.research.leaderboard.ranking import ranked, winners
 from policies.research.leaderboard.replay import replay
-from policies.research.leaderboard.run import entrants, judge
+from policies.research.leaderboard.run import entrants, evaluate
 from policies.research.leaderboard.scenario import FIELDS, Run, Scenario, ends
 from policies.research.leaderboard.scenarios import GROUPS, MU_C, QUICK, R, closed_loop, mixed, patch
 from policies.research.leaderboard.score import score
@@ -123,9 +123,9 @@ def test_every_group_gives_scenarios_that_judge_something():
     assert len({(scenario.group, scenario.name) for scenario in scenarios}) == len(scenarios)
     for scenario in scenarios:
         for run in scenario.runs:
-            assert run.judged
-            assert set(run.judged) <= set(FIELDS)
-            assert all(at.any() for at in run.judged.values())
+            assert run.evaluated
+            assert set(run.evaluated) <= set(FIELDS)
+            assert all(at.any() for at in run.evaluated.values())
         if scenario.starts:
             assert {values[0] for values in scenario.starts.values()} == {R, MU_C}
             assert all(len(run.record.wrenches) == 10 for run in scenario.runs)
@@ -162,11 +162,11 @@ def test_truth_of_a_closed_loop_trial_is_its_own_friction_law(leap):
 def test_stick_slip_tells_the_estimators_apart():
     stick_slip = next(group for group in GROUPS if group.__name__ == "stick_slip")
     scenario = next(stick_slip(replace(QUICK, trials=((0.04, 2.0),))))
-    found = {row["estimator"]: row for row in judge(scenario)}
+    found = {row["estimator"]: row for row in evaluate(scenario)}
     assert found["rls, plain"]["bias_mu_c"] < -30.0
     assert 0.0 < found["rls"]["bias_mu_c"] < 20.0
     assert found["joint"]["error_mu_c"] < 4.0
-    pd.testing.assert_frame_equal(pd.DataFrame(judge(scenario)), pd.DataFrame(found.values()))
+    pd.testing.assert_frame_equal(pd.DataFrame(evaluate(scenario)), pd.DataFrame(found.values()))
 
 
 def test_the_command_writes_what_it_names(tmp_path):

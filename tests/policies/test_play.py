@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from policies.play import Film, own_policy, portrait, watch
+from policies.play import Video, own_policy, take_screenshot, watch
 from policies.play.watch import Keyboard
 from slipgym.config import load
 from slipgym.registration import ENVIRONMENTS
@@ -52,7 +52,7 @@ def test_an_mp4_at_its_speed(tmp_path, speed, frames):
 
 def test_an_error_leaves_no_film(tmp_path):
     def break_off() -> None:
-        with Film(tmp_path / "film.gif") as film:
+        with Video(tmp_path / "film.gif") as film:
             film.add(np.zeros((480, 720, 3), np.uint8))
             raise RuntimeError("midway")
 
@@ -67,7 +67,7 @@ def test_an_error_leaves_no_film(tmp_path):
         ({"task": "Slide"}, "unknown task 'Slide'"),
         ({"policy": "hodl"}, "unknown policy 'hodl'.*hold"),
         ({"policy": "keyboard"}, "needs a window"),
-        ({"video": "film.avi"}, r"unknown type of film '.avi'.*\.gif, \.mp4"),
+        ({"video": "film.avi"}, r"unknown type of video '.avi'.*\.gif, \.mp4"),
         ({"speed": 0.0}, "speed = 0.0"),
         ({"episodes": 0}, "episodes = 0"),
         ({"options": {"distanse": 1}}, "unknown option 'distanse'"),
@@ -121,7 +121,7 @@ def test_closing_the_window_ends_it(keys, monkeypatch):
 
 def test_every_task_has_a_policy_to_show():
     assert own_policy("LinearSlip") == "linear_slip"
-    picture = portrait("slipgym/LinearSlip-v0", "wood")
+    picture = take_screenshot("slipgym/LinearSlip-v0", "wood")
     assert picture.shape == (480, 720, 3)
 
 

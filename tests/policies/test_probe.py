@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from policies.controllers.base import Columns
-from policies.controllers.exploration import Probe
+from policies.controllers.exploration import ActiveExploration
 from policies.controllers.hold import HoldPolicy
 from slipgym.envs import HoldEnv
 
@@ -43,18 +43,18 @@ def test_it_finds_friction_and_holds_on_it(mu_c, mass):
     assert seen.mu_c[-1] == pytest.approx(mu_c, rel=0.05)
     assert 1 <= seen.slips[-1] <= 3
     assert seen.slip[-1] < 2e-4 * seen.slips[-1]
-    assert seen.force[-1] == pytest.approx((0.5 * mass * 9.81 + policy.reserve) / mu_c, rel=0.06)
+    assert seen.force[-1] == pytest.approx((0.5 * mass * 9.81 + policy.gains.reserve) / mu_c, rel=0.06)
 
 
 def test_the_rocking_halves_the_slip():
     """Against a smooth ramp that is as fast; squared, as the reward counts it, at many phases of sampling."""
     squares = []
-    for probe in (Probe(), Probe(low=0.999, high=1.001)):
+    for probe in (ActiveExploration(), ActiveExploration(low=0.999, high=1.001)):
         env = HoldEnv(sensors="ideal", friction_source="estimated")
         slips = []
         for k in range(8):
             mass = 0.2 * 1.02**k
-            slips.append(play(env, HoldPolicy(probe=probe), **CALM, object_mass=mass)[1].slip[-1])
+            slips.append(play(env, HoldPolicy(exploration=probe), **CALM, object_mass=mass)[1].slip[-1])
         env.close()
         squares.append(np.mean(np.square(slips)))
     assert squares[0] < 0.5 * squares[1]
@@ -63,14 +63,17 @@ def test_the_rocking_halves_the_slip():
 @pytest.mark.parametrize("source", ["true", "nominal"])
 def test_told_friction_it_does_not_probe(source):
     env = HoldEnv(friction_source=source)
-    grips = [play(env, HoldPolicy(probe=probe), duration=1.0)[1].force for probe in (Probe(), None)]
+    grips = [
+        play(env, HoldPolicy(exploration=probe), duration=1.0)[1].force
+        for probe in (ActiveExploration(), None)
+    ]
     env.close()
     np.testing.assert_array_equal(*grips)
 
 
 def test_without_a_probe_an_object_at_rest_stays_so():
     env = HoldEnv(friction_source="estimated")
-    _, seen = play(env, HoldPolicy(probe=None), **CALM)
+    _, seen = play(env, HoldPolicy(exploration=None), **CALM)
     env.close()
     assert seen.slip.max() < 1e-6
     assert seen.support.max() == 0.0
@@ -78,14 +81,14 @@ def test_without_a_probe_an_object_at_rest_stays_so():
 
 def test_it_gives_up_where_nothing_is_learnt():
     """Each slip is caught by the largest command; after the last the grip is the cautious one."""
-    policy = HoldPolicy(probe=Probe(slips=2))
+    policy = HoldPolicy(exploration=ActiveExploration(slips=2))
     state, commands = policy.initial_state(1), []
     for k in range(120):
         speed = 0.01 if k % 20 == 19 else 0.0
         command, state = policy.control(columns(policy, f_y=1.0, v_y=speed), state)
         commands.append(command[0])
     assert sum(command == policy.config.gripper.force_max for command in commands) == 2
-    assert commands[-2] == pytest.approx((1.0 + policy.reserve) / policy.caution.mu_c)
+    assert commands[-2] == pytest.approx((1.0 + policy.gains.reserve) / policy.prior.mu_c)
 
 
 def test_what_the_smallest_grip_holds_is_probed_no_further():
@@ -95,7 +98,7 @@ def test_what_the_smallest_grip_holds_is_probed_no_further():
     env.close()
     assert seen.slip.max() < 1e-6
     assert seen.force.min() < 0.7
-    assert seen.force[-1] == pytest.approx((0.05 * 9.81 + policy.reserve) / policy.caution.mu_c, rel=0.06)
+    assert seen.force[-1] == pytest.approx((0.05 * 9.81 + policy.gains.reserve) / policy.prior.mu_c, rel=0.06)
 
 
 def columns(policy, **of_both):
@@ -139,11 +142,11 @@ def test_the_probe_saves_most_of_the_force_that_the_truth_saves():
     grips = {}
     for name, source, probe in (
         ("none", "estimated", None),
-        ("probe", "estimated", Probe()),
-        ("true", "true", Probe()),
+        ("probe", "estimated", ActiveExploration()),
+        ("true", "true", ActiveExploration()),
     ):
         env = HoldEnv(friction_source=source, randomization="train")
-        played = [play(env, HoldPolicy(probe=probe), seed, duration=2.0) for seed in range(6)]
+        played = [play(env, HoldPolicy(exploration=probe), seed, duration=2.0) for seed in range(6)]
         env.close()
         assert all(info["is_success"] for info, _ in played)
         grips[name] = np.mean([seen.force for _, seen in played])
@@ -156,4 +159,4 @@ def test_the_probe_saves_most_of_the_force_that_the_truth_saves():
 )
 def test_bad_values_are_named(bad):
     with pytest.raises(ValueError, match=next(iter(bad))):
-        Probe(**bad)
+        ActiveExploration(**bad)

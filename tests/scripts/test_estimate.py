@@ -88,14 +88,14 @@ def test_from_an_episode_to_estimates(tmp_path):
 
 
 def test_an_error_while_writing_leaves_nothing(tmp_path, monkeypatch):
-    from policies.evaluation.folder import filled_in_place
+    from slipgym.atomic_io import new_folder
 
     def broken(self, *arguments, **keywords):
         raise OSError("disk full")
 
     result = records.estimate(records.load(SHIPPED))
     monkeypatch.setattr(pd.DataFrame, "to_csv", broken)
-    with pytest.raises(OSError, match="disk full"), filled_in_place(tmp_path / "run") as folder:
+    with pytest.raises(OSError, match="disk full"), new_folder(tmp_path / "run") as folder:
         records.write(result, folder)
     assert list(tmp_path.iterdir()) == []
 

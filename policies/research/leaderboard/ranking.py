@@ -8,7 +8,7 @@ import pandas as pd
 from policies.evaluation.frames import distinct, groups, values, where
 from policies.research.leaderboard.scenario import FIELDS
 
-FLOOR = 0.1  # [%]; smaller errors are not told apart
+FLOOR = 0.1  # [%]; smaller errors are not distinguished
 
 
 def by_group(table: pd.DataFrame) -> pd.DataFrame:
@@ -18,7 +18,7 @@ def by_group(table: pd.DataFrame) -> pd.DataFrame:
         table: A row per scenario and estimator, with `group`, `estimator` and `error_...`.
 
     Returns:
-        Columns `group`, `estimator`, `error_...`; NaN where a group does not judge a quantity.
+        Columns `group`, `estimator`, `error_...`; NaN where a group does not evaluate a quantity.
     """
     rows = []
     for (group, name), scenarios in groups(table, ["group", "estimator"]):

@@ -24,7 +24,7 @@ def replay(
     Args:
         name: Estimator.
         record: m records of n samples.
-        latency: Age of a velocity [samples]; an estimator that asks for it (`velocity_delay`) is told.
+        latency: Age of a velocity [samples]; an estimator that has a `velocity_delay` gets it.
         starts: Parameter -> its value for each record, (m,); such as `r0`.
         **parameters: Other parameters of the estimator.
 

@@ -11,7 +11,7 @@ import pandas as pd
 from tqdm import tqdm
 
 import estimator
-from policies.evaluation.folder import filled_in_place, stamped, write_versions
+from policies.evaluation.folder import stamped
 from policies.evaluation.frames import values
 from policies.evaluation.plots.style import STYLE, styled
 from policies.research.leaderboard.picture import plot_leaderboard
@@ -21,6 +21,8 @@ from policies.research.leaderboard.scenario import FIELDS, Scenario
 from policies.research.leaderboard.scenarios import GROUPS, QUICK, Effort
 from policies.research.leaderboard.score import FIGURES, score
 from policies.research.leaderboard.tables import markdown
+from policies.versions import write_versions
+from slipgym.atomic_io import new_folder
 
 Entrants = dict[str, tuple[str, dict[str, object]]]
 """Label -> name and parameters of an estimator."""
@@ -53,11 +55,11 @@ def run_leaderboard(
         for group in groups:
             for scenario in group(effort):
                 groups.set_postfix_str(f"{scenario.group} {scenario.name}")
-                rows += judge(scenario)
+                rows += evaluate(scenario)
     table = pd.DataFrame(rows)
     ranking, best = ranked(table), winners(table)
     path = stamped(output, "leaderboard")
-    with filled_in_place(path) as folder:
+    with new_folder(path) as folder:
         write_versions(folder)
         table.to_csv(folder / "scenarios.csv", index=False)
         ranking.to_csv(folder / "ranking.csv", index=False)
@@ -67,12 +69,12 @@ def run_leaderboard(
     return path
 
 
-def judge(scenario: Scenario) -> list[dict[str, object]]:
+def evaluate(scenario: Scenario) -> list[dict[str, object]]:
     """A row for each entrant."""
     rows = []
     for label, (name, parameters) in entrants().items():
         made = [
-            replay(name, run.record, scenario.told, scenario.starts, **parameters) for run in scenario.runs
+            replay(name, run.record, scenario.assumed, scenario.starts, **parameters) for run in scenario.runs
         ]
         figures = score(scenario, made)
         rows.append({"group": scenario.group, "scenario": scenario.name, "estimator": label, **figures})

@@ -10,8 +10,8 @@ import numpy as np
 from slipgym.synthetic import Record
 
 FIELDS = ("mu_c", "r", "mu_s")
-Judged = Mapping[str, np.ndarray]
-"""Quantity of `FIELDS` -> samples at which it is judged, (n,) bool; missing: not observable there."""
+Evaluated = Mapping[str, np.ndarray]
+"""Quantity of `FIELDS` -> samples at which it is evaluated, (n,) bool; missing: not observable there."""
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Run:
     """One course, as m records."""
 
     record: Record
-    judged: Judged
+    evaluated: Evaluated
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,8 @@ class Scenario:
     name: str
     """Which case of it."""
     runs: tuple[Run, ...]
-    told: int = 1
-    """Age of a velocity that an estimator is told [samples]."""
+    assumed: int = 1
+    """Age of a velocity that an estimator assumes [samples]."""
     starts: Mapping[str, np.ndarray] = field(default_factory=dict)
     """Start value (`r0`, `mu_c0`) -> one for each of the m records; the first are the truth."""
 

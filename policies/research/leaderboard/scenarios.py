@@ -48,12 +48,12 @@ QUICK = Effort(2, 11, ("wood",), ((0.02, 2.0),), (5.0,), (0.7,), 3)
 def profiles(effort: Effort) -> Iterator[Scenario]:
     """The velocity profile of `scripts/reproduce.py profile`."""
     record = sense(patch(profile(), effort.cells), effort.seeds, effort.seed)
-    judged = {
+    evaluated = {
         "mu_c": ends(record, *(label for label in STEADY if label != "rotational")),
         "r": ends(record, *(label for label in STEADY if not label.startswith("linear"))),
         "mu_s": ends(record, STOP) & after(record, 1.0),
     }
-    yield Scenario("profile", "disc", (Run(record, judged),))
+    yield Scenario("profile", "disc", (Run(record, evaluated),))
 
 
 def stick_slip(effort: Effort) -> Iterator[Scenario]:
@@ -85,7 +85,7 @@ def spin_first(effort: Effort) -> Iterator[Scenario]:
 
 
 def noise(effort: Effort) -> Iterator[Scenario]:
-    """The mixed course with the noise of the forces and the size of a count scaled; nobody is told."""
+    """The mixed course with the noise of the forces and the size of a count scaled, unknown to estimators."""
     trace = patch(mixed(), effort.cells)
     for scale in (0.5, 1.0, 2.0, 4.0):
         force = {name: scale * sd for name, sd in SIGMA.items()}
@@ -103,10 +103,10 @@ def pressure(effort: Effort) -> Iterator[Scenario]:
 
 def latency(effort: Effort) -> Iterator[Scenario]:
     """Stick-slip in wood with another age of the velocity, known to the estimator, and once not known."""
-    for samples, told in ((0, 0), (1, 1), (2, 2), (3, 3), (2, 1)):
-        name = f"{samples}" if told == samples else f"{samples}, told {told}"
+    for samples, assumed in ((0, 0), (1, 1), (2, 2), (3, 3), (2, 1)):
+        name = f"{samples}" if assumed == samples else f"{samples}, told {assumed}"
         runs = tuple(late(trace, samples, effort) for trace in closed_loop("wood", effort.trials))
-        yield Scenario("latency" if told == samples else "wrong latency", name, runs, told)
+        yield Scenario("latency" if assumed == samples else "wrong latency", name, runs, assumed)
 
 
 GROUPS: tuple[Callable[[Effort], Iterator[Scenario]], ...] = (
@@ -133,7 +133,7 @@ def mixed() -> Course:
 
 
 def mixed_judged(record: Record) -> dict[str, np.ndarray]:
-    """Where the mixed course is judged."""
+    """Where estimates of the mixed course are evaluated."""
     stops = ends(record, STOP) & after(record, 1.0)
     return {
         "mu_c": ends(record, "linear", "planar"),
@@ -169,7 +169,7 @@ def closed_loop(material: str, trials: tuple[tuple[float, float], ...]) -> tuple
 
 
 def late(trace: Trace, samples: int, effort: Effort) -> Run:
-    """A closed-loop trial with velocities of an age, judged in slip after the first second."""
+    """A closed-loop trial with velocities of an age, evaluated in slip after the first second."""
     config = {"sensors": {"slip": {"latency_samples": samples}}}
     record = sense(trace, effort.seeds, effort.seed, config=config)
     moving = (record.phase == "slip") & after(record, 1.0)

@@ -19,7 +19,8 @@ def score(scenario: Scenario, estimates: list[np.ndarray]) -> dict[str, float]:
         estimates: ESTIMATE (m, n) for each run.
 
     Returns:
-        For each quantity of `FIELDS`, over all judged samples and records: `bias` (mean relative error) [%],
+        For each quantity of `FIELDS`, over all evaluated samples and records: `bias` (mean relative
+        error) [%],
         `spread` (standard deviation over records) [%], `error` (root mean square relative error) [%],
         `calibration` (share of truths within one stated deviation) [-]; `time` to 5 % [s], the median over
         records from the first slip, infinite if it is never that close for 0.2 s; `lock_ups`: share of start
@@ -29,14 +30,14 @@ def score(scenario: Scenario, estimates: list[np.ndarray]) -> dict[str, float]:
     found: dict[str, float] = {}
     for field in FIELDS:
         pairs = zip(scenario.runs, estimates, strict=True)
-        judged = [(run, made) for run, made in pairs if field in run.judged]
+        evaluated = [(run, made) for run, made in pairs if field in run.evaluated]
         names = [f"{figure}_{field}" for figure in FIGURES]
         found |= dict.fromkeys(names, np.nan)
-        if not judged:
+        if not evaluated:
             continue
-        errors = np.concatenate([relative(run, made, field) for run, made in judged], axis=1)
-        within = np.concatenate([stated(run, made, field) for run, made in judged], axis=1)
-        times = np.concatenate([time_to_close(run, made, field) for run, made in judged])
+        errors = np.concatenate([relative(run, made, field) for run, made in evaluated], axis=1)
+        within = np.concatenate([stated(run, made, field) for run, made in evaluated], axis=1)
+        times = np.concatenate([time_to_close(run, made, field) for run, made in evaluated])
         figures = (
             100.0 * errors.mean(),
             100.0 * np.sqrt(errors.var(axis=0).mean()),
@@ -50,14 +51,14 @@ def score(scenario: Scenario, estimates: list[np.ndarray]) -> dict[str, float]:
 
 
 def relative(run: Run, estimates: np.ndarray, field: str) -> np.ndarray:
-    """Relative errors at the judged samples, (m, k) [-]."""
-    at = run.judged[field]
+    """Relative errors at the evaluated samples, (m, k) [-]."""
+    at = run.evaluated[field]
     return estimates[field][:, at] / getattr(run.record, field)[at] - 1.0
 
 
 def stated(run: Run, estimates: np.ndarray, field: str) -> np.ndarray:
-    """Whether the truth lies within one stated deviation at the judged samples, (m, k)."""
-    at = run.judged[field]
+    """Whether the truth lies within one stated deviation at the evaluated samples, (m, k)."""
+    at = run.evaluated[field]
     return np.abs(estimates[field][:, at] - getattr(run.record, field)[at]) <= estimates[f"sd_{field}"][:, at]
 
 

@@ -7,12 +7,11 @@ sample is still that of slip. In closed loop the load stays and the ratio falls.
 
 from __future__ import annotations
 
-from typing import Any
-
 import gymnasium as gym
 import numpy as np
 
 import policies
+from policies.stepping import steps
 from slipgym.synthetic import Trace
 
 
@@ -40,15 +39,9 @@ def linear_slip_trace(material: str, distance: float, duration: float, seed: int
         disable_env_checker=True,
     )
     controller = policies.make("linear_slip")
-    infos: list[dict[str, Any]] = []
     try:
         observation, first = env.reset(seed=seed, options={"distance": distance, "duration": duration})
-        state, over = None, False
-        while not over:
-            action, state = controller.predict(observation, state=state)
-            observation, _, terminated, truncated, info = env.step(action)
-            infos.append(info)
-            over = terminated or truncated
+        infos = [step.info for step in steps(env, controller, observation)]
     finally:
         env.close()
     t = np.array([info["time"] for info in infos])

@@ -13,7 +13,7 @@ import pandas as pd
 import yaml
 from tqdm import tqdm
 
-from policies.evaluation.folder import filled_in_place, stamped, write_versions
+from policies.evaluation.folder import stamped
 from policies.evaluation.frames import distinct
 from policies.evaluation.plots.style import STYLE, styled
 from policies.research.reproduction.mechanism import summary
@@ -22,6 +22,8 @@ from policies.research.reproduction.rerun import explorations, rows, variants
 from policies.research.reproduction.table_plot import plot_table
 from policies.research.reproduction.tables import markdown, mechanism_markdown, nine_columns
 from policies.research.reproduction.trial_plots import plot_slip, plot_trial
+from policies.versions import write_versions
+from slipgym.atomic_io import new_folder
 from slipgym.config import load
 
 
@@ -80,7 +82,7 @@ def reproduce(
         ]
     )
     path = stamped(output, f"{campaign.name}__{campaign.seed}")
-    with filled_in_place(path) as folder:
+    with new_folder(path) as folder:
         write_origin(campaign, folder)
         trials.to_csv(folder / "trials.csv", index=False)
         write_summaries(campaign.name, trials, records, folder)

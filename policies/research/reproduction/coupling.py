@@ -9,11 +9,13 @@ import numpy as np
 import pandas as pd
 
 import estimator
-from policies.evaluation.folder import filled_in_place, stamped, write_versions
+from policies.evaluation.folder import stamped
 from policies.evaluation.plots.style import STYLE, styled
 from policies.research.reproduction.fixed_point import Slip, slope, slope_closed_form
 from policies.research.reproduction.lock_out import errors
 from policies.research.reproduction.plots import plot_lock_out, plot_map
+from policies.versions import write_versions
+from slipgym.atomic_io import new_folder
 
 GAMMAS = np.linspace(0.05, 0.99, 48)
 RADII = np.geomspace(1e-3, 0.1, 41)  # [m]
@@ -37,7 +39,7 @@ def reproduce_coupling(output: str | os.PathLike[str] = "runs", progress: bool =
         for f_n in FORCES
     }
     path = stamped(output, "coupling")
-    with filled_in_place(path) as folder:
+    with new_folder(path) as folder:
         write_versions(folder)
         slopes().to_csv(folder / "slopes.csv", index=False)
         shares(maps).to_csv(folder / "lock_out.csv", index=False)

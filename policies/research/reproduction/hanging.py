@@ -37,7 +37,7 @@ def wrist_velocity(episode, world):
 
 
 def success(episode, world):
-    """Nothing is judged here."""
+    """Nothing is evaluated here."""
     return False
 
 

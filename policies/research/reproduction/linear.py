@@ -13,6 +13,7 @@ from policies.evaluation.plan import seed as seed_of
 from policies.research.reproduction.campaign import Campaign, reproduce
 from policies.research.reproduction.published import TABLES
 from policies.research.reproduction.records import Record, RecordKeeper
+from policies.stepping import steps
 from slipgym.config import Overrides
 from slipgym.envs import LinearSlipEnv
 
@@ -81,13 +82,9 @@ def record_linear(
     try:
         options = {name: scenario[name] for name in ("distance", "duration")}
         observation, _ = env.reset(seed=scenario["seed"], options=options)
-        keeper = RecordKeeper(env.simulation)
-        state, over = None, False
-        while not over:
-            action, state = policy.predict(observation, state=state)
-            observation, _, terminated, truncated, _ = env.step(action)
-            keeper.take()
-            over = terminated or truncated
-        return keeper.finish(scenario)
+        recorder = RecordKeeper(env.simulation)
+        for _ in steps(env, policy, observation):
+            recorder.take()
+        return recorder.finish(scenario)
     finally:
         env.close()

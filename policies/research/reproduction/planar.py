@@ -73,15 +73,15 @@ def record_planar(scenario: Mapping[str, Any], contact: str) -> Record:
     simulation = BulletSimulation(*configure(TASK, contact=contact), TASK, "rls")
     try:
         simulation.reset(options, scenario["material"], rng)
-        keeper, mu_c, episode = (
+        recorder, mu_c, episode = (
             RecordKeeper(simulation),
             simulation.true_friction[0, 1],
             simulation.episode[0],
         )
         while episode["step"] < episode["steps"] and not episode["dropped"]:
             simulation.sample(hinge_force(simulation.wrenches[0], simulation.twists[0], mu_c))
-            keeper.take()
-        return keeper.finish({**scenario, **drawn})
+            recorder.take()
+        return recorder.finish({**scenario, **drawn})
     finally:
         simulation.close()
 

@@ -10,13 +10,15 @@ import pandas as pd
 from tqdm import tqdm
 
 import estimator
-from policies.evaluation.folder import filled_in_place, stamped, write_versions
+from policies.evaluation.folder import stamped
 from policies.evaluation.plots.style import STYLE, styled
 from policies.research.leaderboard.replay import replay
 from policies.research.leaderboard.tables import markdown
 from policies.research.reproduction.fixed_point import disc_bias
 from policies.research.reproduction.profile_course import STEADY, STOP, profile
 from policies.research.reproduction.profile_plot import plot_profile
+from policies.versions import write_versions
+from slipgym.atomic_io import new_folder
 from slipgym.contact import DistributedContact
 from slipgym.synthetic import Record, Trace, ideal, integrate, sense
 
@@ -53,7 +55,7 @@ def reproduce_profile(
         "events": pd.concat(events(trace, *job, estimates) for job, estimates in found.items()),
     }
     path = stamped(output, "profile")
-    with filled_in_place(path) as folder:
+    with new_folder(path) as folder:
         write_versions(folder)
         series(records, found).to_csv(folder / "series.csv", index=False)
         for name, table in tables.items():

@@ -16,7 +16,7 @@ class Record:
     """T slip-velocity samples of a trial, each with the newest force."""
 
     keys: Mapping[str, Any]
-    """What tells the trial from the others, for tables; with "material"."""
+    """What distinguishes the trial from the others, for tables; with "material"."""
     truth: np.ndarray
     """True mu_s, mu_c, r, (3,) [-, -, m]."""
     time: np.ndarray
@@ -54,7 +54,7 @@ class RecordKeeper:
         """The whole record.
 
         Args:
-            keys: What tells the trial from the others.
+            keys: What distinguishes the trial from the others.
         """
         columns = (np.array(column) for column in zip(*self._samples, strict=True))
         dropped = bool(self.simulation.episode["dropped"][0])

@@ -9,11 +9,13 @@ import numpy as np
 import pandas as pd
 from tqdm import tqdm
 
-from policies.evaluation.folder import filled_in_place, stamped, write_versions
+from policies.evaluation.folder import stamped
 from policies.evaluation.plots.style import STYLE, styled
 from policies.research.leaderboard.tables import markdown
 from policies.research.reproduction.fixed_point import disc_bias
 from policies.research.reproduction.surface_plot import plot_surface
+from policies.versions import write_versions
+from slipgym.atomic_io import new_folder
 from slipgym.contact.pressure import OUTER_RADII
 from slipgym.validation.patch_surface import friction_error, surface_twists
 
@@ -33,7 +35,7 @@ def reproduce_surface(output: str | os.PathLike[str] = "runs", progress: bool = 
     """
     tables = {"cells": convergence(progress), "bias": bias()}
     path = stamped(output, "surface")
-    with filled_in_place(path) as folder:
+    with new_folder(path) as folder:
         write_versions(folder)
         for name, table in tables.items():
             table.to_csv(folder / f"{name}.csv", index=False)

@@ -1,4 +1,4 @@
-"""What knowing friction is worth: controllers and learned policies x what they are told, on both engines."""
+"""The benefit of knowing friction: policies x friction information, on both engines."""
 
 from policies.research.study.config import Study
 from policies.research.study.files import load_study, narrowed, study_names

@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
-from policies.evaluation.experiment import FrictionChoice, Spelled
+from policies.evaluation.experiment import FrictionChoice
+from policies.task_names import canonical
 from slipgym.config import load_randomization
-from slipgym.config.base import Count, Positive, PositiveInterval, as_tuple
+from slipgym.config.base import Count, Frozen, Positive, PositiveInterval, as_tuple
 from slipgym.config.errors import unknown
-from slipgym.tasks import find
 
 Kind: TypeAlias = Literal["classic", "learned"]
 Source: TypeAlias = Literal["none", "nominal", "estimated", "true"]
@@ -23,7 +23,7 @@ Sources = Annotated[tuple[Source, ...], BeforeValidator(as_tuple)]
 Levels = Annotated[tuple[float, ...], BeforeValidator(as_tuple)]
 
 
-class World(Spelled):
+class World(Frozen):
     """Where episodes take place."""
 
     label: str = Field(min_length=1, description="How tables and figures call it [-]")
@@ -34,7 +34,7 @@ class World(Spelled):
     estimators: Names = Field(default=(), description="Estimators to run here; none given: all [-]")
 
 
-class Degradation(Spelled):
+class Degradation(Frozen):
     """One thing at a time gets worse; everything else is as the preset says."""
 
     world: str = Field(description="Label of the world [-]")
@@ -47,7 +47,7 @@ class Degradation(Spelled):
     jump_time: PositiveInterval = Field(default=(2.5, 3.5), description="When friction jumps [s]")
 
 
-class Study(Spelled):
+class Study(Frozen):
     """Policies x friction sources x estimators x tasks x presets x worlds."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]*$", description="Names the study's folder [-]")
@@ -62,25 +62,23 @@ class Study(Spelled):
     )
     learned: str = Field(default="", description="Folder of learned policies; empty: those shipped [-]")
     estimators: Annotated[Names, Field(min_length=1)] = Field(
-        default=("disc",), description="Estimators; the first is the one judged by [-]"
+        default=("disc",), description="Estimators; the first is the main one [-]"
     )
     presets: Annotated[Names, Field(min_length=1)] = Field(
-        default=("train", "eval_ood"), description="Presets of randomization; the first is judged by [-]"
+        default=("train", "eval_ood"), description="Presets of randomization; the first is the main one [-]"
     )
     worlds: Annotated[tuple[World, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
-        description="Worlds; the first is the one judged by [-]"
+        description="Worlds; the first is the main one [-]"
     )
     degradation: Degradation | None = Field(default=None, description="What gets worse step by step [-]")
-    videos: Names = Field(default=(), description="Tasks that the report shows films of [-]")
-    video_speed: Positive = Field(default=1.0, description="Of the films over the real one [-]")
+    videos: Names = Field(default=(), description="Tasks that the report shows videos of [-]")
+    video_speed: Positive = Field(default=1.0, description="Of the videos over the real one [-]")
     config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
 
-    @field_validator("tasks")
+    @field_validator("tasks", "videos")
     @classmethod
     def _tasks_exist(cls, names: tuple[str, ...]) -> tuple[str, ...]:
-        for name in names:
-            find(name)
-        return names
+        return tuple(canonical(name) for name in names)
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:

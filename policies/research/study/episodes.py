@@ -1,4 +1,4 @@
-"""Runs the cells of a study that are not there yet."""
+"""Runs the conditions of a study that are not there yet."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from tqdm import tqdm
 
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import run_trial
-from policies.research.study.cells import Cell
+from policies.research.study.conditions import Condition
 from policies.research.study.config import Study
 from policies.research.study.store import Store
 
 COLUMNS = ["seed", "success", "dropped", "return", "steps", "mean_force_N", "final_mu_c", "true_mu_c"]
-"""What is kept of an episode of any task, besides the keys of its cell and its number."""
+"""What is kept of an episode of any task, besides the keys of its condition and its number."""
 
 
 def episodes(
-    study: Study, cells: Sequence[Cell], store: Store, jobs: int = 1, progress: bool = True
+    study: Study, conditions: Sequence[Condition], store: Store, jobs: int = 1, progress: bool = True
 ) -> pd.DataFrame:
-    """The episodes of all cells; those that are not in the store are run and kept there, cell by cell.
+    """The episodes of all conditions; those that are not in the store are run and kept there, one by one.
 
     Args:
-        study: What the cells are part of.
-        cells: The cells.
-        store: Where finished cells are.
+        study: What the conditions are part of.
+        conditions: The conditions.
+        store: Where finished conditions are.
         jobs: Processes; -1 for one per core. The results do not depend on it.
         progress: Whether to show a progress bar.
 
@@ -35,20 +35,20 @@ def episodes(
         ValueError: A policy refuses the observations.
         OSError: The store cannot be written.
     """
-    pending = [cell for cell in cells if not store.has(cell)]
-    experiments = [cell.experiment(study) for cell in pending]
-    planned = [(cell, each, plan(each)) for cell, each in zip(pending, experiments, strict=True)]
+    pending = [condition for condition in conditions if not store.has(condition)]
+    experiments = [condition.experiment(study) for condition in pending]
+    planned = [(condition, each, plan(each)) for condition, each in zip(pending, experiments, strict=True)]
     parallel = joblib.Parallel(n_jobs=jobs, return_as="generator")
     results: Any = parallel(
         joblib.delayed(run_trial)(experiment, trial) for _, experiment, trials in planned for trial in trials
     )
     total = sum(len(trials) for _, _, trials in planned)
     with tqdm(total=total, desc=study.name, unit="episode", disable=not progress) as bar:
-        for cell, _, trials in planned:
+        for condition, _, trials in planned:
             rows = []
             for number in range(len(trials)):
                 row = next(results).row
-                rows.append({**cell.keys, "episode": number, **{name: row[name] for name in COLUMNS}})
+                rows.append({**condition.keys, "episode": number, **{name: row[name] for name in COLUMNS}})
                 bar.update()
-            store.write(cell, pd.DataFrame(rows))
-    return pd.concat([store.read(cell) for cell in cells], ignore_index=True)
+            store.write(condition, pd.DataFrame(rows))
+    return pd.concat([store.read(condition) for condition in conditions], ignore_index=True)

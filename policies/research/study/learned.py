@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from policies.learned import pretrained as shelf
+from policies.learned import pretrained
 from policies.learned.files import DESCRIPTION
 from policies.research.study.config import SOURCES, Study
 from slipgym.tasks import find
@@ -24,7 +24,7 @@ def policies_of(study: Study) -> dict[tuple[str, str], list[Path]]:
     Raises:
         ValueError: Two folders stand for the same seed.
     """
-    top = Path(study.learned) if study.learned else shelf.FOLDER
+    top = Path(study.learned) if study.learned else pretrained.FOLDER
     named = {path.parent: path.parent.name for path in top.glob(f"*/{DESCRIPTION}")}
     for path in top.glob(f"*__*/*__*/policy/{DESCRIPTION}"):
         key, _, _ = path.parents[2].name.partition("__")

@@ -12,27 +12,27 @@ import pandas as pd
 import yaml
 from tqdm import tqdm
 
-from policies.atomic_io import replace_durably
-from policies.evaluation.folder import versions
 from policies.evaluation.frames import distinct, records, where, without
 from policies.evaluation.plots.style import styled
 from policies.research.study import figures
-from policies.research.study.cells import Cell
+from policies.research.study.conditions import Condition
 from policies.research.study.config import Study
 from policies.research.study.figures.differences import TRANSFER_MOST
 from policies.research.study.figures.inline import inline
-from policies.research.study.films import Scene, scene
 from policies.research.study.formats import FILTERS
 from policies.research.study.sentences import answers
 from policies.research.study.store import sources
 from policies.research.study.tables import ALL, by
+from policies.research.study.videos import Scene, scene
+from policies.versions import versions
+from slipgym import atomic_io
 
 _TEMPLATE = Path(__file__).parent / "report.html.j2"
 
 
 def write_page(
     study: Study,
-    cells: Sequence[Cell],
+    conditions: Sequence[Condition],
     episodes: pd.DataFrame,
     tables: Mapping[str, pd.DataFrame],
     missing: Sequence[str],
@@ -44,18 +44,18 @@ def write_page(
 
     Args:
         study: The study.
-        cells: All its cells.
+        conditions: All its conditions.
         episodes: Their episodes.
-        tables: "outcomes", "shares" and "transfer".
+        tables: "outcomes", "shares", "transfer" and "constant_grip".
         missing: What was left out, in words.
         command: What it was made by.
-        folder: The study's folder; films are kept in its "films".
+        folder: The study's folder; videos are kept in its "videos".
         progress: Whether to show a progress bar.
     """
-    bar = tqdm(study.videos, desc="films", unit="task", disable=not progress)
-    scenes = [scene(study, task, cells, episodes, folder / "films") for task in bar]
+    bar = tqdm(study.videos, desc="videos", unit="task", disable=not progress)
+    scenes = [scene(study, task, conditions, episodes, folder / "videos") for task in bar]
     page = render(study, episodes, tables, [each for each in scenes if each], missing, command)
-    replace_durably(folder / "report.html", page.encode())
+    atomic_io.write(folder / "report.html", page.encode())
 
 
 def render(
@@ -70,7 +70,7 @@ def render(
     outcomes, shares, transfer = (tables[name] for name in ("outcomes", "shares", "transfer"))
     plain, changed = where(outcomes, change=""), without(outcomes, "change", "")
     fractions = where(shares, world=study.worlds[0].label)
-    judged = where(plain, world=study.worlds[0].label, preset=study.presets[0])
+    main = where(plain, world=study.worlds[0].label, preset=study.presets[0])
     places = [
         {
             "world": world,
@@ -84,14 +84,15 @@ def render(
     return environment.from_string(_TEMPLATE.read_text(encoding="utf-8")).render(
         study=study,
         answers=answers(study, outcomes, shares),
-        tiles=_tiles(judged),
+        tiles=_tiles(main),
         pictures=_pictures(study, plain, changed, fractions, transfer),
         places=places,
         shares=records(fractions),
         transfer=records(transfer),
+        constant=records(tables["constant_grip"]),
         transfer_most=TRANSFER_MOST,
         scenes=scenes,
-        film=_film,
+        embedded=_embedded,
         missing=missing,
         command=command,
         digest=sources(),
@@ -101,10 +102,10 @@ def render(
     )
 
 
-def _tiles(judged: pd.DataFrame) -> list[tuple[str, str, list[dict[str, Any]]]]:
+def _tiles(main: pd.DataFrame) -> list[tuple[str, str, list[dict[str, Any]]]]:
     """Kind, task and the rows of its sources: of all tasks together, or of the only one."""
     tiles = []
-    for (kind,), group in by(judged, ["kind"]):
+    for (kind,), group in by(main, ["kind"]):
         task = ALL if ALL in distinct(group, "task") else distinct(group, "task")[0]
         rows = where(group, task=task).drop_duplicates("source")
         tiles.append((str(kind), task, records(rows)))
@@ -140,10 +141,10 @@ def _pictures(
             pictures["degradation"][kind] = inline(worse, f"Episodes solved as things get worse, {kind}")
         if len(transfer):
             pictures["transfer"] = inline(
-                figures.plot_transfer(transfer), "From the batched core to PyBullet"
+                figures.plot_transfer(transfer), "From the planar engine to PyBullet"
             )
     return pictures
 
 
-def _film(path: Path) -> str:
+def _embedded(path: Path) -> str:
     return "data:video/mp4;base64," + base64.b64encode(path.read_bytes()).decode("ascii")

@@ -1,4 +1,4 @@
-"""From a study to its folder."""
+"""Runs a study and writes its folder."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from pathlib import Path
 import pandas as pd
 import yaml
 
-from policies.atomic_io import replace_durably
-from policies.evaluation.folder import write_versions
 from policies.research.study import tables
-from policies.research.study.cells import cells
+from policies.research.study.conditions import conditions
 from policies.research.study.config import Study
+from policies.research.study.constant_grip import constant_grips
 from policies.research.study.episodes import episodes
 from policies.research.study.learned import missing, policies_of
 from policies.research.study.page import write_page
 from policies.research.study.store import Store
+from policies.versions import write_versions
+from slipgym import atomic_io
 
 
 def run_study(
@@ -30,7 +31,7 @@ def run_study(
 
     Args:
         study: From `load_study`.
-        output: Folder that the study's own folder goes to; cells that lie there already are not run again.
+        output: Folder that the study's own folder goes to; finished conditions are not run again.
         jobs: Processes; -1 for one per core. The results do not depend on it.
         command: What the report says it was made by.
         progress: Whether to show progress bars.
@@ -44,21 +45,22 @@ def run_study(
     """
     folder = Path(output).expanduser().resolve() / f"study__{study.name}__{study.seed}"
     learned = policies_of(study)
-    chosen = cells(study, learned)
+    chosen = conditions(study, learned)
     if not chosen:
-        raise ValueError(f"{study.name}: no cell to run; {'; '.join(missing(study, learned))}")
-    done = episodes(study, chosen, Store(folder / "cells", study), jobs, progress)
+        raise ValueError(f"{study.name}: no condition to run; {'; '.join(missing(study, learned))}")
+    done = episodes(study, chosen, Store(folder / "conditions", study), jobs, progress)
     made = {
         "outcomes": tables.outcomes(done),
         "shares": tables.shares(done, study.estimators[0]),
         "transfer": tables.transfer(done, study),
+        "constant_grip": constant_grips(study, folder / "constant_grip", progress=progress),
     }
     write_versions(folder)
     text = yaml.safe_dump(study.model_dump(mode="json"), sort_keys=False, allow_unicode=True)
-    replace_durably(folder / "study.yaml", text.encode())
-    replace_durably(folder / "episodes.parquet", done.to_parquet(index=False))
+    atomic_io.write(folder / "study.yaml", text.encode())
+    atomic_io.write(folder / "episodes.parquet", done.to_parquet(index=False))
     for name, table in made.items():
-        replace_durably(folder / f"{name}.csv", _csv(table))
+        atomic_io.write(folder / f"{name}.csv", _csv(table))
     write_page(study, chosen, done, made, missing(study, learned), command, folder, progress)
     return folder
 

@@ -11,7 +11,7 @@ from policies.research.study.tables import ALL, ENOUGH
 
 
 def answers(study: Study, outcomes: pd.DataFrame, shares: pd.DataFrame) -> list[tuple[str, list[str]]]:
-    """What the study says about each kind of policy, in the world and the preset judged by.
+    """What the study says about each kind of policy, in the first world and preset.
 
     Args:
         study: The study.
@@ -40,10 +40,10 @@ def _whole(here: pd.DataFrame) -> str:
 
 def _level(rows: pd.DataFrame, estimator: str) -> str:
     """Success of each source."""
-    judged = among(rows, "estimator", ("", estimator))
+    main = among(rows, "estimator", ("", estimator))
     words = [
         f"{figure(row, 'success', 100.0, 1)}\N{NO-BREAK SPACE}% with friction “{row['source']}”"
-        for row in records(judged)
+        for row in records(main)
     ]
     return f"Solved ({_whole(rows)}): " + ", ".join(words) + "."
 

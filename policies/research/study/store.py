@@ -1,4 +1,4 @@
-"""Finished cells on disk: a cell is run once, as long as nothing that decides its result changes."""
+"""Keeps finished conditions on disk: each runs once, until something that decides its result changes."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from pathlib import Path
 import pandas as pd
 
 import policies
-from policies.atomic_io import filled_in_place
-from policies.research.study.cells import Cell
+from policies.research.study.conditions import Condition
 from policies.research.study.config import Study
+from slipgym.atomic_io import new_folder
 from slipgym.config import files
 
 _TOP = Path(policies.__file__).parents[1]
@@ -28,7 +28,7 @@ _TABLE = "episodes.parquet"
 
 
 class Store:
-    """The folder of a study's cells.
+    """The folder of a study's conditions.
 
     Args:
         path: The folder; need not exist.
@@ -38,27 +38,27 @@ class Store:
     def __init__(self, path: Path, study: Study) -> None:
         self._path, self._study = path, study
 
-    def _place(self, cell: Cell) -> Path:
-        return self._path / f"{cell.name}__{fingerprint(cell, self._study)}"
+    def _place(self, condition: Condition) -> Path:
+        return self._path / f"{condition.name}__{fingerprint(condition, self._study)}"
 
-    def has(self, cell: Cell) -> bool:
-        """Whether a cell is finished."""
-        return (self._place(cell) / _TABLE).exists()
+    def has(self, condition: Condition) -> bool:
+        """Whether a condition is finished."""
+        return (self._place(condition) / _TABLE).exists()
 
-    def read(self, cell: Cell) -> pd.DataFrame:
-        """The episodes of a finished cell, a row each."""
-        return pd.read_parquet(self._place(cell) / _TABLE)
+    def read(self, condition: Condition) -> pd.DataFrame:
+        """The episodes of a finished condition, a row each."""
+        return pd.read_parquet(self._place(condition) / _TABLE)
 
-    def write(self, cell: Cell, episodes: pd.DataFrame) -> None:
-        """Keeps a cell, whole or not at all."""
-        with filled_in_place(self._place(cell)) as folder:
+    def write(self, condition: Condition, episodes: pd.DataFrame) -> None:
+        """Keeps a condition, whole or not at all."""
+        with new_folder(self._place(condition)) as folder:
             episodes.to_parquet(folder / _TABLE, index=False)
 
 
-def fingerprint(cell: Cell, study: Study) -> str:
+def fingerprint(condition: Condition, study: Study) -> str:
     """Sixteen digits that change with the experiment, the learned policy and the sources that run it."""
-    told = json.dumps(cell.experiment(study).model_dump(mode="json"), sort_keys=True)
-    parts = [told, _folder(Path(cell.policy)) if Path(cell.policy).is_dir() else "", sources()]
+    asked = json.dumps(condition.experiment(study).model_dump(mode="json"), sort_keys=True)
+    parts = [asked, _folder(Path(condition.policy)) if Path(condition.policy).is_dir() else "", sources()]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 
 

@@ -14,7 +14,7 @@ from policies.research.study.config import Study
 from policies.research.study.statistics import Bootstrap, Drawn, iqm, mean
 
 PLACE = ["world", "task", "preset", "change", "level", "kind"]
-TOLD = ["source", "estimator"]
+FRICTION = ["source", "estimator"]
 SHARES = [
     *("world", "task", "preset", "kind", "figure", "n"),
     *(f"{name}{end}" for name in ("true-none", "estimated-none", "share") for end in ("", "_low", "_high")),
@@ -37,8 +37,8 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
     rows = []
     together = [part.assign(task=ALL) for _, part in _over_tasks(episodes)]
     for keys, group in [
-        *by(episodes, [*PLACE, *TOLD]),
-        *(found for part in together for found in by(part, [*PLACE, *TOLD])),
+        *by(episodes, [*PLACE, *FRICTION]),
+        *(found for part in together for found in by(part, [*PLACE, *FRICTION])),
     ]:
         bootstrap = Bootstrap(values(group, "block"))
         figures = {
@@ -49,7 +49,7 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
             figures["return"] = bootstrap(values(group, "return"), iqm).interval
             figures["force"] = bootstrap(values(group, "mean_force_N")).interval
         by_block = [float(values(part, "success").mean()) for _, part in by(group, ["block"])]
-        row = dict(zip([*PLACE, *TOLD], keys, strict=True)) | {
+        row = dict(zip([*PLACE, *FRICTION], keys, strict=True)) | {
             "n": len(group),
             "blocks": " ".join(f"{share:.3f}" for share in by_block),
         }
@@ -62,7 +62,7 @@ def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
 
     Args:
         episodes: The table of episodes.
-        estimator: The estimator judged.
+        estimator: The main estimator.
 
     Returns:
         Columns `SHARES`: a row for each place and figure, and for the success over all tasks of a place.
@@ -72,28 +72,28 @@ def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
     rows = []
     plain = where(episodes, change="")
     for keys, group in [*by(plain, ["world", "task", "preset", "kind"]), *_over_tasks(plain)]:
-        told = {source: where(group, source=source) for source in ("none", "true")}
-        told["estimated"] = where(group, source="estimated", estimator=estimator)
-        if min(map(len, told.values())) == 0:
+        parts = {source: where(group, source=source) for source in ("none", "true")}
+        parts["estimated"] = where(group, source="estimated", estimator=estimator)
+        if min(map(len, parts.values())) == 0:
             continue
-        bootstrap = Bootstrap(_strata(told["true"]))
+        bootstrap = Bootstrap(_strata(parts["true"]))
         for column, figure in FIGURES.items():
             if column == "return" and keys[1] == ALL:
                 continue
-            drawn = {name: bootstrap(values(part, column), figure) for name, part in told.items()}
+            drawn = {name: bootstrap(values(part, column), figure) for name, part in parts.items()}
             row = dict(zip(["world", "task", "preset", "kind"], keys, strict=True))
-            rows.append({**row, "figure": column, "n": len(told["true"]), **_share(drawn)})
+            rows.append({**row, "figure": column, "n": len(parts["true"]), **_share(drawn)})
     return pd.DataFrame(rows, columns=SHARES)
 
 
 def transfer(episodes: pd.DataFrame, study: Study) -> pd.DataFrame:
-    """Success on PyBullet less that on the batched core with the same contact, over pairs [points]."""
-    judged = where(episodes, change="", source="estimated", estimator=study.estimators[0])
+    """Success on PyBullet less that on the planar engine with the same contact, over pairs [points]."""
+    main = where(episodes, change="", source="estimated", estimator=study.estimators[0])
     same = ["task", "preset", "kind", "block", "episode"]
     rows = []
     for planar in (world for world in study.worlds if world.engine == "planar"):
         for bullet in (w for w in study.worlds if w.engine == "bullet" and w.contact == planar.contact):
-            here, there = (where(judged, world=world.label) for world in (planar, bullet))
+            here, there = (where(main, world=world.label) for world in (planar, bullet))
             pairs = here.merge(there, on=same, suffixes=("_core", ""))
             for keys, group in [*by(pairs, ["task", "preset", "kind"]), *_all(pairs)]:
                 bootstrap = Bootstrap(_strata(group))

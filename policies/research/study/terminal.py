@@ -1,4 +1,4 @@
-"""What a finished study says on a terminal."""
+"""Prints a finished study."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ import pandas as pd
 from policies.evaluation.report import aligned
 from policies.evaluation.tables import text
 from policies.research.study.config import Study
-from policies.research.study.tables import PLACE, TOLD
+from policies.research.study.tables import FRICTION, PLACE
 
 
 def words(study: Study, folder: Path) -> str:
-    """Success of every condition in the world judged by, the shares, and where to look next.
+    """Success of every condition in the first world, the shares, and where to look next.
 
     Args:
         study: The study.
         folder: From `run_study`.
     """
     # as text: a column of nothing but "true" would turn into booleans
-    names = dict.fromkeys([*PLACE, *TOLD], str)
+    names = dict.fromkeys([*PLACE, *FRICTION], str)
     names.pop("level")
     outcomes, shares = (
         pd.read_csv(folder / f"{name}.csv", dtype=names, keep_default_na=False, na_values=[""])  # type: ignore[arg-type]
@@ -32,9 +32,9 @@ def words(study: Study, folder: Path) -> str:
     world = study.worlds[0].label
     rows = [["task", "preset", "policy", "friction", "success [%]", "dropped [%]", "return, IQM"]]
     for row in outcomes[(outcomes["world"] == world) & outcomes["change"].isna()].to_dict("records"):
-        told = " ".join(str(row[name]) for name in TOLD if row[name] == row[name])
+        known = " ".join(str(row[name]) for name in FRICTION if row[name] == row[name])
         figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
-        rows.append([row["task"], row["preset"], row["kind"], told, *figures])
+        rows.append([row["task"], row["preset"], row["kind"], known, *figures])
     parts = [f"{world}:", aligned(rows), "(95 % confidence intervals in brackets)"]
     if len(shares):
         rows = [["task", "preset", "policy", "of", "(estimated - none) / (true - none) [%]", ">= 80 %"]]
@@ -42,6 +42,11 @@ def words(study: Study, folder: Path) -> str:
             share = _text(row, "share", "[%]")
             rows.append([row["task"], row["preset"], row["kind"], row["figure"], share, row["verdict"]])
         parts.append(aligned(rows))
+    rows = [["task", "force [N]", "success [%]", "dropped [%]", "return, mean"]]
+    for row in pd.read_csv(folder / "constant_grip.csv").to_dict("records"):
+        figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
+        rows.append([row["task"], f"{row['force_N']:.2f}", *figures])
+    parts += ["The best constant grip, without any sensor, planar engine:", aligned(rows)]
     return "\n\n".join([*parts, f"Look at:\n  {folder / 'report.html'}"])
 
 

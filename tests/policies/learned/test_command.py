@@ -9,7 +9,7 @@ import pytest
 import policies
 from policies import command
 from policies.episodes import environment_of, episodes
-from policies.learned import shipped
+from policies.learned import pretrained
 from policies.training import seeds
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -87,7 +87,7 @@ def test_it_needs_nothing_but_the_base_installation(policy_folder):
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("name", shipped())
+@pytest.mark.parametrize("name", pretrained.folders())
 def test_what_comes_with_slipgym_acts_in_the_environment_of_its_training(name):
     (outcome,) = episodes(name, 1)
     assert outcome.time > 0.0

@@ -8,8 +8,7 @@ import policies
 import slipgym  # noqa: F401
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import run_trial, run_trials
-from policies.learned import LearnedPolicy
-from policies.learned import pretrained as shelf
+from policies.learned import LearnedPolicy, pretrained
 
 
 def refused(policy, message, task="Hold", **arguments):
@@ -46,9 +45,9 @@ def test_an_environment_with_the_same_columns_fits(policy_folder, arguments):
 
 
 def test_by_path_and_by_name_it_is_the_same(policy_folder, tmp_path, monkeypatch):
-    before = set(policies.names()) - set(shelf.shipped())
+    before = set(policies.names()) - set(pretrained.folders())
     folder = policy_folder("shelf/hold_ppo")
-    monkeypatch.setattr(shelf, "FOLDER", tmp_path / "shelf")
+    monkeypatch.setattr(pretrained, "FOLDER", tmp_path / "shelf")
     assert set(policies.names()) == {*before, "hold_ppo"}
     observation = np.linspace(-1.0, 1.0, 28, dtype=np.float32)
     wanted, _ = policies.load(folder).predict(observation)
@@ -136,4 +135,4 @@ def test_load_knows_the_controllers_too():
 def test_no_shipped_policy_takes_a_controllers_name():
     from policies.controllers.table import CLASSES
 
-    assert not set(shelf.shipped()) & set(CLASSES)
+    assert not set(pretrained.folders()) & set(CLASSES)

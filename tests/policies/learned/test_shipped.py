@@ -9,13 +9,12 @@ import pytest
 
 import policies
 import slipgym  # noqa: F401
-from policies.learned import LearnedPolicy
-from policies.learned import pretrained as shelf
+from policies.learned import LearnedPolicy, pretrained
 from policies.training import files
 from policies.training.curve import Row, best
 from slipgym.tasks import TASKS
 
-SHIPPED = shelf.shipped()
+SHIPPED = pretrained.folders()
 PAGES = Path(__file__).parents[3] / "docs" / "learned"
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.research.study.files import checked
+from policies.research.study.config import Study
+from slipgym.config.yaml_model import validate
 
 BULLET, CORE = "PyBullet, ellipsoid", "core"
 
@@ -35,7 +36,7 @@ def small(nothing):
                 "tasks": {"linear_slip": {"duration": 0.2, "settle": 0.05, "hold": 0.05, "distance": 0.01}}
             },
         }
-        return checked({**values, **changes}, "test")
+        return validate({**values, **changes}, Study, "test")
 
     return make
 

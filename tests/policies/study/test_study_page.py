@@ -10,11 +10,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.play.video import Film
-from policies.research.study.films import Film as Clip
-from policies.research.study.films import Scene
+from policies.play.video import Video
 from policies.research.study.page import render
 from policies.research.study.tables import outcomes, shares, transfer
+from policies.research.study.videos import Clip, Scene
 from slipgym.rendering import HEIGHT, WIDTH
 
 CLEAR = {"none": 0, "nominal": 5, "estimated": 9, "true": 10}
@@ -24,8 +23,8 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
 @pytest.fixture(scope="module")
 def clip(tmp_path_factory):
-    path = tmp_path_factory.mktemp("films") / "film.mp4"
-    with Film(path) as film:
+    path = tmp_path_factory.mktemp("videos") / "film.mp4"
+    with Video(path) as film:
         for grey in range(0, 250, 25):
             film.add(np.full((HEIGHT, WIDTH, 3), grey, np.uint8))
     return path
@@ -57,6 +56,17 @@ def page(small, invented, clip):
         "shares": shares(episodes, "disc"),
         "transfer": transfer(episodes, study),
     }
+    made["constant_grip"] = pd.DataFrame(
+        [
+            {"task": task, "force_N": 3.14, "n": 20}
+            | {
+                f"{name}{end}": 0.5
+                for name in ("success", "dropped", "return")
+                for end in ("", "_low", "_high")
+            }
+            for task in ("Hold", "Hinge")
+        ]
+    )
     films = tuple(Clip(source, clip, source != "none", False) for source in ("none", "estimated", "true"))
     scene = Scene("Hold", "learned", 7, "the first", films)
     return render(study, episodes, made, [scene], ["Hold: <nothing> & all"], "python scripts/study.py small")
@@ -106,6 +116,8 @@ def test_the_page_says_what_is_known(page):
     text = re.sub(r"\s+", " ", re.sub(r"<(style|svg).*?</\1>|<[^>]+>", " ", page, flags=re.DOTALL))
     assert "the estimate recovers 90 %" in text
     assert "at least 80 % in 4 of these" in text  # success and return of both tasks
+    assert "Hold 20 3.14 50.0" in text
+    assert "The benefit depends on that baseline" in text
     assert "Hold: &lt;nothing&gt; &amp; all" in text
     assert "python scripts/study.py small" in text
     assert text.count("✓ reached") == 10

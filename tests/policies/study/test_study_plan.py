@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -5,8 +7,8 @@ import policies
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.evaluation.plan import plan
 from policies.research.study import load_study, narrowed, study_names
-from policies.research.study.cells import cells
 from policies.research.study.changes import Change
+from policies.research.study.conditions import conditions
 from policies.research.study.learned import missing, policies_of
 from slipgym.config import load, load_randomization
 from slipgym.envs.observation import columns
@@ -14,7 +16,9 @@ from slipgym.tasks import find
 
 
 @pytest.fixture
-def shelf(tmp_path):
+def shelf(tmp_path, monkeypatch):
+    monkeypatch.setattr("policies.evaluation.rate.frame_skip_of", lambda name: 1)
+
     def make(*names):
         for name in names:
             (tmp_path / name).mkdir(parents=True)
@@ -88,19 +92,33 @@ def test_two_folders_of_one_seed_are_an_error(small, shelf):
 
 def test_a_learned_policy_is_told_nominal_values_by_that_of_the_truth(small, shelf):
     study = small(learned=shelf("linear_slip_true_0", "linear_slip_true_1"), kinds=["learned"], blocks=3)
-    found = cells(study, policies_of(study))
-    assert {(cell.source, cell.block, cell.policy[-1]) for cell in found} == {
+    found = conditions(study, policies_of(study))
+    assert {(condition.source, condition.block, condition.policy[-1]) for condition in found} == {
         (source, block, str(block % 2)) for source in ("nominal", "true") for block in range(3)
     }
+
+
+def test_all_policies_of_a_task_act_at_the_same_rate(small, monkeypatch):
+    skips = {"a": 2, "b": 2, "c": 1}
+    monkeypatch.setattr("policies.evaluation.rate.frame_skip_of", skips.get)
+    study = small(tasks=["LinearSlip", "Hold"])
+    found = conditions(study, {("LinearSlip", "true"): [Path("a")], ("LinearSlip", "none"): [Path("b")]})
+    assert {each.kind for each in found if each.task == "LinearSlip"} == {"classic", "learned"}
+    assert {each.frame_skip for each in found if each.task == "LinearSlip"} == {2}
+    assert {each.frame_skip for each in found if each.task == "Hold"} == {1}
+    classic = next(each for each in found if each.task == "LinearSlip" and each.kind == "classic")
+    assert classic.experiment(study).steps_per_action == 2
+    with pytest.raises(ValueError, match=r"same rate of action only.*a 2, c 1"):
+        conditions(study, {("LinearSlip", "true"): [Path("a"), Path("c")]})
 
 
 def test_episodes_come_in_pairs(small):
     study = small(kinds=["classic"])
     seeds = {}
-    for cell in cells(study, {}):
-        experiment = cell.experiment(study)
-        assert experiment.environment_config().contact.model == cell.world.contact
-        seeds.setdefault(cell.block, set()).update(trial.seed for trial in plan(experiment))
+    for condition in conditions(study, {}):
+        experiment = condition.experiment(study)
+        assert experiment.environment_config().contact.model == condition.world.contact
+        seeds.setdefault(condition.block, set()).update(trial.seed for trial in plan(experiment))
     assert len(seeds) == 2
     assert all(len(each) == 1 for each in seeds.values())
     assert not seeds[0] & seeds[1]
@@ -123,7 +141,7 @@ def test_one_thing_is_changed_and_the_rest_is_as_it_was(task):
 
 
 def test_a_controller_that_learns_nothing_acts_as_before_the_first_slip():
-    controller, unaware = policies.make("hold", probe=None), NoFrictionInfo("hold")
+    controller, unaware = policies.make("hold", exploration=None), NoFrictionInfo("hold")
     width = len(columns(load(), find("Hold"), "true"))
     observations = np.random.default_rng(0).normal(0.0, 0.01, (5, width)).astype(np.float32)
     observations[:, -3:] = 0.0  # no support: what the estimate is does not count

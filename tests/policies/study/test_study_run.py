@@ -2,13 +2,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from policies.research.study import run as runner
 from policies.research.study import run_study, words
-from policies.research.study.cells import cells
+from policies.research.study.conditions import conditions
 from policies.research.study.files import load_study
 from policies.research.study.store import Store, fingerprint, sources
 
 FILES = {
-    "cells",
+    "conditions",
+    "constant_grip",
+    "constant_grip.csv",
     "episodes.parquet",
     "outcomes.csv",
     "report.html",
@@ -19,6 +22,13 @@ FILES = {
 }
 
 
+@pytest.fixture(autouse=True)
+def few_forces(monkeypatch):
+    """Three forces instead of many."""
+    original = runner.constant_grips
+    monkeypatch.setattr(runner, "constant_grips", lambda *a, **k: original(*a, candidates=3, **k))
+
+
 @pytest.fixture(scope="module")
 def output(tmp_path_factory):
     return tmp_path_factory.mktemp("runs")
@@ -26,7 +36,7 @@ def output(tmp_path_factory):
 
 @pytest.fixture
 def run(small, output):
-    """Run once; from then on the cells are there."""
+    """Run once; from then on the conditions are there."""
     return run_study(small(), output, 1, "the command", progress=False)
 
 
@@ -38,6 +48,10 @@ def test_the_folder_holds_everything(run, small):
     assert len(episodes) == 2 * (4 + 1)
     assert not episodes.isna().any(axis=None)
     assert set(episodes["source"]) == {"none", "nominal", "estimated", "true"}
+    constant = pd.read_csv(run / "constant_grip.csv")
+    assert list(constant["task"]) == ["LinearSlip"]
+    assert constant["force_N"].between(0.6, 25.0).all()
+    assert (constant["n"] == 2).all()
     by_seed = episodes.groupby("block")["seed"].nunique()
     assert list(by_seed) == [1, 1]
 
@@ -70,7 +84,7 @@ def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monke
     monkeypatch.setattr(episodes, "run_trial", some)
     with pytest.raises(KeyboardInterrupt):
         run_study(study, tmp_path, 1, progress=False)
-    kept = list((tmp_path / run.name / "cells").iterdir())
+    kept = list((tmp_path / run.name / "conditions").iterdir())
     assert len(kept) == 3
     again = run_study(study, tmp_path, 1, progress=False)
     assert count[0] == 4 + 7
@@ -79,8 +93,8 @@ def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monke
 
 def test_a_cell_is_known_by_all_that_decides_its_result(small, monkeypatch):
     study = small()
-    one, *others = cells(study, {})
-    marks = {fingerprint(cell, study) for cell in (one, *others)}
+    one, *others = conditions(study, {})
+    marks = {fingerprint(condition, study) for condition in (one, *others)}
     assert len(marks) == 1 + len(others)
     assert fingerprint(one, small(seed=1)) not in marks
     assert fingerprint(one, small(name="other", episodes=1)) in marks
@@ -90,10 +104,10 @@ def test_a_cell_is_known_by_all_that_decides_its_result(small, monkeypatch):
 
 def test_a_broken_cell_is_no_cell(small, tmp_path):
     study = small()
-    store, (cell, *_) = Store(tmp_path, study), cells(study, {})
+    store, (condition, *_) = Store(tmp_path, study), conditions(study, {})
     with pytest.raises(AttributeError):
-        store.write(cell, None)  # type: ignore[arg-type]
-    assert not store.has(cell)
+        store.write(condition, None)  # type: ignore[arg-type]
+    assert not store.has(condition)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -118,7 +132,7 @@ def test_a_study_without_all_sources_has_no_shares(run, small, output):
 
 def test_nothing_to_run_is_an_error(small, tmp_path):
     study = small(kinds=["learned"], learned=str(tmp_path))
-    with pytest.raises(ValueError, match="no cell to run; LinearSlip: no learned policy"):
+    with pytest.raises(ValueError, match="no condition to run; LinearSlip: no learned policy"):
         run_study(study, tmp_path, progress=False)
 
 

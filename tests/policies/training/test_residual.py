@@ -78,10 +78,9 @@ def test_the_file_acts_as_the_learner(small, tmp_path, source):
     assert residual is not None
     assert (residual.controller, residual.reach, residual.memory) == ("linear_slip", 0.2, 2)
     model = learners.make(config, learners.normalised(config, vector.make(config, 0), training=False), 3)
-    from policies.training import checkpoint_io as plain
-    from policies.training import checkpoints
+    from policies.training import checkpoint_io, checkpoints
 
-    best = plain.read(checkpoints.best(tmp_path / "run"))["learner"]
+    best = checkpoint_io.read(checkpoints.best(tmp_path / "run"))["learner"]
     learners.set_parameters(model, best)
     learners.set_normalisation(model.get_vec_normalize_env(), best["normalisation"])
     inner = vector.make(config.model_copy(update={"residual": None}), 0)

@@ -8,8 +8,7 @@ import pytest
 pytest.importorskip("stable_baselines3")
 import policies
 from policies.learned import LearnedPolicy
-from policies.training import files, shipping
-from policies.training import run_set as study
+from policies.training import files, run_set, shipping
 from policies.training.curve import Row, best
 
 
@@ -27,10 +26,10 @@ def curve_of(rows, seed):
 
 
 def test_the_best_seed_goes_to_the_shelf_and_all_curves_to_the_pages(configured, tmp_path):
-    begun = study.begin(configured, [0, 1], ["estimated", "none"], tmp_path / "runs")
+    begun = run_set.begin(configured, [0, 1], ["estimated", "none"], tmp_path / "runs")
     with pytest.raises(ValueError, match="is not finished"):
         shipping.ship([begun], tmp_path / "shelf", tmp_path / "pages")
-    study.train_all(begun, progress=False)
+    run_set.train_all(begun, progress=False)
     for _ in range(2):  # the second time in place of the first
         found = shipping.ship([begun], tmp_path / "shelf", tmp_path / "pages")
     assert [path.name for path in found] == ["linear_slip_estimated", "linear_slip_none"]
@@ -55,7 +54,7 @@ def test_the_best_seed_goes_to_the_shelf_and_all_curves_to_the_pages(configured,
 
 def test_another_configuration_is_refused(configured, tmp_path):
     other = files.changed(configured, {"ppo.gamma": 0.5})
-    begun = study.begin(other, [0], [], tmp_path / "runs")
-    study.train_all(begun, progress=False)
+    begun = run_set.begin(other, [0], [], tmp_path / "runs")
+    run_set.train_all(begun, progress=False)
     with pytest.raises(ValueError, match=r"not trained as configs/training/linear_slip\.yaml says"):
         shipping.ship([begun], tmp_path / "shelf", tmp_path / "pages")

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip("stable_baselines3")
-from policies.training import checkpoint_io as plain
-from policies.training import checkpoints, files, folder, run
+from policies.training import checkpoint_io, checkpoints, files, folder, run
 from policies.training.files import changed
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -76,7 +75,7 @@ def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algori
     for end in ends:
         assert end["record"].pop("seconds") > 0
     assert differing(*ends) == []
-    assert differing(*(plain.read(checkpoints.best(path)) for path in (whole, broken))) == []
+    assert differing(*(checkpoint_io.read(checkpoints.best(path)) for path in (whole, broken))) == []
 
 
 def test_the_comparison_notices_one_bit(small, tmp_path):
@@ -120,14 +119,14 @@ def dying_at(number):
 @pytest.mark.parametrize("number", range(4))
 def test_a_file_is_the_old_one_or_the_new_one(tmp_path, monkeypatch, number):
     path = tmp_path / "file"
-    plain.write(path, {"version": 1})
+    checkpoint_io.write(path, {"version": 1})
     with monkeypatch.context() as patch:
         patched(patch, dying_at(number))
         with pytest.raises(Killed):
-            plain.write(path, {"version": 2})
-    assert plain.read(path) == {"version": 2 if number == 3 else 1}
-    plain.write(path, {"version": 3})
-    assert plain.read(path) == {"version": 3}
+            checkpoint_io.write(path, {"version": 2})
+    assert checkpoint_io.read(path) == {"version": 2 if number == 3 else 1}
+    checkpoint_io.write(path, {"version": 3})
+    assert checkpoint_io.read(path) == {"version": 3}
 
 
 @pytest.mark.slow
@@ -208,4 +207,4 @@ def test_ten_kills_at_random_moments_lose_nothing_but_an_interval(small, tmp_pat
     for end in ends:
         assert end["record"].pop("seconds") > 0
     assert differing(*ends) == []
-    assert differing(*(plain.read(checkpoints.best(path)) for path in (whole, killed))) == []
+    assert differing(*(checkpoint_io.read(checkpoints.best(path)) for path in (whole, killed))) == []

@@ -9,11 +9,19 @@ import pytest
 
 pytest.importorskip("stable_baselines3")
 import policies
-from policies.training import checkpoint_io as plain
-from policies.training import checkpoints, export, folder, run, seeds, sweep, vector
+from policies.training import (
+    checkpoint_io,
+    checkpoints,
+    export,
+    folder,
+    parallel,
+    run,
+    run_set,
+    seeds,
+    sweep,
+    vector,
+)
 from policies.training import model as learners
-from policies.training import parallel as scatter
-from policies.training import run_set as study
 from policies.training.curve import Row
 from policies.training.evaluate import evaluate
 
@@ -43,7 +51,7 @@ def test_the_policy_of_a_run_acts_as_its_learner(small, tmp_path, engine):
     policy = policies.load(path / export.POLICY)
     envs = learners.normalised(config, vector.make(config, 0), training=False)
     model = learners.make(config, envs, 0)
-    best = plain.read(checkpoints.best(path))["learner"]
+    best = checkpoint_io.read(checkpoints.best(path))["learner"]
     learners.set_parameters(model, best)
     learners.set_normalisation(envs, best["normalisation"])
     seen = envs.venv.reset()
@@ -85,14 +93,27 @@ def test_a_run_stops_when_it_succeeds_twice(small, tmp_path, monkeypatch):
     )
     path = tmp_path / "run"
     folder.begin(path, small(budget=960, stop={"success": 0.9, "evaluations": 2}), 0)
-    result = run.train(path, progress=False)
+    with pytest.warns(UserWarning, match="before any learning"):
+        result = run.train(path, progress=False)
     assert (result["ended"], result["steps"]) == ("success", 96)
     assert [row.success for row in folder.read_curve(path)] == [1.0, 0.0, 1.0, 1.0]
 
 
+def test_a_stopping_rule_that_is_met_before_learning_warns(small, tmp_path, monkeypatch):
+    monkeypatch.setattr(
+        "policies.training.callback.evaluate",
+        lambda config, model, envs: Row(model.num_timesteps, 0.95, 0.0, 0.0, 1.0),
+    )
+    path = run_set.begin(small(stop={"success": 0.9, "evaluations": 1}), [0], [], tmp_path)
+    with pytest.warns(UserWarning, match=r"solves 95% .*stop\.success is 0\.9.*residual=null"):
+        text = run_set.train_all(path, progress=False)
+    assert "ended by success at step 0" in text
+    assert text.endswith("nothing was learned")
+
+
 def test_seeds_and_sources_run_side_by_side(small, tmp_path):
-    path = study.begin(small(budget=32), [0, 1], ["true", "none"], tmp_path)
-    text = study.train_all(path, jobs=1, progress=False)
+    path = run_set.begin(small(budget=32), [0, 1], ["true", "none"], tmp_path)
+    text = run_set.train_all(path, jobs=1, progress=False)
     names = {"true__0", "true__1", "none__0", "none__1"}
     assert {one.name for one in path.iterdir()} == {*names, "curves.png"}
     assert all(name in text for name in names)
@@ -101,7 +122,7 @@ def test_seeds_and_sources_run_side_by_side(small, tmp_path):
         name: name.partition("__")[0] for name in names
     }
     with pytest.raises(ValueError, match="seed = -1"):
-        study.begin(small(), [0, -1], [], tmp_path / "refused")
+        run_set.begin(small(), [0, -1], [], tmp_path / "refused")
     assert not (tmp_path / "refused").exists()
 
 
@@ -136,7 +157,7 @@ def test_the_area_rewards_learning_early(small):
 def test_ray_that_is_missing_is_asked_for(monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(ModuleNotFoundError, match=r"pip install 'slipgym\[ray\]'"):
-        scatter.run_all(divmod, [(7, 3)], ray="local")
+        parallel.run_all(divmod, [(7, 3)], ray="local")
 
 
 @pytest.mark.slow
@@ -144,7 +165,7 @@ def test_ray_does_the_same(tmp_path):
     pytest.importorskip("ray")
     code = (
         "from policies.training import scatter, seeds\n"
-        "print(scatter.run_all(seeds.training, [(1,), (2,)], ray='local'))"
+        "print(parallel.run_all(seeds.training, [(1,), (2,)], ray='local'))"
     )
     home = {**os.environ, "HOME": str(tmp_path)}  # Ray keeps a token there
     done = subprocess.run(

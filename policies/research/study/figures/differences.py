@@ -13,7 +13,7 @@ from policies.research.study.figures.marks import dot, panels, stripes
 from policies.research.study.tables import ENOUGH
 
 TRANSFER_MOST = 3.0
-"""Points of success that PyBullet may cost against the batched core."""
+"""Points of success that PyBullet may cost against the planar engine."""
 _NAMES = {"success": "of the episodes solved", "return": "of the return"}
 _KINDS = {"classic": (STYLE.palette[0], -0.17), "learned": (STYLE.palette[3], 0.17)}
 _SPAN = (-50.0, 200.0)
@@ -48,7 +48,7 @@ def plot_shares(shares: pd.DataFrame) -> Figure:
 
 
 def plot_transfer(transfer: pd.DataFrame) -> Figure:
-    """Success on PyBullet less that on the batched core, a row for each task, a column for each preset."""
+    """Success on PyBullet less that on the planar engine, a row for each task, a column for each preset."""
     tasks = distinct(transfer, "task")
     figure, columns = panels(distinct(transfer, "preset"), len(tasks), 0.5)
     for axes in columns:
@@ -59,7 +59,7 @@ def plot_transfer(transfer: pd.DataFrame) -> Figure:
             colour, shift = _KINDS[row["kind"]]
             dot(axes, row, "difference", tasks.index(row["task"]) + shift, colour)
         _at_least(axes, 2.0 * TRANSFER_MOST)
-        axes.set_xlabel("solved on PyBullet less on the batched core [points]")
+        axes.set_xlabel("solved on PyBullet less on the planar engine [points]")
     columns[0].set_yticks(range(len(tasks)), tasks)
     _legend(figure, transfer)
     return figure

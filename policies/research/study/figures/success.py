@@ -1,4 +1,4 @@
-"""Share of episodes solved, by what the policy is told."""
+"""Plots the success rate by friction information."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def plot_success(outcomes: pd.DataFrame, estimator: str) -> Figure:
 
     Args:
         outcomes: Of one world and preset, without changes.
-        estimator: The estimator judged.
+        estimator: The main estimator.
     """
-    judged = among(outcomes, "estimator", ("", estimator))
-    told = [(source, source, COLOURS[source]) for source in SOURCES if source in distinct(judged, "source")]
-    return _dots(judged.assign(told=judged["source"]), told)
+    main = among(outcomes, "estimator", ("", estimator))
+    known = [(source, source, COLOURS[source]) for source in SOURCES if source in distinct(main, "source")]
+    return _dots(main.assign(known=main["source"]), known)
 
 
 def plot_estimators(outcomes: pd.DataFrame, estimators: Sequence[str]) -> Figure:
@@ -38,29 +38,29 @@ def plot_estimators(outcomes: pd.DataFrame, estimators: Sequence[str]) -> Figure
         estimators: In order.
     """
     colours = [STYLE.palette[0], STYLE.palette[5], STYLE.palette[3], STYLE.palette[4], STYLE.palette[1]]
-    told = [(name, name, colours[k % len(colours)]) for k, name in enumerate(estimators)]
-    told.append(("true", "the truth", COLOURS["true"]))
+    known = [(name, name, colours[k % len(colours)]) for k, name in enumerate(estimators)]
+    known.append(("true", "the truth", COLOURS["true"]))
     names = [row["estimator"] or row["source"] for row in records(outcomes)]
-    return _dots(outcomes.assign(told=names), told)
+    return _dots(outcomes.assign(known=names), known)
 
 
-def _dots(outcomes: pd.DataFrame, told: Sequence[tuple[str, str, str]]) -> Figure:
-    """Dots by the column "told"; told holds its values, their names and colours."""
+def _dots(outcomes: pd.DataFrame, known: Sequence[tuple[str, str, str]]) -> Figure:
+    """Dots by the column "known"; known holds its values, their names and colours."""
     tasks, kinds = distinct(outcomes, "task"), distinct(outcomes, "kind")
     figure, columns = panels(kinds, len(tasks), 0.62)
     for axes, kind in zip(columns, kinds, strict=True):
         stripes(axes, len(tasks))
         for at, task in enumerate(tasks):
-            for k, (value, _, colour) in enumerate(told):
-                for row in records(where(outcomes, task=task, kind=kind, told=value)):
-                    height = at + 0.17 * (k - (len(told) - 1) / 2.0)
+            for k, (value, _, colour) in enumerate(known):
+                for row in records(where(outcomes, task=task, kind=kind, known=value)):
+                    height = at + 0.17 * (k - (len(known) - 1) / 2.0)
                     dot(axes, row, "success", height, colour, 100.0)
                     _drops(axes, row, height, colour)
         axes.set_xlim(0.0, 100.0)
         axes.set_xlabel("episodes solved [%]")
     columns[0].set_yticks(range(len(tasks)), tasks)
-    handles = [Line2D([], [], color=colour, marker="o", linewidth=2.2) for *_, colour in told]
-    figure.legend(handles, [name for _, name, _ in told], loc="outside upper right", ncols=len(told))
+    handles = [Line2D([], [], color=colour, marker="o", linewidth=2.2) for *_, colour in known]
+    figure.legend(handles, [name for _, name, _ in known], loc="outside upper right", ncols=len(known))
     return figure
 
 

@@ -1,4 +1,4 @@
-"""Films of the same episode under different knowledge."""
+"""Makes videos of the same episode with different friction information."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from policies.evaluation.frames import values, where
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import environment, make_policy
 from policies.play.watch import watch
-from policies.research.study.cells import Cell
+from policies.research.study.conditions import Condition
 from policies.research.study.config import Study
 from policies.research.study.store import fingerprint
 
@@ -21,11 +21,11 @@ SOURCES = ("none", "estimated", "true")
 
 
 @dataclass(frozen=True)
-class Film:
-    """An episode on film."""
+class Clip:
+    """A video of an episode."""
 
     source: str
-    """What the policy is told."""
+    """Friction information of the policy."""
     path: Path
     success: bool
     dropped: bool
@@ -33,60 +33,62 @@ class Film:
 
 @dataclass(frozen=True)
 class Scene:
-    """One episode of a task, a film for each source."""
+    """One episode of a task, a video for each source."""
 
     task: str
     kind: str
     seed: int
     chosen: str
     """Why this episode, in words."""
-    films: tuple[Film, ...]
+    clips: tuple[Clip, ...]
 
 
 def scene(
-    study: Study, task: str, cells: Sequence[Cell], episodes: pd.DataFrame, folder: Path
+    study: Study, task: str, conditions: Sequence[Condition], episodes: pd.DataFrame, folder: Path
 ) -> Scene | None:
-    """Films a task in the world judged by; learned policies, if they have every source.
+    """Makes videos of a task in the first world; learned policies, if they have every source.
 
     Args:
         study: The study.
         task: The task.
-        cells: All cells.
+        conditions: All conditions.
         episodes: The table of their episodes.
-        folder: Where films are kept; those that are there already are not made again.
+        folder: Where clips are kept; those that are there already are not made again.
 
     Returns:
-        The films, or None if no kind of policy has every source.
+        The clips, or None if no kind of policy has every source.
     """
     world = study.worlds[0].label
     here = [
-        cell
-        for cell in cells
-        if (cell.world.label, cell.task, cell.preset) == (world, task, study.presets[0])
-        and not cell.change.name
-        and cell.estimator == study.estimators[0]
+        condition
+        for condition in conditions
+        if (condition.world.label, condition.task, condition.preset) == (world, task, study.presets[0])
+        and not condition.change.name
+        and condition.estimator == study.estimators[0]
     ]
     for kind in ("learned", "classic"):
-        found = {(cell.source, cell.block): cell for cell in here if cell.kind == kind}
+        found = {
+            (condition.source, condition.block): condition for condition in here if condition.kind == kind
+        }
         if {source for source, _ in found} >= set(SOURCES):
             break
     else:
         return None
     rows = where(episodes, world=world, task=task, preset=study.presets[0], kind=kind, change="")
-    told = {source: _told(rows, source, study.estimators[0]) for source in SOURCES}
-    number, chosen = _choose(told["none"], told["estimated"])
-    films = []
+    parts = {source: _of_source(rows, source, study.estimators[0]) for source in SOURCES}
+    number, chosen = _choose(parts["none"], parts["estimated"])
+    clips = []
     for source in SOURCES:
-        row = told[source].iloc[number]
-        cell = found[source, int(row["block"])]
-        path = folder / f"{cell.name}__{fingerprint(cell, study)}__{row['seed']}.mp4"
+        row = parts[source].iloc[number]
+        condition = found[source, int(row["block"])]
+        path = folder / f"{condition.name}__{fingerprint(condition, study)}__{row['seed']}.mp4"
         if not path.exists():
-            _film(study, cell, int(row["episode"]), path)
-        films.append(Film(source, path, bool(row["success"]), bool(row["dropped"])))
-    return Scene(task, kind, int(told["none"]["seed"].iloc[number]), chosen, tuple(films))
+            _write_clip(study, condition, int(row["episode"]), path)
+        clips.append(Clip(source, path, bool(row["success"]), bool(row["dropped"])))
+    return Scene(task, kind, int(parts["none"]["seed"].iloc[number]), chosen, tuple(clips))
 
 
-def _told(rows: pd.DataFrame, source: str, estimator: str) -> pd.DataFrame:
+def _of_source(rows: pd.DataFrame, source: str, estimator: str) -> pd.DataFrame:
     return where(rows, source=source, estimator=estimator if source == "estimated" else "")
 
 
@@ -100,11 +102,11 @@ def _choose(none: pd.DataFrame, estimated: pd.DataFrame) -> tuple[int, str]:
     return 0, "the first of all, as the estimate saves no episode that is lost without it"
 
 
-def _film(study: Study, cell: Cell, number: int, path: Path) -> None:
-    experiment = cell.experiment(study)
+def _write_clip(study: Study, condition: Condition, number: int, path: Path) -> None:
+    experiment = condition.experiment(study)
     trial = plan(experiment)[number]
     watch(
-        cell.task,
+        condition.task,
         make_policy(experiment, trial),
         path,
         seed=trial.seed,

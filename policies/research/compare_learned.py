@@ -1,4 +1,8 @@
-"""The learned policies that come with slipgym beside the controllers; what knowing friction is worth."""
+"""Compares pretrained policies with controllers and the best constant grip, at the same rate of action.
+
+The benefit of knowing friction is measured against policies without friction information: each changes what a
+conservative controller does, which has no memory of earlier episodes. Another baseline gives another benefit.
+"""
 
 from __future__ import annotations
 
@@ -8,22 +12,25 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from policies.evaluation.files import checked, load_experiment
+from policies.evaluation.constant_grip import best_force
+from policies.evaluation.experiment import Experiment
+from policies.evaluation.files import load_experiment
 from policies.evaluation.frames import groups, values
 from policies.evaluation.plan import plan
+from policies.evaluation.rate import common_frame_skip
 from policies.evaluation.statistics import Interval, mean_interval, share_interval
 from policies.evaluation.trial import run_trials
-from policies.learned import shipped
-from slipgym.config.errors import unknown
-from slipgym.tasks import TASKS
+from policies.learned import pretrained
+from slipgym.config.yaml_model import validate
+from slipgym.tasks import find
 
 SOURCES = ("estimated", "true", "none")
-CONTROLLER, LEARNED = "controller", "learned"
-_OUTCOMES = {"success": "solved [%]", "return": "sum of rewards", "mean_force_N": "grip force [N]"}
+CONTROLLER, LEARNED, CONSTANT = "controller", "learned", "constant grip"
+_OUTCOMES = {"success": "success [%]", "return": "sum of rewards", "mean_force_N": "grip force [N]"}
 
 
 def trials_of(
-    key: str,
+    task: str,
     trials: int = 200,
     engine: str = "bullet",
     randomization: str | Mapping[str, Any] = "train",
@@ -33,7 +40,7 @@ def trials_of(
     """The controller and the learned policies of a task in the same episodes.
 
     Args:
-        key: Key of the task; the experiment "<key>_train" says which episodes.
+        task: As `slipgym.tasks.find` takes it; the experiment "<its key>_train" says which episodes.
         trials: Episodes, spread evenly over the experiment's combinations of options.
         engine: What moves the bodies.
         randomization: What is drawn per episode.
@@ -41,28 +48,35 @@ def trials_of(
         progress: Whether to show a progress bar.
 
     Returns:
-        A row per trial, as in an experiment's table; the column "policy" has CONTROLLER or LEARNED.
+        A row per trial, as in an experiment's table; the column "policy" has CONTROLLER, LEARNED, or CONSTANT
+        with its force. All act at the rate of the learned policies. The best constant grip is chosen on other
+        episodes (`policies.evaluation.constant_grip`).
 
     Raises:
-        ValueError: The task, or a value, is unknown.
+        ValueError: The task, or a value, is unknown, or the learned policies act at different rates.
     """
-    keys = [task.key for task in TASKS.values()]
-    if key not in keys:
-        raise ValueError(unknown("task", key, keys))
+    key = find(task).key
     base = load_experiment(f"{key}_train")
+    per_condition = -(-trials // len(base.combinations()))
+    names = {source: f"{key}_{source}" for source in SOURCES if f"{key}_{source}" in pretrained.folders()}
+    learned = [({"name": name, "label": LEARNED}, (source,)) for source, name in names.items()]
+    skip = common_frame_skip(names.values())
+    selection = base.model_copy(update={"trials": per_condition, "randomization": randomization})
+    force = best_force(selection, progress=progress)
+    constant = {"name": "constant_force", "parameters": {"force": force}, "label": f"{CONSTANT}, {force:g} N"}
     known = ({"name": key, "label": CONTROLLER}, ("estimated", "true"))
-    learned = [({"name": f"{key}_{s}", "label": LEARNED}, (s,)) for s in SOURCES if f"{key}_{s}" in shipped()]
     rows = []
-    for policy, sources in (known, *learned):
+    for policy, sources in (known, *learned, (constant, ("none",))):
         given = {
             **base.model_dump(exclude_unset=True),
             "policies": [policy],
             "friction": [{"source": source} for source in sources],
-            "trials": -(-trials // len(base.combinations())),
+            "trials": per_condition,
+            "frame_skip": skip,
             "engine": engine,
             "randomization": randomization,
         }
-        experiment = checked(given, key)
+        experiment = validate(given, Experiment, key)
         rows += [result.row for result in run_trials(experiment, plan(experiment), jobs, progress)]
     return pd.DataFrame(rows)
 
@@ -88,7 +102,7 @@ def outcomes(trials: pd.DataFrame) -> pd.DataFrame:
 
 
 def gains(trials: pd.DataFrame) -> pd.DataFrame:
-    """What the learned policies have over the controller that is told the same, over paired episodes.
+    """Differences of the learned policies to the controller with the same friction information, over pairs.
 
     Args:
         trials: From `trials_of`.
@@ -114,15 +128,15 @@ def gains(trials: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def worth(trials: pd.DataFrame) -> pd.DataFrame:
-    """What knowing friction is worth to the learned policies, over paired episodes.
+def benefit(trials: pd.DataFrame) -> pd.DataFrame:
+    """The benefit of knowing friction to the learned policies, over paired episodes.
 
     Args:
         trials: From `trials_of`; needs learned policies of all three sources.
 
     Returns:
-        For success [%] and the sum of rewards: what the policy that is told the truth has over the one that
-        is told nothing, what the one with estimates has over it, and the share of the former that this is;
+        For success [%] and the sum of rewards: the difference of the policy with true friction to the one
+        without friction information, that of the policy with estimates, and the latter over the former;
         no share where the former's 95 % interval holds 0.
     """
     learned = trials[trials["policy"] == LEARNED]

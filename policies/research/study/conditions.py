@@ -1,4 +1,4 @@
-"""The cells of a study: one policy, one thing it is told, one world, one block of episodes."""
+"""The conditions of a study: one policy, friction source, world and block of episodes."""
 
 from __future__ import annotations
 
@@ -10,16 +10,17 @@ from pathlib import Path
 from typing import Any
 
 from policies.evaluation.experiment import Experiment, PolicyChoice
-from policies.evaluation.files import checked
+from policies.evaluation.rate import common_frame_skip
 from policies.play.screenshot import own_policy
 from policies.research.study.changes import UNCHANGED, Change, changes
 from policies.research.study.config import BLOCKS_MAX, Study, World
 from policies.research.study.learned import TRAINED_WITH
+from slipgym.config.yaml_model import validate
 from slipgym.tasks import find
 
 
 @dataclass(frozen=True)
-class Cell:
+class Condition:
     """Episodes that differ in nothing but their seeds."""
 
     world: World
@@ -33,10 +34,12 @@ class Cell:
     """Its name, or the folder of a learned one."""
     block: int
     episodes: int
+    frame_skip: int = 1
+    """Control steps per action, the same for all policies of a task."""
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What tells its episodes from the others', for tables."""
+        """What distinguishes its episodes from the others', for tables."""
         return {
             "world": self.world.label,
             "task": self.task,
@@ -68,10 +71,11 @@ class Cell:
             "policies": [self._policy()],
             "friction": [{"source": self.source, "estimator": {"name": self.estimator}}],
             "engine": self.world.engine,
+            "frame_skip": self.frame_skip,
             "randomization": self.change.of(self.preset, self.task),
             "config": {**study.config, "contact": contact},
         }
-        return checked(values, self.name)
+        return validate(values, Experiment, self.name)
 
     def _policy(self) -> PolicyChoice:
         if self.kind == "classic" and self.source == "none":
@@ -84,15 +88,24 @@ class Cell:
         return PolicyChoice(name=self.policy, label=self.kind)
 
 
-def cells(study: Study, learned: Mapping[tuple[str, str], Sequence[Path]]) -> list[Cell]:
-    """Every cell of a study, in the order of the tables.
+def conditions(study: Study, learned: Mapping[tuple[str, str], Sequence[Path]]) -> list[Condition]:
+    """Every condition of a study, in the order of the tables.
 
     Args:
         study: The study.
         learned: Learned policies, by task and friction source of the training; what is not there is left out.
+
+    Raises:
+        ValueError: Learned policies of a task act at different rates: they cannot be compared.
     """
+    skips = {
+        task: common_frame_skip(
+            str(path) for (of, _), paths in learned.items() if of == task for path in paths
+        )
+        for task in study.tasks
+    }
     return [
-        Cell(world, task, preset, change, kind, source, estimator, policy, block, episodes)
+        Condition(world, task, preset, change, kind, source, estimator, policy, block, episodes, skips[task])
         for world, task, preset, change, sources, estimators, episodes in _places(study)
         for kind, source in itertools.product(study.kinds, sources)
         for estimator in (estimators if source == "estimated" else study.estimators[:1])

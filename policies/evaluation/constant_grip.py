@@ -1,0 +1,113 @@
+"""Finds the constant grip force that serves a task best: an opponent that reacts to nothing.
+
+A conservative controller without friction information is one baseline; the best constant force is another. It
+is tuned to the distribution of episodes, which nobody could do for a single new object.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from tqdm import tqdm
+
+from policies.controllers.constant_force import ConstantForcePolicy
+from policies.evaluation.experiment import Experiment
+from policies.evaluation.plan import seed
+from slipgym.tasks import find
+
+CANDIDATES = 24
+"""Forces that are tried, spaced geometrically over the gripper's range."""
+_SELECTION_SEED = 1000
+"""Added to the seed of an experiment: the force is chosen on other episodes than those it is evaluated on."""
+
+
+@dataclass(frozen=True)
+class Outcomes:
+    """How n episodes with a constant force went; arrays (n,)."""
+
+    force: float
+    """The command, per finger [N]."""
+    success: np.ndarray
+    """Whether the task succeeded."""
+    dropped: np.ndarray
+    """Whether the object was dropped."""
+    reward: np.ndarray
+    """Sum of rewards."""
+
+
+def best_force(experiment: Experiment, candidates: int = CANDIDATES, progress: bool = True) -> float:
+    """The force with the highest success rate, among equals with the largest mean sum of rewards.
+
+    Args:
+        experiment: Says which task and episodes; its policies and friction choices are not used. The episodes
+            have other seeds than its trials and run on the planar engine.
+        candidates: Forces to try.
+        progress: Whether to show a progress bar.
+
+    Returns:
+        Force per finger, rounded to 0.01 N [N].
+    """
+    chosen = experiment.model_copy(update={"seed": experiment.seed + _SELECTION_SEED})
+    gripper = experiment.environment_config().gripper
+    forces = np.geomspace(gripper.force_min, gripper.force_max, candidates).round(2)
+    found = run_constant(chosen, forces.tolist(), progress)
+    return max(found, key=lambda one: (one.success.mean(), one.reward.mean())).force
+
+
+def run_constant(experiment: Experiment, forces: Sequence[float], progress: bool = True) -> list[Outcomes]:
+    """Runs the episodes of an experiment with constant forces, in one vector environment.
+
+    Args:
+        experiment: As for `best_force`; here its own seeds count.
+        forces: Forces per finger [N].
+        progress: Whether to show a progress bar.
+    """
+    rows = [
+        (seed(experiment.seed, material, options, number), _options(material, options))
+        for material in experiment.materials
+        for options in experiment.combinations()
+        for number in range(experiment.trials)
+    ]
+    envs = gym.make_vec(
+        f"slipgym:{find(experiment.task).id}",
+        len(rows),
+        "vector_entry_point",
+        action_mode="grip_force",
+        friction_source="none",
+        sensors=experiment.sensors,
+        randomization=experiment.randomization,
+        config=dict(experiment.config),
+    )
+    try:
+        bar = tqdm(forces, desc=f"{experiment.task}, constant grip", unit="force", disable=not progress)
+        return [_run(envs, experiment, force, rows) for force in bar]
+    finally:
+        envs.close()
+
+
+def _run(
+    envs: Any, experiment: Experiment, force: float, rows: Sequence[tuple[int, Mapping[str, Any]]]
+) -> Outcomes:
+    policy = ConstantForcePolicy(force, dict(experiment.config))
+    seeds, options = zip(*rows, strict=True)
+    observations, _ = envs.reset(seed=list(seeds), options={"rows": list(options)})
+    n = len(rows)
+    running, reward = np.ones(n, bool), np.zeros(n)
+    success, dropped = np.zeros(n, bool), np.zeros(n, bool)
+    actions, _ = policy.predict(observations)
+    while running.any():
+        _, rewards, terminated, truncated, infos = envs.step(actions)
+        reward += np.where(running, rewards, 0.0)
+        ended = running & (terminated | truncated)
+        success[ended], dropped[ended] = infos["is_success"][ended], infos["dropped"][ended]
+        running &= ~ended
+    return Outcomes(force, success, dropped, reward)
+
+
+def _options(material: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of reset; a material that is drawn at random is left out."""
+    return {**options, **({} if material == "random" else {"material": material})}

@@ -1,0 +1,41 @@
+"""Accepts every spelling of a task's name: "linear_slip", "LinearSlip", its id, or "module:attribute"."""
+
+from __future__ import annotations
+
+import os
+
+from estimator.reference import is_reference
+from slipgym.config.yaml_model import names
+from slipgym.tasks import find
+
+
+def file_name(which: str | os.PathLike[str], folder: str) -> str | os.PathLike[str]:
+    """The name of a default file, where a task's name is given that is spelled in another way.
+
+    Args:
+        which: Name or path of a YAML file, or a task as `slipgym.tasks.find` takes it: "linear_slip",
+            "LinearSlip", "slipgym/LinearSlip-v0" or "module:attribute".
+        folder: Folder of the default configuration, "experiments" for example.
+
+    Returns:
+        The task's key if that is the name of a file in the folder; otherwise what was given.
+    """
+    if not isinstance(which, str) or which in names(folder):
+        return which
+    try:
+        key = find(which).key
+    except ValueError:
+        return which
+    return key if key in names(folder) else which
+
+
+def canonical(name: str) -> str:
+    """The name of a task, however it is spelled.
+
+    "module:attribute" stays as it is, since other processes have to import the module.
+
+    Raises:
+        ValueError: There is no such task.
+    """
+    task = find(name)
+    return name if is_reference(name) else task.name

@@ -1,0 +1,122 @@
+"""Writes files and folders whole or not at all, and waits until the disk has them.
+
+The content goes to a temporary name beside the target, is flushed to the disk, and is then renamed. After a
+crash the target holds its old content or the complete new one.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+SUFFIX = ".partial"
+"""Ends the temporary names; a process that was killed can leave such files behind."""
+
+
+def write(path: Path, data: bytes) -> None:
+    """Writes a file, in place of the one that may be there.
+
+    Args:
+        path: The file; its folder must exist.
+        data: Its whole content.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    partial = _partial(path)
+    try:
+        with partial.open("xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(partial, path)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+    _sync_folder(path.parent)
+
+
+@contextmanager
+def new_file(path: Path) -> Iterator[Path]:
+    """Gives a temporary path to write to, which replaces the target at the end of the `with` block.
+
+    It has the target's name, and so its suffixes. An error in the block leaves nothing behind; neither does a
+    block that writes nothing.
+
+    Args:
+        path: The file; its folder is made if it does not exist.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    folder = _partial(path)
+    folder.mkdir()
+    try:
+        partial = folder / path.name
+        yield partial
+        if partial.exists():
+            _sync(partial)
+            os.replace(partial, path)
+            _sync_folder(path.parent)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def new_folder(path: Path) -> Iterator[Path]:
+    """Gives a temporary folder to fill, which takes its place at the end of the `with` block.
+
+    An error in the block leaves nothing behind.
+
+    Args:
+        path: Where the folder shall appear.
+
+    Raises:
+        FileExistsError: Something is there already.
+        OSError: It cannot be written.
+    """
+    if path.exists():
+        raise FileExistsError(f"{path} exists already")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = _partial(path)
+    partial.mkdir()
+    try:
+        yield partial
+        for each in partial.rglob("*"):
+            _sync_folder(each) if each.is_dir() else _sync(each)
+        _sync_folder(partial)
+        partial.rename(path)
+    except BaseException:
+        shutil.rmtree(partial, ignore_errors=True)
+        raise
+    _sync_folder(path.parent)
+
+
+def _partial(path: Path) -> Path:
+    """A name beside the target that nobody else uses."""
+    return path.with_name(f".{path.name}.{uuid.uuid4().hex}{SUFFIX}")
+
+
+def _sync(path: Path) -> None:
+    """Waits until the disk has a file's content."""
+    descriptor = os.open(path, os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _sync_folder(path: Path) -> None:
+    """Waits until the disk has the names in a folder; Windows does so by itself."""
+    if os.name == "nt":
+        return
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,68 @@
+"""Reads a YAML file into a validated model, with errors that name the file, the key and what is valid."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from slipgym.config import files
+from slipgym.config.errors import SourceOf, explain, unknown
+
+Choice = str | os.PathLike[str] | Mapping[str, Any]
+"""The name of a file that comes with slipgym, the path of a YAML file, or a mapping of the same shape."""
+M = TypeVar("M", bound=BaseModel)
+
+
+def names(folder: str) -> list[str]:
+    """Names of the YAML files in a folder of the default configuration, such as "randomization"."""
+    return sorted(path.stem for path in (files.folder() / folder).glob("*.yaml"))
+
+
+def read_model(choice: Choice, model: type[M], folder: str, kind: str) -> M:
+    """Reads a model.
+
+    Args:
+        choice: One of `names(folder)`, the path of a YAML file, or a mapping of the same shape.
+        model: What it is validated against.
+        folder: Folder of the default configuration whose files go by name.
+        kind: How errors call what is read, "experiment" for example.
+
+    Raises:
+        FileNotFoundError: It looks like a path, but there is no such file.
+        ValueError: The name is unknown, or a key or value is wrong; a line for each fault says where it
+            stands and what is valid.
+    """
+    if isinstance(choice, Mapping):
+        return validate(choice, model, f"{kind} argument")
+    if not isinstance(choice, str | os.PathLike):
+        known = ", ".join(names(folder))
+        raise ValueError(f"{kind} = {choice!r} must be a name, a path or a mapping; names: {known}")
+    path = Path(choice)
+    if path.suffix not in (".yaml", ".yml"):
+        if str(choice) not in names(folder):
+            raise ValueError(unknown(kind, str(choice), names(folder)))
+        path = files.folder() / folder / f"{choice}.yaml"
+    return validate(files.read(path), model, os.fspath(path))
+
+
+def validate(values: Mapping[str, Any], model: type[M], source: str | SourceOf) -> M:
+    """Makes a model from plain values.
+
+    Args:
+        values: As in a YAML file.
+        model: What they are validated against.
+        source: Where they come from, for the message of an error; or a function that says so for a key's
+            location.
+
+    Raises:
+        ValueError: A key or value is wrong; a line for each fault.
+    """
+    source_of = source if callable(source) else lambda _: source
+    try:
+        return model.model_validate(dict(values))
+    except ValidationError as error:
+        raise explain(error, source_of, model) from error

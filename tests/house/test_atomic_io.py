@@ -1,0 +1,89 @@
+"""Files and folders are written whole or not at all."""
+
+import os
+import stat
+from pathlib import Path
+
+import pytest
+
+from slipgym import atomic_io
+
+
+def test_a_file_replaces_the_old_one(tmp_path):
+    for content in (b"old", b"new"):
+        atomic_io.write(tmp_path / "file", content)
+        assert (tmp_path / "file").read_bytes() == content
+    assert os.listdir(tmp_path) == ["file"]
+
+
+@pytest.mark.parametrize("call", ["fsync", "replace"])
+def test_a_failure_leaves_the_old_file_and_no_other(tmp_path, monkeypatch, call):
+    atomic_io.write(tmp_path / "file", b"old")
+
+    def full(*_, **__):
+        raise OSError("disk full")
+
+    monkeypatch.setattr(os, call, full)
+    with pytest.raises(OSError, match="disk full"):
+        atomic_io.write(tmp_path / "file", b"new")
+    assert os.listdir(tmp_path) == ["file"]
+    assert (tmp_path / "file").read_bytes() == b"old"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no folders to flush")
+def test_the_folder_is_flushed_after_the_file_took_its_place(tmp_path, monkeypatch):
+    flushed, fsync = [], os.fsync
+
+    def noted(descriptor):
+        kind = "folder" if stat.S_ISDIR(os.fstat(descriptor).st_mode) else "file"
+        flushed.append((kind, (tmp_path / "made").exists()))
+        fsync(descriptor)
+
+    def folder():
+        with atomic_io.new_folder(tmp_path / "made") as path:
+            (path / "a").write_text("a")
+
+    def file():
+        with atomic_io.new_file(tmp_path / "made") as path:
+            path.write_text("a")
+
+    monkeypatch.setattr(os, "fsync", noted)
+    for write, expected in (
+        (lambda: atomic_io.write(tmp_path / "made", b"a"), [("file", False), ("folder", True)]),
+        (file, [("file", True), ("folder", True)]),
+    ):
+        flushed.clear()
+        write()
+        assert flushed == expected
+    (tmp_path / "made").unlink()
+    flushed.clear()
+    folder()
+    assert flushed == [("file", False), ("folder", False), ("folder", True)]
+
+
+def test_a_block_that_fails_leaves_nothing(tmp_path):
+    for make in (atomic_io.new_file, atomic_io.new_folder):
+
+        def fail(make=make):
+            with make(tmp_path / "made"):
+                raise RuntimeError("midway")
+
+        with pytest.raises(RuntimeError, match="midway"):
+            fail()
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_file_keeps_its_suffixes_and_the_usual_permissions(tmp_path):
+    with atomic_io.new_file(tmp_path / "deep" / "a.csv.gz") as path:
+        assert path.name == "a.csv.gz"
+        path.touch()
+    plain = tmp_path / "plain"
+    plain.touch()
+    atomic_io.write(tmp_path / "written", b"")
+    modes = {stat.S_IMODE(path.stat().st_mode) for path in (plain, tmp_path / "written")}
+    assert len(modes) == 1
+
+
+def test_a_folder_takes_nobodys_place(tmp_path):
+    with pytest.raises(FileExistsError), atomic_io.new_folder(Path(tmp_path)):
+        pass

@@ -1,0 +1,60 @@
+"""Policies are compared at the same rate of action."""
+
+import numpy as np
+import pytest
+
+from policies.evaluation import rate
+from policies.evaluation.constant_grip import best_force, run_constant
+from policies.evaluation.experiment import Experiment
+from policies.evaluation.plan import plan
+from policies.evaluation.trial import environment, make_policy, run_trial
+from slipgym.config.yaml_model import validate
+
+
+def experiment(*names, **changes):
+    values = {
+        "name": "rates",
+        "task": "RotationalSlip",
+        "trials": 2,
+        "engine": "planar",
+        "policies": [{"name": name} for name in names],
+        "friction": [{"source": "true"}],
+        "options": {"duration": 0.2, "settle": 0.05, "hold": 0.05},
+    }
+    return validate({**values, **changes}, Experiment, "test")
+
+
+def test_a_controller_acts_as_often_as_the_learned_policy_beside_it():
+    alone = experiment("rotational_slip")
+    beside = experiment("rotational_slip", "rotational_slip_true")
+    assert (alone.steps_per_action, beside.steps_per_action) == (1, 2)
+    for trial in plan(beside):
+        assert environment(beside, trial)["frame_skip"] == 2
+    trial = plan(beside)[0]
+    assert make_policy(beside, trial).config.physics.control_rate == 60
+    assert make_policy(alone, plan(alone)[0]).config.physics.control_rate == 120
+    steps = {run_trial(beside, each).row["steps"] for each in plan(beside)}
+    assert len(steps) == 1
+
+
+def test_different_rates_are_refused():
+    with pytest.raises(ValueError, match=r"same rate of action only.*rotational_slip_true 2.*asked for: 1"):
+        experiment("rotational_slip_true", frame_skip=1)
+    with pytest.raises(ValueError, match="same rate of action only"):
+        rate.common_frame_skip(["hold_true", "planar_slip_true"])
+    assert rate.common_frame_skip(["hold", "constant_force"]) == 1
+
+
+def test_constant_grips_run_in_the_episodes_of_the_experiment():
+    each = experiment(
+        "constant_force", task="Hold", options={"duration": 0.5}, trials=3, randomization="train"
+    )
+    (weak, firm) = run_constant(each, [0.6, 20.0], progress=False)
+    assert weak.dropped.all()
+    assert firm.success.all()
+    force = best_force(each, 4, progress=False)
+    assert 0.6 < force <= 25.0
+    choice = {"name": "constant_force", "parameters": {"force": 20.0}}
+    same = validate({**dict(each), "policies": [choice]}, Experiment, "test")
+    rewards = [run_trial(same, trial).row["return"] for trial in plan(same)]
+    np.testing.assert_allclose(firm.reward, rewards, rtol=1e-6)

@@ -1,0 +1,99 @@
+"""Every command line takes every spelling of a task's name, and its help shows the canonical one."""
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from policies import command
+from policies.evaluation import load_experiment
+
+ROOT = Path(__file__).resolve().parents[2]
+SPELLINGS = ["hold", "Hold", "slipgym/Hold-v0", "slipgym.tasks.hold:TASK"]
+spelled = pytest.mark.parametrize("name", SPELLINGS)
+SHORT = ["--option", "duration=0.2"]
+
+
+def script(name):
+    """A script as a module."""
+    spec = importlib.util.spec_from_file_location(f"script_{name}", ROOT / "scripts" / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def called(name, *arguments):
+    """What a script prints."""
+    done = CliRunner().invoke(script(name).app, [*map(str, arguments)], catch_exceptions=False)
+    assert done.exit_code == 0, done.output
+    return done.output
+
+
+@spelled
+def test_train(name):
+    from policies.training.command import chosen
+
+    expected = chosen("hold", {}, [])
+    assert chosen(name, {}, []) == chosen(None, {"task": name}, []) == expected
+    assert chosen("hold", {}, [f"task={name}"]) == expected
+
+
+@spelled
+def test_evaluate_and_compare_engines(name):
+    assert load_experiment(name) == load_experiment("hold")
+
+
+@spelled
+def test_study(name):
+    from policies.research.study import load_study, narrowed
+
+    assert narrowed(load_study("quick"), tasks=[name]).tasks[0] in ("Hold", name)
+
+
+@spelled
+def test_compare_learned(name, monkeypatch):
+    from policies.research import compare_learned
+
+    seen = []
+    monkeypatch.setattr(compare_learned, "best_force", lambda experiment, progress: 5.0)
+    monkeypatch.setattr(
+        compare_learned, "run_trials", lambda experiment, *_: seen.append(experiment.task) or []
+    )
+    compare_learned.trials_of(name, 2)
+    assert set(seen) == {"Hold"}
+
+
+@spelled
+def test_play_and_record(name, tmp_path):
+    assert "held" not in called("play", name, "--video", tmp_path / "a.gif", *SHORT)
+    assert (tmp_path / "a.gif").exists()
+    assert "a.csv" in called("record", name, tmp_path / "a.csv", *SHORT)
+    called("record", name, "hold", tmp_path / "b.csv", *SHORT)
+    called("record", name, tmp_path / "c.csv", "--policy", "hold", *SHORT)
+    contents = {(tmp_path / f"{file}.csv").read_bytes() for file in "abc"}
+    assert len(contents) == 1
+
+
+@spelled
+def test_slipgym_evaluate(name, capsys):
+    command.main(["constant_force", "--task", name, "--episodes", "1", "--set", "engine=planar"])
+    assert "of 1, dropped 0" in capsys.readouterr().out
+
+
+def test_settings_of_the_environment_add_up(capsys):
+    """Two --set are both heard."""
+    with pytest.raises(SystemExit):
+        command.main(["hold", "--episodes", "1", "--set", "engine=wrong", "--set", "material=wood"])
+    assert "wrong" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "name", ["train", "evaluate", "play", "record", "study", "compare_learned", "compare_engines"]
+)
+def test_help_shows_the_canonical_name(name):
+    text = " ".join(called(name, "--help").split())
+    assert "linear_slip" in text
+    assert "LinearSlip" in text
