@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
 from slipgym.config.base import Frozen, as_tuple
 from slipgym.config.distribution import Distribution, within
-from slipgym.config.disturbances import AnyDisturbance
+from slipgym.config.disturbances import AnyDisturbance, renamed
 from slipgym.config.errors import unknown
 
 PUSHES_MAX = 16
@@ -77,7 +77,7 @@ class Ranges(Frozen):
     slip_latency: Annotated[Distribution | None, within(0.0, 6.0)] = Field(
         default=None, description="Age of a slip velocity when it arrives, rounded [samples]"
     )
-    disturbances: Annotated[tuple[AnyDisturbance, ...], BeforeValidator(as_tuple)] = Field(
+    disturbances: Annotated[tuple[AnyDisturbance, ...], BeforeValidator(renamed)] = Field(
         default=(), description="What can happen during an episode"
     )
 
