@@ -27,14 +27,14 @@ def read_model(choice: Choice, model: type[M], folder: str, kind: str) -> M:
 
     Args:
         choice: One of `names(folder)`, the path of a YAML file, or a mapping of the same shape.
-        model: What it is validated against.
+        model: The class to validate against.
         folder: Folder of the default configuration whose files go by name.
-        kind: How errors call what is read, "experiment" for example.
+        kind: Name of the kind of model in error messages, "experiment" for example.
 
     Raises:
         FileNotFoundError: It looks like a path, but there is no such file.
-        ValueError: The name is unknown, or a key or value is wrong; a line for each fault says where it
-            stands and what is valid.
+        ValueError: The name is unknown, or a key or value is wrong; a line for each fault names its place and
+            the valid values.
     """
     if isinstance(choice, Mapping):
         return validate(choice, model, f"{kind} argument")
@@ -54,9 +54,8 @@ def validate(values: Mapping[str, Any], model: type[M], source: str | SourceOf) 
 
     Args:
         values: As in a YAML file.
-        model: What they are validated against.
-        source: Where they come from, for the message of an error; or a function that says so for a key's
-            location.
+        model: The class to validate against.
+        source: Origin of the values, for error messages; or a function that returns it for a key's location.
 
     Raises:
         ValueError: A key or value is wrong; a line for each fault.

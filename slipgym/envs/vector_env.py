@@ -200,7 +200,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self.simulation.close()
 
     def _begin(self, rows: np.ndarray, asked: RowOptions | None = None) -> None:
-        """Start episodes; if options contradict each other, environments before the faulty one have started."""
+        """Start episodes; environments before one whose options contradict each other have started."""
         if asked is not None:
             for i in rows.tolist():
                 self._begin_together(np.array([i]), asked.of(i))

@@ -47,11 +47,7 @@ NOT_YET = {
     "docs/design.md",
     "docs/leaderboard.md",
     "docs/rendering.md",
-    "slipgym/config",
-    "slipgym/envs",
-    "slipgym/rendering",
     "slipgym/validation",
-    "slipgym/vector_checker",
     "slipgym/world",
 }
 
