@@ -32,7 +32,7 @@ pitches by `turn` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
 ## Episode End
 
 - Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: settle + duration + hold have passed (6.5 s, 780 steps). The environment truncates by
+- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps). The environment truncates by
   itself; no `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never

@@ -19,8 +19,8 @@ the gripper's limits apply to the sum.
 ## Episode End
 
 - Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` has passed (8 s, 960 steps). The environment truncates by itself; no `TimeLimit`
-  is needed.
+- Truncated: `duration` has passed (8 s, 960 control steps). The environment truncates by itself; no
+  `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped and never
 slipped further than `tolerance` (2 mm).

@@ -17,8 +17,8 @@ of a count in the slip sensors. Grip and sensors run for six control steps befor
 ## Episode End
 
 - Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `settle` + `duration` + `hold` have passed (0.5 s + 5 s + 1 s, 780 steps). The environment
-  truncates by itself; no `TimeLimit` is needed.
+- Truncated: `settle` + `duration` + `hold` have passed (0.5 s + 5 s + 1 s, 780 control steps). The
+  environment truncates by itself; no `TimeLimit` is needed.
 
 Success (`info["is_success"]`): at the end of the last step the distance slid is within `tolerance` (2
 mm) of `distance`, and the box was not dropped.

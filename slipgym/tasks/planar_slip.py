@@ -53,7 +53,7 @@ sensors run for six control steps before time 0.
 ## Episode End
 
 - Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` has passed (12 s, 1440 steps). The environment truncates by itself; no
+- Truncated: `duration` has passed (12 s, 1440 control steps). The environment truncates by itself; no
   `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, the box was not dropped, and at the end

@@ -30,7 +30,7 @@ Grip and sensors run for six control steps before time 0. The reference rests fo
 ## Episode End
 
 - Terminated: the bar is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: settle + duration + hold have passed (6.5 s, 780 steps). The environment truncates by
+- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps). The environment truncates by
   itself; no `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, -theta is

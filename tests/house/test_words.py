@@ -47,8 +47,6 @@ NOT_YET = {
     "docs/design.md",
     "docs/leaderboard.md",
     "docs/rendering.md",
-    "slipgym/validation",
-    "slipgym/world",
 }
 
 
