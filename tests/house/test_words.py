@@ -47,12 +47,6 @@ NOT_YET = {
     "docs/design.md",
     "docs/leaderboard.md",
     "docs/rendering.md",
-    "slipgym/config",
-    "slipgym/envs",
-    "slipgym/rendering",
-    "slipgym/validation",
-    "slipgym/vector_checker",
-    "slipgym/world",
 }
 
 
