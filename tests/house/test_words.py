@@ -44,9 +44,6 @@ FOLDERS = sorted(
     }
 )
 NOT_YET = {
-    "docs/design.md",
-    "docs/leaderboard.md",
-    "docs/rendering.md",
     "slipgym/config",
     "slipgym/envs",
     "slipgym/rendering",
