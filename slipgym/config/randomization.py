@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
@@ -12,13 +12,12 @@ from slipgym.config.base import Frozen, as_tuple
 from slipgym.config.distribution import Distribution, within
 from slipgym.config.disturbances import AnyDisturbance, renamed
 from slipgym.config.errors import unknown
+from slipgym.contact.pressure import PressureName
 
 PUSHES_MAX = 16
 
 Names = Annotated[tuple[str, ...], Field(min_length=1), BeforeValidator(as_tuple)]
-Pressures = Annotated[
-    tuple[Literal["uniform", "hertz", "rim"], ...], Field(min_length=1), BeforeValidator(as_tuple)
-]
+Pressures = Annotated[tuple[PressureName, ...], Field(min_length=1), BeforeValidator(as_tuple)]
 
 
 class Ranges(Frozen):
