@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
-from pydantic import BeforeValidator, Field, field_validator, model_validator
+from pydantic import BeforeValidator, Field, create_model, field_validator, model_validator
 
 import policies
 from policies.learned.description import Residual
@@ -15,8 +15,7 @@ from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO
 from slipgym.config import load, load_randomization
 from slipgym.config.base import Count, Frozen, NonNegative, Positive, as_tuple
 from slipgym.config.errors import unknown
-from slipgym.envs.actions import ACTION_MODES
-from slipgym.envs.arguments import DEFAULT_ESTIMATOR, FRICTION_SOURCES
+from slipgym.envs.arguments import CommonArguments, fields
 from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import TASKS, find
 
@@ -28,33 +27,29 @@ def trainable() -> list[str]:
     return [task.name for task in TASKS.values() if task.id in ENVIRONMENTS]
 
 
-class Environment(Frozen):
-    """Keyword arguments of the environment; see its page in docs/environments/."""
+_DIFFERENT: dict[str, Any] = {"randomization": "train", "config": {}}
+"""Arguments with another default than that of the environment."""
+_TYPES: dict[str, Any] = {
+    "observation_mode": Literal["flat", "sensor"],
+    "randomization": str | Mapping[str, Any],
+    "config": Mapping[str, Any],
+}
+"""Arguments of another type: a training file holds plain data, and a policy gets no privileged group."""
+_FIELDS: dict[str, Any] = {
+    name: (
+        _TYPES.get(name, field.annotation),
+        Field(default=_DIFFERENT.get(name, field.default), ge=field.least, description=field.text),
+    )
+    for name, field in fields(CommonArguments).items()
+}
+_Arguments: Any = create_model("_Arguments", __base__=Frozen, **_FIELDS)
 
-    friction_source: str = Field(
-        default="estimated", description="Friction information of the observation [-]"
-    )
-    estimator: str | Mapping[str, Any] = Field(default=DEFAULT_ESTIMATOR, description="Its estimator [-]")
-    contact: Literal["ellipsoid", "distributed"] = Field(
-        default="ellipsoid", description="Friction model [-]"
-    )
-    sensors: str = Field(default="realistic", description="Sensor preset [-]")
-    material: str = Field(default="random", description='Material, or "random" [-]')
-    action_mode: str | None = Field(
-        default=None, description="What an action means; null: the task's own [-]"
-    )
-    observation_mode: Literal["flat", "sensor"] = Field(default="flat", description="What is observed [-]")
-    history: int = Field(default=0, ge=0, description="Earlier observations that come along [-]")
-    randomization: str | Mapping[str, Any] = Field(default="train", description="Drawn per episode [-]")
-    frame_skip: Count = Field(default=1, description="Samples per step [-]")
-    config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
+
+class Environment(_Arguments):
+    """Keyword arguments of the environment, as `slipgym.envs.arguments` declares them."""
 
     @model_validator(mode="after")
     def _known(self) -> Self:
-        if self.friction_source not in FRICTION_SOURCES:
-            raise ValueError(unknown("friction source", self.friction_source, FRICTION_SOURCES))
-        if self.action_mode not in (None, *ACTION_MODES):
-            raise ValueError(unknown("action mode", self.action_mode, ACTION_MODES))
         load_randomization(self.randomization)
         materials = ("random", *load(self.config, self.sensors, self.contact).materials)
         if self.material not in materials:

@@ -10,6 +10,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from slipgym import atomic_io
+
 LIBRARIES = ("gymnasium", "numba", "numpy", "pybullet")
 
 
@@ -72,9 +74,4 @@ def write(path: Path, figures: Sequence[Figure], *more: str) -> None:
         "machine": machine(*more),
         "figures": [{**figure._asdict(), "met": figure.met} for figure in figures],
     }
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
-    with partial.open("w", encoding="utf-8") as file:
-        json.dump(content, file, indent=2)
-        file.flush()
-        os.fsync(file.fileno())
-    partial.replace(path)
+    atomic_io.write(path, json.dumps(content, indent=2).encode())

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+import warnings
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -60,10 +62,10 @@ class FrictionJump(Disturbance):
     factor: Factor = Field(description="mu_s and mu_c after over before")
 
 
-class Patch(Disturbance):
+class SurfaceRegion(Disturbance):
     """A region of the object's surface has different friction."""
 
-    kind: Literal["patch"] = Field(description="A name")
+    kind: Literal["surface_region"] = Field(description="A name")
     start: Annotated[Distribution, within(0.0, 1.0)] = Field(
         description="Distance from the grasp at which it begins [m]"
     )
@@ -71,4 +73,21 @@ class Patch(Disturbance):
     factor: Factor = Field(description="mu_s and mu_c on it over elsewhere")
 
 
-AnyDisturbance = Annotated[Push | Shake | MassChange | FrictionJump | Patch, Field(discriminator="kind")]
+AnyDisturbance = Annotated[
+    Push | Shake | MassChange | FrictionJump | SurfaceRegion, Field(discriminator="kind")
+]
+"""A disturbance of any kind."""
+
+
+def renamed(values: Any) -> Any:
+    """Disturbances as given, those of kind "patch" under the kind's new name "surface_region"."""
+    if not isinstance(values, list | tuple):
+        return values
+    return tuple(_renamed(value) for value in values)
+
+
+def _renamed(value: Any) -> Any:
+    if not isinstance(value, Mapping) or value.get("kind") != "patch":
+        return value
+    warnings.warn("disturbance kind 'patch' is now 'surface_region'", DeprecationWarning, stacklevel=2)
+    return {**value, "kind": "surface_region"}

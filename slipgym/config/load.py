@@ -6,12 +6,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from slipgym.config import files
-from slipgym.config.errors import SourceOf, explain, unknown
+from slipgym.config.errors import unknown
 from slipgym.config.randomization import Randomization
 from slipgym.config.root import Config
+from slipgym.config.yaml_model import read_model, validate
 
 Overrides = str | os.PathLike[str] | Mapping[str, Any]
 
@@ -36,15 +35,17 @@ def load(
     if sensors not in names("sensors"):
         raise ValueError(unknown("sensors", sensors, names("sensors")))
     defaults, sources = _files(sensors)
-    config = _validate(defaults, lambda location: sources.get(location[0] if location else "", "defaults"))
+    config = validate(
+        defaults, Config, lambda location: sources.get(location[0] if location else "", "defaults")
+    )
     if contact is not None:
         defaults = merge(defaults, {"contact": {"model": contact}})
-        config = _validate(defaults, lambda _: "contact argument")
+        config = validate(defaults, Config, "contact argument")
     if overrides is None:
         return config
     source, values = read_overrides(overrides)
     common = {key: value for key, value in values.items() if key != "tasks"}
-    return _validate(merge(defaults, common), lambda _: source)
+    return validate(merge(defaults, common), Config, source)
 
 
 def read_overrides(overrides: Overrides) -> tuple[str, Mapping[str, Any]]:
@@ -74,25 +75,7 @@ def load_randomization(choice: Overrides = "none", tasks: Iterable[str] | None =
         ValueError: The preset or a key is unknown, or a value is not allowed. The message names the file or
             argument, the dotted key, the value, and the valid values.
     """
-    source = "randomization argument"
-    if isinstance(choice, Mapping):
-        values = choice
-    elif isinstance(choice, str | os.PathLike):
-        path = Path(choice)
-        if path.suffix not in (".yaml", ".yml"):
-            if choice not in names("randomization"):
-                raise ValueError(unknown("randomization", choice, names("randomization")))
-            path = files.folder() / "randomization" / f"{choice}.yaml"
-        source, values = os.fspath(path), files.read(path)
-    else:
-        raise ValueError(
-            f"randomization = {choice!r} must be a preset, a path or a mapping; "
-            f"presets: {', '.join(names('randomization'))}"
-        )
-    try:
-        return Randomization.model_validate(values, context={"tasks": tasks})
-    except ValidationError as error:
-        raise explain(error, lambda _: source, Randomization) from error
+    return read_model(choice, Randomization, "randomization", "randomization", {"tasks": tasks})
 
 
 def names(kind: str) -> tuple[str, ...]:
@@ -129,10 +112,3 @@ def merge(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, An
             value = merge(old if isinstance(old, Mapping) else {}, value)
         merged[key] = value
     return merged
-
-
-def _validate(values: dict[str, Any], source_of: SourceOf) -> Config:
-    try:
-        return Config.model_validate(values)
-    except ValidationError as error:
-        raise explain(error, source_of, Config) from error

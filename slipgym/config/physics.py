@@ -5,6 +5,7 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 
 from slipgym.config.base import Count, Frozen, NonNegative, Points, Positive
+from slipgym.contact.pressure import PressureName
 
 
 class Material(Frozen):
@@ -36,7 +37,7 @@ class ContactConfig(Frozen):
     """
 
     model: Literal["ellipsoid", "distributed"] = Field(description="Friction model of the pads: a name")
-    pressure: Literal["uniform", "hertz", "rim"] = Field(
+    pressure: PressureName = Field(
         description="Pressure over the patch: constant, Hertz's, or on its edge alone"
     )
     cells: int = Field(

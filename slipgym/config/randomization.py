@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
 from slipgym.config.base import Frozen, as_tuple
 from slipgym.config.distribution import Distribution, within
-from slipgym.config.disturbances import AnyDisturbance
+from slipgym.config.disturbances import AnyDisturbance, renamed
 from slipgym.config.errors import unknown
+from slipgym.contact.pressure import PressureName
 
 PUSHES_MAX = 16
 
 Names = Annotated[tuple[str, ...], Field(min_length=1), BeforeValidator(as_tuple)]
-Pressures = Annotated[
-    tuple[Literal["uniform", "hertz", "rim"], ...], Field(min_length=1), BeforeValidator(as_tuple)
-]
+Pressures = Annotated[tuple[PressureName, ...], Field(min_length=1), BeforeValidator(as_tuple)]
 
 
 class Ranges(Frozen):
@@ -79,7 +78,7 @@ class Ranges(Frozen):
     slip_latency: Annotated[Distribution | None, within(0.0, 6.0)] = Field(
         default=None, description="Latency of the slip velocity, rounded [samples]"
     )
-    disturbances: Annotated[tuple[AnyDisturbance, ...], BeforeValidator(as_tuple)] = Field(
+    disturbances: Annotated[tuple[AnyDisturbance, ...], BeforeValidator(renamed)] = Field(
         default=(), description="Disturbances during an episode"
     )
 

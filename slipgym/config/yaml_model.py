@@ -22,7 +22,9 @@ def names(folder: str) -> list[str]:
     return sorted(path.stem for path in (files.folder() / folder).glob("*.yaml"))
 
 
-def read_model(choice: Choice, model: type[M], folder: str, kind: str) -> M:
+def read_model(
+    choice: Choice, model: type[M], folder: str, kind: str, context: Mapping[str, Any] | None = None
+) -> M:
     """Reads a model.
 
     Args:
@@ -30,6 +32,7 @@ def read_model(choice: Choice, model: type[M], folder: str, kind: str) -> M:
         model: The class to validate against.
         folder: Folder of the default configuration whose files go by name.
         kind: Name of the kind of model in error messages, "experiment" for example.
+        context: Passed to the model's validators.
 
     Raises:
         FileNotFoundError: It looks like a path, but there is no such file.
@@ -37,7 +40,7 @@ def read_model(choice: Choice, model: type[M], folder: str, kind: str) -> M:
             the valid values.
     """
     if isinstance(choice, Mapping):
-        return validate(choice, model, f"{kind} argument")
+        return validate(choice, model, f"{kind} argument", context)
     if not isinstance(choice, str | os.PathLike):
         known = ", ".join(names(folder))
         raise ValueError(f"{kind} = {choice!r} must be a name, a path or a mapping; names: {known}")
@@ -46,22 +49,30 @@ def read_model(choice: Choice, model: type[M], folder: str, kind: str) -> M:
         if str(choice) not in names(folder):
             raise ValueError(unknown(kind, str(choice), names(folder)))
         path = files.folder() / folder / f"{choice}.yaml"
-    return validate(files.read(path), model, os.fspath(path))
+    return validate(files.read(path), model, os.fspath(path), context)
 
 
-def validate(values: Mapping[str, Any], model: type[M], source: str | SourceOf) -> M:
+def validate(
+    values: Mapping[str, Any],
+    model: type[M],
+    source: str | SourceOf,
+    context: Mapping[str, Any] | None = None,
+    prefix: tuple[str, ...] = (),
+) -> M:
     """Makes a model from plain values.
 
     Args:
         values: As in a YAML file.
         model: The class to validate against.
         source: Origin of the values, for error messages; or a function that returns it for a key's location.
+        context: Passed to the model's validators.
+        prefix: Location of the model in a larger document, for error messages.
 
     Raises:
         ValueError: A key or value is wrong; a line for each fault.
     """
     source_of = source if callable(source) else lambda _: source
     try:
-        return model.model_validate(dict(values))
+        return model.model_validate(dict(values), context=context)
     except ValidationError as error:
-        raise explain(error, source_of, model) from error
+        raise explain(error, source_of, model, prefix) from error

@@ -15,6 +15,7 @@ in which the centre of rotation lies.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,23 +24,34 @@ RINGS = 400
 SECTORS = 2000  # a multiple of 8: points have the symmetry of the grid
 MAX_CELLS = 201
 
-QUANTILES: dict[str, Callable[[np.ndarray], np.ndarray]] = {
-    "uniform": np.sqrt,
-    "hertz": lambda load: np.sqrt(1.0 - (1.0 - load) ** (2.0 / 3.0)),
-    "rim": np.ones_like,
-}
-"""Radius inside which a fraction of the load lies, of a disc of radius 1: pressure constant,
-proportional to sqrt(1 - rho^2) (Hertz), or on the edge alone."""
+PressureName: TypeAlias = Literal["uniform", "hertz", "rim"]
+"""Names of `PRESSURES`, for the configuration."""
 
-OUTER_RADII = {"uniform": 1.5, "hertz": 16.0 / (3.0 * np.pi), "rim": 1.0}
-"""Radius of the disc over that of the equivalent rim contact, exactly."""
+
+class Pressure(NamedTuple):
+    """A pressure over a round patch."""
+
+    quantile: Callable[[np.ndarray], np.ndarray]
+    """Radius inside which a fraction of the load lies, of a disc of radius 1."""
+    outer_radius: float
+    """Radius of the disc over that of the equivalent rim contact, exactly [-]."""
+
+
+PRESSURES: dict[PressureName, Pressure] = {
+    "uniform": Pressure(np.sqrt, 1.5),
+    "hertz": Pressure(lambda load: np.sqrt(1.0 - (1.0 - load) ** (2.0 / 3.0)), 16.0 / (3.0 * np.pi)),
+    "rim": Pressure(np.ones_like, 1.0),
+}
+"""Name -> pressure: constant, proportional to sqrt(1 - rho^2) (Hertz), or on the edge alone."""
+OUTER_RADII: dict[str, float] = {name: pressure.outer_radius for name, pressure in PRESSURES.items()}
+"""Name -> `Pressure.outer_radius`."""
 
 
 def patch_cells(pressure: str | ArrayLike, cells: int) -> tuple[np.ndarray, np.ndarray]:
     """Positions and load fractions of the cells that carry load.
 
     Args:
-        pressure: A name of `QUANTILES`, or relative loads of the cells, shape (cells, cells),
+        pressure: A name of `PRESSURES`, or relative loads of the cells, shape (cells, cells),
             >= 0, any unit: element (i, j) belongs to the i-th column along x and the j-th row
             along y, and acts at its middle. Loads are taken as they are, in the whole square.
         cells: Cells along either side.
@@ -67,9 +79,10 @@ def patch_cells(pressure: str | ArrayLike, cells: int) -> tuple[np.ndarray, np.n
 
 def _sampled(name: str, cells: int) -> tuple[np.ndarray, np.ndarray]:
     """Loads (cells^2,) and first moments (cells^2, 2) of a named pressure on the unit disc."""
-    if name not in QUANTILES:
+    quantile = {known: pressure.quantile for known, pressure in PRESSURES.items()}.get(name)
+    if quantile is None:
         raise ValueError(f"pressure = {name!r} must be a ({cells}, {cells}) array or one of {_names()}")
-    rho = QUANTILES[name]((np.arange(RINGS) + 0.5) / RINGS)
+    rho = quantile((np.arange(RINGS) + 0.5) / RINGS)
     angle = 2.0 * np.pi * (np.arange(SECTORS) + 0.5) / SECTORS
     points = np.stack([np.outer(rho, np.cos(angle)).ravel(), np.outer(rho, np.sin(angle)).ravel()])
     column, row = np.floor(0.5 * cells * (points + 1.0)).astype(int)
@@ -95,4 +108,4 @@ def _given(loads: np.ndarray, cells: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _names() -> str:
-    return ", ".join(map(repr, QUANTILES))
+    return ", ".join(map(repr, PRESSURES))

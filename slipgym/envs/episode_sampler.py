@@ -148,7 +148,7 @@ def _blank_episode(config: Config, settings: TaskConfig, task: Task) -> np.ndarr
         episode[field] = getattr(config.gripper, field)
     scales = [settings.reward[term] for term in task.term_names]
     episode["scales"][0, : len(scales)] = scales
-    episode["mass_factor"] = episode["jump_factor"] = episode["patch_factor"] = 1.0
+    episode["mass_factor"] = episode["jump_factor"] = episode["region_factor"] = 1.0
     return episode
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import math
-import os
 import tempfile
+import uuid
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
 import numpy as np
 
+from slipgym import atomic_io
 from slipgym._numba.compiled import compiled
 from slipgym.envs.readings import finite_check, row_writer
 
@@ -165,10 +167,10 @@ class Guard:
         kept = min(self._count, KEPT)
         order = np.arange(self._count - kept, self._count) % KEPT
         table = np.column_stack([self._times[order], self._rows[order]])
-        handle, path = tempfile.mkstemp(prefix="slipgym-", suffix=".part")
-        with os.fdopen(handle, "w") as file:
-            np.savetxt(file, table, delimiter=",", header="time," + ",".join(_NAMES), comments="")
-        csv = Path(path).replace(Path(path).with_suffix(".csv"))
+        text = io.StringIO()
+        np.savetxt(text, table, delimiter=",", header="time," + ",".join(_NAMES), comments="")
+        csv = Path(tempfile.gettempdir(), f"slipgym-{uuid.uuid4().hex}.csv")
+        atomic_io.write(csv, text.getvalue().encode())
         raise FloatingPointError(
             f"{name} is {value} at t = {time:g} s; the last {kept} samples are in {csv}; "
             "reset() starts afresh"

@@ -117,14 +117,8 @@ def _better(name: str) -> str:
 
 
 FRICTION = (
-    Reading(
-        "mu_s",
-        (0.0, 10.0),
-        "-",
-        "static friction",
-        f"max({_merged('mu_s')}, {_merged('mu_c')})",  # their weights differ: the means may cross
-    ),
-    Reading("mu_c", (0.0, 10.0), "-", "Coulomb friction", _merged("mu_c")),
+    Reading("mu_s", (0.0, 10.0), "-", "static friction", "merged_mu_s(first, second)"),
+    Reading("mu_c", (0.0, 10.0), "-", "Coulomb friction", "merged_mu_c(first, second)"),
     Reading("r", (0.0, 1.0), "m", "radius of the equivalent rim contact", _merged("r")),
     Reading("confidence_mu_s", (0.0, 1.0), "-", "confidence of mu_s, 0 to 1", _better("confidence_mu_s")),
     Reading("confidence_mu_c", (0.0, 1.0), "-", "confidence of mu_c, 0 to 1", _better("confidence_mu_c")),
@@ -188,6 +182,29 @@ def weighted_mean(a, b, weight_a, weight_b):
     return (a * weight_a + b * weight_b) / total if total > 0.0 else 0.5 * (a + b)
 
 
+@compiled
+def mean_mu_s(first, second):
+    """mu_s of both fingers, weighted by confidence."""
+    return weighted_mean(first.mu_s, second.mu_s, first.confidence_mu_s, second.confidence_mu_s)
+
+
+@compiled
+def merged_mu_c(first, second):
+    """mu_c of both fingers; as in `estimator.sample.publish`, a start value yields to a measured mu_s."""
+    mu_c = weighted_mean(first.mu_c, second.mu_c, first.confidence_mu_c, second.confidence_mu_c)
+    if first.confidence_mu_c + second.confidence_mu_c > 0.0:
+        return mu_c
+    if first.confidence_mu_s + second.confidence_mu_s > 0.0:
+        return min(mu_c, mean_mu_s(first, second))
+    return mu_c
+
+
+@compiled
+def merged_mu_s(first, second):
+    """mu_s of both fingers, at least their mu_c: the weights differ, so that the means may cross."""
+    return max(mean_mu_s(first, second), merged_mu_c(first, second))
+
+
 _write_sensors = row_writer(
     "_write_sensors",
     [reading.read for reading in SENSORS],
@@ -205,7 +222,7 @@ _write_friction = row_writer(
     __file__,
     "Write `FRICTION` of environment i.",
     before=("first, second = estimates[2 * i], estimates[2 * i + 1]",),
-    functions={"weighted_mean": weighted_mean},
+    functions={"weighted_mean": weighted_mean, "merged_mu_s": merged_mu_s, "merged_mu_c": merged_mu_c},
 )
 _SENSORS = len(SENSORS)
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from slipgym.config import Config, Material, Randomization, Ranges, TaskConfig
-from slipgym.config.disturbances import AnyDisturbance, FrictionJump, MassChange, Patch, Push, Shake
+from slipgym.config.disturbances import AnyDisturbance, FrictionJump, MassChange, Push, Shake, SurfaceRegion
 from slipgym.config.errors import unknown
 from slipgym.envs.hardware_randomization import with_pressure
 from slipgym.tasks.options import EpisodeOptions
@@ -219,10 +219,10 @@ def _friction_jump(jump: FrictionJump, u: list[float], episode: np.void) -> None
     episode["jump_factor"] = jump.factor.at(u[1])
 
 
-def _patch(patch: Patch, u: list[float], episode: np.void) -> None:
-    start = patch.start.at(u[0])
-    episode["patch"] = start, start + patch.length.at(u[1])
-    episode["patch_factor"] = patch.factor.at(u[2])
+def _surface_region(region: SurfaceRegion, u: list[float], episode: np.void) -> None:
+    start = region.start.at(u[0])
+    episode["region"] = start, start + region.length.at(u[1])
+    episode["region_factor"] = region.factor.at(u[2])
 
 
 _SCHEDULE: dict[str, Any] = {
@@ -230,5 +230,5 @@ _SCHEDULE: dict[str, Any] = {
     "shake": _shake,
     "mass_change": _mass_change,
     "friction_jump": _friction_jump,
-    "patch": _patch,
+    "surface_region": _surface_region,
 }

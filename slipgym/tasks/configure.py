@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import ValidationError
-
 from slipgym.config import Config, Overrides, load
-from slipgym.config.errors import explain, unknown
+from slipgym.config.errors import unknown
 from slipgym.config.load import merge, read_overrides
 from slipgym.config.task import SettingsT, TaskConfig
+from slipgym.config.yaml_model import validate
 from slipgym.tasks.table import TASKS
 from slipgym.tasks.task import Task
 
@@ -59,10 +58,7 @@ def _settings(task: Task[SettingsT], group: Any, source: str) -> SettingsT:
     if not isinstance(group, Mapping):
         raise ValueError(f"{source}: {place} = {group!r:.80} must be a mapping of names to values")
     values = merge(task.default_settings, group)
-    try:
-        settings = task.settings.model_validate(values)
-    except ValidationError as error:
-        raise explain(error, lambda _: source, task.settings, ("tasks", task.key)) from error
+    settings = validate(values, task.settings, source, prefix=("tasks", task.key))
     for name in settings.reward:
         if name not in task.term_names:
             raise ValueError(f"{source}: {place}.reward.{name}: {unknown('key', name, task.term_names)}")

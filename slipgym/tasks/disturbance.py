@@ -30,8 +30,8 @@ FIELDS = [
     ("drift", "f8"),  # relative rate of both [1/s]
     ("jump_step", "i8"),  # control step at which both change
     ("jump_factor", "f8"),  # after over before [-]
-    ("patch", "f8", 2),  # distance from the grasp at which it begins and ends [m]
-    ("patch_factor", "f8"),  # friction on it over elsewhere [-]
+    ("region", "f8", 2),  # distance from the grasp at which it begins and ends [m]
+    ("region_factor", "f8"),  # friction on it over elsewhere [-]
     ("pushes", "i8"),  # how many
     # last, as they are long and most steps have no push
     ("push_start", "i8", PUSHES_MAX),  # control step
@@ -68,8 +68,8 @@ def friction_factor(episode, world):
     factor = min(max(math.exp(episode.drift * episode.step * episode.step_time), _LEAST), _MOST)
     if episode.step >= episode.jump_step:
         factor *= episode.jump_factor
-    if episode.patch[0] <= math.hypot(world.slip[0], world.slip[1]) < episode.patch[1]:
-        factor *= episode.patch_factor
+    if episode.region[0] <= math.hypot(world.slip[0], world.slip[1]) < episode.region[1]:
+        factor *= episode.region_factor
     return factor
 
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import importlib
 
-from pydantic import ValidationError
-
 from estimator.reference import is_reference, referenced
-from slipgym.config.errors import explain, unknown
+from slipgym.config.errors import unknown
+from slipgym.config.yaml_model import validate
 from slipgym.registration import ENVIRONMENTS, TASK_MODULES
 from slipgym.tasks.episode import TERMS_MAX
 from slipgym.tasks.task import Task
@@ -61,10 +60,5 @@ def add(task: Task) -> None:
             raise ValueError(f"{task.id} has two {what}s of the name {twice!r}")
     if len(task.terms) > TERMS_MAX:
         raise ValueError(f"{task.id} has {len(task.terms)} reward terms; at most {TERMS_MAX}")
-    try:
-        task.settings()
-    except ValidationError as error:
-        raise explain(
-            error, lambda _: f"defaults of {task.id}", task.settings, ("tasks", task.key)
-        ) from error
+    validate({}, task.settings, f"defaults of {task.id}", prefix=("tasks", task.key))
     TASKS[name] = task

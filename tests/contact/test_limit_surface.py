@@ -1,11 +1,14 @@
 """The limit surface of points: by hand, against the exact disc, and its table."""
 
+from typing import get_args
+
 import numpy as np
 import pytest
 
 from slipgym.contact import DistributedContact
 from slipgym.contact.limit_surface import LimitSurface
 from slipgym.contact.limit_surface_exact import exact_friction
+from slipgym.contact.pressure import PRESSURES, PressureName
 
 
 def directions(n: int, r: float) -> np.ndarray:
@@ -64,3 +67,7 @@ def test_the_table_is_exact_at_its_grid_and_closes_on_itself():
 def test_refuses_what_is_no_pressure(positions, shares, named):
     with pytest.raises(ValueError, match=named):
         LimitSurface(positions, shares)
+
+
+def test_every_pressure_has_its_name_in_the_configuration():
+    assert get_args(PressureName) == tuple(PRESSURES)

@@ -27,7 +27,7 @@ SCRIPT = str(Path(__file__).with_name("rollout.py"))
 def test_the_true_r_is_that_of_the_pressure_on_the_pad(make, env_id, model, contact, r):
     env = make(env_id, contact=model, friction_source="true", config={"contact": contact})
     observation, info = env.reset(seed=0)
-    r = getattr(env.config.tasks, env.task.key).radius or r  # a task with fingertips of its own
+    r = env.settings.radius or r  # a task with fingertips of its own
     assert info["true"][2] == pytest.approx(r, rel=1e-12)
     column = [column.name for column in env.columns].index("r")
     assert observation[column] == pytest.approx(r, rel=1e-6)

@@ -95,7 +95,7 @@ def test_info_keeps_its_contract(make, env_id):
     for info in (env.reset(seed=0)[1], env.step(HARDEST)[4]):
         assert {name: value.shape for name, value in info.items() if name in SHAPES} == SHAPES
         assert set(info) == {*SHAPES, "reward_terms", "time", "is_success", "dropped"}
-        assert tuple(info["reward_terms"]) == env.task.terms
+        assert tuple(info["reward_terms"]) == env.task.term_names
         assert type(info["is_success"]) is type(info["dropped"]) is bool
         assert type(info["time"]) is float
         np.testing.assert_array_equal(info["estimated"], info["estimated_per_finger"].mean(axis=0))
@@ -170,7 +170,7 @@ def test_the_friction_source_fills_the_last_columns(make, env_id):
         if source == "true":
             np.testing.assert_allclose(observed[source][-6:-3], info["true"], rtol=1e-6)
     nominal = env.config.nominal
-    r = getattr(env.config.tasks, env.task.key).radius or nominal.r
+    r = env.settings.radius or nominal.r
     np.testing.assert_allclose(observed["nominal"][-6:-3], [nominal.mu_s, nominal.mu_c, r], rtol=1e-6)
     np.testing.assert_allclose(observed["estimated"][-6:], [1.5, 1.3, 0.02, 0, 0, 0], rtol=1e-6)
     for source in ("true", "nominal"):

@@ -35,3 +35,8 @@ def test_merged_mu_s_is_at_least_merged_mu_c(a, b):
 def test_weights_that_would_reverse_the_order():
     assert merged((0.3, 0.2, 1.0, 0.0), (0.9, 0.8, 0.0, 1.0)) == (0.8, 0.8)
     assert merged((0.3, 0.2, 1.0, 1.0), (0.9, 0.8, 1.0, 1.0)) == pytest.approx((0.6, 0.5))
+
+
+def test_the_start_value_of_mu_c_yields_to_a_measured_mu_s():
+    assert merged((0.5, 0.5, 0.5, 0.0), (1.5, 1.3, 0.0, 0.0)) == (0.5, 0.5)
+    assert merged((1.5, 1.3, 0.0, 0.0), (1.5, 1.3, 0.0, 0.0)) == (1.5, 1.3)

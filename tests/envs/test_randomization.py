@@ -178,7 +178,7 @@ def test_friction_drifts_and_jumps(make, env_id):
 
 
 def test_a_patch_of_other_friction_lies_where_it_was_drawn(make):
-    env = make(randomization=sure("patch", start=0.005, length=0.01, factor=1.2), material="wood")
+    env = make(randomization=sure("surface_region", start=0.005, length=0.01, factor=1.2), material="wood")
     _, info = env.reset(seed=0, options={"object_mass": 0.4})
     start, inside, slip = info["true"][0], [], np.zeros(3)
     while np.hypot(*slip[:2]) < 0.03:

@@ -71,13 +71,13 @@ def test_ukf_equations():
     """x += K y and P = P' - K S K^T on (ln mu_c, ln r), P' with the random walk added."""
     est, updated = estimator.make("ukf"), 0
     for sample in ellipsoid(40, *planar(0.7, R), MU_C, R):
-        before, p = est.estimate, est.covariance
+        before, p = est.batch.states[0].copy(), est.covariance
         e = est.update(*sample)
         if not e.observable_mu_c:
             continue
         updated += 1
         p[[0, 1], [0, 1]] = np.minimum(np.diag(p) + est.parameters.drift**2, 1.0)
-        x = np.log((before.mu_c, before.r)) + est.gain @ est.residual
+        x = np.log((before["mu_c"], before["r"])) + est.gain @ est.residual
         np.testing.assert_allclose(np.log((e.mu_c, e.r)), x, rtol=1e-9)
         expected = p - est.gain @ est.innovation_covariance @ est.gain.T
         np.testing.assert_allclose(est.covariance, expected, rtol=1e-6, atol=1e-12)

@@ -49,7 +49,7 @@ def test_index_matches_the_environments_columns(task):
 def test_unknown_columns_and_tasks_name_the_valid_ones():
     with pytest.raises(ValueError, match=r"'f_n_3'.*f_n_1"):
         ObservationIndex("LinearSlip", CONFIG)["f_n_3"]
-    with pytest.raises(ValueError, match=r"LinearSlop.*LinearSlip"):
+    with pytest.raises(ValueError, match=r"LinearSlop.*linear_slip"):
         ObservationIndex("LinearSlop", CONFIG)
 
 

@@ -79,7 +79,7 @@ def test_it_learns_with_the_shaping_and_is_evaluated_without(small):
     assert config.environment.config["tasks"]["linear_slip"] == {"duration": 0.2, "settle": 0.1, "hold": 0.1}
     for shaped in (False, True):
         envs = vector.make(config, 0, 1, shaped)
-        assert envs.get_attr("config")[0].tasks.linear_slip.tolerance == (0.005 if shaped else 0.002)
+        assert envs.get_attr("settings")[0].tolerance == (0.005 if shaped else 0.002)
         envs.reset()
         rewards.append(envs.step(np.ones((1, 1), np.float32))[1].item())
         envs.close()
