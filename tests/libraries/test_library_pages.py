@@ -98,7 +98,7 @@ def test_the_first_policy_learns_something():
     page = (ROOT / "docs" / "first_policy.md").read_text(encoding="utf-8")
     (name,) = re.findall(r"^    python scripts/train\.py (\w+) --set stop", page, re.MULTILINE)
     assert files.load(name).residual is None
-    (solved,) = re.findall(r"^\| solved \[%\] \|(.*)\|$", page, re.MULTILINE)
+    (solved,) = re.findall(r"^\| success \[%\] \|(.*)\|$", page, re.MULTILINE)
     first, *_, last = (int(figure) for figure in solved.split("|"))
     assert first < 10 < 90 <= last
 
