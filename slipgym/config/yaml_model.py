@@ -31,8 +31,8 @@ def read_model(
         choice: One of `names(folder)`, the path of a YAML file, or a mapping of the same shape.
         model: The class to validate against.
         folder: Folder of the default configuration whose files go by name.
-        kind: How errors call what is read, "experiment" for example.
-        context: What the model's validators are given.
+        kind: Name of the kind of model in error messages, "experiment" for example.
+        context: Passed to the model's validators.
 
     Raises:
         FileNotFoundError: It looks like a path, but there is no such file.
@@ -63,11 +63,10 @@ def validate(
 
     Args:
         values: As in a YAML file.
-        model: What they are validated against.
-        source: Where they come from, for the message of an error; or a function that says so for a key's
-            location.
-        context: What the model's validators are given.
-        prefix: Where the model stands in a larger document, for messages.
+        model: The class to validate against.
+        source: Origin of the values, for error messages; or a function that returns it for a key's location.
+        context: Passed to the model's validators.
+        prefix: Location of the model in a larger document, for error messages.
 
     Raises:
         ValueError: A key or value is wrong; a line for each fault.
