@@ -1,1 +1,1 @@
-"""What the environments cost: measurements for scripts/benchmark.py; nothing else imports this."""
+"""Measures the speed of the environments, for scripts/benchmark.py; no other module imports it."""

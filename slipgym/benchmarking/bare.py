@@ -1,4 +1,4 @@
-"""The floor: Bullet's scene with the fewest calls that any such environment needs.
+"""Runs the bare PyBullet scene with the fewest calls that any such environment needs, as a lower bound.
 
 The same bodies at the same rate and solver settings, and per engine step what no simulation
 of in-hand slip with friction of its own can leave out: load on the object, reactions on two

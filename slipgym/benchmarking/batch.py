@@ -1,4 +1,4 @@
-"""Speed of the vector environment: about the slip limit, in a firm hold, against PyBullet, and its parts."""
+"""Measures the speed of the vector environment: near the slip limit, in a firm hold, and of its parts."""
 
 from __future__ import annotations
 
@@ -184,7 +184,7 @@ def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
         simulation.estimator.update(time + (k + 1) * simulation.step_time, *rows)
         combine(simulation.estimator.estimates, simulation.per_finger, simulation.estimated)
 
-    def judge(_: int) -> None:
+    def evaluate(_: int) -> None:
         simulation.episode["step"] += 1
         simulation.task.evaluate_step(simulation.episode, plant.world, plant.fingers, simulation.task_part)
 
@@ -205,7 +205,7 @@ def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
         ("world, contact and force loop", advance),
         ("sensors", sense),
         ("estimators", learn),
-        ("reward, success, drops", judge),
+        ("reward, success, drops", evaluate),
         ("observation", see),
     ]
     whole = min(player.block(20 * n)[0] / 20 for _ in range(5)) / n

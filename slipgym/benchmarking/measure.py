@@ -1,4 +1,4 @@
-"""The measurements, one function each."""
+"""Measures the environment with PyBullet, its contact models and its start-up; one function each."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def against_bare(player: Player, pairs: int) -> list[Figure]:
 
 
 def breakdown(player: Player, blocks: int) -> list[Figure]:
-    """Shares of one env.step, with stopwatches around its parts."""
+    """Times of the parts of one env.step, by stopwatches around them."""
     env = player.env
     simulation = env.simulation
     assert isinstance(simulation, loops.BulletSimulation)
@@ -126,10 +126,10 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
             samples = steps / env.config.physics.engine_steps
             rows.append([part / samples for part in (*parts, seconds - sum(parts))])
         simulation.task = task
-    shares = (median(column) for column in zip(*rows, strict=True))
+    times = (median(column) for column in zip(*rows, strict=True))
     return [
-        Figure(f"env.step: {label}", 1e6 * share, "us")
-        for label, share in zip((*PARTS, "noise draws, checks, watches"), shares, strict=True)
+        Figure(f"env.step: {label}", 1e6 * time, "us")
+        for label, time in zip((*PARTS, "noise draws, checks, watches"), times, strict=True)
     ]
 
 

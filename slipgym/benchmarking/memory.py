@@ -1,4 +1,4 @@
-"""What an environment of a batch takes in memory."""
+"""Measures the memory per environment of a vector environment."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The patch's friction step in plain numpy: the yardstick of the compiled kernel."""
+"""Computes the patch's friction step in plain numpy, for comparison with the compiled kernel."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 class NumpyPatch:
-    """What `slipgym.contact.DistributedContact` does, over whole arrays.
+    """The computation of `slipgym.contact.DistributedContact`, over whole arrays.
 
     Args:
         positions: Of the cells from the centre of pressure, shape (n, 2) [m].

@@ -1,4 +1,4 @@
-"""What each optimisation of `slipgym._numba` is worth: the same steps with it and without it, in turn.
+"""Measures the benefit of each optimisation of `slipgym._numba`: the same steps with and without it, in turn.
 
 Every variant has its own process and compiler cache. One process works at a time, all on the same
 processor, and blocks alternate, so that other work on the machine hits all variants alike. Where a

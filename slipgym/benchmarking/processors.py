@@ -1,4 +1,4 @@
-"""What one thread is worth where processors differ: their speeds, by neighbours' work, come and go."""
+"""Measures the speed of one thread on processors whose speeds differ and change with other work."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures as a table and as JSON."""
+"""Writes benchmark figures as a table and as JSON."""
 
 from __future__ import annotations
 

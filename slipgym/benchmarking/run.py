@@ -1,4 +1,4 @@
-"""All measurements in order."""
+"""Runs all measurements in order."""
 
 from __future__ import annotations
 

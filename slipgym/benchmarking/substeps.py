@@ -1,4 +1,4 @@
-"""CPU time of one planar sub-step of a held box: firm stick, steady slide, stick-slip.
+"""Measures the CPU time of one planar sub-step of a held box: firm stick, steady slide, stick-slip.
 
 Sub-steps are repeated in a compiled loop on the records of a reset environment, without the engine. The
 process's CPU time counts: other work on the machine then costs cache, but no time of its own.
@@ -30,12 +30,12 @@ MODULATION, PERIOD = 0.5, 0.1  # of the grip force about the sliding limit [-, s
 def repeat(world, pads, cells, fingers, slip_sensors, forces, steps):
     """Sub-steps of the longest length; the commanded grip forces [N] come round and round."""
     h = world.substep_ticks * world.tick_length
-    share = world.substep_ticks / world.engine_ticks
+    fraction = world.substep_ticks / world.engine_ticks
     gripper = (pads[0], pads[1]), cells, (fingers[0], fingers[1]), (slip_sensors[0], slip_sensors[1])
     for k in range(steps):
         for f in range(2):
             fingers[f].command = forces[k % forces.shape[0]]
-        substep(world, *gripper, h, share)
+        substep(world, *gripper, h, fraction)
 
 
 def held(plant: Plant, force: float, speed: float = 0.0, load: float = 0.0) -> Plant:

@@ -1,4 +1,4 @@
-"""Clocks: alternating blocks for ratios, and stopwatches around functions for shares."""
+"""Clocks: alternating blocks for ratios, and stopwatches for the times of functions."""
 
 from __future__ import annotations
 

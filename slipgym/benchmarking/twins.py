@@ -1,4 +1,4 @@
-"""What a second core is worth to two processes that share nothing: the reference for two threads."""
+"""Measures the speed-up of two independent processes on two cores, as the reference for two threads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A process of its own that plays an environment when asked to."""
+"""Plays an environment in a separate process."""
 
 from __future__ import annotations
 

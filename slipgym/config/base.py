@@ -1,4 +1,4 @@
-"""The ground of every configuration model: frozen, strict, and shy of NaN."""
+"""Base class of the configuration models: immutable, strictly typed, finite numbers only."""
 
 from typing import Annotated
 
@@ -12,12 +12,12 @@ class Frozen(BaseModel):
 
 
 def as_tuple(value: object) -> object:
-    """A list as a tuple; anything else as it is."""
+    """Convert a list to a tuple; leave other values unchanged."""
     return tuple(value) if isinstance(value, list) else value
 
 
 def ordered(pair: tuple[float, float]) -> tuple[float, float]:
-    """A pair whose first does not lie above its second, or ValueError."""
+    """Return a pair whose first value is not above its second, or raise ValueError."""
     if pair[0] > pair[1]:
         raise ValueError(f"the lower end {pair[0]:g} lies above the upper end {pair[1]:g}")
     return pair

@@ -1,4 +1,4 @@
-"""Numbers that are drawn anew in every episode."""
+"""Distributions of numbers that are sampled anew in every episode."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ class Distribution(Frozen):
         return min(values), max(values)
 
     def at(self, share: float) -> float:
-        """The value below which a share of the draws lies.
+        """The quantile of the distribution: a value below which a fraction of the samples lies.
 
         Args:
-            share: In [0, 1).
+            share: The fraction, in [0, 1).
         """
         if self.choices is not None:
             return self.choices[int(share * len(self.choices))]

@@ -1,4 +1,4 @@
-"""What can happen to object and wrist during an episode."""
+"""Configuration models of the disturbances of object, wrist and friction during an episode."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ Factor = Annotated[Distribution, within(0.1, 10.0)]
 
 
 class Disturbance(Frozen):
-    """What every kind has."""
+    """Base class of the disturbances."""
 
-    probability: float = Field(ge=0.0, le=1.0, description="Share of the episodes that have it [-]")
+    probability: float = Field(ge=0.0, le=1.0, description="Fraction of the episodes that have it [-]")
 
 
 class Push(Disturbance):
@@ -47,7 +47,7 @@ class Shake(Disturbance):
 
 
 class MassChange(Disturbance):
-    """The object becomes heavier or lighter at once, its shape of mass the same."""
+    """The object's mass and inertia change at once, in the same proportion."""
 
     kind: Literal["mass_change"] = Field(description="A name")
     time: Time = Field(description="When [s]")
@@ -55,7 +55,7 @@ class MassChange(Disturbance):
 
 
 class FrictionJump(Disturbance):
-    """Friction changes at once, as when a pad gets wet."""
+    """Friction changes at once, for example when a pad gets wet."""
 
     kind: Literal["friction_jump"] = Field(description="A name")
     time: Time = Field(description="When [s]")
@@ -63,7 +63,7 @@ class FrictionJump(Disturbance):
 
 
 class SurfaceRegion(Disturbance):
-    """A stretch of the object's surface with another friction."""
+    """A region of the object's surface has different friction."""
 
     kind: Literal["surface_region"] = Field(description="A name")
     start: Annotated[Distribution, within(0.0, 1.0)] = Field(

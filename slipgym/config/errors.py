@@ -1,6 +1,6 @@
-"""Error messages that say where, what, and what would have been right.
+"""Formats validation errors: they name the place, the value and the valid values.
 
-Bounds and names are read from the models' JSON schema, so they are written down once: in the models.
+Bounds and names are read from the models' JSON schema, so that they are declared only in the models.
 """
 
 import difflib
@@ -27,7 +27,7 @@ _KINDS = {
 
 
 def unknown(what: str, name: object, valid: Iterable[str]) -> str:
-    """The message for a name that is not one of the valid ones, with a guess at the one that was meant."""
+    """Message for an unknown name, with the most similar valid one as a suggestion."""
     valid = sorted(valid)
     close = difflib.get_close_matches(str(name), valid, n=1)
     guess = f"did you mean {close[0]!r}? " if close else ""
@@ -42,8 +42,8 @@ def explain(
     Args:
         error: The report of a failed ``model_validate``.
         source_of: Names the file or argument that a location in the configuration came from.
-        model: What it was validated against.
-        prefix: Where the model stands in the whole configuration.
+        model: The model that was validated.
+        prefix: Location of the model in the whole configuration.
     """
     faults = error.errors()
     return ValueError("\n".join(f"{source_of(e['loc'])}: {_describe(e, model, prefix)}" for e in faults))
@@ -87,7 +87,7 @@ class _Schema:
         self._root = _json_schema(model)
 
     def at(self, location: tuple[int | str, ...]) -> dict[str, Any]:
-        """The schema of one place in the model; of the deepest known one above it otherwise."""
+        """The schema of a location in the model, or else of its deepest known parent."""
         node = self._root
         for part in location:
             children = [child for option in self.options(node) for child in _children(option, part)]
@@ -97,11 +97,11 @@ class _Schema:
         return node
 
     def options(self, node: dict[str, Any]) -> list[dict[str, Any]]:
-        """The alternatives of a schema; itself if it has none."""
+        """The alternatives of a schema; the schema itself if it has none."""
         return [self._followed(option) for option in node.get("anyOf", [node])]
 
     def allowed(self, node: dict[str, Any]) -> str:
-        """Says which values a schema allows."""
+        """Describe the values that a schema allows."""
         if "anyOf" in node:
             text = " or ".join(self.allowed(option) for option in self.options(node))
         elif "enum" in node:
@@ -120,14 +120,14 @@ class _Schema:
         return f"{text} ({node['description']})" if "description" in node else text
 
     def _followed(self, node: dict[str, Any]) -> dict[str, Any]:
-        """What a schema refers to; itself if it is no reference."""
+        """The schema that a reference points to; other schemas unchanged."""
         if "$ref" not in node:
             return node
         return self._root["$defs"][node["$ref"].rpartition("/")[2]]
 
 
 def _children(node: dict[str, Any], part: int | str) -> list[dict[str, Any]]:
-    """The schema that a schema has for one of its parts, if any."""
+    """The schema of one part of a schema, if there is one."""
     child = node.get("properties", {}).get(part) or node.get("additionalProperties")
     if "prefixItems" in node and isinstance(part, int) and part < len(node["prefixItems"]):
         child = node["prefixItems"][part]

@@ -1,4 +1,4 @@
-"""The YAML files: where they are and how they are read."""
+"""Finds and reads YAML files."""
 
 import re
 from functools import cache
@@ -29,7 +29,7 @@ def read(path: Path) -> dict[str, Any]:
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: It is no YAML, holds a key twice, or is no mapping.
+        ValueError: It is not YAML, holds a key twice, or is not a mapping.
     """
     data = parse(path.read_bytes(), str(path))
     if data is None:
@@ -44,10 +44,10 @@ def parse(text: str | bytes, source: str) -> Any:
 
     Args:
         text: The text.
-        source: Where it comes from, for the message of an error.
+        source: Origin of the text, for error messages.
 
     Raises:
-        ValueError: It is no YAML, or holds a key twice.
+        ValueError: It is not YAML, or holds a key twice.
     """
     try:
         loader = _Loader(text)

@@ -1,4 +1,4 @@
-"""The gripper and the object it holds."""
+"""Configuration models of the gripper and the object in its grip."""
 
 from typing import Self
 
@@ -25,7 +25,7 @@ class GripperConfig(Frozen):
     lag: NonNegative = Field(description="Time constant of the closed force loop, first order [s]")
     dead_time: NonNegative = Field(description="Dead time of the force loop, before its lag [s]")
     force_step: Positive = Field(
-        description="Largest change of the commanded force per sample in action mode force_increment [N]"
+        description="Largest change of the commanded force per control step in mode force_increment [N]"
     )
     finger_mass: Positive = Field(description="Mass of one finger with its pad [kg]")
     wrist_speed_max: Positive = Field(description="Largest speed of the wrist in the contact plane [m/s]")
@@ -52,9 +52,7 @@ class ObjectConfig(Frozen):
     inertia: Positive | None = Field(
         description="Inertia about the grip axis through the centre of mass; null: uniform box [kg m^2]"
     )
-    grasp_offset: Point = Field(
-        description="Where the pads hold at reset (x, z), from the geometric centre [m]"
-    )
+    grasp_offset: Point = Field(description="Pad centre at reset (x, z), from the geometric centre [m]")
 
     @property
     def grip_axis_inertia(self) -> float:

@@ -1,4 +1,4 @@
-"""Defaults, a sensor preset and the user's overrides become one validated configuration."""
+"""Loads configurations: merges defaults, a sensor preset and the user's overrides, and validates them."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -21,8 +21,8 @@ def load(
     """Loads the configuration of an environment, without the settings of its task.
 
     Args:
-        overrides: What differs from the defaults, as a mapping or as the path of a YAML file; merged into
-            them key by key, at every depth. Lists are replaced as a whole. A group "tasks" is left to
+        overrides: Values that replace defaults, as a mapping or as the path of a YAML file; merged key by
+            key, at every depth. Lists are replaced as a whole. A group "tasks" is left to
             `slipgym.tasks.configure`.
         sensors: The sensor preset to start from, one of ``names("sensors")``.
         contact: The friction model to start from, "ellipsoid" or "distributed"; None: the default one.
@@ -30,7 +30,7 @@ def load(
     Raises:
         FileNotFoundError: The overrides' file does not exist.
         ValueError: A key is unknown or a value is not allowed. The message names the file or argument, the
-            dotted key, the value, and what is valid there.
+            dotted key, the value, and the valid values.
     """
     if sensors not in names("sensors"):
         raise ValueError(unknown("sensors", sensors, names("sensors")))
@@ -49,7 +49,7 @@ def load(
 
 
 def read_overrides(overrides: Overrides) -> tuple[str, Mapping[str, Any]]:
-    """Where overrides come from, for messages, and what they are.
+    """Return the origin of overrides, for error messages, and the overrides as a mapping.
 
     Raises:
         FileNotFoundError: The overrides' file does not exist.
@@ -63,7 +63,7 @@ def read_overrides(overrides: Overrides) -> tuple[str, Mapping[str, Any]]:
 
 
 def load_randomization(choice: Overrides = "none", tasks: Iterable[str] | None = None) -> Randomization:
-    """Loads what is sampled anew in every episode.
+    """Loads a randomization: the distributions that every episode is sampled from.
 
     Args:
         choice: A preset, one of ``names("randomization")``, the path of a YAML file, or a mapping of the same
@@ -73,16 +73,16 @@ def load_randomization(choice: Overrides = "none", tasks: Iterable[str] | None =
     Raises:
         FileNotFoundError: The file does not exist.
         ValueError: The preset or a key is unknown, or a value is not allowed. The message names the file or
-            argument, the dotted key, the value, and what is valid there.
+            argument, the dotted key, the value, and the valid values.
     """
     return read_model(choice, Randomization, "randomization", "randomization", {"tasks": tasks})
 
 
 def names(kind: str) -> tuple[str, ...]:
-    """The names that the defaults know of a kind: "materials", or the presets "sensors" or "randomization".
+    """Names of the materials ("materials") or of the presets ("sensors", "randomization") in the defaults.
 
     Raises:
-        ValueError: There is no such kind.
+        ValueError: The kind is unknown.
     """
     if kind == "materials":
         return tuple(sorted(files.read(files.folder() / "materials.yaml")))
@@ -93,7 +93,7 @@ def names(kind: str) -> tuple[str, ...]:
 
 @cache
 def _files(sensors: str) -> tuple[dict[str, Any], dict[str | int, str]]:
-    """The values in the files, and for each top-level key the file that it came from."""
+    """Values of the files, and for each top-level key the file that it comes from."""
     preset = f"sensors/{sensors}.yaml"
     values = files.read(files.folder() / "default.yaml")
     sources: dict[str | int, str] = dict.fromkeys(values, "default.yaml")
@@ -104,7 +104,7 @@ def _files(sensors: str) -> tuple[dict[str, Any], dict[str | int, str]]:
 
 
 def merge(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """A mapping with another merged into it, key by key, at every depth."""
+    """Merge a mapping into another, key by key, at every depth."""
     merged = dict(base)
     for key, value in overrides.items():
         if isinstance(value, Mapping):

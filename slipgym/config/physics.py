@@ -1,4 +1,4 @@
-"""Friction between pads and object, and the rates at which it is simulated."""
+"""Configuration models of friction, gravity and the simulation's rates."""
 
 from typing import Literal, Self
 
@@ -22,7 +22,7 @@ class Material(Frozen):
 
 
 class NominalConfig(Material):
-    """The contact properties that a controller may assume when it is told nothing better."""
+    """Contact properties that a controller assumes when it has no other friction information."""
 
     r: Positive = Field(description="Radius of the equivalent rim contact [m]")
 
@@ -30,10 +30,10 @@ class NominalConfig(Material):
 class ContactConfig(Frozen):
     """The friction model of a pad, apart from the material's coefficients.
 
-    "ellipsoid" is one bristle with an ellipsoidal limit surface; "distributed" a round patch of
-    cells, each a bristle, whose limit surface is that of its pressure. Both are known to the
-    estimators and controllers by r: the torque in pure spin over mu_c times the normal force. A
-    patch with another r than that of the whole pad is smaller in proportion.
+    "ellipsoid" is one bristle with an ellipsoidal limit surface. "distributed" is a round patch of
+    cells, each a bristle; its limit surface follows from its pressure profile. Estimators and
+    controllers describe both by r, the torque in pure spin over mu_c times the normal force. A
+    patch whose r differs from that of the whole pad is scaled in proportion.
     """
 
     model: Literal["ellipsoid", "distributed"] = Field(description="Friction model of the pads: a name")
@@ -43,9 +43,11 @@ class ContactConfig(Frozen):
     cells: int = Field(
         ge=2,
         le=101,
-        description="Cells along either side of a distributed patch; 11 are four times as fast [-]",
+        description="Cells along each side of a distributed patch; 11 are four times as fast [-]",
     )
-    sigma_0: float = Field(ge=1e5, description="Bristle stiffness; softer reads as slip while sticking [1/m]")
+    sigma_0: float = Field(
+        ge=1e5, description="Bristle stiffness; soft bristles appear as slip in stick [1/m]"
+    )
     sigma_1: NonNegative = Field(description="Bristle damping [s/m]")
     sigma_2: NonNegative = Field(description="Viscous friction [s/m]")
     stribeck_velocity: Positive = Field(description="Slip speed v_s at which mu_s has decayed to mu_c [m/s]")

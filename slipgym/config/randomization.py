@@ -1,4 +1,4 @@
-"""What is drawn anew in every episode beyond the task's own draws."""
+"""Configuration models of the randomization: distributions that every episode is sampled from."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ Pressures = Annotated[tuple[PressureName, ...], Field(min_length=1), BeforeValid
 
 
 class Ranges(Frozen):
-    """What is drawn; a field that is null or left out stays what the configuration says."""
+    """Distributions of one task; a field that is null or left out is not randomized."""
 
     materials: Names | None = Field(
-        default=None, description="Materials to draw from, where no other friction is randomized"
+        default=None, description="Materials to sample from, if no other friction is randomized"
     )
     mu_c: Annotated[Distribution | None, within(0.01, 5.0)] = Field(
         default=None, description="Coulomb friction, whatever the material"
@@ -47,7 +47,9 @@ class Ranges(Frozen):
     radius_scale: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
         default=None, description="Contact radius r over the task's"
     )
-    pressure: Pressures | None = Field(default=None, description="Pressures over the patch to draw from")
+    pressure: Pressures | None = Field(
+        default=None, description="Pressure profiles of the patch to sample from"
+    )
     mass_scale: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
         default=None, description="Object's mass over the task's"
     )
@@ -74,10 +76,10 @@ class Ranges(Frozen):
         description="Spread of force and torque biases beyond the configured, over the configured noise",
     )
     slip_latency: Annotated[Distribution | None, within(0.0, 6.0)] = Field(
-        default=None, description="Age of a slip velocity when it arrives, rounded [samples]"
+        default=None, description="Latency of the slip velocity, rounded [samples]"
     )
     disturbances: Annotated[tuple[AnyDisturbance, ...], BeforeValidator(renamed)] = Field(
-        default=(), description="What can happen during an episode"
+        default=(), description="Disturbances during an episode"
     )
 
     @model_validator(mode="after")
@@ -100,7 +102,7 @@ class Ranges(Frozen):
 
 
 class Randomization(Ranges):
-    """Ranges for all tasks, and what differs from them in single tasks."""
+    """Ranges for all tasks, and the fields that single tasks replace."""
 
     tasks: Mapping[str, Ranges] = Field(default={}, description="Fields that differ, by task")
 

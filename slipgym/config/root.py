@@ -1,4 +1,4 @@
-"""The whole configuration of an environment."""
+"""`Config`, the configuration of an environment without its task's settings."""
 
 from collections.abc import Mapping
 from typing import Self
@@ -15,7 +15,7 @@ from slipgym.contact.pressure import OUTER_RADII
 class Config(Frozen):
     """Gripper, object, friction, sensors and rates of an environment; defaults are in ``configs/``.
 
-    A task's own settings are no part of it: see `slipgym.tasks.configure`.
+    `slipgym.tasks.configure` returns it together with the settings of a task.
     """
 
     gripper: GripperConfig = Field(description="The gripper")
@@ -44,7 +44,7 @@ class Config(Frozen):
         return self.gripper.pad_radius / OUTER_RADII[self.contact.pressure]
 
     def check_patch(self, name: str, r: float) -> None:
-        """Raise ValueError if the pad has no room for a distributed patch with this r [m]."""
+        """Raise ValueError if a distributed patch with this r [m] does not fit on the pad."""
         pressure, pad = self.contact.pressure, self.gripper.pad_radius
         outer = OUTER_RADII[pressure] * r
         if self.contact.model == "distributed" and outer > pad * (1.0 + 1e-9):
@@ -54,7 +54,7 @@ class Config(Frozen):
             )
 
     def check_radius(self, name: str, r: float) -> None:
-        """Raise ValueError if the pad has no room for a contact radius r [m]; `name` says whose it is."""
+        """Raise ValueError if a contact with radius r [m] does not fit on the pad; `name` is its key."""
         if r > self.gripper.pad_radius:
             raise ValueError(
                 f"{name} must not exceed gripper.pad_radius, got {r:g} and {self.gripper.pad_radius:g} m"

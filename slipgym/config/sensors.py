@@ -1,4 +1,4 @@
-"""The two sensors behind each pad."""
+"""Configuration models of the two sensors of each finger."""
 
 from pydantic import Field
 
@@ -6,7 +6,7 @@ from slipgym.config.base import Count, Frozen, NonNegative, Positive
 
 
 class ForceTorqueConfig(Frozen):
-    """Six-axis force/torque sensor of one finger; of its axes the in-plane problem uses four."""
+    """Six-axis force/torque sensor of one finger; the in-plane problem uses four of its axes."""
 
     rate: Count = Field(description="Samples per second [Hz]")
     noise_tangential: NonNegative = Field(description="White noise of each tangential force, sd [N]")
@@ -20,12 +20,14 @@ class ForceTorqueConfig(Frozen):
     drift_tangential: NonNegative = Field(description="Random walk of each tangential force, sd [N/sqrt(s)]")
     drift_normal: NonNegative = Field(description="Random walk of the normal force, sd [N/sqrt(s)]")
     drift_torque: NonNegative = Field(description="Random walk of the torque, sd [N m/sqrt(s)]")
-    resolution_force: NonNegative = Field(description="Step of the force readings; 0: continuous [N]")
-    resolution_torque: NonNegative = Field(description="Step of the torque readings; 0: continuous [N m]")
-    force_range: Positive = Field(description="Tangential forces saturate here, either sign [N]")
-    normal_range: Positive = Field(description="The normal force saturates here [N]")
-    torque_range: Positive = Field(description="The torque saturates here, either sign [N m]")
-    latency: NonNegative = Field(description="Age of a reading when it arrives [s]")
+    resolution_force: NonNegative = Field(description="Quantisation of the force readings; 0: continuous [N]")
+    resolution_torque: NonNegative = Field(
+        description="Quantisation of the torque readings; 0: continuous [N m]"
+    )
+    force_range: Positive = Field(description="Saturation of the tangential forces, either sign [N]")
+    normal_range: Positive = Field(description="Saturation of the normal force [N]")
+    torque_range: Positive = Field(description="Saturation of the torque, either sign [N m]")
+    latency: NonNegative = Field(description="Latency of a reading [s]")
 
 
 class SlipConfig(Frozen):
@@ -40,8 +42,8 @@ class SlipConfig(Frozen):
     chips: int = Field(ge=2, le=4, description="Number of chips, evenly spaced on their circle [-]")
     noise: NonNegative = Field(description="White noise per chip axis and sample, sd [counts]")
     window: Count = Field(description="Length of the moving average [samples]")
-    latency_samples: int = Field(ge=0, description="Age of a reading when it arrives [samples]")
-    speed_max: Positive = Field(description="Each chip axis saturates here, either sign [m/s]")
+    latency_samples: int = Field(ge=0, description="Latency of a reading [samples]")
+    speed_max: Positive = Field(description="Saturation of each chip axis, either sign [m/s]")
 
 
 class SensorsConfig(Frozen):

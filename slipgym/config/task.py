@@ -1,4 +1,4 @@
-"""What every task can be configured with, and how a task declares a parameter of its own."""
+"""Base class of the tasks' settings, and the declaration of a task's own parameters."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Option:
     annotation: Any
     """Type of the option's value."""
     meaning: str
-    """What it fixes."""
+    """Meaning of the option."""
     bounds: Mapping[str, Any] | None = None
     """Bounds in pydantic's words: gt, ge, lt, le."""
 
@@ -42,7 +42,7 @@ def setting(meaning: str, unit: str = "", *, reset: bool | Option = False, **bou
     `distance: Annotated[Positive, setting("Distance to slide", "m")] = 0.04` declares one, with its default.
 
     Args:
-        meaning: What the parameter is; it stands in errors and in the documentation.
+        meaning: Meaning of the parameter, for errors and documentation.
         unit: SI unit; empty for a plain number.
         reset: Whether `reset(options=...)` can fix it for one episode; an `Option` where the option has
             another type than the setting.
@@ -85,10 +85,10 @@ class TaskConfig(Frozen):
 
         Args:
             config: Configuration of the environment.
-            name: Where the settings stand, for messages: "tasks.hold".
+            name: Location of the settings, for error messages: "tasks.hold".
 
         Raises:
-            ValueError: The pad has no room for the contact radius, or the gripper cannot hold the initial
+            ValueError: The contact radius does not fit on the pad, or the gripper cannot hold the initial
                 force.
         """
         if self.radius is not None:

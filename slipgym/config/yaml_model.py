@@ -29,15 +29,15 @@ def read_model(
 
     Args:
         choice: One of `names(folder)`, the path of a YAML file, or a mapping of the same shape.
-        model: What it is validated against.
+        model: The class to validate against.
         folder: Folder of the default configuration whose files go by name.
         kind: How errors call what is read, "experiment" for example.
         context: What the model's validators are given.
 
     Raises:
         FileNotFoundError: It looks like a path, but there is no such file.
-        ValueError: The name is unknown, or a key or value is wrong; a line for each fault says where it
-            stands and what is valid.
+        ValueError: The name is unknown, or a key or value is wrong; a line for each fault names its place and
+            the valid values.
     """
     if isinstance(choice, Mapping):
         return validate(choice, model, f"{kind} argument", context)

@@ -29,9 +29,9 @@ class LimitSurface:
         f_x, f_y, tau = surface.wrench((0.02, 0.0, 1.5))
 
     Args:
-        positions: Of the points from the centre of pressure, shape (n, 2) [m].
-        shares: Of the normal force, shape (n,), >= 0, sum 1.
-        intervals: Of the table: so many to a quarter turn of either angle.
+        positions: Positions of the points from the centre of pressure, shape (n, 2) [m].
+        shares: Fractions of the normal force at the points, shape (n,), >= 0, sum 1.
+        intervals: Intervals of the table per quarter turn of each angle.
 
     Raises:
         ValueError: The shapes do not fit, shares are negative or do not add up to 1, or all points

@@ -2,7 +2,7 @@
 
 Each is a curve turned about the torque's axis: f_t and tau over the distance q of the centre of rotation,
 in radii of the disc. The uniform disc's is `estimator.limit_surface`'s. A round pressure p that falls to
-zero at the edge is made of uniform discs: those of radii a to a + da carry the share -p'(a) pi a^2 da, for
+zero at the edge is made of uniform discs: those of radii a to a + da carry the load -p'(a) pi a^2 da, for
 Hertz 3/2 a^3 / sqrt(1 - a^2) da, with a = sin(t) 3/2 sin(t)^3 dt, over which Gauss's rule integrates. The
 rim's friction is the mean over the edge (k^2 = 4 q / (1 + q)^2):
 
@@ -48,9 +48,9 @@ def _hertz(ratio: float, nodes: np.ndarray, weights: np.ndarray) -> tuple[float,
         for i in range(len(nodes)):
             near = 0.5 * (nodes[i] + 1.0)
             a = math.sin(bend + (end - bend) * near * near)
-            share = 1.5 * a**3 * abs(end - bend) * near * weights[i]
+            load = 1.5 * a**3 * abs(end - bend) * near * weights[i]
             f, m = disc_friction(ratio / a)
-            force, torque = force + share * f, torque + share * a * m
+            force, torque = force + load * f, torque + load * a * m
     return force, torque
 
 

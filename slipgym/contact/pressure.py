@@ -1,15 +1,15 @@
-"""Pressure of a round patch as load shares of the cells of a square grid.
+"""Discretises the pressure of a round patch into load fractions of the cells of a square grid.
 
-A named pressure is sampled by load, not by area: on RINGS circles that carry the same load,
-SECTORS points each. A cell's share is that of the points in it, its position their mean. So
-the pressure's centre, total and outline are those of the disc, not of a mask of square cells;
-a cell cut by the rim counts with what lies inside, where that lies. Counting points leaves
-a cell's share uncertain by 0.5 % of a whole cell's (against exact areas).
+A named pressure is sampled at points of equal load, on RINGS circles with SECTORS points each. A
+cell's load fraction is the fraction of the points in it, and its position is their mean. The centre,
+total and outline of the pressure are therefore those of the disc: a cell cut by the rim has the load
+and the position of its part inside. Counting points leaves an error of 0.5 % of a whole cell's load
+(against exact areas).
 
-The mean of the points lies nearer to the centre than they do on average, which makes the torque
-in spin too small, at 21 x 21 cells by 0.1 to 0.2 %. So all positions are stretched by one factor
-that makes it exact. What is left of the error of the limit surface is mostly that of the cell in
-which the centre of rotation lies.
+The mean of a cell's points lies nearer to the centre than the points do on average, which makes the
+torque in spin too small, at 21 x 21 cells by 0.1 to 0.2 %. All positions are therefore multiplied by
+one factor that makes it exact. The remaining error of the limit surface is mostly that of the cell
+in which the centre of rotation lies.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ OUTER_RADII: dict[str, float] = {name: pressure.outer_radius for name, pressure 
 
 
 def patch_cells(pressure: str | ArrayLike, cells: int) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and load shares of the cells that carry load.
+    """Positions and load fractions of the cells that carry load.
 
     Args:
         pressure: A name of `PRESSURES`, or relative loads of the cells, shape (cells, cells),
@@ -58,7 +58,7 @@ def patch_cells(pressure: str | ArrayLike, cells: int) -> tuple[np.ndarray, np.n
 
     Returns:
         Positions relative to the centre of pressure over the radius of the disc, half the side
-        of the square, shape (n, 2); shares of the normal force, shape (n,), sum 1.
+        of the square, shape (n, 2); fractions of the normal force, shape (n,), sum 1.
 
     Raises:
         ValueError: An unknown name, or an array of another shape, with a value that is
@@ -69,12 +69,12 @@ def patch_cells(pressure: str | ArrayLike, cells: int) -> tuple[np.ndarray, np.n
     else:
         loads, moments = _given(np.asarray(pressure, dtype=float), cells)
     loaded = loads > 0.0
-    shares = loads[loaded] / loads.sum()
+    fractions = loads[loaded] / loads.sum()
     positions = moments[loaded] / loads[loaded, None]
-    positions -= shares @ positions
-    if isinstance(pressure, str) and len(shares) > 1:
-        positions /= OUTER_RADII[pressure] * (shares @ np.hypot(*positions.T))
-    return positions, shares
+    positions -= fractions @ positions
+    if isinstance(pressure, str) and len(fractions) > 1:
+        positions /= OUTER_RADII[pressure] * (fractions @ np.hypot(*positions.T))
+    return positions, fractions
 
 
 def _sampled(name: str, cells: int) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""What the components of an action mean, and the commands they become."""
+"""Actions: their components, their space, and the commands that they are turned into."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ACTION_MODES = {
 """Mode -> names of an action's components, in order."""
 
 COMMANDS = ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate")
-"""What the plant is told every sample."""
+"""Commands to gripper and wrist in a control step."""
 _INCREMENT = len(COMMANDS)
 
 COMPONENT = np.dtype(
@@ -34,7 +34,7 @@ COMPONENT = np.dtype(
 
 
 def components(mode: str, config: Config) -> tuple[Column, ...]:
-    """Components of an action: their names and what -1 and +1 stand for.
+    """Components of an action: their names and the values of -1 and +1.
 
     Args:
         mode: One of `ACTION_MODES`.
@@ -47,14 +47,14 @@ def components(mode: str, config: Config) -> tuple[Column, ...]:
         Column("wrist_velocity_x", -speed, speed, "m/s", "wrist velocity along world x"),
         Column("wrist_velocity_z", -speed, speed, "m/s", "wrist velocity along world z"),
         Column("wrist_pitch_rate", -rate, rate, "rad/s", "pitch rate of the wrist"),
-        Column("force_increment", -step, step, "N", "change of the commanded grip force per sample"),
+        Column("force_increment", -step, step, "N", "change of the commanded grip force per control step"),
     )
     rows = {column.name: column for column in table}
     return tuple(rows[name] for name in ACTION_MODES[mode])
 
 
 class Actions:
-    """The action space of a mode, and how an action becomes commands.
+    """The action space of a mode, and its components as the table from which actions are interpreted.
 
     Args:
         mode: One of `ACTION_MODES`.
@@ -127,20 +127,20 @@ class Actions:
 
 @compiled
 def interpret(actions, components, episodes, commands):
-    """Turn actions into the commands of the coming sample.
+    """Turn actions into the commands of the coming control step.
 
     Args:
-        actions: (n, m); what lies outside [-1, 1] acts like its ends.
+        actions: (n, m); values outside [-1, 1] are clipped.
         components: COMPONENT (m,).
         episodes: EPISODE (n,), for the force commanded last and the gripper's range.
-        commands: Output (n, 4), see `COMMANDS` [N, m/s, m/s, rad/s]; columns without a component stay.
+        commands: Output (n, 4), see `COMMANDS` [N, m/s, m/s, rad/s]; other columns are unchanged.
     """
     for i in range(actions.shape[0]):
         episode = episodes[i]
         for k in range(actions.shape[1]):
             component = components[k]
-            share = 0.5 * (1.0 + min(max(actions[i, k], -1.0), 1.0))
-            value = component.low + share * (component.high - component.low)
+            fraction = 0.5 * (1.0 + min(max(actions[i, k], -1.0), 1.0))
+            value = component.low + fraction * (component.high - component.low)
             if component.command == _INCREMENT:
                 force = episode.command + value
                 commands[i, 0] = min(max(force, episode.force_min), episode.force_max)

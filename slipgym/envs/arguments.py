@@ -1,4 +1,4 @@
-"""The keyword arguments of the environments, each declared once with its type, default, choices and text.
+"""Declares the keyword arguments of the environments, each once: type, default, choices and meaning.
 
 Signatures, docstrings, pages, checks and the arguments that a state records are derived from the fields of
 `ScalarArguments` and `VectorArguments`.
@@ -45,7 +45,7 @@ DEFAULT_ESTIMATOR = estimators.DEFAULT
 
 @dataclass(frozen=True)
 class Argument:
-    """What stands beside the type of a keyword argument."""
+    """Metadata of a keyword argument, beside its type."""
 
     default: Any
     doc: str
@@ -82,7 +82,7 @@ class CommonArguments(TypedDict, total=False):
         str | os.PathLike[str] | Mapping[str, Any],
         Argument(
             "none",
-            'what is drawn per episode: `"none"`, `"train"`, `"eval_ood"`, a file or a mapping (see '
+            'parameters sampled per episode: `"none"`, `"train"`, `"eval_ood"`, a file or a mapping (see '
             "docs/randomization.md)",
         ),
     ]
@@ -100,11 +100,11 @@ class ScalarArguments(CommonArguments, total=False):
     """Keyword arguments of a `SlipEnv`."""
 
     engine: Annotated[
-        Engine, Argument("bullet", "what moves the bodies: PyBullet or the planar engine (see docs/batch.md)")
+        Engine, Argument("bullet", "engine that moves the bodies: PyBullet or planar (see docs/batch.md)")
     ]
     render_mode: Annotated[
         Literal["human", "rgb_array", "depth_array"] | None,
-        Argument(None, "what `render` returns or shows (see docs/rendering.md)"),
+        Argument(None, "output of `render` (see docs/rendering.md)"),
     ]
 
 
@@ -116,7 +116,7 @@ class VectorArguments(CommonArguments, total=False):
         Literal["NextStep", "SameStep", "Disabled"] | AutoresetMode,
         Argument(
             "NextStep",
-            'what happens when an episode ends; with `"Disabled"`, '
+            'when to reset an environment whose episode has ended; with `"Disabled"`, '
             '`reset(options={"reset_mask": ...})` is up to the caller',
         ),
     ]
@@ -128,7 +128,7 @@ class VectorArguments(CommonArguments, total=False):
         ),
     ]
     render_mode: Annotated[
-        Literal["rgb_array", "depth_array"] | None, Argument(None, "what `render` returns; `None`: nothing")
+        Literal["rgb_array", "depth_array"] | None, Argument(None, "output of `render`; `None`: nothing")
     ]
     render_rows: Annotated[
         Sequence[int] | None,
@@ -243,7 +243,7 @@ def one_of(name: str, value: object, valid: Iterable[str]) -> str:
 
 
 def refuse_unknown(given: Iterable[str], known: Iterable[str]) -> None:
-    """Raise TypeError if a keyword argument was given that is not known."""
+    """Raise TypeError if an unknown keyword argument was given."""
     for name in given:
         if name not in known:
             raise TypeError(unknown("keyword argument", name, known))

@@ -1,4 +1,4 @@
-"""One environment whose bodies PyBullet moves."""
+"""The simulation of one environment with PyBullet."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ _NOTHING: AbstractContextManager[None] = nullcontext()
 
 
 class BulletSimulation(Simulation):
-    """One environment whose bodies PyBullet moves.
+    """Simulation of one environment; PyBullet moves the bodies.
 
     Args:
-        config: As of `Simulation`, like the others.
+        config: Configuration.
         settings: The task's settings.
         task: The task.
-        estimator: The estimator.
-        randomization: What is drawn.
+        estimator: Name of an estimator, or a mapping with its `name` and parameters.
+        randomization: Distributions that an episode is sampled from; None: no randomization.
 
     Attributes:
-        world: PyBullet around the plant.
+        world: The PyBullet world, which moves the bodies of `plant`.
     """
 
     def __init__(
@@ -91,7 +91,7 @@ class BulletSimulation(Simulation):
         """One control step with a grip force per finger [N], the wrist as the task scripts it.
 
         Raises:
-            FloatingPointError: Something is no longer a finite number; only a reset helps.
+            FloatingPointError: A quantity is not finite; the environment needs a reset.
         """
         self.commands[0] = force, 0.0, 0.0, 0.0
         self._control_step()
@@ -122,7 +122,7 @@ class BulletSimulation(Simulation):
             self._reset(starts)
 
     def _patience(self, stage: str) -> AbstractContextManager[None]:
-        """Explains on stderr why the first reset and the first step take long, if they do."""
+        """Explains on stderr that code is being compiled, if the first reset or step takes long."""
         if stage in self._compiled:
             return _NOTHING
         self._compiled.add(stage)

@@ -40,19 +40,19 @@ class BatchState(NamedTuple):
     slip_sensors: np.ndarray
     """SLIP_SENSOR (n, 2): sensors."""
     parameters: np.ndarray
-    """Of the estimators, (2 n,), or (1,) for all."""
+    """Parameters of the estimators, (2 n,), or (1,) for all."""
     estimator_states: np.ndarray
-    """Of the estimators, (2 n,)."""
+    """States of the estimators, (2 n,)."""
     estimates: np.ndarray
     """ESTIMATE (2 n,), finger by finger."""
     episodes: np.ndarray
     """EPISODE (n,): task."""
     commands: np.ndarray
-    """Grip force and wrist velocity, (n, 4), see `slipgym.envs.actions.COMMANDS`."""
+    """Commanded grip force and wrist velocity, (n, 4), see `slipgym.envs.actions.COMMANDS`."""
     wrenches: np.ndarray
-    """Measured at the centre of pressure, (n, 2, 4) [N, N, N, N m]."""
+    """Measured wrenches at the centre of pressure, (n, 2, 4) [N, N, N, N m]."""
     twists: np.ndarray
-    """Measured there, (n, 2, 3) [m/s, m/s, rad/s]."""
+    """Measured slip twists at the centre of pressure, (n, 2, 3) [m/s, m/s, rad/s]."""
     per_finger: np.ndarray
     """Estimated mu_s, mu_c, r (n, 2, 3)."""
     estimated: np.ndarray
@@ -65,10 +65,10 @@ class BatchState(NamedTuple):
 
 @unlocked
 def begin_control_step(script_wrist, state, lo, hi):
-    """Take the commands, disturb and script the wrist of rows lo to hi; then the bodies move.
+    """Take the commands, apply disturbances and script the wrist of rows lo to hi, before the bodies move.
 
     Args:
-        script_wrist: The task's.
+        script_wrist: Function of the task.
         state: `BatchState`.
         lo: First row.
         hi: Row after the last.
@@ -100,8 +100,8 @@ def end_control_step(update, evaluate_step, state, lo, hi):
     """Measure, update the estimators and evaluate the task in rows lo to hi, after the bodies have moved.
 
     Args:
-        update: The estimator's.
-        evaluate_step: The task's.
+        update: Function of the estimator.
+        evaluate_step: Function of the task.
         state: `BatchState`.
         lo: First row.
         hi: Row after the last.
@@ -123,7 +123,7 @@ def evaluate(evaluate_step, state, lo, hi):
     """Merge the estimates and evaluate the task in rows lo to hi.
 
     Args:
-        evaluate_step: The task's.
+        evaluate_step: Function of the task.
         state: `BatchState`.
         lo: First row.
         hi: Row after the last.
@@ -152,7 +152,7 @@ class Kernels:
     Attributes:
         state: Type of `BatchState`.
         fresh: Types of the estimators' states and estimates.
-        script_wrist: Type of the task's function, like the next two.
+        script_wrist: Type of the task's function; `evaluate_step` and `update` likewise.
     """
 
     def __init__(

@@ -1,8 +1,9 @@
-"""The docstring of an environment, made of its task's file and of the tables in the code, and its page.
+"""Generates the docstring and the page of an environment from its task's file and the tables in the code.
 
-A task's page is a summary and sections under headings of the second level, as in `TITLES`. "Description",
-"Starting State" and "Version History" are its own; "Rewards" follows the table of terms, "Info" holds the
-row of `reference`. "Action Space" and "Episode End" replace what stands here. What is missing is left out.
+The docstring of a task's module is a summary and sections under second-level headings, as in `TITLES`.
+"Description", "Starting State" and "Version History" are copied; "Rewards" is appended to the table of terms,
+and "Info" holds the row of `reference`. "Action Space" and "Episode End" replace the defaults in this module.
+Sections without content are left out.
 """
 
 from __future__ import annotations
@@ -36,43 +37,44 @@ TITLES = (
 """Sections of a docstring, in order."""
 
 _FRAMES = """\
-One step is one sample of the slip-velocity sensors, 1/120 s. The pad frame moves with the wrist: x and y
-span the contact plane (x horizontal and y up while the wrist is level), angles and torques count about
-the grip axis from finger 1 to finger 2. All units are SI."""
+One step is one control step of 1/120 s, in which the slip-velocity sensors are sampled once. The pad frame
+moves with the wrist: x and y span the contact plane (x is horizontal and y points up while the wrist is
+level). Angles and torques are positive about the grip axis from finger 1 to finger 2. All units are SI."""
 
 _ACTION = """\
 `Box(-1, 1, (1,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` ({low:g} N)
-and +1 is `gripper.force_max` ({high:g} N). Values beyond are clipped; NaN and infinity are errors. The force
-follows with a dead time ({dead:g} ms) and a first-order lag ({lag:g} ms).
+and +1 is `gripper.force_max` ({high:g} N). Values outside [-1, 1] are clipped; NaN and infinity are errors.
+The actuator force follows the command with a dead time ({dead:g} ms) and a first-order lag ({lag:g} ms).
 
 Other values of `action_mode` add components or change their meaning (see docs/modes.md):
-"grip_force_pitch" adds the wrist's pitch rate, "grip_force_wrist" its velocity along world x and z and
-its pitch rate, "force_increment" takes the change of the grip force per sample instead."""
+"grip_force_pitch" adds the wrist's pitch rate, "grip_force_wrist" adds its velocity along world x and z and
+its pitch rate, and "force_increment" takes the change of the grip force per control step instead of the
+force."""
 
 _OBSERVATION = """\
-`Box(low, high, ({n},), float32)`. Forces, torques and velocities are measured, at the centre of pressure;
-index {span} are the friction part, which `friction_source="none"` leaves out (then the shape is ({bare},)).
-Bounds follow the configuration; those of the defaults are
+`Box(low, high, ({n},), float32)`. Forces, torques and velocities are sensor readings at the centre of
+pressure. Indices {span} are the friction part, which `friction_source="none"` leaves out (the shape is then
+({bare},)). The bounds depend on the configuration; with the default configuration they are
 
 {table}
 
 With `friction_source="estimated"` the friction part merges both fingers' estimates by their confidence, and
-the confidence (0 to 1) says how much data stands behind each: do not trust a value before it has grown. With
-"true" and "nominal" every confidence is 1.
+the confidence (0 to 1) says how much data each value rests on: an estimate is unreliable while its confidence
+is low. With "true" and "nominal" every confidence is 1.
 
-With an `action_mode` that moves the wrist, what the agent commands of it and its pitch precede
-the friction part, unless the table has them. `observation_mode="sensor"` leaves the friction part out;
-"dict" gives the groups "policy" (the above) and "privileged" (the truth); `history=k` puts the last k
-observations in front of each (see docs/modes.md)."""
+With an `action_mode` that moves the wrist, the commanded wrist velocities and the wrist's pitch precede
+the friction part, unless the table has them already. `observation_mode="sensor"` leaves the friction part
+out; "dict" returns the groups "policy" (the observation above) and "privileged" (the ground truth);
+`history=k` prepends the last k observations (see docs/modes.md)."""
 
 _END = """\
 - Terminated: the object is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: the time of the episode has passed. The environment truncates by itself; no `TimeLimit` is
+- Truncated: the episode has reached its time limit. The environment truncates by itself; no `TimeLimit` is
   needed."""
 
 _REWARD_TERMS = ("`reward_terms`", "scaled reward terms of this step by name; they add up to the reward")
 _DRAWN = """\
-With a randomization, the info of a reset also holds `drawn`: what was drawn for the episode, by name (see
+With a randomization, the info of a reset also holds `drawn`: the values sampled for the episode, by name (see
 docs/randomization.md)."""
 
 
@@ -133,7 +135,8 @@ def _observation(config: Config, task: Task) -> str:
 
 def _rewards(task: Task) -> str:
     where = f"`tasks.{task.key}.reward` in the configuration"
-    head = textwrap.fill(f"The sum of these terms, each times its scale ({where}), per sample:", 106)
+    text = f"The reward of a control step is the sum of these terms, each times its scale ({where}):"
+    head = textwrap.fill(text, 106)
     rows = [(f"`{term.name}`", f"{term.scale:g}", term.meaning) for term in task.terms]
     return f"{head}\n\n{_table(('Term', 'Scale', 'Value before scaling'), rows)}"
 
@@ -162,7 +165,7 @@ def _infos(reference: str | None) -> str:
 def _options(task: Task) -> str:
     fields = task.options.model_fields
     rows = [(f"`{name}`", field.description or "") for name, field in fields.items()]
-    head = "What `reset(options={...})` fixes for one episode; anything else in it is an error."
+    head = "Parameters that `reset(options={...})` can fix for one episode; unknown names are errors."
     return f"{head}\n\n{_table(('Option', 'Meaning'), rows)}"
 
 

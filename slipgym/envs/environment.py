@@ -1,4 +1,4 @@
-"""The environment class of a task."""
+"""Makes the environment class of a task."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from slipgym.tasks.table import add
 
 @cache
 def environment(task: Task) -> type[SlipEnv]:
-    """The class <name>Env, documented; the same for every call.
+    """Return the class <name>Env with its docstring; every call returns the same class.
 
-    It is to be found in `slipgym.envs`, or, for a task of one's own, in the module of the task's `start`.
+    Its module is `slipgym.envs` or, for a task of your own, the module of the task's `start`.
 
     Raises:
         ValueError: The task's page has an unknown section.
@@ -38,7 +38,7 @@ def register_task(task: Task) -> type[SlipEnv]:
         task: The task; its module is that of its `start`.
 
     Raises:
-        ValueError: Another task has its name or key, or a part of it is not as it should be; the message says
+        ValueError: Another task has its name or key, or a part of the task is not valid; the message says
             which.
     """
     made = environment(task)

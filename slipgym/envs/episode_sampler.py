@@ -1,4 +1,4 @@
-"""Samples how episodes begin: friction, object, task, disturbances and sensors."""
+"""Samples the initial conditions of episodes: friction, object, task, disturbances and sensors."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from slipgym.tasks.options import EpisodeOptions
 from slipgym.world.scene import Box
 
 Row: TypeAlias = tuple[int, EpisodeOptions, np.random.Generator]
-"""An environment to reset, its options, and the source of its draws."""
+"""An environment to reset, its options, and its random generator."""
 
 LATENCY = "velocity_delay"
-"""Parameter of an estimator: how old a velocity is when it arrives."""
+"""Parameter of an estimator: the latency of the slip velocity."""
 
 
 @dataclass(frozen=True)
@@ -49,16 +49,16 @@ class EpisodeSampler:
         config: Configuration.
         settings: The task's settings.
         task: The task.
-        randomizer: Of the randomization.
-        hardware: Applies what is drawn for gripper and sensors.
+        randomizer: Samples the randomized parameters.
+        hardware: Applies the sampled parameters of gripper and sensors.
         episode: EPISODE (n,); rows are filled in.
         parameters: Of estimators whose `velocity_delay` follows the slip sensor's latency, (2 n,), or (1,)
             for all; None if it stays as it is.
 
     Attributes:
         materials: Name of every episode's material.
-        boxes: Its object.
-        drawn: What the randomization drew for it, JSON-like; empty without one.
+        boxes: Every episode's object.
+        drawn: Values that the randomization sampled for every episode, JSON-like; may be empty.
     """
 
     def __init__(
@@ -129,12 +129,12 @@ class EpisodeSampler:
         )
 
     def _note(self, i: int, options: EpisodeOptions, draw: Draw, friction: Friction, box: Box) -> None:
-        """Keep what is reported of an episode; apply its parameters to gripper, sensors and estimators."""
+        """Store the episode's reported values; apply its parameters to gripper, sensors and estimators."""
         self.materials[i], self.boxes[i] = friction.material, box
         if self._parameters is not None:
             own = self._parameters[2 * i : 2 * i + 2] if len(self._parameters) > 1 else self._parameters
             own[LATENCY] = draw.values["slip_latency"]
-        if self._randomizer.active:  # without one, the parameters are those of the configuration already
+        if self._randomizer.active:  # else the parameters are those of the configuration
             start = {"mu_s": friction.mu_s, "mu_c": friction.mu_c, "mass": box.mass}
             self.drawn[i] = {**start, **draw.report(options)}
             self._hardware.apply(i, draw.values, draw.config.contact.pressure)
@@ -160,9 +160,10 @@ def draw_friction(
     draw: Draw,
     rng: np.random.Generator,
 ) -> Friction:
-    """The material's friction, randomised unless a material was named, with what the options fix.
+    """Friction of an episode: the options' values, else randomized ones, else the material's.
 
-    Options that fix one of mu_s and mu_c leave a randomised ratio as it was drawn.
+    If a material is named, friction is not randomized. Options that fix only mu_s or only mu_c keep the
+    sampled ratio of the two.
 
     Raises:
         ValueError: The material is unknown, mu_s would be below mu_c, or the pad has no room for r.
@@ -193,7 +194,7 @@ def draw_friction(
 def make_box(
     config: Config, options: EpisodeOptions, task: TaskConfig, draw: Draw, rng: np.random.Generator
 ) -> Box:
-    """The object of the configuration, with what the task and the randomization draw and the options fix.
+    """The configured object, with the values that the task and the randomization sample or the options fix.
 
     Raises:
         ValueError: The pads or the centre of mass would not lie on the object.

@@ -1,4 +1,4 @@
-"""Applies what an episode draws for pads, force loop and sensors."""
+"""Applies the sampled parameters of pads, force loop and sensors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from slipgym.world.plant import Plant, check_slip_latency, dead_ticks, patch_of
 
 
 def with_pressure(config: Config, pressure: str) -> Config:
-    """The configuration with another pressure over the patch."""
+    """The configuration with another pressure profile of the patch."""
     return config.model_copy(update={"contact": config.contact.model_copy(update={"pressure": pressure})})
 
 
@@ -21,12 +21,12 @@ class HardwareRandomization:
 
     Args:
         config: Configuration of the plant.
-        plant: The plant as it was built; its patches make room for the largest one.
-        pressures: Pressures that an episode may have.
+        plant: The plant as it was built; its patches are enlarged to the size of the largest one.
+        pressures: Pressure profiles that an episode may have.
 
     Attributes:
-        biases: Spread of the force/torque sensors' biases, and their noise, which a drawn scale multiplies,
-            (6,) each [N, N m].
+        biases: Standard deviation of the force/torque sensors' biases, and their noise, which the sampled
+            bias scale multiplies, (6,) each [N, N m].
     """
 
     def __init__(self, config: Config, plant: Plant, pressures: Sequence[str]) -> None:
@@ -40,14 +40,14 @@ class HardwareRandomization:
         self._cells: dict[str, np.ndarray] = {}
         if plant.cells is not None:
             patches = {pressure: patch_of(with_pressure(config, pressure)) for pressure in pressures}
-            room = max(cells.shape[1] for cells in patches.values())
+            size = max(cells.shape[1] for cells in patches.values())
             for pressure, cells in patches.items():
-                self._cells[pressure] = np.zeros((CELL_FIELDS, room))  # a cell of weight 0 does nothing
+                self._cells[pressure] = np.zeros((CELL_FIELDS, size))  # a cell of weight 0 does nothing
                 self._cells[pressure][:, : cells.shape[1]] = cells
             plant.cells = np.tile(self._cells[config.contact.pressure], (*plant.pads.shape, 1, 1))
 
     def check(self, most: Mapping[str, float]) -> None:
-        """Raise ValueError unless the plant has room for the longest times that may be drawn."""
+        """Raise ValueError unless the plant's buffers hold the longest delays that may be sampled."""
         dead_ticks(self._config, most["dead_time"], "randomization.dead_time")
         check_slip_latency(self._config, round(most["slip_latency"]), "randomization.slip_latency")
 
@@ -55,9 +55,9 @@ class HardwareRandomization:
         """Set the parameters of a world's episode.
 
         Args:
-            i: Which of the worlds.
-            values: Fields of `slipgym.config.Ranges`, every one that is used here.
-            pressure: Over the patch.
+            i: Index of the world.
+            values: Fields of `slipgym.config.Ranges`, each of those used in this method.
+            pressure: Pressure profile of the patch.
         """
         plant = self._plant
         for field in ("stribeck_velocity", "sigma_0"):

@@ -1,7 +1,7 @@
-"""Infos: their entries, and the buffers that hold them for all environments.
+"""Infos: a table of their entries, and the buffers that hold them for all environments.
 
-The numbers of an environment are one row of a plain array: numpy copies records field by field, which takes
-longer.
+The numbers of an environment are one row of a plain array. A structured array would be slower: numpy copies
+its records field by field.
 """
 
 from __future__ import annotations
@@ -40,14 +40,14 @@ NUMBERS = (
         "estimated",
         (3,),
         "-, -, m",
-        "the estimators' (mu_s, mu_c, r), mean of both fingers",
+        "estimated (mu_s, mu_c, r), mean of both fingers",
         "estimated[i, {0}]",
     ),
     Info(
         "estimated_per_finger",
         (2, 3),
         "-, -, m",
-        "the same, finger by finger",
+        "estimated (mu_s, mu_c, r) of each finger",
         "per_finger[i, {0}, {1}]",
     ),
     Info(
@@ -80,7 +80,7 @@ NUMBERS = (
 
 FLAGS = (
     Info("is_success", (), "", "whether the task is solved; see Episode End", "episodes[i].success"),
-    Info("dropped", (), "", "whether the box is dropped", "episodes[i].dropped"),
+    Info("dropped", (), "", "whether the box was dropped", "episodes[i].dropped"),
 )
 """Entries that are true or false, in the order of a row."""
 
@@ -106,18 +106,18 @@ class InfoBuffer(NamedTuple):
 
     @classmethod
     def zeros(cls, n: int, terms: int) -> InfoBuffer:
-        """The buffer of n environments of a task with so many reward terms."""
+        """Make a buffer for n environments and a number of reward terms."""
         return cls(np.zeros((n, _WIDTH)), np.zeros((n, len(FLAGS)), dtype=bool), np.zeros((n, terms)))
 
     def empty_like(self) -> InfoBuffer:
-        """Another buffer of the same shapes, with undefined contents."""
+        """Return another buffer of the same shapes, with undefined contents."""
         return InfoBuffer(*map(np.empty_like, self))
 
     def one(self, i: int, terms: Sequence[str]) -> dict[str, Any]:
         """Info of environment i as `gymnasium.Env` returns it: copies, plain numbers.
 
         Args:
-            i: Which environment.
+            i: Index of the environment.
             terms: Names of the reward terms.
         """
         row = self.numbers[i].copy()
@@ -135,7 +135,7 @@ class InfoBuffer(NamedTuple):
 
         Args:
             terms: Names of the reward terms.
-            mask: Which environments the infos hold for, (n,); None: all.
+            mask: Environments whose infos are valid, (n,) bool; None: all.
         """
         numbers, flags, values = self
         infos: dict[str, Any] = {
@@ -153,7 +153,7 @@ class InfoBuffer(NamedTuple):
         """Copies of the infos of some environments (m,), zero elsewhere, with masks; empty for no rows.
 
         Args:
-            rows: Which environments.
+            rows: Indices of the environments.
             terms: Names of the reward terms.
         """
         if not rows.size:
@@ -167,18 +167,18 @@ class InfoBuffer(NamedTuple):
 
 
 def _with_masks(infos: dict[str, Any], left: Iterator[np.ndarray]) -> dict[str, Any]:
-    """Each info with a mask beside it that says which environments have it, as Gymnasium asks for."""
+    """Add a mask to each info that says which environments have it, as Gymnasium requires."""
     return {**infos, **{f"_{name}": next(left) for name in infos}}
 
 
 def final(observations: Any, infos: dict[str, Any], rows: np.ndarray, n: int) -> dict[str, Any]:
-    """Infos that hold the last observations and infos of episodes that are over.
+    """Infos that hold the last observations and infos of finished episodes.
 
     Args:
-        observations: Of all environments: (n, k), or a dictionary of such arrays.
-        infos: Of the environments whose episodes are over.
-        rows: Which these are, (m,).
-        n: Environments.
+        observations: Observations of all environments: (n, k), or a dictionary of such arrays.
+        infos: Infos of the environments whose episodes have finished.
+        rows: Indices of these environments, (m,).
+        n: Number of environments.
     """
     if not rows.size:
         return {}

@@ -1,4 +1,4 @@
-"""Notices the first number that is not finite, and keeps what led to it."""
+"""Detects the first number that is not finite, and writes the control steps before it to a file."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from slipgym._numba.compiled import compiled
 from slipgym.envs.readings import finite_check, row_writer
 
 KEPT = 120
-"""Control steps whose quantities are kept: the last second."""
+"""Number of control steps whose quantities are kept: one second."""
 
 
 class Quantity(NamedTuple):
-    """One number that is watched."""
+    """One number that is checked."""
 
     name: str
     unit: str
     read: str
     """Expression for environment i in terms of the arguments of `note`."""
     measured: bool = False
-    """Whether it is a measurement, which is finite if what it measures is."""
+    """Whether it is a measurement, which is finite if the measured quantity is."""
 
 
 def _loads(f: int) -> tuple[Quantity, ...]:
@@ -43,7 +43,7 @@ def _loads(f: int) -> tuple[Quantity, ...]:
 
 
 def _measurements(f: int) -> tuple[Quantity, ...]:
-    """What the sensors of finger 1 or 2 measure."""
+    """Sensor readings of finger 1 or 2."""
     wrench, twist = f"wrenches[i, {f - 1}, ", f"twists[i, {f - 1}, "
     return (
         Quantity(f"measured_f_x_{f}", "N", f"{wrench}0]", measured=True),
@@ -57,7 +57,7 @@ def _measurements(f: int) -> tuple[Quantity, ...]:
 
 
 def _estimates(f: int) -> tuple[Quantity, ...]:
-    """What the estimator of finger 1 or 2 returns."""
+    """Estimates of finger 1 or 2."""
     estimate = f"per_finger[i, {f - 1}, "
     return (
         Quantity(f"estimated_mu_s_{f}", "-", f"{estimate}0]"),
@@ -87,7 +87,7 @@ QUANTITIES = (
     *_estimates(2),
     Quantity("reward", "-", "episodes[i].terms.sum()"),
 )
-"""What is watched, causes before effects: the first one that is not finite is named."""
+"""Quantities that are checked, causes before effects: the error names the first one that is not finite."""
 
 _NAMES = tuple(quantity.name for quantity in QUANTITIES)
 _ARRAYS = "worlds", "pads", "fingers", "wrenches", "twists", "per_finger", "episodes"
@@ -113,7 +113,7 @@ def note(row, i, worlds, pads, fingers, wrenches, twists, per_finger, episodes):
 
     Args:
         row: Output (len(QUANTITIES),).
-        i: Which of the n environments.
+        i: Index of the environment.
         worlds: WORLD (n,).
         pads: PAD (n, 2).
         fingers: FINGER (n, 2).
@@ -145,16 +145,16 @@ class Guard:
         self._count = 0
 
     def watch(self, time: float, i: int, *arrays: np.ndarray) -> None:
-        """Take the quantities of a control step.
+        """Store the quantities of a control step.
 
         Args:
             time: [s].
-            i: Which of the environments.
-            *arrays: Of the environments, in the order of `note`.
+            i: Index of the environment.
+            *arrays: Arrays of the environments, in the order of `note`.
 
         Raises:
-            FloatingPointError: One is not finite. The message names the first and the file that the kept
-                samples were written to.
+            FloatingPointError: A quantity is not finite. The message names the first one and the file that
+                the kept control steps were written to.
         """
         at = self._count % KEPT
         self._count += 1

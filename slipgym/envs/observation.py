@@ -1,4 +1,4 @@
-"""The observation: sensor part, task part, wrist part, friction part."""
+"""Computes the observation: sensor part, task part, wrist part, friction part."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ SENSORS = (
         "slip displacement, summed from the counts of both fingers",
         _mean_slip(0),
     ),
-    Reading("measured_slip_y", (-1.0, 1.0), "m", "the same along the pads' y axis", _mean_slip(1)),
+    Reading("measured_slip_y", (-1.0, 1.0), "m", "the same along the pad's y axis", _mean_slip(1)),
     Reading("measured_slip_theta", (-10.0, 10.0), "rad", "the same about the grip axis", _mean_slip(2)),
     Reading(
         "commanded_force", _grip_force, "N", "grip force commanded in the last step", "episodes[i].command"
@@ -102,9 +102,9 @@ WRIST = (
         "commanded wrist pitch rate",
         "worlds[i].wrist_velocity[2]",
     ),
-    Reading("wrist_pitch", (-10.0, 10.0), "rad", "pitch of the wrist against level", "worlds[i].wrist[2]"),
+    Reading("wrist_pitch", (-10.0, 10.0), "rad", "pitch of the wrist, 0 when level", "worlds[i].wrist[2]"),
 )
-"""Wrist part, of which an environment has what its agent commands; see `wrist_part`."""
+"""Wrist part; an environment has those rows that its agent commands, see `wrist_part`."""
 
 
 def _merged(name: str) -> str:
@@ -120,26 +120,22 @@ FRICTION = (
     Reading("mu_s", (0.0, 10.0), "-", "static friction", "merged_mu_s(first, second)"),
     Reading("mu_c", (0.0, 10.0), "-", "Coulomb friction", "merged_mu_c(first, second)"),
     Reading("r", (0.0, 1.0), "m", "radius of the equivalent rim contact", _merged("r")),
-    Reading(
-        "confidence_mu_s", (0.0, 1.0), "-", "how much data stands behind mu_s", _better("confidence_mu_s")
-    ),
-    Reading(
-        "confidence_mu_c", (0.0, 1.0), "-", "how much data stands behind mu_c", _better("confidence_mu_c")
-    ),
-    Reading("confidence_r", (0.0, 1.0), "-", "how much data stands behind r", _better("confidence_r")),
+    Reading("confidence_mu_s", (0.0, 1.0), "-", "confidence of mu_s, 0 to 1", _better("confidence_mu_s")),
+    Reading("confidence_mu_c", (0.0, 1.0), "-", "confidence of mu_c, 0 to 1", _better("confidence_mu_c")),
+    Reading("confidence_r", (0.0, 1.0), "-", "confidence of r, 0 to 1", _better("confidence_r")),
 )
-"""Friction part, as it is read from the estimates of the first and the second finger."""
+"""Friction part, computed from the estimates of the first and the second finger."""
 FRICTION_COLUMNS = tuple(reading.column() for reading in FRICTION)
 
 
 class ObservationBuffers(NamedTuple):
-    """The arguments of `observe` that are not the simulation's own state: its settings and its output."""
+    """Settings and output of `observe`; its other arguments are the simulation's state."""
 
     wrist: np.ndarray
-    """Which rows of `WRIST` make the wrist part, (w,)."""
+    """Rows of `WRIST` in the wrist part, (w,)."""
     friction: np.ndarray
-    """Values of the friction part, (n, 6): an array of the simulation's, which changes as it steps, or
-    constants."""
+    """Values of the friction part, (n, 6): a constant array, or a view of the simulation's array, which
+    changes with every step."""
     low: np.ndarray
     """Lower bounds, (m,) float32."""
     high: np.ndarray
@@ -149,7 +145,7 @@ class ObservationBuffers(NamedTuple):
 
 
 def wrist_part(task: Task, action_mode: str) -> tuple[int, ...]:
-    """Rows of `WRIST` that an agent which commands the wrist needs and the task's part does not hold."""
+    """Rows of `WRIST` for an agent that commands the wrist, without those that the task's part holds."""
     commanded = set(ACTION_MODES[action_mode])
     if commanded & {reading.name for reading in WRIST}:
         commanded.add("wrist_pitch")
@@ -252,14 +248,14 @@ def observe(wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, 
     """Write the observation, clipped to its bounds.
 
     Args:
-        wrenches: As from `measure`, (n, 2, 4).
-        twists: As from `measure`, (n, 2, 3).
+        wrenches: Measured wrenches (n, 2, 4) [N, N, N, N m], see `slipgym.sensors.measure`.
+        twists: Measured slip twists (n, 2, 3) [m/s, m/s, rad/s].
         slip_sensors: SLIP_SENSOR (n, 2), for the measured slip.
         episodes: EPISODE (n,), for the commanded force.
         task_part: (n, k).
         worlds: WORLD (n,), for the wrist.
-        wrist: Which rows of `WRIST` (w,) make the wrist part.
-        friction: `FRICTION_COLUMNS` (n, 6); used as far as `out` has room for it.
+        wrist: Rows of `WRIST` in the wrist part, (w,).
+        friction: `FRICTION_COLUMNS` (n, 6); columns beyond the width of `out` are left out.
         low: Lower bounds (m,).
         high: Upper bounds (m,).
         out: Output (n, m), float32.

@@ -1,4 +1,4 @@
-"""What an environment observes: layout, history and groups."""
+"""Assembles observations: their layout, history and groups."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ Observation: TypeAlias = np.ndarray | dict[str, np.ndarray]
 
 
 class Observer:
-    """Reads the observations out of a simulation.
+    """Assembles the observations of a simulation.
 
     Args:
-        simulation: What is observed.
-        friction_source: What the friction part holds.
-        action_mode: What actions mean; decides about the wrist part.
+        simulation: The simulation.
+        friction_source: Source of the friction part: "estimated", "true", "nominal" or "none".
+        action_mode: One of `ACTION_MODES`; it decides which wrist columns are observed.
         mode: "flat", "sensor" or "dict".
-        history: How many earlier observations come along.
+        history: Number of earlier observations in each observation.
 
     Attributes:
-        columns: Of one observation, or of its group "policy".
-        privileged: Columns of the group "privileged"; empty without one.
+        columns: Columns of one observation, or of its group "policy".
+        privileged: Columns of the group "privileged"; empty unless the mode is "dict".
         space: The observation space of one environment.
-        buffers: Where the simulation writes the observations.
+        buffers: Buffers that the simulation writes the observations to.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class Observer:
         self.buffers = ObservationBuffers(
             *self._settings, np.zeros((simulation.n, len(self.columns)), dtype=np.float32)
         )
-        if history:  # the last observations, the present one last; without it `buffers` has all
+        if history:  # the newest observation comes last
             self._frames = np.zeros((simulation.n, history + 1, len(self.columns)), dtype=np.float32)
         policy = gym.spaces.Box(np.tile(low, history + 1), np.tile(high, history + 1))
         self.privileged: tuple[Column, ...] = ()
@@ -63,27 +63,27 @@ class Observer:
             self.space = gym.spaces.Dict({"policy": policy, "privileged": ground_truth})
 
     def begin(self, rows: np.ndarray) -> None:
-        """Take the first observations of some environments; they stand for those before them, too."""
+        """Observe some environments after a reset; the first observation fills their whole history."""
         self._look(rows)
         if self._history:
             self._frames[rows] = self.buffers.out[rows, np.newaxis]
 
     def next(self, active: np.ndarray) -> None:
-        """Take the observations that the simulation wrote after a step.
+        """Append the observations of a step, which the simulation has written to `buffers`, to the history.
 
         Args:
-            active: Which environments took part, (n,).
+            active: Environments that made a step, (n,) bool.
         """
         if self._history:
             self._frames[active, :-1] = self._frames[active, 1:]
             self._frames[active, -1] = self.buffers.out[active]
 
     def again(self) -> None:
-        """Take the present observations of all environments once more, after some were handed over."""
+        """Write the present observations of all environments to `buffers` again, after `read` replaced it."""
         self._look(np.arange(self._simulation.n))
 
     def present(self) -> Observation:
-        """Observations of all environments, (n, k) each, for as long as nothing changes."""
+        """Views of the observations of all environments, (n, k) each; the next step or reset changes them."""
         policy = self._frames.reshape(self._simulation.n, -1) if self._history else self.buffers.out
         if not self.privileged:
             return policy
@@ -93,7 +93,7 @@ class Observer:
         return {"policy": policy, "privileged": self._ground_truth}
 
     def read(self) -> Observation:
-        """Observations of all environments, the receiver's own; the next ones go into another array."""
+        """Observations of all environments, owned by the caller; the next ones are written to new arrays."""
         observations = self.present()
         if self._history:
             self._frames = self._frames.copy()
@@ -104,14 +104,14 @@ class Observer:
         return observations
 
     def get_state(self) -> np.ndarray:
-        """The last observations (n, history + 1, m), the present one last."""
+        """The last observations (n, history + 1, m), the newest one last."""
         if self._history:
             return self._frames.copy()
         self.again()
         return self.buffers.out[:, np.newaxis].copy()
 
     def set_state(self, frames: np.ndarray) -> None:
-        """Go on from the last observations; without history the simulation's state has all that is needed."""
+        """Restore the history; without one, the simulation's state suffices."""
         if self._history:
             self._frames[:] = frames
 
@@ -129,14 +129,14 @@ class Observer:
 
 
 def first(observations: Observation) -> Observation:
-    """That of the first environment."""
+    """The observation of the first environment."""
     if isinstance(observations, dict):
         return {group: values[0] for group, values in observations.items()}
     return observations[0]
 
 
 def _friction_part(simulation: Simulation, source: str) -> np.ndarray:
-    """What the friction part holds, (n, 6): the simulation's own array, or constants."""
+    """Values of the friction part, (n, 6): a view of the simulation's array, or constants."""
     if source in ("estimated", "true"):
         return simulation.estimated if source == "estimated" else simulation.ground_truth
     nominal = simulation.config.nominal

@@ -1,4 +1,4 @@
-"""n environments without an engine, many of them in one compiled call."""
+"""The simulation of n environments with the planar engine; one compiled call steps all of them."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ from slipgym.tasks import Task
 
 
 class PlanarSimulation(Simulation):
-    """n environments whose bodies move by friction and the planar equations of motion alone.
+    """Simulation of n environments with the planar engine.
 
     Args:
-        config: As of `Simulation`, like the others.
+        config: Configuration.
         settings: The task's settings.
         task: The task.
-        estimator: The estimator.
-        randomization: What is drawn.
-        n: Environments.
-        threads: Threads that share them; None: as many as there are processors, if there is work for them.
+        estimator: Name of an estimator, or a mapping with its `name` and parameters.
+        randomization: Distributions that an episode is sampled from; None: no randomization.
+        n: Number of environments.
+        threads: Number of threads; None: one per processor, each with at least 32 environments.
 
     Attributes:
-        rewards: Sum of the last step's reward terms, (n,); 0 without a step.
-        terminated: Whether the object was dropped in it, (n,).
-        truncated: Whether the episode's time had passed after it, and nothing was dropped, (n,).
+        rewards: Sum of the last step's reward terms, (n,); 0 for environments that made no step.
+        terminated: Whether the object was dropped in the last step, (n,).
+        truncated: Whether the last step reached the time limit without a drop, (n,).
     """
 
     def __init__(
@@ -84,15 +84,15 @@ class PlanarSimulation(Simulation):
         buffers: ObservationBuffers,
         meanwhile: Callable[[], None] | None = None,
     ) -> None:
-        """See `Simulation.step`; results are written into new arrays.
+        """Make `skip` control steps, see `Simulation.step`; results are written to new arrays.
 
         Args:
-            actions: See there, like all but the last.
-            components: See there.
-            skip: See there.
-            active: See there.
-            buffers: See there.
-            meanwhile: What may be done with the other environments at the same time.
+            actions: (n, m).
+            components: COMPONENT (m,), the meaning of the actions.
+            skip: Number of control steps.
+            active: Environments that take part, (n,) bool.
+            buffers: Buffers that their observations are written to.
+            meanwhile: Function to call while threads step; it may change the other environments.
         """
         self.check_open()
         self._blank()
@@ -112,7 +112,7 @@ class PlanarSimulation(Simulation):
         return self._closed
 
     def close(self) -> None:
-        """Give the threads back; closing twice is harmless."""
+        """End the threads; closing twice is harmless."""
         self._threads.close()
         self._closed = True
 
@@ -120,11 +120,11 @@ class PlanarSimulation(Simulation):
         self._start(starts, self._state, self._begun, self.infos)
 
     def _blank(self) -> None:
-        """New arrays for a step's results: the former ones belong to whoever has them."""
+        """Make new arrays for the results of a step: the caller owns those of the last step."""
         self.rewards, (self.terminated, self.truncated) = np.zeros(self.n), np.zeros((2, self.n), dtype=bool)
 
     def _explain(self, bad: int) -> None:
-        """Raise FloatingPointError, naming what of an environment is not finite."""
+        """Raise FloatingPointError that names the first quantity of an environment that is not finite."""
         state, time = self._state, self.episode["step"].item(bad) * self.step_time
         bodies = state.worlds, state.pads, state.fingers
         arrays = *bodies, state.wrenches, state.twists, state.per_finger, state.episodes

@@ -1,4 +1,4 @@
-"""A control step of many environments in one compiled call, without an engine."""
+"""Steps and resets many environments of the planar engine in one compiled call."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from slipgym.envs.reset_kernels import START, WARM_UP_STEPS, equip, grip, open_e
 from slipgym.world.planar_engine import step_world
 
 BLOCK = 64
-"""Rows that go through a control step together: few enough to stay in the processor's caches, and enough
-for it to fetch each array ahead."""
+"""Number of rows that are stepped together: few enough to stay in the processor's caches, and enough for it
+to prefetch each array."""
 
 
 @unlocked
 def _move_rows(state, lo, hi):
-    """Move the bodies of rows lo to hi, and ask for those of the next block."""
+    """Move the bodies of rows lo to hi, and prefetch those of the next block."""
     for i in range(lo, hi):
         ahead = i + hi - lo  # the same row of the next block
         fetch(state.worlds, ahead, ahead + 1)
@@ -48,7 +48,7 @@ def _move_rows(state, lo, hi):
 
 @unlocked
 def _move(state, i, force):
-    """Move the bodies of row i by a control step, with a grip force commanded to both fingers [N]."""
+    """Move the bodies of row i by a control step, under a grip force commanded to both fingers [N]."""
     step_world(
         state.worlds, state.pads, state.cells, state.fingers, state.force_torque, state.slip_sensors, force, i
     )
@@ -56,26 +56,26 @@ def _move(state, i, force):
 
 @unlocked
 def _drive(script_wrist, evaluate_step, update, batch, buffers, action, results, skip, lo, hi):
-    """A step, `skip` control steps, of the active rows among lo to hi; a row stops where its episode ends.
+    """Make `skip` control steps in the active rows among lo to hi; a row stops when its episode ends.
 
-    Rewards, ends of episodes and infos are written to arrays of their own here: gathered later, from the
-    records of thousands of rows, each would be a miss of the cache.
+    Rewards, ends of episodes and infos are gathered here, while the rows are in the cache: gathering them
+    later from thousands of records would cost a cache miss each.
 
     Args:
-        script_wrist: The task's.
-        evaluate_step: The task's.
-        update: The estimator's.
+        script_wrist: Function of the task.
+        evaluate_step: Function of the task.
+        update: Function of the estimator.
         batch: `BatchState`.
         buffers: `ObservationBuffers`.
-        action: Actions (n, m), COMPONENT (m,), what they mean, and which rows are active (n,).
-        results: Output: infos as in `InfoBuffer`, the sums of the reward terms (n,), and whether an episode
-            was terminated and whether truncated (n,).
-        skip: Control steps.
+        action: Actions (n, m), their meaning COMPONENT (m,), and which rows are active (n,).
+        results: Output: infos as in `InfoBuffer`, the sums of the reward terms (n,), and whether each episode
+            was terminated and truncated (n,).
+        skip: Number of control steps.
         lo: First row.
         hi: Row after the last.
 
     Returns:
-        The first row with a number that is not finite; -1 without one.
+        The first row with a number that is not finite; -1 if there is none.
     """
     state = batch
     wrist, friction, low, high, out = buffers
@@ -127,7 +127,7 @@ def _drive(script_wrist, evaluate_step, update, batch, buffers, action, results,
 
 @unlocked
 def _write_infos(state, numbers, flags, lo, hi):
-    """Infos of rows lo to hi."""
+    """Write the infos of rows lo to hi."""
     rows = slice(lo, hi)
     write_infos(
         numbers[rows], flags[rows], state.worlds[rows], state.pads[rows], state.fingers[rows],
@@ -140,10 +140,10 @@ def _start(evaluate_step, starts, batch, begun, infos):
     """Begin episodes.
 
     Args:
-        evaluate_step: The task's.
+        evaluate_step: Function of the task.
         starts: START (m,).
         batch: `BatchState` of all rows.
-        begun: What they begin with: states and estimates of both fingers, spread and noise of `equip`.
+        begun: Initial estimator states and estimates of both fingers; spread and noise of `equip`.
         infos: Output, see `InfoBuffer`.
     """
     state = batch
@@ -168,13 +168,13 @@ def _start(evaluate_step, starts, batch, begun, infos):
 
 @cache
 def compiled_batch(*kinds: Any) -> tuple[Any, Any]:
-    """The functions that step and that start environments without an engine, compiled.
+    """Return the compiled functions that step and reset environments of the planar engine.
 
-    The first call on a machine compiles them, which takes about half a minute; the result is kept beside the
-    sources.
+    The first call on a machine compiles them, which takes about half a minute; the result is cached beside
+    the sources.
 
     Args:
-        *kinds: As of `slipgym.envs.control_step.Kernels`; the first is the task.
+        *kinds: Arguments of `slipgym.envs.control_step.Kernels`; the first is the task.
 
     Returns:
         Functions of the arguments of `_drive` but the first three, and of `_start` but the first.

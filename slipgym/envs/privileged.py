@@ -1,4 +1,4 @@
-"""The privileged group of an observation: true friction, slip, contact forces, pose and mass."""
+"""Computes the privileged group of an observation: true friction, slip, contact forces, pose and mass."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def _force(config: Config) -> tuple[float, float]:
 
 
 def _friction(config: Config) -> tuple[float, float]:
-    """Of one pad, with the largest friction coefficient there is."""
+    """Bound of one pad's friction, at the largest friction coefficient [N]."""
     limit = FRICTION_COLUMNS[0].high * config.gripper.force_limit
     return -limit, limit
 
@@ -35,21 +35,21 @@ def _pad(f: int) -> tuple[Reading, ...]:
         Reading(
             f"friction_x_{f}", _friction, "N", f"friction of pad {f} on the object, pad frame", f"{wrench}[0]"
         ),
-        Reading(f"friction_y_{f}", _friction, "N", "the same along the pads' y axis", f"{wrench}[1]"),
-        Reading(f"friction_tau_{f}", _torque, "N m", f"its torque at pad {f}'s CoP", f"{wrench}[2]"),
+        Reading(f"friction_y_{f}", _friction, "N", "the same along the pad's y axis", f"{wrench}[1]"),
+        Reading(f"friction_tau_{f}", _torque, "N m", f"friction torque at pad {f}'s CoP", f"{wrench}[2]"),
     )
 
 
 PRIVILEGED = (
     *(_true(k) for k in range(3)),
     Reading("slip_x", (-1.0, 1.0), "m", "slip displacement since the grasp, pad frame", "worlds[i].slip[0]"),
-    Reading("slip_y", (-1.0, 1.0), "m", "the same along the pads' y axis", "worlds[i].slip[1]"),
+    Reading("slip_y", (-1.0, 1.0), "m", "the same along the pad's y axis", "worlds[i].slip[1]"),
     Reading("slip_theta", (-10.0, 10.0), "rad", "the same about the grip axis", "worlds[i].slip[2]"),
     Reading(
         "slip_velocity_x", (-10.0, 10.0), "m/s", "slip velocity at the pad centre", "worlds[i].slip_twist[0]"
     ),
     Reading(
-        "slip_velocity_y", (-10.0, 10.0), "m/s", "the same along the pads' y axis", "worlds[i].slip_twist[1]"
+        "slip_velocity_y", (-10.0, 10.0), "m/s", "the same along the pad's y axis", "worlds[i].slip_twist[1]"
     ),
     Reading("slip_rate", (-100.0, 100.0), "rad/s", "the same about the grip axis", "worlds[i].slip_twist[2]"),
     *_pad(1),

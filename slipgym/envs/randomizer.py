@@ -1,4 +1,4 @@
-"""Draws the randomized values of an episode and schedules its disturbances."""
+"""Samples the randomized values of an episode and schedules its disturbances."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from slipgym.envs.hardware_randomization import with_pressure
 from slipgym.tasks.options import EpisodeOptions
 
 UNIFORMS = 8
-"""Uniform numbers of a disturbance: as many as the kind with the most needs."""
+"""Number of uniform random numbers per disturbance, the most that any kind needs."""
 FRICTION = ("mu_c", "mu_s", "friction_ratio")
 """Fields that have no value of their own in the configuration."""
 
@@ -30,7 +30,7 @@ _FIXED_BY = {
 
 
 def nominal_values(config: Config) -> dict[str, float]:
-    """Numbers of `Ranges` as they are without randomization, but for `FRICTION`."""
+    """Values of the numeric fields of `Ranges` without randomization, except those in `FRICTION`."""
     contact, gripper = config.contact, config.gripper
     return {
         "friction_drift": 0.0,
@@ -50,38 +50,38 @@ def nominal_values(config: Config) -> dict[str, float]:
 
 
 def blend(nominal: float, drawn: float, scale: float) -> float:
-    """From what is without randomization (scale 0) to what was drawn (1)."""
+    """Interpolate between the value without randomization (scale 0) and the sampled one (scale 1)."""
     return (1.0 - scale) * nominal + scale * drawn
 
 
 @dataclass(frozen=True)
 class Draw:
-    """Draws of one episode."""
+    """Sampled values of one episode."""
 
     scale: float
-    """How far they go from what is without randomization, 0 to 1."""
+    """Fraction of the randomization's ranges, 0 (no randomization) to 1."""
     values: Mapping[str, float]
-    """Every number of `nominal_values`, drawn or not."""
+    """Every number of `nominal_values`, sampled or not."""
     drawn: tuple[str, ...]
-    """Names of those that were drawn."""
+    """Names of the values that were sampled."""
     friction: Mapping[str, float]
-    """Those of `FRICTION` that were drawn, at scale 1."""
+    """Sampled values of `FRICTION`, at scale 1."""
     material: str | None
-    """Name of the material; None: as the task draws it."""
+    """Name of the material; None: the task samples it."""
     config: Config
-    """Configuration with the pressure of the episode."""
+    """Configuration with the pressure profile of the episode."""
     disturbances: tuple[tuple[AnyDisturbance, np.ndarray], ...]
-    """Disturbances of the episode, each with the uniform numbers in [0, 1) that its distributions take."""
+    """Disturbances of the episode, each with uniform random numbers in [0, 1) for its distributions."""
 
     def friction_of(self, material: Material) -> tuple[float, float]:
-        """Static and Coulomb friction where the material would have those given."""
+        """Randomized static and Coulomb friction, from those of the material."""
         mu_c = self.friction.get("mu_c", material.mu_c)
         ratio = self.friction.get("friction_ratio", material.mu_s / material.mu_c)
         mu_s = self.friction.get("mu_s", ratio * mu_c)
         return blend(material.mu_s, mu_s, self.scale), blend(material.mu_c, mu_c, self.scale)
 
     def report(self, options: EpisodeOptions) -> dict[str, Any]:
-        """What was drawn and not fixed by options, JSON-like; friction and mass come from the episode."""
+        """Sampled values that options do not fix, JSON-like; friction and mass come from the episode."""
         kept = [name for name in self.drawn if getattr(options, _FIXED_BY.get(name, ""), None) is None]
         happened = ", ".join(disturbance.kind for disturbance, _ in self.disturbances)
         return {
@@ -92,21 +92,21 @@ class Draw:
 
 
 class Randomizer:
-    """Draws the episodes of a task.
+    """Samples the randomized values of a task's episodes.
 
     Args:
         config: The environment's configuration.
         settings: The task's settings.
-        task: Its key.
-        randomization: What is drawn.
+        task: The task's key.
+        randomization: Distributions that an episode is sampled from.
 
     Attributes:
-        active: Whether anything is drawn.
-        pressures: Pressures that an episode may have.
-        most: Largest value of every number.
+        active: Whether anything is sampled.
+        pressures: Pressure profiles that an episode may have.
+        most: Largest possible value of every number.
 
     Raises:
-        ValueError: A material is unknown, or the pads have no room for the largest contact radius.
+        ValueError: A material is unknown, or the largest contact radius does not fit on the pads.
     """
 
     def __init__(self, config: Config, settings: TaskConfig, task: str, randomization: Randomization) -> None:
@@ -134,16 +134,16 @@ class Randomizer:
                 _check_radius(variant, r)
 
     def draws(self, name: str) -> bool:
-        """Whether episodes differ in one of the numbers of `nominal_values`."""
+        """Whether a number of `nominal_values` is randomized."""
         return getattr(self._ranges, name) is not None
 
     def draw(self, rng: np.random.Generator, scale: float) -> Draw:
-        """Draw an episode; the same number of draws whatever the scale.
+        """Sample an episode; the number of random draws does not depend on the scale.
 
         Args:
-            rng: Source of the draws; not touched if nothing is drawn.
-            scale: 0 for the configuration, 1 for the full ranges; numbers lie in proportion between,
-                names and disturbances are drawn with this probability.
+            rng: Random generator; unused if nothing is sampled.
+            scale: 0 for the configuration, 1 for the full ranges. Numbers are interpolated; names and
+                disturbances are sampled with this probability.
         """
         values, friction, names, drawn = dict(self._nominal), {}, {}, []
         for name, field in self._drawn:
@@ -181,8 +181,8 @@ def schedule_disturbance(disturbance: AnyDisturbance, u: np.ndarray, episode: np
 
     Args:
         disturbance: Its distributions.
-        u: Uniform numbers in [0, 1), (UNIFORMS,).
-        episode: EPISODE record; step_time, mass and friction are set already.
+        u: Uniform random numbers in [0, 1), (UNIFORMS,).
+        episode: EPISODE record; its step_time, mass and friction must be set.
     """
     _SCHEDULE[disturbance.kind](disturbance, u.tolist(), episode)
 

@@ -1,7 +1,7 @@
-"""Rows of tables: what is read out of a simulation, and the compiled functions that read it.
+"""Declares readings of a simulation as table rows, and generates the compiled functions that write them.
 
-A row says in one place what a number is called and how it is computed. The functions that write the numbers
-are generated from the rows: number k of what they write is row k, whatever the order of the rows.
+A row holds a number's name and the expression that computes it. The generated functions write the value of
+row k to place k, so that names and values cannot be mixed up.
 """
 
 from __future__ import annotations
@@ -53,11 +53,11 @@ def row_writer(
     Args:
         name: Name of the function.
         reads: Expressions for environment i.
-        arrays: Names of the arrays in them.
+        arrays: Names of the arrays in the expressions.
         file: `__file__` of the module with the table.
         doc: Docstring.
-        before: Statements that the expressions rely on.
-        functions: Compiled functions that they call, by name.
+        before: Statements that run before the expressions.
+        functions: Compiled functions that the expressions call, by name.
     """
     body = [*before, *(f"row[{k}] = {read}" for k, read in enumerate(reads))]
     return generate(name, ("row", "i", *arrays), body, functions or {}, compiled, file, doc)
@@ -69,7 +69,7 @@ def choice_reader(name: str, reads: Sequence[str], arrays: Sequence[str], file: 
     Args:
         name: Name of the function.
         reads: Expressions for environment i.
-        arrays: Names of the arrays in them.
+        arrays: Names of the arrays in the expressions.
         file: `__file__` of the module with the table.
         doc: Docstring.
     """
@@ -85,7 +85,7 @@ def finite_check(name: str, reads: Sequence[str], arrays: Sequence[str], file: s
     Args:
         name: Name of the function.
         reads: Expressions for environment i.
-        arrays: Names of the arrays in them.
+        arrays: Names of the arrays in the expressions.
         file: `__file__` of the module with the table.
         doc: Docstring.
     """

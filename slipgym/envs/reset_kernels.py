@@ -1,4 +1,4 @@
-"""Compiled parts of a reset: a record of what was sampled in Python, and kernels that apply many of them."""
+"""Applies sampled initial conditions to many environments, in compiled code."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from slipgym.sensors.starting import KEYS, start_sensors
 from slipgym.world.placing import place_world
 
 WARM_UP_STEPS = 6
-"""Control steps before time 0 in which grip and sensors come to rest."""
+"""Control steps before time 0 in which grip and sensors settle."""
 START = np.dtype(
     [
         ("row", "i8"),  # which environment
@@ -30,20 +30,20 @@ START = np.dtype(
         ("shares", "f8", (2, AXES)),  # see `slipgym.sensors.starting`, like the keys
     ]
 )
-"""What an episode begins with, besides what its task and its disturbances write into EPISODE."""
+"""Sampled initial conditions of an episode; its task and its disturbances write the others into EPISODE."""
 NUMBERS = [name for name in START.names or () if name not in ("biases", "keys", "shares")]
-"""Its fields but for what is drawn last, for the sensors."""
+"""Fields of START that are sampled before those of the sensors."""
 
 
 @compiled
 def begin_episode(episodes, blank, starts, k):
-    """Fill in what all tasks have in common.
+    """Fill in the fields of an episode that all tasks have in common.
 
     Args:
         episodes: EPISODE (n,).
-        blank: What all episodes begin with, EPISODE (1,).
+        blank: Initial values of every episode, EPISODE (1,).
         starts: START (m,).
-        k: Which of them.
+        k: Index in `starts`.
     """
     start = starts[k]
     episodes[start.row] = blank[0]
@@ -56,7 +56,7 @@ def begin_episode(episodes, blank, starts, k):
 
 @compiled
 def grip(starts, episodes, worlds, pads, cells, fingers):
-    """Bring worlds to rest, the object held.
+    """Bring worlds to rest, with the object in the grip.
 
     Args:
         starts: START (m,).
@@ -77,12 +77,12 @@ def grip(starts, episodes, worlds, pads, cells, fingers):
 
 @compiled
 def equip(starts, spread, noise, pads, force_torque, slip_sensors, ground_truth):
-    """Give pads their friction and start the sensors.
+    """Set the friction of the pads and reset the sensors.
 
     Args:
         starts: START (m,).
-        spread: See `slipgym.envs.hardware_randomization.HardwareRandomization.biases`, like the next one.
-        noise: See there.
+        spread: Standard deviation of the force/torque sensors' biases, (6,) [N, N m].
+        noise: Noise of these sensors, which a sampled bias scale multiplies, (6,) [N, N m].
         pads: PAD (n, 2).
         force_torque: FORCE_TORQUE (n, 2).
         slip_sensors: SLIP_SENSOR (n, 2).
@@ -105,7 +105,7 @@ def equip(starts, spread, noise, pads, force_torque, slip_sensors, ground_truth)
 def open_episodes(
     starts, fresh_states, fresh_estimates, slip_sensors, states, estimates, episodes, commands, terms
 ):
-    """After grip and sensors have come to rest: nothing has slipped, learned or been commanded yet.
+    """Reset measured slip, estimators, commands and reward terms, after grip and sensors have settled.
 
     Args:
         starts: START (m,).

@@ -1,4 +1,4 @@
-"""Options of the reset of a vector environment: for all environments and for each."""
+"""Checks the reset options of a vector environment, those for all environments and those for each."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ class RowOptions:
 
     Args:
         options: Episode parameters for all; "rows": None or a mapping for each; "reset_mask": (n,) bool.
-        n: Environments.
+        n: Number of environments.
         kind: The task's options.
 
     Attributes:
-        mask: Which environments to reset, (n,).
+        mask: Environments to reset, (n,) bool.
 
     Raises:
         ValueError: An option is unknown, its value not allowed, or there are not n rows or masks.
-        TypeError: The mask is no array of booleans.
+        TypeError: The mask is not an array of booleans.
     """
 
     def __init__(self, options: Mapping[str, Any] | None, n: int, kind: type[EpisodeOptions]) -> None:

@@ -1,4 +1,4 @@
-"""A random generator for each environment of a batch."""
+"""Keeps a random generator for each environment of a vector environment."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from slipgym.envs.state import restored_generator
 
 
 class Generators:
-    """Those that scalar environments with the same seeds would have.
+    """Random generators, the same as those of scalar environments with the same seeds.
 
     Args:
-        n: Environments.
+        n: Number of environments.
     """
 
     def __init__(self, n: int) -> None:
@@ -26,8 +26,9 @@ class Generators:
         """Seed the environments of a mask (n,).
 
         Args:
-            seed: Of the first, the others count up from it; one for each; None: they go on as they are.
-            mask: Which environments.
+            seed: Seed of the first environment, where environment i gets seed + i; or one for each; None
+                leaves the generators as they are.
+            mask: Environments to seed, (n,) bool.
 
         Raises:
             ValueError: There are not as many seeds as environments, or one is not a whole number >= 0.
@@ -50,15 +51,15 @@ class Generators:
             self._generators[i] = seeding.np_random(int(one))[0]
 
     def get_state(self) -> list[Mapping[str, Any]]:
-        """States of all generators, to go on from."""
+        """States of all generators."""
         return [self[i].bit_generator.state for i in range(self._n)]
 
     def set_state(self, states: Sequence[Mapping[str, Any]]) -> None:
-        """Go on from the states of as many generators."""
+        """Restore the states of all generators."""
         self._generators[:] = map(restored_generator, states)
 
     def __getitem__(self, i: int) -> np.random.Generator:
-        """That of environment i; one that was never seeded is seeded by the operating system."""
+        """The generator of environment i; the operating system seeds one that was never seeded."""
         generator = self._generators[i]
         if generator is None:
             generator = self._generators[i] = seeding.np_random()[0]

@@ -1,4 +1,4 @@
-"""The parts that the scalar and the vector environment are made of."""
+"""Builds the parts that scalar and vector environments have in common."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MakeSimulation = Callable[[Config, TaskConfig, Task, Any, Randomization], Simula
 
 
 class Setup:
-    """Makes the parts that keyword arguments ask for.
+    """Builds configuration, actions, simulation and observer from keyword arguments.
 
     Args:
         task: The task.
@@ -27,11 +27,11 @@ class Setup:
     Attributes:
         config: The configuration.
         settings: The task's settings.
-        randomization: What is drawn per episode.
+        randomization: Distributions that an episode is sampled from.
         material: Name of the material, or "random".
-        actions: What actions mean.
+        actions: Action space and the meaning of actions.
         simulation: The simulation.
-        observer: Reads the observations out of it.
+        observer: Assembles its observations.
         arguments: JSON-able arguments that make the same environment.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Boxes, grippers, sensors and estimators of n environments, closed by a grip force."""
+"""Base class of the simulations of n environments: boxes, grippers, sensors and estimators."""
 
 from __future__ import annotations
 
@@ -29,50 +29,50 @@ from slipgym.world.snapshot import EngineState
 
 @dataclass(frozen=True)
 class SimulationState:
-    """State of a `Simulation` between two samples, as plain data."""
+    """State of a `Simulation` between two control steps, as plain data."""
 
     engine: EngineState | None
-    """Bodies in the engine, if there is one."""
+    """Bodies in PyBullet; None for the planar engine."""
     plant: Plant
     """Worlds, pads, fingers and sensors."""
     arrays: Mapping[str, np.ndarray]
-    """Estimators, episodes and what they said last."""
+    """Estimators, episodes, and their last outputs, by name."""
     materials: list[str]
     """Name of every episode's material."""
     boxes: list[Box]
-    """Its object."""
+    """Every episode's object."""
 
 
 class Simulation(ABC):
-    """n environments that advance by slip-velocity samples; knows nothing of Gymnasium.
+    """Simulation of n environments that advances by control steps, independent of Gymnasium.
 
-    Arrays have a leading batch axis, for the compiled functions that serve many worlds. What moves the
-    bodies is left to the subclasses.
+    Arrays have a leading batch axis, for the compiled functions that step many worlds. A subclass for each
+    engine moves the bodies.
 
     Args:
         config: Configuration.
         settings: The task's settings.
         task: The task.
         estimator: Name of an estimator, or a mapping with its `name` and parameters.
-        randomization: What is drawn per episode; None: nothing.
-        n: Environments.
+        randomization: Distributions that an episode is sampled from; None: no randomization.
+        n: Number of environments.
 
     Attributes:
         plant: State of worlds, pads, fingers and sensors.
         episode: EPISODE (n,).
-        commands: Grip force and wrist velocity, (n, 4), see `slipgym.envs.actions.COMMANDS`.
+        commands: Commanded grip force and wrist velocity, (n, 4), see `slipgym.envs.actions.COMMANDS`.
         wrenches: Measured wrench per finger at the centre of pressure, (n, 2, 4) [N, N, N, N m].
-        twists: Measured slip twist per finger there, (n, 2, 3) [m/s, m/s, rad/s].
+        twists: Measured slip twist per finger at the centre of pressure, (n, 2, 3) [m/s, m/s, rad/s].
         task_part: The task's part of the observation, (n, k).
         materials: Name of every episode's material.
-        boxes: Its object.
-        drawn: What the randomization drew for it, JSON-like; empty without one.
+        boxes: Every episode's object.
+        drawn: Values that the randomization sampled for every episode, JSON-like; may be empty.
         ground_truth: True (mu_s, mu_c, r) now and full confidence, (n, 6); columns as `estimated`.
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
         estimated: Estimates of both fingers merged, with their confidence, (n, 6).
-        infos: Infos of all environments, the last step's reward terms among them.
-        estimator_choice: Name and parameters of the estimators; `velocity_delay` only if it was given.
-        step_time: Length of a sample [s].
+        infos: Infos of all environments, including the last step's reward terms.
+        estimator_choice: Name and parameters of the estimators; `velocity_delay` only if the user gave it.
+        step_time: Length of a control step [s].
     """
 
     def __init__(
@@ -92,8 +92,8 @@ class Simulation(ABC):
         self.estimator_choice = _chosen_estimator(estimator)
         self.estimator = estimators.make_batch(n=2 * n, **self.estimator_choice)
         asked = self.estimator.parameters_array.dtype.names or ()
-        tells_latency = LATENCY in asked and LATENCY not in self.estimator_choice
-        if tells_latency and n > 1 and randomizer.draws("slip_latency"):
+        sets_latency = LATENCY in asked and LATENCY not in self.estimator_choice
+        if sets_latency and n > 1 and randomizer.draws("slip_latency"):
             self.estimator.parameters_array = np.repeat(self.estimator.parameters_array, 2 * n)
         self.episode = np.zeros(n, EPISODE)
         self.commands = np.zeros((n, len(COMMANDS)))
@@ -105,14 +105,14 @@ class Simulation(ABC):
         bodies = self.plant.world, self.plant.pads, self.plant.fingers
         self._infos_from = *bodies, self.episode, self.ground_truth, self.estimated, self.per_finger
         self.step_time = 1.0 / config.physics.control_rate
-        latency_of = self.estimator.parameters_array if tells_latency else None
+        latency_of = self.estimator.parameters_array if sets_latency else None
         self._sampler = EpisodeSampler(config, settings, task, randomizer, hardware, self.episode, latency_of)
         self.materials, self.boxes = self._sampler.materials, self._sampler.boxes
         self.drawn = self._sampler.drawn
         plant, learned = self.plant, (self.estimator.states, self.estimator.estimates)
         self._biases = hardware.biases
         self._equipped = plant.pads, plant.force_torque, plant.slip_sensors, self.ground_truth
-        # start values are the same for all and do not depend on a latency
+        # initial states are the same for all environments and do not depend on the latency
         self._fresh = self.estimator.states[:2].copy(), self.estimator.estimates[:2].copy()
         self._opened = plant.slip_sensors, *learned, self.episode, self.commands
 
@@ -127,12 +127,12 @@ class Simulation(ABC):
         return self.episode["step"].item(0) * self.step_time
 
     def reset(self, options: EpisodeOptions, material: str, rng: np.random.Generator) -> None:
-        """Start an episode of the first environment: draw it, grip, and let grip and sensors come to rest.
+        """Start an episode of the first environment: sample it, close the grip, let grip and sensors settle.
 
         Args:
-            options: What is fixed.
+            options: Parameters to fix for the episode.
             material: Name of a material, or "random".
-            rng: Source of every draw.
+            rng: Random generator.
 
         Raises:
             ValueError: The options contradict each other or the configuration.
@@ -144,12 +144,12 @@ class Simulation(ABC):
         """Start episodes of some environments, see `reset`.
 
         Args:
-            rows: Which, each with its options and its generator.
-            material: As in `reset`.
+            rows: Environments, each with its options and its generator.
+            material: Name of a material, or "random".
 
         Raises:
-            ValueError: See there.
-            RuntimeError: See there.
+            ValueError: The options contradict each other or the configuration.
+            RuntimeError: The world is closed.
         """
         self.check_open()
         self._begin(self._sampler.sample(rows, material))
@@ -163,23 +163,23 @@ class Simulation(ABC):
         active: np.ndarray,
         buffers: ObservationBuffers,
     ) -> None:
-        """Some samples with the same action, and what is observed then; an episode that ends does not go on.
+        """Make `skip` control steps with the same action, then observe; episodes that end are not stepped on.
 
         Args:
             actions: (n, m).
-            components: COMPONENT (m,), what they mean.
-            skip: Samples.
-            active: Which environments take part, (n,).
-            buffers: Where to write their observations.
+            components: COMPONENT (m,), the meaning of the actions.
+            skip: Number of control steps.
+            active: Environments that take part, (n,) bool.
+            buffers: Buffers that their observations are written to.
 
         Raises:
-            FloatingPointError: Something is no longer a finite number; only a reset helps.
+            FloatingPointError: A quantity is not finite; the environment needs a reset.
             RuntimeError: The world is closed.
         """
 
     @abstractmethod
     def close(self) -> None:
-        """Release what the worlds hold; closing twice is harmless."""
+        """Release the simulation's resources; closing twice is harmless."""
 
     @property
     @abstractmethod
@@ -193,10 +193,10 @@ class Simulation(ABC):
 
     @abstractmethod
     def _begin(self, starts: np.ndarray) -> None:
-        """Begin the episodes of START (m,): grip, settle for `WARM_UP_STEPS`, forget what was learned."""
+        """Begin the episodes of START (m,): grip, settle for `WARM_UP_STEPS`, reset the estimators."""
 
     def get_state(self) -> SimulationState:
-        """Copy everything that the next sample depends on.
+        """Copy everything that the next control step depends on.
 
         Raises:
             RuntimeError: The world is closed, or there was no reset yet.
@@ -206,7 +206,7 @@ class Simulation(ABC):
         return SimulationState(None, deepcopy(self.plant), arrays, list(self.materials), list(self.boxes))
 
     def set_state(self, state: SimulationState) -> None:
-        """Go on from a state.
+        """Restore a state.
 
         Raises:
             RuntimeError: The world is closed.
@@ -219,16 +219,16 @@ class Simulation(ABC):
         self._write_infos()
 
     def hand_over_infos(self) -> InfoBuffer:
-        """The infos, which belong to the caller from now on; the next step fills in new arrays."""
+        """Return the infos, which the caller then owns; the next step fills new arrays."""
         infos, self.infos = self.infos, self.infos.empty_like()
         return infos
 
     def _write_infos(self) -> None:
-        """Fill in the infos but for the reward terms."""
+        """Fill in the infos except the reward terms."""
         write_infos(self.infos.numbers, self.infos.flags, *self._infos_from)
 
     def _arrays(self) -> dict[str, np.ndarray]:
-        """Arrays besides the plant's that last from sample to sample."""
+        """Arrays besides the plant's that persist from one control step to the next."""
         return {
             "estimator_parameters": self.estimator.parameters_array,
             "estimator_states": self.estimator.states,
@@ -245,9 +245,10 @@ class Simulation(ABC):
 
 
 def _chosen_estimator(choice: str | Mapping[str, Any]) -> dict[str, Any]:
-    """An estimator's name and parameters; `velocity_delay` is left out unless it was given.
+    """Return the estimator's name and parameters.
 
-    The simulation then sets it to the latency of the slip sensor.
+    `velocity_delay` is left out unless the user gave it: the simulation then sets it to the slip sensor's
+    latency.
     """
     if isinstance(choice, str):
         choice = {"name": choice}

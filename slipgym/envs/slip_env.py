@@ -1,4 +1,4 @@
-"""The environment that every task runs in."""
+"""`SlipEnv`, the base class of the tasks' environments."""
 
 from __future__ import annotations
 
@@ -35,10 +35,9 @@ _SIMULATIONS: dict[str, MakeSimulation] = {"bullet": _bullet, "planar": _planar}
 
 @documented(ScalarArguments)
 class SlipEnv(gym.Env[Any, np.ndarray]):
-    """A box between the two pads of a gripper; one step is `frame_skip` control steps.
+    """An environment with a box between the two pads of a gripper; one step is `frame_skip` control steps.
 
-    The tasks' environments are subclasses that name a `Task`, made by `slipgym.envs.environment`; their
-    docstrings describe spaces and rewards.
+    `slipgym.envs.environment` makes a subclass for each `Task`, whose docstring describes spaces and rewards.
 
     Args:
         {arguments}
@@ -107,12 +106,12 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         """Act for `frame_skip` control steps.
 
         Args:
-            action: Within [-1, 1], shape (m,); `action_columns` says what its components mean.
+            action: Within [-1, 1], shape (m,); `action_columns` describes its components.
 
         Raises:
             ValueError: The action has the wrong shape or is not finite.
             RuntimeError: The environment is closed or needs a reset.
-            FloatingPointError: The simulation left the finite numbers; the message names the first.
+            FloatingPointError: A quantity is not finite; the message names the first one.
         """
         actions = self._actions.checked(action)
         if not self._ready:
@@ -139,11 +138,11 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         return first(observer.read()), reward, dropped, finished and not dropped, info
 
     def render(self) -> np.ndarray | None:
-        """What the render mode asks for; None without one.
+        """Render the environment as the render mode asks; without a render mode, do nothing.
 
         Returns:
             "rgb_array": picture (480, 720, 3) uint8; "depth_array": distances (480, 448) float32 [m],
-            infinite where nothing is; "human": None, the picture is in the window.
+            infinite for the background; "human": None, the picture is shown in a window.
 
         Raises:
             RuntimeError: The environment is closed or was never reset.
@@ -156,7 +155,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         return self._renderer.render()
 
     def get_state(self) -> EnvState:
-        """Everything that decides what the environment does next, as plain data.
+        """Return the complete state as plain data; an environment continues from it bit for bit.
 
         Raises:
             RuntimeError: The environment is closed.
@@ -171,14 +170,14 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         )
 
     def set_state(self, state: EnvState) -> None:
-        """Go on from a state, bit for bit, also from that of another environment or process.
+        """Restore a state, bit for bit; it may come from another environment or process.
 
         Args:
             state: From `get_state` of an environment made with the same arguments.
 
         Raises:
-            TypeError: It is no state.
-            ValueError: It is of another kind of environment.
+            TypeError: `state` is not a state.
+            ValueError: The state belongs to an environment with other arguments.
             RuntimeError: This environment is closed.
         """
         checked(state, EnvState).check({"task": self.task.name, **self._arguments})
@@ -196,7 +195,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         return self.simulation.infos.one(0, self.task.term_names)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickling and copying make a new environment with a world of its own, in the same state."""
+        """Pickling and copying make an independent environment in the same state."""
         state = None if self.simulation.closed else self.get_state()
         arguments = {**self._arguments, "render_mode": self.render_mode}
         return _rebuild, (type(self), arguments, state, self.spec)

@@ -1,4 +1,4 @@
-"""Everything that decides what an environment does next, as plain data."""
+"""Complete states of environments, as plain data, and the checks before one is restored."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from slipgym.envs.simulation import SimulationState
 
 @dataclass(frozen=True)
 class State:
-    """What a state belongs to."""
+    """Base class of the states: the environment that a state belongs to."""
 
     made_of: Mapping[str, Any]
     """Task, configuration and arguments that the environment was made with."""
 
     def check(self, made_of: Mapping[str, Any]) -> None:
-        """Refuse a state of another kind of environment.
+        """Raise ValueError if the state belongs to an environment with other arguments.
 
         Args:
-            made_of: What the environment that is to take the state was made of.
+            made_of: Task, configuration and arguments of the environment that restores the state.
 
         Raises:
             ValueError: Task, configuration or arguments differ; the message names the first.
@@ -39,7 +39,7 @@ class State:
 
 @dataclass(frozen=True)
 class EnvState(State):
-    """State of a `SlipEnv` between two steps, of an episode or before the first.
+    """State of a `SlipEnv` between two steps or before its first episode.
 
     Plain data: it can be pickled, copied, and restored in another process, into any environment made with
     the same arguments, any number of times. The continuation is equal bit for bit.
@@ -48,11 +48,11 @@ class EnvState(State):
     generator: Mapping[str, Any]
     """State of the environment's random generator."""
     seed: int | None
-    """Seed that the generator was last given."""
+    """Last seed of the generator."""
     simulation: SimulationState | None
     """Bodies, contacts, sensors, estimators and task; None before the first reset."""
     frames: np.ndarray
-    """The last observations, the present one last, (1, history + 1, m)."""
+    """The last observations, the newest one last, (1, history + 1, m)."""
 
 
 @dataclass(frozen=True)
@@ -64,25 +64,25 @@ class VectorState(State):
     simulation: SimulationState
     """Bodies, contacts, sensors, estimators and task."""
     frames: np.ndarray
-    """The last observations, the present one last, (n, history + 1, m)."""
+    """The last observations, the newest one last, (n, history + 1, m)."""
     ready: np.ndarray
-    """Which environments have an episode, (n,)."""
+    """Environments that have been reset, (n,) bool."""
     over: np.ndarray
-    """Which of them are over, (n,)."""
+    """Environments whose episode has ended, (n,) bool."""
 
 
 Kind = TypeVar("Kind", bound=State)
 
 
 def checked(state: object, kind: type[Kind]) -> Kind:
-    """Return a state of a kind, or raise TypeError if it is none."""
+    """Return `state` if it is of the given class, or raise TypeError."""
     if not isinstance(state, kind):
         raise TypeError(f"state must come from get_state(), got {type(state).__name__}")
     return state
 
 
 def restored_generator(state: Mapping[str, Any]) -> np.random.Generator:
-    """A generator that goes on from a state of its bit generator.
+    """Return a generator with a given state of its bit generator.
 
     Raises:
         ValueError: The kind of bit generator is unknown.

@@ -1,4 +1,4 @@
-"""Threads that share the rows of a batch."""
+"""Runs a compiled function over the rows of a vector environment in several threads."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import islice, pairwise
 
 LEAST = 32
-"""Rows from which another thread is worth waking."""
+"""Smallest number of rows per thread for which another thread is started."""
 SMALL = 256
-"""Rows of the smallest part, if there are enough: with more and smaller ones a second core is worth less."""
+"""Rows of the smallest part: more and smaller parts would reduce the benefit of a second core."""
 
 
 class Threads:
@@ -20,8 +20,9 @@ class Threads:
     threads are started at first use, in the process that uses them, so that a fork is harmless.
 
     Args:
-        n: Rows.
-        threads: Threads; None: one per processor that this process may use, if there are rows for it.
+        n: Number of rows.
+        threads: Number of threads; None: one per processor that this process may use, with at least 32 rows
+            each.
 
     Raises:
         ValueError: `threads` is not a whole number >= 1.
@@ -40,11 +41,11 @@ class Threads:
     def run(
         self, function: Callable[[int, int], int], meanwhile: Callable[[], None] | None = None
     ) -> list[int]:
-        """What the function returns for each part (first row, row after the last).
+        """Run a function on every part and return its results.
 
         Args:
-            function: What is done with a part.
-            meanwhile: What this thread does between its first parts, while the others are at theirs.
+            function: Function of a part's first row and the row after its last.
+            meanwhile: Function that this thread calls after its first part, while the others work.
         """
         left, results = iter(enumerate(self._parts)), [0] * len(self._parts)
 
@@ -76,10 +77,10 @@ class Threads:
 
 
 def _ends(n: int, threads: int) -> list[int]:
-    """0 and where the parts of n rows end: a smaller one, then a large one, then smaller and smaller ones.
+    """Bounds of the parts of n rows, from 0 to n: a smaller part, then large ones, then ever smaller ones.
 
-    The first keeps this thread busy while the others wake up, the large ones keep them busy while this thread
-    has the interpreter's lock, and for the last ones the threads wait for each other.
+    The first part occupies this thread while the others wake up. The large parts occupy the others while this
+    thread holds the interpreter's lock. Small last parts let all threads finish at about the same time.
     """
     if threads == 1:
         return [0, n]
@@ -91,7 +92,7 @@ def _ends(n: int, threads: int) -> list[int]:
 
 
 def processors() -> int:
-    """How many processors this process may use."""
+    """Number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):  # not on macOS and Windows
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

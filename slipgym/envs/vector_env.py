@@ -1,4 +1,4 @@
-"""Thousands of environments in one process: the planar engine behind Gymnasium's vector interface."""
+"""`SlipVectorEnv`: thousands of environments in one process, on the planar engine."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ from slipgym.tasks.options import EpisodeOptions
     VectorArguments, inspect.Parameter("task", inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=str)
 )
 class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
-    """n environments of a task without PyBullet, stepped by one compiled call.
+    """A vector environment of a task on the planar engine; one compiled call steps all n environments.
 
-    Environment i is, bit for bit, the scalar environment with `engine="planar"` seeded with seed + i,
-    whatever the number of environments and threads.
+    Environment i equals, bit for bit, the scalar environment with `engine="planar"` seeded with seed + i,
+    for any number of environments and threads.
 
     Args:
         task: Name of the task, "LinearSlip" for example.
@@ -83,13 +83,14 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         """Start episodes, of all environments or of those of `options["reset_mask"]`.
 
         Args:
-            seed: Of the first environment, the others count up from it; or one for each.
-            options: Episode parameters to fix in all, "rows": a list with more for each environment (None or
-                a mapping), "reset_mask": which to reset, (n,) bool.
+            seed: Seed of the first environment, where environment i gets seed + i; or a list with a seed for
+                each.
+            options: Episode parameters to fix in all environments; "rows": a list of further parameters for
+                each environment (None or a mapping); "reset_mask": the environments to reset, (n,) bool.
 
         Raises:
             ValueError: An option or a seed is not allowed.
-            TypeError: The mask is no array of booleans.
+            TypeError: The mask is not an array of booleans.
             RuntimeError: The environment is closed.
         """
         self.simulation.check_open()
@@ -114,8 +115,8 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         Raises:
             ValueError: The actions have the wrong shape or are not finite.
             RuntimeError: The environment is closed, or one of its environments needs a reset.
-            FloatingPointError: A simulation left the finite numbers; the message names the first. All
-                environments then need a reset.
+            FloatingPointError: A quantity is not finite; the message names the first one. All environments
+                then need a reset.
         """
         chosen = self._actions.checked_batch(actions, self.num_envs)
         self.simulation.check_open()
@@ -151,7 +152,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         return self._observer.read(), rewards, terminated, truncated, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:
-        """Pictures of `render_rows`; None without a render mode.
+        """Return pictures of `render_rows`; None without a render mode.
 
         Raises:
             RuntimeError: The environment is closed or was never reset.
@@ -160,7 +161,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         return self._pictures.render()
 
     def get_state(self) -> VectorState:
-        """Everything that decides what the environments do next, as plain data.
+        """Return the complete state as plain data; the environments continue from it bit for bit.
 
         Raises:
             RuntimeError: The environment is closed.
@@ -170,15 +171,15 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         return VectorState(self._made_of, self._generators.get_state(), simulation, frames, ready, over)
 
     def set_state(self, state: VectorState) -> None:
-        """Go on from a state, bit for bit, also from that of another environment or process.
+        """Restore a state, bit for bit; it may come from another environment or process.
 
         Args:
             state: From `get_state` of an environment made with the same arguments; threads and rendering may
                 differ.
 
         Raises:
-            TypeError: It is no state.
-            ValueError: It is of another kind of environment.
+            TypeError: `state` is not a state.
+            ValueError: The state belongs to an environment with other arguments.
             RuntimeError: This environment is closed.
         """
         checked(state, VectorState).check(self._made_of)
@@ -190,7 +191,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
             self._pictures.begin(i)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickling and copying make a new environment with threads of its own, in the same state."""
+        """Pickling and copying make an independent environment in the same state."""
         state = None if self.simulation.closed else self.get_state()
         return _rebuild, ({**self._made_of, **self._shown}, state, self.spec)
 
@@ -199,7 +200,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self.simulation.close()
 
     def _begin(self, rows: np.ndarray, asked: RowOptions | None = None) -> None:
-        """Start episodes; environments before the first whose options contradict each other have started."""
+        """Start episodes; environments before one whose options contradict each other have started."""
         if asked is not None:
             for i in rows.tolist():
                 self._begin_together(np.array([i]), asked.of(i))
@@ -214,7 +215,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._ready[rows] = True
 
     def _add_drawn(self, infos: dict[str, Any], rows: np.ndarray) -> dict[str, Any]:
-        """Infos with what the randomization drew for episodes that begin."""
+        """Add the values that the randomization sampled to the infos of episodes that begin."""
         for i in rows.tolist():
             if drawn := self.simulation.drawn[i]:
                 infos = self._add_info(infos, {"drawn": drawn}, i)
@@ -222,10 +223,10 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
 
 
 def _without_scalar(arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments without `engine`, which is the planar one here, and without the former argument `infos`.
+    """Remove `engine`, which must be "planar", and the former argument `infos` from keyword arguments.
 
     Raises:
-        ValueError: The engine is another one, or the value of `infos` was never allowed.
+        ValueError: The engine is not "planar", or the value of `infos` was never allowed.
     """
     given = dict(arguments)
     engine = given.pop("engine", "planar")
@@ -252,7 +253,7 @@ def _rebuild(arguments: Mapping[str, Any], state: VectorState | None, spec: Any)
 
 
 def __getattr__(name: str) -> partial[SlipVectorEnv]:
-    """<task>VectorEnv, for every task there is."""
+    """Return the class <task>VectorEnv of a registered task."""
     task = name.removesuffix("VectorEnv")
     if task not in TASKS or task == name:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,4 +1,4 @@
-"""Pictures of some environments of a vector environment."""
+"""Renders selected environments of a vector environment."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ import numpy as np
 from slipgym.envs.simulation import Simulation
 
 SHOWN = 16
-"""Environments that are all shown unless rows are chosen."""
+"""Largest number of environments that are all shown by default."""
 
 
 class Pictures:
-    """Renderers of the chosen environments.
+    """Renders the chosen environments.
 
     Args:
         simulation: The environments' simulation.
         mode: None, "rgb_array" or "depth_array".
-        rows: Which environments; None: all, or the first alone of more than `SHOWN`.
+        rows: Environments to show; None: all, or only the first if there are more than `SHOWN`.
 
     Raises:
-        ValueError: The rows are no list of environments.
+        ValueError: `rows` is not a list of indices of environments.
     """
 
     def __init__(self, simulation: Simulation, mode: str | None, rows: Sequence[int] | None) -> None:
@@ -42,22 +42,22 @@ class Pictures:
             self._renderers[row] = Renderer(mode, simulation, row)
 
     def begin(self, i: int) -> None:
-        """Environment i has begun an episode."""
+        """Update the renderer of environment i after a reset."""
         if i in self._renderers:
             self._renderers[i].begin()
             self._begun.add(i)
 
     def keep(self, active: np.ndarray) -> None:
-        """Environments of a mask (n,) have made a step."""
+        """Update the renderers of environments (n,) bool that have made a step."""
         for i, renderer in self._renderers.items():
             if active[i]:
                 renderer.keep()
 
     def render(self) -> tuple[np.ndarray, ...] | None:
-        """A picture of each; None without a mode.
+        """Return a picture of each; None without a mode.
 
         Raises:
-            RuntimeError: One was never reset.
+            RuntimeError: A chosen environment was never reset.
         """
         if self._mode is None:
             return None

@@ -1,4 +1,4 @@
-"""Pictures of the environments."""
+"""Renders the environments."""
 
 from slipgym.rendering.renderer import HEIGHT, WIDTH, WINDOW_RATE, Renderer
 from slipgym.rendering.window import Window

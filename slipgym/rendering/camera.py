@@ -1,4 +1,4 @@
-"""A camera that looks along the grip axis, somewhat from the side and from above."""
+"""Projects world points into the view of a camera that looks roughly along the grip axis."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ WIDTH, HEIGHT = 448, 480
 _CLEAR = 370
 """Height of the view between the words [pixels]."""
 FINE = 2
-"""Samples per pixel in either direction, as `raster.shrink` has it."""
+"""Samples per pixel in each direction, see `raster.shrink`."""
 _YAW, _PITCH = math.radians(28.0), math.radians(16.0)
 _FOCAL = 4.5  # in half widths of the view
 _NEAREST = 0.05  # [m]
@@ -26,7 +26,7 @@ _AXES = np.column_stack([_RIGHT, np.cross(_RIGHT, _FORWARD), _FORWARD])
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the camera stands; it stays there for an episode."""
+    """Position and orientation of the camera, constant in an episode."""
 
     target: tuple[float, float]
     """Point (x, z) in the middle of the view [m]."""
@@ -45,11 +45,11 @@ class Camera:
 
 
 def framing(points: np.ndarray, margin: float = 1.5) -> Camera:
-    """A camera that has all points in view.
+    """Make a camera that has all points in view.
 
     Args:
         points: (n, 3) [m].
-        margin: Half the width that is seen, over what the points need.
+        margin: Half the visible width over the half width of the points.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     span = margin / 2 * max(high[0] - low[0], (high[2] - low[2]) * WIDTH / _CLEAR)

@@ -1,4 +1,4 @@
-"""Words over the view: what is played, how it stands, and the keys of the marks."""
+"""Writes text over the view: task, state of the object, and legend of the marks."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ def caption(
     contact: Contact,
     slip: np.ndarray,
 ) -> None:
-    """Write over the view.
+    """Write text over the view.
 
     Args:
         picture: The view (HEIGHT, WIDTH, 3) uint8, written into.
-        title: What is played.
-        about: What the object is.
-        time: Since the start [s].
-        state: How the object fares.
-        contact: What the pads do.
+        title: Title, the name of the task.
+        about: Description of the object.
+        time: Time since the start [s].
+        state: State of the object, such as whether it slips.
+        contact: Forces of the pads on the object.
         slip: Slip displacement (x, y, theta) [m, m, rad].
     """
     write(picture, 14, 26, title, INK, 17)

@@ -1,4 +1,4 @@
-"""Forces and slip as marks: what the pads do to the object, and how far it has slipped."""
+"""Draws forces and slip: the pads' forces on the object, and its slip displacement."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _WIDTH = 3.0  # [pixels]
 
 @dataclass(frozen=True)
 class Contact:
-    """What the pads do to the object, in the pad frame."""
+    """Forces of the pads on the object, in the pad frame."""
 
     friction: tuple[float, float]
     """Friction of both pads along x and y [N]."""
@@ -35,7 +35,7 @@ class Contact:
 
 
 def before(view: View, contact: Contact, camera: Camera) -> Marks:
-    """Marks that what is nearer hides: the push of the finger behind the object."""
+    """Marks that nearer bodies hide: the normal force of the finger behind the object."""
     return _push(view, contact.grip[0], camera, 1.0, 1.0, cased=False)
 
 

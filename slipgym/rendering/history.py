@@ -1,4 +1,4 @@
-"""What the strip shows of an episode so far."""
+"""Records the quantities of an episode that the plots show."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ COLUMNS = ("grip_1", "grip_2", "path", "reference", "mu_c", "mu_s")
 
 
 class History:
-    """A row for each slip-velocity sample of an episode, from the start on; NaN where nothing was kept.
+    """Table with a row for each control step of an episode; NaN for steps that were not recorded.
 
     Args:
         simulation: The environment's simulation, just reset.
-        row: Which of its environments.
-        motion: What path and reference are.
+        row: Index of the environment.
+        motion: The motion that defines path and reference.
     """
 
     def __init__(self, simulation: Source, row: int, motion: Motion) -> None:
@@ -29,7 +29,7 @@ class History:
 
     @property
     def step(self) -> int:
-        """Samples since the start."""
+        """Control steps since the start."""
         return int(self._simulation.episode["step"][self._row])
 
     @property
@@ -47,9 +47,9 @@ class History:
         return self.rows[: self.step + 1, COLUMNS.index(name)]
 
     def keep(self) -> None:
-        """Keep the present."""
+        """Record the present values."""
         simulation, i = self._simulation, self._row
-        mu_s, mu_c, _, support_s, support_c, _ = simulation.estimated[i]
+        mu_s, mu_c, _, confidence_s, confidence_c, _ = simulation.estimated[i]
         slip, reference = (
             simulation.plant.world["slip"][i],
             simulation.episode["reference"][i, self._motion.entry],
@@ -57,5 +57,5 @@ class History:
         row = self.rows[self.step]
         row[:2] = simulation.plant.fingers["force"][i]
         row[2], row[3] = self._motion.path(slip), self._motion.target(reference)
-        row[4] = mu_c if support_c > 0.0 else math.nan
-        row[5] = mu_s if support_s > 0.0 else math.nan
+        row[4] = mu_c if confidence_c > 0.0 else math.nan
+        row[5] = mu_s if confidence_s > 0.0 else math.nan

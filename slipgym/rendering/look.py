@@ -1,4 +1,4 @@
-"""What a world looks like now. Reads poses only: a picture changes nothing."""
+"""Reads the poses that a picture shows from a simulation, without changing it."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from slipgym.rendering.stage import View
 
 
 def look(simulation: Source, row: int) -> View:
-    """Where everything is in a world.
+    """Return the poses of object and gripper.
 
     Args:
         simulation: The environments' simulation.
-        row: Which of them.
+        row: Index of the environment.
     """
     world = simulation.plant.world[row]
     cos, sin = math.cos(world["angle"]), math.sin(world["angle"])

@@ -1,4 +1,4 @@
-"""Flat marks over the scene, as triangles of a width in pixels: lines, arrows, arcs."""
+"""Builds flat marks over the scene from triangles: lines, arrows, arcs."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ def arrow(
     """An arrow along a path, its tip at the last point.
 
     Args:
-        camera: Who looks.
+        camera: The camera.
         path: World points (n, 3) [m].
         colour: Its colour.
         width: Of the shaft [pixels].
         opacity: 0 to 1.
-        cased: Whether a white edge lifts it off what is behind; for marks that are `stacked`.
+        cased: Whether it has a white edge against the background; for marks that are `stacked`.
 
     Returns:
         Thinner if it is short; nothing if it has no length.
@@ -76,7 +76,7 @@ def arc(centre: np.ndarray, radius: float, start: float, sweep: float) -> np.nda
 
 
 def stacked(parts: list[Marks]) -> Marks:
-    """All marks in one, each in front of those before it, wherever it is."""
+    """Combine marks into one; each covers those before it, whatever their depth."""
     corners, colours = (np.concatenate(column) for column in zip(*parts, strict=True))
     corners[..., 2] = np.arange(1.0, len(corners) + 1.0)[:, None]
     return corners, colours
@@ -103,7 +103,7 @@ def _normals(along: np.ndarray) -> np.ndarray:
 def _band(
     start: np.ndarray, end: np.ndarray, side: np.ndarray, side_end: np.ndarray | None = None
 ) -> np.ndarray:
-    """Two triangles for each piece from start to end, as broad as `side` to either side, all (n, 3)."""
+    """Two triangles for each piece from start to end, extended by `side` to each side, all (n, 3)."""
     last = side if side_end is None else side_end
     one, other, far, corner = start + side, start - side, end - last, end + last
     return np.concatenate([np.stack([one, corner, far], axis=1), np.stack([one, far, other], axis=1)])

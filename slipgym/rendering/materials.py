@@ -1,4 +1,4 @@
-"""How the object's materials look: a colour, and a print on the two broad faces."""
+"""Defines the appearance of the object's materials: a colour, and a pattern on the two broad faces."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ OTHER: Shade = (0.60, 0.69, 0.58)
 
 
 def printed(material: str, box: Box, face: float) -> list[Part]:
-    """What is printed on the broad face at that y; nothing for a material without a print."""
+    """The pattern on the broad face at that y; empty for a material without a pattern."""
     half = box.size[0] / 2, box.size[2] / 2
     return _PRINTS[material](half, face) if material in _PRINTS else []
 
 
-def _darker(material: str, share: float) -> Shade:
+def _darker(material: str, fraction: float) -> Shade:
     red, green, blue = BASE[material]
-    return share * red, share * green, share * blue
+    return fraction * red, fraction * green, fraction * blue
 
 
 def _wood(half: tuple[float, float], face: float) -> list[Part]:

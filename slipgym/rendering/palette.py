@@ -1,4 +1,4 @@
-"""Colours: those of the evaluation's figures (Okabe and Ito), which the colour-blind tell apart."""
+"""Colours of the pictures: Okabe and Ito's colour-blind safe palette, as in the evaluation's figures."""
 
 from __future__ import annotations
 

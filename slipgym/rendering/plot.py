@@ -1,4 +1,4 @@
-"""A small plot over time, drawn into a picture."""
+"""Draws a small plot over time into a picture."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Curve(NamedTuple):
     """One line of a plot."""
 
     values: np.ndarray
-    """(n,), NaN where there is none; less than the plot's times: as far as they go."""
+    """Values (n,), NaN for gaps; may be shorter than the plot's times."""
     colour: Colour
     width: float = 1.6
     """[pixels]."""
@@ -29,7 +29,7 @@ class Curve(NamedTuple):
 
 @dataclass(frozen=True)
 class Plot:
-    """Where a plot is, and its scales."""
+    """Position of a plot, and its scales."""
 
     left: int
     """Its frame [pixels]."""
@@ -49,8 +49,8 @@ class Plot:
         Args:
             picture: (height, width, 3) uint8, drawn into.
             times: Of the curves' values, (n,) [s].
-            curves: The later over the earlier.
-            clock: Whether time has labels.
+            curves: Curves; later ones are drawn over earlier ones.
+            clock: Whether the time axis has labels.
         """
         step = spacing(self.high - self.low)
         for k in range(math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9) + 1):
@@ -109,7 +109,7 @@ def limits(values: list[np.ndarray], least: float) -> tuple[float, float]:
 def heading(
     picture: np.ndarray, left: int, right: int, y: int, title: str, keys: list[tuple[str, Colour]]
 ) -> None:
-    """A plot's title, and at the right its keys in their colours."""
+    """Draw a plot's title, and at the right its legend in the curves' colours."""
     write(picture, left, y, title, INK, 13)
     x = float(right)
     for words, colour in reversed(keys):

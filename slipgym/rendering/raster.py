@@ -1,4 +1,4 @@
-"""What the renderer compiles: filled triangles, smooth lines, masks."""
+"""Rasterises filled triangles and smooth lines, in compiled code."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from slipgym._numba.compiled import compiled
 
 @compiled
 def fill(corners, colours, image, nearness):
-    """Draw triangles in their order; those that face away are left out.
+    """Draw triangles in their order; triangles that face away are left out.
 
     Args:
         corners: (n, 3, 3): x to the right and y down [samples], nearness 1/depth [1/m]; a
             corner behind the camera has nearness <= 0 and hides its triangle.
         colours: (n, 4): red, green and blue in 0 to 255, opacity in 0 to 1.
         image: (height, width, 3) uint8, blended into.
-        nearness: (height, width): of what is drawn so far; opaque triangles update it.
+        nearness: (height, width): nearness of the triangles drawn so far; opaque triangles update it.
     """
     height, width = nearness.shape
     for i in range(corners.shape[0]):
@@ -106,8 +106,8 @@ def tint(picture, mask, colour):
     """Blend one colour into a picture (h, w, 3) uint8 where a mask (h, w) in 0 to 1 covers it."""
     for row in range(mask.shape[0]):
         for column in range(mask.shape[1]):
-            share = mask[row, column]
-            if share > 0.0:
+            cover = mask[row, column]
+            if cover > 0.0:
                 for k in range(3):
                     old = picture[row, column, k]
-                    picture[row, column, k] = round(old + share * (colour[k] - old))
+                    picture[row, column, k] = round(old + cover * (colour[k] - old))

@@ -1,4 +1,4 @@
-"""Pictures of an environment: the view, the words over it and the strip beside it."""
+"""Renders an environment: the view of the gripper, text over it, and plots beside it."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _SLIPPING = 5e-4, 0.05  # slip speed [m/s] and rate [rad/s] from which the objec
 
 
 class Renderer:
-    """Draws an environment's loop; reads it and changes nothing.
+    """Renders an environment of a simulation, without changing it.
 
     Args:
         mode: "rgb_array", "depth_array" or "human".
         simulation: The environment's simulation.
-        row: Which of its environments.
+        row: Index of the environment.
     """
 
     def __init__(self, mode: str, simulation: Source, row: int = 0) -> None:
@@ -36,16 +36,16 @@ class Renderer:
         self._window = Window(f"slipgym {simulation.task.name}", (WIDTH, HEIGHT)) if mode == "human" else None
 
     def begin(self) -> None:
-        """Start an episode, or go on from a restored state: the strip begins anew."""
+        """Start the plots anew, after a reset or a restored state."""
         self._history = History(self._simulation, self._row, self._motion)
         names = [column.name for column in self._simulation.task.columns]
-        told = dict(zip(names, self._simulation.task_part[self._row].tolist(), strict=True))
-        self._goal = self._motion.target(told.get(self._motion.goal, 0.0))
-        self._camera = camera.framing(footprint(self._view(), told.get("wrist_pitch_goal", 0.0)))
+        goals = dict(zip(names, self._simulation.task_part[self._row].tolist(), strict=True))
+        self._goal = self._motion.target(goals.get(self._motion.goal, 0.0))
+        self._camera = camera.framing(footprint(self._view(), goals.get("wrist_pitch_goal", 0.0)))
         self._show()
 
     def keep(self) -> None:
-        """Keep the present sample for the strip; a window shows every so many of them."""
+        """Record the present control step for the plots; update the window `WINDOW_RATE` times a second."""
         self._history.keep()
         if self._window is not None:
             every = max(1, round(1.0 / (WINDOW_RATE * self._history.step_time)))
@@ -53,7 +53,7 @@ class Renderer:
                 self._show()
 
     def render(self) -> np.ndarray | None:
-        """What the mode asks for: a picture (HEIGHT, WIDTH, 3) uint8, depths, or None and a window."""
+        """Return a picture (HEIGHT, WIDTH, 3) uint8 or depths, or show the window and return None."""
         if self._mode == "depth_array":
             return measure_depth(self._view(), self._camera)
         if self._mode == "rgb_array":
@@ -62,7 +62,7 @@ class Renderer:
         return None
 
     def picture(self) -> np.ndarray:
-        """Picture (HEIGHT, WIDTH, 3) uint8; the caller's own."""
+        """Return a new picture (HEIGHT, WIDTH, 3) uint8."""
         simulation = self._simulation
         picture = np.empty((HEIGHT, WIDTH, 3), np.uint8)
         view, beside = picture[:, : camera.WIDTH], picture[:, camera.WIDTH :]

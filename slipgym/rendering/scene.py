@@ -1,4 +1,4 @@
-"""The view: gripper and object in their light, with forces and slip over them."""
+"""Draws the view: gripper and object, with forces and slip over them."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ def draw_scene(picture: np.ndarray, view: View, contact: Contact, camera: Camera
 
     Args:
         picture: (HEIGHT, WIDTH, 3) uint8, drawn over.
-        view: What is where.
-        contact: What the pads do.
-        camera: Who looks.
+        view: Poses of object and gripper.
+        contact: Forces of the pads on the object.
+        camera: The camera.
     """
     corners, colours = assemble(view)
     shaded = colours.copy()
@@ -40,7 +40,7 @@ def draw_scene(picture: np.ndarray, view: View, contact: Contact, camera: Camera
 
 
 def measure_depth(view: View, camera: Camera) -> np.ndarray:
-    """Distance of what is seen along the camera's axis, (HEIGHT, WIDTH) float32 [m]; the far is infinite."""
+    """Distances along the camera's axis, (HEIGHT, WIDTH) float32 [m]; the background is infinite."""
     corners, colours = assemble(view)
     solid = colours.copy()
     solid[:, 3] = 1.0
@@ -63,7 +63,7 @@ def _backdrop(camera: Camera) -> np.ndarray:
 
 
 def _brightness(corners: np.ndarray) -> np.ndarray:
-    """Share of a triangle's colour that is seen: ambient light and a lamp at the upper left."""
+    """Brightness of triangles, 0 to 1: ambient light and a lamp at the upper left."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     facing = normals @ _LIGHT / np.maximum(np.linalg.norm(normals, axis=1), 1e-30)
     return _AMBIENT + (1.0 - _AMBIENT) * np.maximum(facing, 0.0)

@@ -1,4 +1,4 @@
-"""Triangles of the shapes a scene is made of; counterclockwise seen from outside."""
+"""Builds the scene's shapes from triangles, counterclockwise seen from outside."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pictures need of a simulation."""
+"""The interface of a simulation that the renderer needs."""
 
 from __future__ import annotations
 

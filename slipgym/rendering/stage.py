@@ -1,4 +1,4 @@
-"""What is to be seen: gripper and object, and a grid behind them."""
+"""Builds the scene: gripper, object, and a grid behind them."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ _LIFT = 2e-4  # [m] of what is printed on a face, so that it is seen
 
 @dataclass(frozen=True)
 class View:
-    """Where everything is; world frame, x to the right, z up, finger 2 towards the camera."""
+    """Poses of object and gripper; world frame, x to the right, z up, finger 2 towards the camera."""
 
     box: Box
     """The object."""
     material: str
-    """Its material's name."""
+    """Name of the object's material."""
     position: np.ndarray
-    """Its centre of mass (3,) [m]."""
+    """The object's centre of mass (3,) [m]."""
     rotation: np.ndarray
-    """From its frame to the world's, (3, 3)."""
+    """Rotation from the object's frame to the world frame, (3, 3)."""
     wrist: tuple[float, float, float]
     """Pad centre (x, z) and pitch [m, m, rad]."""
     pad_radius: float
@@ -49,7 +49,7 @@ class View:
 
     @property
     def side(self) -> float:
-        """Where the gripper reaches in from: -1 the left, 1 the right; not where the object is."""
+        """Side from which the gripper reaches in, opposite to the object: -1 the left, 1 the right."""
         return 1.0 if self.box.grasp_offset[0] > 0.0 else -1.0
 
 
@@ -67,7 +67,7 @@ def assemble(view: View) -> tuple[np.ndarray, np.ndarray]:
 
 
 def footprint(view: View, swing: float) -> np.ndarray:
-    """Points around gripper and object, and around where they will go, (n, 3) [m].
+    """Points around gripper and object, and around the space they will move through, (n, 3) [m].
 
     Args:
         view: The start of an episode.
@@ -85,7 +85,7 @@ def footprint(view: View, swing: float) -> np.ndarray:
 
 
 def grid() -> tuple[np.ndarray, np.ndarray]:
-    """Lines every 50 mm on a plane behind everything: they show how the wrist moves."""
+    """Grid lines every 50 mm on a plane in the background, which make the wrist's motion visible."""
     y, far, thick = 0.12, 0.9, 5e-4
     lines = []
     for k in range(-18, 19):

@@ -1,4 +1,4 @@
-"""Three plots beside the view: grip force, slip against its reference, friction estimated and true."""
+"""Draws three plots beside the view: grip force, slip and its reference, estimated and true friction."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def draw_strip(
 
     Args:
         picture: (height, WIDTH, 3) uint8, drawn over.
-        history: What was.
-        motion: What its path is.
-        goal: Where the path's target ends.
+        history: Recorded quantities of the episode.
+        motion: The task's motion.
+        goal: Final target of the path.
         true: True mu_s and mu_c.
     """
     picture[:] = PAPER

@@ -1,4 +1,4 @@
-"""Words in a picture, in the typeface that comes with Pillow."""
+"""Writes text into a picture, in the typeface that comes with Pillow."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def write(
 
     Args:
         picture: (height, width, 3) uint8, written into.
-        x: Where the line begins [pixels].
-        y: Its baseline [pixels].
+        x: Position of the line [pixels], see `align`.
+        y: Baseline [pixels].
         words: ASCII and a few signs more (° and ·).
         colour: Their colour.
         size: Height of the typeface [pixels].

@@ -1,4 +1,4 @@
-"""A window on the screen, by pygame."""
+"""Shows pictures in a window, with pygame."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 from slipgym.screen import obstacle
 
 _OTHERWISE = (
-    "; use render_mode='rgb_array', or write a film: python scripts/play.py LinearSlip --video film.mp4"
+    "; use render_mode='rgb_array', or write a video: python scripts/play.py linear_slip --video video.mp4"
 )
 
 
 class Window:
-    """Shows pictures, and tells which keys are down.
+    """Shows pictures, and reads the keyboard.
 
     Args:
-        title: In its bar.
+        title: Title of the window.
         size: Width and height [pixels].
 
     Raises:
@@ -39,7 +39,7 @@ class Window:
         self._screen = pygame.display.set_mode(size)
         self._clock = pygame.time.Clock()
         self.closed = False
-        """Whether someone closed the window, or pressed Escape."""
+        """Whether the user closed the window or pressed Escape."""
 
     def show(self, picture: np.ndarray, rate: float) -> None:
         """Show a picture, no sooner than 1/rate after the last one.
@@ -57,10 +57,10 @@ class Window:
         self._clock.tick(rate)
 
     def vertical(self) -> int:
-        """1 while the up key is down, -1 while the down key is, else 0."""
+        """1 while the up key is down, -1 while the down key is down, else 0."""
         keys = self._pygame.key.get_pressed()
         return int(keys[self._pygame.K_UP]) - int(keys[self._pygame.K_DOWN])
 
     def close(self) -> None:
-        """Take the window off the screen; doing so twice is harmless."""
+        """Close the window; closing twice is harmless."""
         self._pygame.display.quit()

@@ -1,4 +1,4 @@
-"""Force/torque sensor of a finger: corrupt, quantise, saturate, delay.
+"""Simulates the force/torque sensor of a finger: bias and noise, quantisation, saturation, latency.
 
 Six components (f_x, f_y, f_n, tau_x, tau_y, tau_n) of the load on the finger at the pad
 centre. Finger 2 is mirrored: it sees the same in-plane axes and counts the torque about
@@ -63,7 +63,7 @@ def roomier(sensors: np.ndarray, kept: int) -> np.ndarray:
 
 @compiled
 def sample_force_torque(sensor: Any, pad: Pad, tick: int) -> None:
-    """Keep the load on a finger at a sampling instant; what the sensor makes of it is left to who reads it.
+    """Store the load on a finger at a sampling instant; `read` applies bias, noise and quantisation.
 
     Args:
         sensor: FORCE_TORQUE record.
@@ -89,7 +89,7 @@ def next_sample_read(sensor: Any, tick: int, control_ticks: int) -> int:
 
 @compiled
 def sensed(sensor: Any, number: int, reading: np.ndarray) -> None:
-    """What the sensor makes of the load at a sampling instant: bias, noise, quantisation, saturation.
+    """Reading of the load at a sampling instant, with bias, noise, quantisation and saturation.
 
     Args:
         sensor: FORCE_TORQUE record; it keeps the load still.

@@ -1,4 +1,4 @@
-"""Standard normal numbers by key and index: no generator to carry along, any one can be drawn alone.
+"""Generates standard normal numbers by key and index, without the state of a generator.
 
 A counter-based generator: the index-th output of SplitMix64 (Steele, Lea & Flood, Fast splittable
 pseudorandom number generators, 2014) started at the key, put through the inverse of the normal
@@ -52,9 +52,9 @@ def interpolated(p: float) -> float:
     k = int(place)
     if not TAIL <= k < CELLS - TAIL:
         return quantile(p)
-    share = place - k
+    rest = place - k
     cubic = _CUBICS[k]
-    return ((cubic[3] * share + cubic[2]) * share + cubic[1]) * share + cubic[0]
+    return ((cubic[3] * rest + cubic[2]) * rest + cubic[1]) * rest + cubic[0]
 
 
 @compiled

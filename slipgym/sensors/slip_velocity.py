@@ -1,7 +1,7 @@
-"""Slip-velocity sensor of a finger: optical mouse chips and least squares.
+"""Simulates the slip-velocity sensor of a finger: optical mouse chips and least squares.
 
 Each chip counts the displacement of the object's surface under it along two axes. Once per
-sample the counts of the averaging window, divided by its length, give the slip twist
+control step the counts of the averaging window, divided by its length, give the slip twist
 (v_x, v_y, omega) at the pad centre by least squares over all axes (gripper paper,
 arXiv 2410.19660). No count, no velocity: the twist is then exactly 0.
 """
@@ -62,16 +62,16 @@ def chip_positions(radius: float, chips: int) -> np.ndarray:
 
 @compiled
 def accumulate_slip(sensor: Any, motion: Vector | np.ndarray) -> None:
-    """Add a slip displacement (x, y, theta) at the pad centre to what the chips have seen."""
+    """Add a slip displacement (x, y, theta) at the pad centre to the displacement not yet counted."""
     for k in range(3):
         sensor.moved[k] += motion[k]
 
 
 @compiled
 def sample_slip(sensor: Any) -> None:
-    """Close one sample: count what has been seen since the last.
+    """Take a sample: count the displacement since the last one.
 
-    Counting truncates towards zero and keeps the rest, so a surface that trembles by less
+    Counting truncates towards zero and keeps the remainder, so a surface that vibrates by less
     than one count gives none.
     """
     x, y, theta = sensor.moved[0], sensor.moved[1], sensor.mirror * sensor.moved[2]
@@ -95,7 +95,7 @@ def read_slip(sensor: Any, twist: np.ndarray) -> None:
     """Slip twist (v_x, v_y, omega) at the pad centre, in the pad frame, as delivered now.
 
     Returns the window average that is `delay` samples old and adds the newest delivered
-    sample to the travel.
+    sample to the measured slip.
     """
     twist[:] = 0.0
     newest = sensor.taken - 1 - sensor.delay

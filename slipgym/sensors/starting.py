@@ -1,4 +1,4 @@
-"""Draws and resets the sensors' state at the start of an episode."""
+"""Samples and resets the sensors' state at the start of an episode."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ KEYS = 3
 
 
 def draw_sensors(n: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Keys of the noise (KEYS, n) and shares in [0, 1) of what each chip has not counted yet (n, AXES)."""
+    """Keys of the noise (KEYS, n), and uniform numbers in [0, 1) for the chips' uncounted rests (n, AXES)."""
     return rng.bit_generator.random_raw(KEYS * n).reshape(KEYS, n), rng.random((n, AXES))
 
 
@@ -20,13 +20,13 @@ def draw_sensors(n: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarr
 def start_sensors(
     force_torque: np.ndarray, slip_sensors: np.ndarray, keys: np.ndarray, shares: np.ndarray
 ) -> None:
-    """Forget all samples.
+    """Reset the sensors; their histories are empty.
 
     Args:
         force_torque: FORCE_TORQUE (n,).
         slip_sensors: SLIP_SENSOR (n,).
-        keys: From `draw_sensors`, like the last.
-        shares: See there.
+        keys: Keys of the noise, from `draw_sensors`.
+        shares: Uniform numbers in [0, 1), from `draw_sensors`.
     """
     for i in range(slip_sensors.shape[0]):
         wrench, slip = force_torque[i], slip_sensors[i]

@@ -1,4 +1,4 @@
-"""Sensor records of a friction patch whose slip is prescribed and whose truth is known.
+"""Generates sensor records of a friction patch with prescribed slip and known ground truth.
 
 Twenty fingers see 2 s of sliding; they differ by their noise:
 

@@ -1,4 +1,4 @@
-"""What a patch goes through: slip, load and its own properties, linear between points in time."""
+"""Describes the slip, load and properties of a patch over time, linear between points."""
 
 from __future__ import annotations
 

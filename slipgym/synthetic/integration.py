@@ -1,4 +1,4 @@
-"""The friction of a patch along a course, integrated finely and kept at the sensors' rate."""
+"""Integrates the friction of a patch along a course in fine steps, and records it at the control rate."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from slipgym.contact import DistributedContact, EllipsoidContact
 from slipgym.synthetic.course import Course
 
 RATE = 120
-"""Slip-velocity samples per second [Hz]."""
+"""Control rate [Hz]."""
 SUBSTEPS = 84
-"""Steps of the contact per sample: one is 0.1 ms."""
+"""Steps of the contact per control step: one is 0.1 ms."""
 
 
 @dataclass(frozen=True)
 class Trace:
-    """What truly happened, at the n sampling instants."""
+    """Ground truth at the n sampling instants."""
 
     t: np.ndarray
     """Time, (n,) [s]."""
@@ -42,7 +42,7 @@ class Trace:
 def integrate(course: Course, contact: DistributedContact | EllipsoidContact | None = None) -> Trace:
     """Drives a patch along a course.
 
-    Friction and radius change once per sample, twist and normal force at every step.
+    Friction and radius change once per control step, twist and normal force at every step of the contact.
 
     Args:
         course: The course.

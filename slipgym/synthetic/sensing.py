@@ -1,4 +1,4 @@
-"""Records of a trace: as the gripper's sensors report it, or exact."""
+"""Converts a trace into sensor records: as the gripper's sensors report it, or exact."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def ideal(trace: Trace, instant: bool = False) -> Record:
     """The trace itself: no noise, no latency, no counts; one record.
 
     Args:
-        trace: What happened.
+        trace: The trace.
         instant: Whether a twist is that of the sampling instant, as the force is; otherwise it is
             the mean since the last one.
     """
@@ -59,7 +59,7 @@ def sense(
     instant, not up to 1 ms older, and has no latency.
 
     Args:
-        trace: What happened.
+        trace: The trace.
         m: Records, each with its own noise and its own rests of counts.
         seed: Of the noise, >= 0.
         sensors: Preset of the sensors, "realistic" or "ideal".
@@ -97,7 +97,7 @@ def _expose(
     pad: np.ndarray,
     motion: np.ndarray,
 ) -> None:
-    """Lets all fingers feel the pad's load and see its slip since the last sample."""
+    """Apply the pad's load and its slip since the last control step to all fingers' sensors."""
     for i in range(slip_sensors.shape[0]):
         for f in range(2):
             accumulate_slip(slip_sensors[i, f], motion)
@@ -105,5 +105,5 @@ def _expose(
 
 
 def _record(trace: Trace, wrenches: np.ndarray, twists: np.ndarray) -> Record:
-    truth = {name: getattr(trace, name) for name in ("mu_s", "mu_c", "r", "phase")}
-    return Record(trace.t, wrenches, twists, **truth)
+    ground_truth = {name: getattr(trace, name) for name in ("mu_s", "mu_c", "r", "phase")}
+    return Record(trace.t, wrenches, twists, **ground_truth)

@@ -1,4 +1,4 @@
-"""Compiles what a task declares: its terms and columns become the two functions that a simulation calls."""
+"""Compiles a task's declarations into the two functions that a simulation calls in every control step."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class _Column(Protocol):
 
 
 def inlined(function: Any) -> Any:
-    """A function for use in compiled ones; one that is compiled already stays as it is.
+    """Compile a function for use in compiled ones; return it unchanged if it is compiled already.
 
-    It is not kept on disk: the functions that use it are, and know its source file.
+    It is not cached on disk, unlike the functions that use it, whose cache depends on its source file.
     """
     return (
         function

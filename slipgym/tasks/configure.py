@@ -1,4 +1,4 @@
-"""Configuration and settings of a task's environment."""
+"""Loads the configuration and the settings of a task's environment."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ def configure(
 
     Args:
         task: The task.
-        overrides: What differs from the defaults, as a mapping or as the path of a YAML file. Its group
-            "tasks" holds settings by the tasks' keys: `{"tasks": {"hold": {"duration": 2.0}}}`. Those of
-            other tasks are checked as well, and left.
-        sensors: As of `slipgym.config.load`.
-        contact: As of `slipgym.config.load`.
+        overrides: Values that replace defaults, as a mapping or as the path of a YAML file. Its group
+            "tasks" holds settings by the tasks' keys: `{"tasks": {"hold": {"duration": 2.0}}}`. Settings of
+            other tasks are checked and then ignored.
+        sensors: Sensor preset, see `slipgym.config.load`.
+        contact: Friction model, see `slipgym.config.load`.
 
     Raises:
         FileNotFoundError: The overrides' file does not exist.
@@ -66,5 +66,5 @@ def _settings(task: Task[SettingsT], group: Any, source: str) -> SettingsT:
 
 
 def recorded(config: Config, settings: TaskConfig, key: str) -> dict[str, Any]:
-    """Configuration and settings as plain data, in the shape of overrides that bring both back."""
+    """Configuration and settings as plain data, in the shape of overrides that restore both."""
     return {**config.model_dump(mode="json"), "tasks": {key: settings.model_dump(mode="json")}}

@@ -1,4 +1,4 @@
-"""What happens to object, wrist and friction during an episode, written into it before it begins."""
+"""Stores an episode's disturbances, and applies them to object, wrist and friction."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import math
 from slipgym._numba.compiled import compiled
 
 SHAKES = 2
-"""Shakings of the wrist that add up: the task's own and a drawn one."""
+"""Number of wrist oscillations that add up: the task's own and a sampled one."""
 POKES_MAX = 64
-"""Pushes that a task can have of its own."""
+"""Largest number of pushes of a task."""
 PUSHES_MAX = POKES_MAX + 16
-"""And with drawn ones."""
+"""Largest number of pushes of a task and its randomization together."""
 _SHAKE_RISE = 0.5  # [s] over which a shaking builds up, so that it starts without a jerk
 _LEAST, _MOST = 0.2, 5.0  # drift takes friction no further than this, over the drawn one
 
@@ -43,7 +43,7 @@ FIELDS = [
 
 @compiled
 def shake_velocity(episode, axis, time):
-    """Wrist velocity along one axis at a time; a shaking rises smoothly from rest.
+    """Wrist velocity of the oscillations along one axis at a time; they rise smoothly from rest.
 
     Args:
         episode: EPISODE record.
@@ -75,18 +75,18 @@ def friction_factor(episode, world):
 
 @compiled
 def disturb(episodes, worlds, pads, friction):
-    """Before a control step: load on the object, its mass, and friction over the coming step.
+    """Before a control step, set the load on the object, its mass, and the friction.
 
     Args:
         episodes: EPISODE (n,).
         worlds: WORLD (n,).
         pads: PAD (n, 2).
-        friction: Output (n, 3): mu_s and mu_c now; r is left as it is.
+        friction: Output (n, 3): mu_s and mu_c now; r is unchanged.
     """
     for i in range(episodes.shape[0]):
         episode, world = episodes[i], worlds[i]
         world.external[:] = 0.0
-        for k in range(episode.pushes):  # of those at the same time the last listed acts
+        for k in range(episode.pushes):  # if pushes overlap, the last one in the list acts
             if episode.push_start[k] <= episode.step < episode.push_end[k]:
                 world.external[:] = episode.push_wrench[k]
         heavier = episode.mass_factor if episode.step >= episode.mass_step else 1.0

@@ -1,4 +1,4 @@
-"""Plain-array state of an episode, common to all tasks."""
+"""Defines EPISODE, the plain-array state of an episode that all tasks have in common."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from slipgym.tasks.disturbance import FIELDS, shake_velocity
 from slipgym.world.wrist import ramp_wrist
 
 TERMS_MAX = 8
-"""Reward terms that a task can have."""
+"""Largest number of reward terms of a task."""
 OWN_MAX = 8
-"""Numbers that a task can keep beside what all tasks have."""
+"""Number of values that a task can keep besides the fields of all tasks."""
 
 
 class TimedSettings(Protocol):
-    """Settings of a task that settles, follows a reference and holds."""
+    """Settings of a task that settles, follows a reference, and holds."""
 
     @property
     def settle(self) -> float:
@@ -76,7 +76,7 @@ EPISODE = np.dtype(
 
 
 def scratch(**sizes: int) -> Any:
-    """Names for the numbers of `episode.own`, in which a task keeps what has no field of its own.
+    """Names for the numbers of `episode.own`, in which a task keeps its own state.
 
     `SCRATCH = scratch(target=3, rest_speed=1)` gives `SCRATCH.target`, the slice of the first three numbers,
     and `SCRATCH.rest_speed`, the index of the fourth; both work in Python and in compiled functions:
@@ -122,9 +122,9 @@ def begin_step(episodes, commands):
 
 @compiled
 def drive_wrist(episode, world, x, z, pitch):
-    """Over the coming step, bring the wrist to the scripted velocity, shaken, plus what the agent commands.
+    """Bring the wrist to the sum of scripted velocity, oscillation and the agent's command in a step.
 
-    The gripper's limits hold for the sum.
+    The gripper's limits apply to the sum.
 
     Args:
         episode: EPISODE record.
@@ -197,7 +197,7 @@ def trapezoid(t, distance, duration):
 
 @compiled
 def follow_trapezoid(episode):
-    """Write the trapezoidal reference of this moment, over `duration` after `settle`, to `goal`."""
+    """Write the present trapezoidal reference, which reaches `goal` within `duration` after `settle`."""
     time = episode.step * episode.step_time
     reference = trapezoid(time - episode.settle, episode.goal, episode.duration)
     for k in range(3):

@@ -2,38 +2,37 @@
 
 ## Description
 
-A parallel gripper holds a box near its top. The wrist pitches along a trapezoidal profile, and the grip
-must be so loose that the box stays upright, turning between the pads like a door on a hinge, and so
-firm that it does not slide down. Friction is not known beforehand: an estimator works it out from
-force, torque and slip velocity while the box turns. After the hinge of Waltersson and Karayiannidis
-(arXiv 2410.19660), who pitch from 60 to 120 deg; only the relative turn matters to round pads.
+A parallel gripper holds a box near its top. The wrist pitches along a trapezoidal profile. The grip must be
+loose enough that the box stays upright, turning between the pads like a door on a hinge, and firm enough
+that the box does not slide down. Friction is unknown: an estimator computes it from force, torque and slip
+velocity while the box turns. The task follows the hinge of Waltersson and Karayiannidis (arXiv 2410.19660),
+who pitch from 60 to 120 deg; with round pads only the relative turn matters.
 
-Sliding and tilt are bound to each other. While the box turns in the grip, the slip twist is normal to
-the limit surface at the load: it slides r^2 / (d sin(tilt)) per radian, d being the depth of its centre
-of mass below the pads. For a pad with r = 10 mm, d = 100 mm and a tilt of 5 deg that is 11 mm per
-radian, whatever the controller does. Hence the task's own contact: a rounded fingertip that touches
-with r = 3 mm (`tasks.hinge.radius`, the reset option `r`). Then f_n mu_c / f_t has to lie between about
-1.9, for 2 mm in a turn of 60 deg, and 3.1, for 5 deg. Static friction, 1.4 to 1.6 times larger, makes
-the start the hard part: a grip in that range would take the box along by more than 5 deg before it lets
-go.
+Sliding and tilt are coupled. While the box turns in the grip, the slip twist is normal to the limit surface
+at the load: the box slides r^2 / (d sin(tilt)) per radian, where d is the depth of its centre of mass below
+the pads. For a pad with r = 10 mm, d = 100 mm and a tilt of 5 deg that is 11 mm per radian, whatever the
+controller does. The task therefore has its own contact, a rounded fingertip with r = 3 mm
+(`tasks.hinge.radius`, the reset option `r`). Then f_n mu_c / f_t has to lie between about 1.9, for 2 mm in a
+turn of 60 deg, and 3.1, for 5 deg. Static friction, 1.4 to 1.6 times larger, makes the start difficult: a
+grip in that range would carry the box along by more than 5 deg before it slips.
 
 ## Rewards
 
-e is how far the wrist's pitch is from its profile: 0, unless the agent moves the wrist. It counts as
-tilt, for success too, so that an agent cannot just undo the turn.
+e is the difference between the wrist's pitch and its profile; it is 0 unless the agent moves the wrist. It
+counts as tilt, for success too, so that an agent cannot simply undo the turn.
 
 ## Starting State
 
-The box (`tasks.hinge.object`: 0.2 kg, 50 mm by 250 mm, gripped 100 mm above its centre) hangs still in
-a grip of `tasks.hinge.initial_force` (5 N), the wrist level. The direction of the turn is drawn; so are
-the material, if `material` is "random", the sensors' biases and the fractions of a count that the slip
-sensors begin with. Grip and sensors run for six samples before time 0. The wrist rests for `settle`
-(0.5 s), pitches by `turn` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
+The box (`tasks.hinge.object`: 0.2 kg, 50 mm by 250 mm, gripped 100 mm above its centre) hangs at rest in a
+grip of `tasks.hinge.initial_force` (5 N), with the wrist level. Sampled at random are the direction of the
+turn, the material, if `material` is "random", the sensors' biases, and the fractions of a count in the slip
+sensors. Grip and sensors run for six control steps before time 0. The wrist rests for `settle` (0.5 s),
+pitches by `turn` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
 
 ## Episode End
 
 - Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: settle + duration + hold have passed (6.5 s, 780 samples). The environment truncates by
+- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps). The environment truncates by
   itself; no `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never
@@ -68,11 +67,11 @@ from slipgym.tasks.task import Column, Task, term
 from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
 
 SCRATCH = scratch(scripted_pitch=1)
-"""`scripted_pitch`: pitch of the wrist as the script alone turns it [rad]."""
+"""`scripted_pitch`: pitch of the wrist by the script alone, without the agent's commands [rad]."""
 
 
 class Settings(TaskConfig):
-    """The object hangs upright between the pads while the wrist pitches."""
+    """Settings of the hinge: the object hangs upright between the pads while the wrist pitches."""
 
     turn: Annotated[Positive, setting("Angle by which the wrist pitches", "rad", reset=True, le=3.0)] = 1.0472
     direction: Annotated[
@@ -91,7 +90,7 @@ class Settings(TaskConfig):
 
 
 def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
-    """Fill one EPISODE row; the direction of the turn is drawn at random.
+    """Fill one EPISODE row; the direction of the turn is sampled at random.
 
     Raises:
         ValueError: The wrist cannot turn so fast.
@@ -104,13 +103,13 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
             f"a turn of {turn:g} rad in duration = {episode['duration']:g} s needs {rate:.3g} rad/s; "
             f"gripper.wrist_pitch_rate_max is {fastest:g} rad/s"
         )
-    random = (-1, 1)[rng.integers(2)]  # drawn always, so that options do not shift later draws
+    random = (-1, 1)[rng.integers(2)]  # always sampled, so that options do not shift later draws
     episode["goal"] = turn * (settings.direction or random)
     episode["slide_tolerance"], episode["tilt_tolerance"] = settings.slide_tolerance, settings.tilt_tolerance
 
 
 def wrist_velocity(episode, world):
-    """The wrist pitches along a trapezoid; where the script alone would bring it is kept."""
+    """Pitch the wrist along a trapezoid, and store the scripted pitch."""
     time = (episode.step + 1) * episode.step_time - episode.settle
     last = trapezoid(time - episode.step_time, episode.goal, episode.duration)[1]
     rate = trapezoid(time, episode.goal, episode.duration)[1]
@@ -121,7 +120,7 @@ def wrist_velocity(episode, world):
 
 
 def track(episode, world):
-    """The reference is the wrist's pitch; the largest slip and tilt are kept."""
+    """Set the reference to the wrist's pitch, and store the largest slip and tilt."""
     episode.reference[0] = world.wrist[2]
     episode.reference[1] = world.wrist_velocity[2]
     episode.reference[2] = world.wrist_acceleration[2]

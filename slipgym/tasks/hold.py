@@ -2,25 +2,25 @@
 
 ## Description
 
-A parallel gripper holds a box from both sides. The wrist moves up and down, to and fro, and pitches; now
-and then something pokes the box. It must not slip, yet be gripped no harder than needed. Neither mass nor
-friction is known beforehand: an estimator works friction out from force, torque and slip velocity, as far
-as the box slips at all. After the holding task of Waltersson and Karayiannidis (arXiv 2410.19660).
+A parallel gripper holds a box from both sides. The wrist oscillates along x and z and in pitch, and short
+pushes act on the box. The box must not slip, and the grip force should be as small as possible. Mass and
+friction are unknown: an estimator computes friction from force, torque and slip velocity when the box slips.
+The task follows the holding task of Waltersson and Karayiannidis (arXiv 2410.19660).
 
 ## Starting State
 
-The box hangs still in a grip of `tasks.hold.initial_force` (15 N), its grasp point between the pads. Its
-mass is drawn from 0.1 to 0.4 kg, the wrist's frequencies (1 to 3 Hz) and phases and the pokes (impulse,
-direction, lever and time) from the ranges in `tasks.hold`; so are the material, if `material` is
-"random", the sensors' biases and the fractions of a count that the slip sensors begin with. Grip and
-sensors run for six samples before time 0; the shaking builds up over 0.5 s. A wrist velocity that the
-agent commands adds to it; the sum stays within the gripper's limits.
+The box hangs at rest in a grip of `tasks.hold.initial_force` (15 N), its grasp point between the pads.
+Sampled at random are its mass (0.1 to 0.4 kg), the wrist's frequencies (1 to 3 Hz) and phases, the pushes
+(impulse, direction, lever and time; ranges in `tasks.hold`), the material, if `material` is "random", the
+sensors' biases, and the fractions of a count in the slip sensors. Grip and sensors run for six control steps
+before time 0; the oscillation builds up over 0.5 s. A wrist velocity that the agent commands is added to it;
+the gripper's limits apply to the sum.
 
 ## Episode End
 
 - Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` has passed (8 s, 960 samples). The environment truncates by itself; no `TimeLimit`
-  is needed.
+- Truncated: `duration` has passed (8 s, 960 control steps). The environment truncates by itself; no
+  `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped and never
 slipped further than `tolerance` (2 mm).
@@ -51,7 +51,7 @@ from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
 
 
 class Settings(TaskConfig):
-    """The object is to stay in the grip while the wrist shakes and something pokes the object."""
+    """Settings of the hold: the object must stay in the grip while the wrist shakes and pushes act on it."""
 
     duration: Annotated[Positive, setting("Length of an episode", "s", reset=True, le=600.0)] = 8.0
     tolerance: Annotated[Positive, setting("Largest slip for success", "m", reset=True)] = 0.002
@@ -78,7 +78,7 @@ class Settings(TaskConfig):
 
 
 def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
-    """Fill one EPISODE row: draw the shaking and the pokes."""
+    """Fill one EPISODE row: sample the shaking and the pokes."""
     episode["tolerance"] = settings.tolerance
     episode["steps"] = max(1, round(settings.duration / float(episode["step_time"])))
     amplitude, pitch = settings.shake_amplitude, settings.shake_pitch

@@ -2,30 +2,30 @@
 
 ## Description
 
-A parallel gripper on a wrist at rest holds a box from both sides. It must loosen its grip just so far
-that the box slides down between the pads along a trapezoidal reference, and then tighten it so that the
-box stays. Friction is not known beforehand: an estimator works it out from force, torque and slip
-velocity while the box slides. After the linear slip of Waltersson and Karayiannidis (arXiv 2507.06824 and
-arXiv 2410.19660).
+A parallel gripper on a wrist at rest holds a box from both sides. The agent reduces the grip force so that
+the box slides down between the pads along a trapezoidal reference, and then increases it so that the box
+stops. Friction is unknown: an estimator computes it from force, torque and slip velocity while the box
+slides. The task follows the linear slip of Waltersson and Karayiannidis (arXiv 2507.06824 and arXiv
+2410.19660).
 
 ## Starting State
 
-The box hangs still in a grip of `tasks.linear_slip.initial_force` (15 N), its grasp point between the
-pads. The material is drawn if `material` is "random", and so are the sensors' biases and the fractions of
-a count that the slip sensors begin with. Grip and sensors run for six samples before time 0.
+The box hangs at rest in a grip of `tasks.linear_slip.initial_force` (15 N), its grasp point between the
+pads. Sampled at random are the material, if `material` is "random", the sensors' biases, and the fractions
+of a count in the slip sensors. Grip and sensors run for six control steps before time 0.
 
 ## Episode End
 
 - Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `settle` + `duration` + `hold` have passed (0.5 s + 5 s + 1 s, 780 samples). The environment
-  truncates by itself; no `TimeLimit` is needed.
+- Truncated: `settle` + `duration` + `hold` have passed (0.5 s + 5 s + 1 s, 780 control steps). The
+  environment truncates by itself; no `TimeLimit` is needed.
 
-Success (`info["is_success"]`): at the end of the last sample the distance slid is within `tolerance` (2
+Success (`info["is_success"]`): at the end of the last step the distance slid is within `tolerance` (2
 mm) of `distance`, and the box was not dropped.
 
 ## Info
 
-| `reference` | distance to have slid, its rate and second rate, (3,) [m, m/s, m/s^2] |
+| `reference` | reference distance, its velocity and acceleration, (3,) [m, m/s, m/s^2] |
 
 ## Version History
 
@@ -49,7 +49,7 @@ from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
 
 
 class Settings(TaskConfig):
-    """The object slides down between the pads by a given distance in a given time, then stays."""
+    """Settings of the linear slip: the object slides down by a given distance in a given time, then stops."""
 
     distance: Annotated[Positive, setting("Distance to slide", "m", reset=True, le=0.2)] = 0.04
     duration: Annotated[Positive, setting("Time for the slide", "s", reset=True, le=120.0)] = 5.0
@@ -65,12 +65,12 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
 
 
 def track(episode, world):
-    """The reference moves on."""
+    """Update the reference."""
     follow_trapezoid(episode)
 
 
 def success(episode, world):
-    """Whether the object slid as far as asked."""
+    """Whether the object slid the given distance."""
     return abs(-world.slip[1] - episode.goal) <= episode.tolerance
 
 

@@ -1,4 +1,4 @@
-"""Which motion of the object a task is about."""
+"""Describes the motion of the object that a task asks for."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Motion:
-    """One coordinate of the slip, and where it should be; for pictures, tables and figures."""
+    """One coordinate of the slip and its reference; for pictures, tables and figures."""
 
     label: str = "slid"
     """What it is."""
     unit: Literal["m", "rad"] = "m"
     """Its unit."""
     axis: tuple[float, float, float] | None = None
-    """Its share of the slip displacement (x, y, theta); None: the distance from the grasp."""
+    """Weights of the slip displacement (x, y, theta); None: the distance from the grasp."""
     sign: float = 1.0
-    """It should be this times the episode's reference position."""
+    """Factor from the episode's reference position to the coordinate's target."""
     entry: int = 0
-    """Which entry of the episode's reference is its position."""
+    """Index of the position in the episode's reference."""
     goal: str = ""
-    """Column of the task's observation that says where the reference ends; none if it stays at 0."""
+    """Column of the task's observation with the end of the reference; none if the reference is 0."""
 
     @property
     def title(self) -> str:
-        """What it is, with the unit it is shown in."""
+        """Name of the coordinate, with the unit it is shown in."""
         return f"{self.label} [{'mm' if self.unit == 'm' else '°'}]"
 
     @property
@@ -37,7 +37,7 @@ class Motion:
         return 1e3 if self.unit == "m" else math.degrees(1.0)
 
     def path(self, slip: np.ndarray) -> np.ndarray:
-        """Where the object is.
+        """Coordinate of the object.
 
         Args:
             slip: Slip displacement (x, y, theta), (..., 3) [m, m, rad].
@@ -50,5 +50,5 @@ class Motion:
         return self.scale * (slip @ np.array(self.axis))
 
     def target(self, reference: Any) -> Any:
-        """Where it should be [mm or degrees], from the reference position [m or rad]."""
+        """Target of the coordinate [mm or degrees], from the reference position [m or rad]."""
         return self.sign * self.scale * reference

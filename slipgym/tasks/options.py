@@ -13,7 +13,7 @@ from slipgym.config.task import Reset, SettingsT, TaskConfig
 
 
 class EpisodeOptions(Frozen):
-    """Options of every task; what is not given is sampled or taken from the settings."""
+    """Options of every task; parameters that are not given are sampled or taken from the settings."""
 
     settings_fields: ClassVar[frozenset[str]] = frozenset()
     """Options that replace the setting of the same name."""
@@ -37,7 +37,7 @@ class EpisodeOptions(Frozen):
 
         Raises:
             ValueError: An option is unknown or its value not allowed; the message names it,
-                its value and what is valid.
+                its value and the valid values.
         """
         if options is not None and not isinstance(options, Mapping):
             raise ValueError(f"options = {options!r} must be a mapping; valid: {', '.join(cls.model_fields)}")
@@ -55,7 +55,7 @@ class EpisodeOptions(Frozen):
         return f"option {name} = {fault['input']!r}: {fault['msg']} ({meaning})"
 
     def applied_to(self, settings: SettingsT) -> SettingsT:
-        """The settings of an episode: those given, with the options in place of those of the same name."""
+        """The settings of an episode: options replace the settings of the same name."""
         given = {name: getattr(self, name) for name in self.settings_fields & self.model_fields_set}
         given = {name: value for name, value in given.items() if value is not None}
         return settings.model_copy(update=given) if given else settings

@@ -2,36 +2,35 @@
 
 ## Description
 
-A parallel gripper on a wrist at rest holds a bar near one end. It must loosen its grip just so far that
-the bar's weight turns it between the pads along a trapezoidal reference, and then tighten it so that
-the bar stays. Friction is not known beforehand: an estimator works it out from force, torque and slip
-velocity while the bar turns. After the rotational slip of Waltersson and Karayiannidis (arXiv
-2410.19660).
+A parallel gripper on a wrist at rest holds a bar near one end. The agent reduces the grip force so that the
+bar's weight turns it between the pads along a trapezoidal reference, and then increases it so that the bar
+stops. Friction is unknown: an estimator computes it from force, torque and slip velocity while the bar
+turns. The task follows the rotational slip of Waltersson and Karayiannidis (arXiv 2410.19660).
 
-Some sliding is inherent. On the limit surface the slip twist is normal to the load, v_t / omega = r^2
-f_t / tau, and tau / f_t is the weight's lever d cos(tilt). A turn from -angle/2 to +angle/2 about
-horizontal therefore slides 2 (r^2 / d) ln tan(45 deg + angle/4): with r = 10 mm and d = 180 mm 0.61 mm
-at 60 deg, whatever the controller does; on a disc (`contact="distributed"`), whose limit surface is
-flatter there, 3/2 as much. Holding the bar level takes m g d / (2 mu_c r) per finger. Hence the task's
-own object (`tasks.rotational_slip.object`), light and long: 0.06 kg, 460 mm by 40 mm, gripped 180 mm
-from its centre, which asks for 15 N at mu_c 0.36.
+Some sliding is inevitable. The slip twist is normal to the limit surface at the load,
+v_t / omega = r^2 f_t / tau, and tau / f_t is the weight's lever d cos(tilt). A turn from -angle/2 to
++angle/2 about horizontal therefore slides 2 (r^2 / d) ln tan(45 deg + angle/4). With r = 10 mm and
+d = 180 mm this is 0.61 mm at 60 deg, whatever the controller does. On a disc (`contact="distributed"`), whose
+limit surface is flatter there, it is 3/2 as much. Holding the bar level takes m g d / (2 mu_c r) per finger.
+The task therefore has its own light and long object (`tasks.rotational_slip.object`): 0.06 kg, 460 mm by
+40 mm, gripped 180 mm from its centre, which takes 15 N at mu_c 0.36.
 
-In turns of short leaps and almost without translation the estimator "rls" learns little;
-the default, like "joint", learns enough.
+The bar turns in short jumps and almost without translation, from which the estimator "rls" learns little;
+the default estimator and "joint" learn enough.
 
 ## Starting State
 
-The bar is held still in a grip of `tasks.rotational_slip.initial_force` (25 N), its grasp point between
-the pads and the bar aligned with them. The wrist is pitched by angle/2, the bar's heavy end up, so that
-the turn is symmetric about horizontal; the bar turns clockwise, so theta falls. The material is drawn
-if `material` is "random"; so are the sensors' biases and the fractions of a count that the slip sensors
-begin with. Grip and sensors run for six samples before time 0. The reference rests for `settle` (0.5
-s), turns by `angle` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
+The bar is held at rest in a grip of `tasks.rotational_slip.initial_force` (25 N), its grasp point between the
+pads and the bar aligned with them. The wrist is pitched by angle/2 with the bar's heavy end up, so that the
+turn is symmetric about horizontal. The bar turns clockwise: theta decreases. Sampled at random are the
+material, if `material` is "random", the sensors' biases, and the fractions of a count in the slip sensors.
+Grip and sensors run for six control steps before time 0. The reference rests for `settle` (0.5 s), turns by
+`angle` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
 
 ## Episode End
 
 - Terminated: the bar is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: settle + duration + hold have passed (6.5 s, 780 samples). The environment truncates by
+- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps). The environment truncates by
   itself; no `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, -theta is
@@ -65,7 +64,7 @@ from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
 
 
 class Settings(TaskConfig):
-    """The object turns between the pads by a given angle in a given time, then stays."""
+    """Settings of the rotational slip: the object turns by a given angle in a given time, then stops."""
 
     angle: Annotated[Positive, setting("Angle to turn", "rad", reset=True, le=1.6)] = 1.0472  # 60 degrees
     duration: Annotated[Positive, setting("Time for the turn", "s", reset=True, le=120.0)] = 5.0
@@ -91,13 +90,13 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
 
 
 def track(episode, world):
-    """The reference moves on; the largest slip is kept."""
+    """Update the reference, and store the largest slip."""
     follow_trapezoid(episode)
     track_slip(episode, world)
 
 
 def success(episode, world):
-    """Whether the object turned as far as asked and never slid far."""
+    """Whether the object turned by the given angle without sliding far."""
     error = -world.slip[2] - episode.goal
     return abs(error) <= episode.tolerance and episode.largest_slip <= episode.slide_tolerance
 

@@ -1,4 +1,4 @@
-"""The table of tasks: those that come with slipgym, and those that were registered."""
+"""Finds and registers tasks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TASKS: dict[str, Task] = {
 
 
 def find(name: str) -> Task:
-    """A task by its key ("linear_slip"), its name ("LinearSlip") or the id of its environment.
+    """Find a task by its key ("linear_slip"), its name ("LinearSlip") or the id of its environment.
 
     Args:
         name: One of these, or "module:attribute" for a task of your own, which imports the module.
@@ -38,7 +38,7 @@ def find(name: str) -> Task:
 
 
 def add(task: Task) -> None:
-    """Put a task into the table, in place of one of the same id.
+    """Register a task; it replaces one of the same id.
 
     Raises:
         ValueError: The id is one of slipgym's own, another task has the name or the key, there are too many

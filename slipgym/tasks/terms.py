@@ -1,4 +1,4 @@
-"""Reward terms and columns that tasks share."""
+"""Defines reward terms and observation columns that several tasks use."""
 
 from __future__ import annotations
 

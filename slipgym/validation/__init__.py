@@ -1,4 +1,4 @@
-"""The acceptance figures: physics with either engine, and the estimator on exact data."""
+"""Computes the acceptance figures: physics with both engines, and the estimator on exact data."""
 
 from __future__ import annotations
 

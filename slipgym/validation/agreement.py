@@ -1,4 +1,4 @@
-"""Engine and planar world agree; the wrist and the grip follow their commands."""
+"""Checks that PyBullet and the planar world agree, and that wrist and grip follow their commands."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A bench: the full world of either engine under prescribed loads, grip forces and wrist motion."""
+"""Runs the full world of either engine under prescribed loads, grip forces and wrist motion."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ class Bench:
             until: Stops the run after the step in which it turns true.
 
         Returns:
-            What the engine did, one row per control step.
+            Signals of the run, one row per control step.
         """
         rows = []
         for i in range(round(duration / self.step_time)):

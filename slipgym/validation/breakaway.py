@@ -1,4 +1,4 @@
-"""A slowly growing load breaks the object away at the static limit ellipsoid."""
+"""Checks that a slowly growing load breaks the object away at the static limit ellipsoid."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def broken_away(bench: Bench) -> bool:
 def ramp(
     direction: tuple[float, float, float], com_offset: tuple[float, float] = (0.0, 0.0), **options: Any
 ) -> float:
-    """Load at break-away as a share of mu_s sum f_n.
+    """Load at break-away over mu_s sum f_n [-].
 
     Args:
-        direction: Of the scaled load (f_x, f_z, tau / r) at the pad centre.
+        direction: Direction of the scaled load (f_x, f_z, tau / r) at the pad centre.
         com_offset: Centre of mass (x, z) from the pad centre [m].
         **options: More arguments of `Bench`.
     """
@@ -47,7 +47,7 @@ def ramp(
 
 
 def release(eccentricity: float, **options: Any) -> float:
-    """Weight on a lever, as a share of mu_s sum f_n, when a slowly opening grip lets it go.
+    """Scaled load of a weight on a lever over mu_s sum f_n, when a slowly opening grip releases it [-].
 
     Args:
         eccentricity: Distance of the centre of mass from the pads along x [m].

@@ -1,4 +1,4 @@
-"""An object that is held does not creep, at rest or moved about."""
+"""Measures the creep of a held object, with the gripper at rest and moving."""
 
 from __future__ import annotations
 

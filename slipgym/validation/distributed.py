@@ -1,4 +1,4 @@
-"""The distributed contact in the full world, against what is known of a uniform disc exactly."""
+"""Checks the distributed contact in the full world against the exact limit surface of a uniform disc."""
 
 from __future__ import annotations
 

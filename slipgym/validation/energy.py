@@ -1,4 +1,4 @@
-"""Friction takes energy away and never gives any."""
+"""Checks that friction dissipates energy and never adds any."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ def throw(seed: int, vary_grip: bool, **options: Any) -> tuple[float, float]:
     """Push an object in zero gravity, let it slide and spin until it rests.
 
     Returns:
-        Largest rise of its energy after the push, as a share of the elastic store at the
-        largest grip; and its energy at the end of the push [J].
+        Largest rise of its energy after the push over the elastic energy of the bristles at the
+        largest grip [-]; and its energy at the end of the push [J].
     """
     rng = np.random.default_rng(seed)
     direction = rng.normal(size=3)
@@ -67,7 +67,7 @@ def slide(seed: int, **options: Any) -> float:
     """Rise of the energy while weight drags the object through sticking and slipping.
 
     Returns:
-        Largest rise as a share of the elastic store at the largest grip.
+        Largest rise over the elastic energy of the bristles at the largest grip [-].
     """
     low, high = SLIDE_GRIPS
     grips = np.repeat(np.random.default_rng(seed).uniform(low, high, 100), 12)

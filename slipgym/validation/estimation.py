@@ -1,4 +1,4 @@
-"""The estimators on exact data of an ellipsoid or a disc, "rls" from the paper's start values, at 5 N."""
+"""Checks the estimators on exact data of an ellipsoid or a disc at 5 N."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def errors(
 
 
 def miscounted_events() -> int:
-    """Starts and stops of a counted record that are missed or told twice."""
+    """Starts and stops of slip in a counted record that are missed or reported twice."""
     phases = [Phase(120, 0.0, (1.0, 2.7)), Phase(60, FAST, (2.0, 2.0)), Phase(120, SLOW, (2.0, 2.0))] * 5
     record, _ = counted([*phases, Phase(120, 0.0, (2.0, 2.0))])
     slipping = [False, *(estimate.slipping for estimate in run(estimator.make("rls"), record))]

@@ -1,4 +1,4 @@
-"""Without grip the object falls freely."""
+"""Checks that the object falls freely without grip."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An acceptance figure: what is required, what was measured."""
+"""`Figure`, an acceptance figure: a measured value and its bound."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ class Figure:
     """A measured size that must not exceed a bound."""
 
     name: str
-    """What is measured."""
+    """Name of the figure."""
     bound: float
     """Largest value allowed."""
     measured: float

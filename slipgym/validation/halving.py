@@ -1,4 +1,4 @@
-"""Halving every step hardly moves a slide of five seconds."""
+"""Checks that halving every time step hardly changes a slide of five seconds."""
 
 from __future__ import annotations
 

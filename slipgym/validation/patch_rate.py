@@ -1,4 +1,4 @@
-"""The distributed contact against the published rate form, integrated to tight tolerances.
+"""Compares the distributed contact with the published rate form, integrated to tight tolerances.
 
 The LuGre patch of Waltersson & Karayiannidis, arXiv 2308.01123, with the elasto-plastic switch of Dupont,
 Hayward, Armstrong & Altpeter, Single state elastoplastic friction models, IEEE TAC 47(5), 2002:
@@ -45,14 +45,14 @@ def short_profile() -> Course:
     return course.to("planar", 0.1).to("stop", 0.1, v_x=0.0, v_y=0.0, omega=0.0)
 
 
-def rate_form(course: Course, positions: np.ndarray, shares: np.ndarray, step: float) -> np.ndarray:
+def rate_form(course: Course, positions: np.ndarray, loads: np.ndarray, step: float) -> np.ndarray:
     """Friction (f_x, f_y, tau) by the rate form at the ends of steps along a course.
 
     Args:
         course: The course.
         positions: Of the cells, shape (n, 2) [m].
-        shares: Of the cells, shape (n,).
-        step: Between two rows [s].
+        loads: Fractions of the normal force that the cells carry, shape (n,).
+        step: Time between two rows [s].
 
     Returns:
         Shape (m, 3) [N, N, N m].
@@ -71,7 +71,7 @@ def rate_form(course: Course, positions: np.ndarray, shares: np.ndarray, step: f
         beta = 0.5 * (1.0 - np.cos(np.pi * between)) * 0.5 * (1.0 + cosine)
         return velocity, velocity - (beta * speed / level)[:, None] * z
 
-    own = csr_array(np.kron(np.eye(len(shares)), np.ones((2, 2))))  # a cell's bristle knows no other
+    own = csr_array(np.kron(np.eye(len(loads)), np.ones((2, 2))))  # a cell's bristle knows no other
     z, rows, done = np.zeros(positions.size), [], 0
     for end in course.times[1:]:  # the course has kinks between its pieces
         count = round(end / step)
@@ -89,7 +89,7 @@ def rate_form(course: Course, positions: np.ndarray, shares: np.ndarray, step: f
         )
         for t, state in zip(times, solution.y.T, strict=True):
             velocity, rate = motion(t, state)
-            force = shares[:, None] * (SIGMA_0 * state.reshape(-1, 2) + SIGMA_1 * rate + SIGMA_2 * velocity)
+            force = loads[:, None] * (SIGMA_0 * state.reshape(-1, 2) + SIGMA_1 * rate + SIGMA_2 * velocity)
             normal = course.at(np.array([t]))[3, 0]
             tau = (x * force[:, 1] - y * force[:, 0]).sum()
             rows.append([-normal * part for part in (*force.sum(axis=0), tau)])

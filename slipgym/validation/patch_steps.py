@@ -1,4 +1,4 @@
-"""The distributed contact's step does not matter: 0.1 ms against 0.01 ms along a velocity profile."""
+"""Compares time steps of the distributed contact along a velocity profile: 0.1 ms and 0.01 ms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The distributed contact in stick, and its energy, at a prescribed twist."""
+"""Checks the stick and the energy of the distributed contact under prescribed loads and twists."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ LOADS = {
 
 
 def hold(direction: tuple[float, float, float], level: float) -> float:
-    """Creep of a massless object on a damper under a load that trembles by 5 % at 10 Hz.
+    """Creep of a massless object on a damper under a load that oscillates by 5 % at 10 Hz.
 
-    The damper makes it follow the load without inertia; the twist is what the load leaves over friction, so
-    the contact decides about it.
+    The object has no inertia: its twist is proportional to the difference of load and friction, so it
+    depends on the contact alone.
 
     Args:
         direction: Of the scaled load (f_x, f_y, tau / r).

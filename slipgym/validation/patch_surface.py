@@ -1,4 +1,4 @@
-"""The distributed contact in steady slip at a prescribed twist, against the exact limit surfaces."""
+"""Compares the distributed contact in steady slip at a prescribed twist with the exact limit surfaces."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ RADIUS = 0.015  # [m]
 NORMAL = 5.0  # [N]
 MU_C, MU_S = 0.4, 0.55
 SURFACE_BOUND = 0.5  # [%]
-# A centre of rotation under the patch lies in one cell, whose friction is then off by up to its share, with a
-# lever of up to 1.7 r. At 21 x 21 that alone is 0.5 %; a rim has few cells, of larger shares
+# A centre of rotation under the patch lies in one cell. The error of that cell's friction is up to its load,
+# with a lever of up to 1.7 r. At 21 x 21 that alone is 0.5 %; a rim has few cells, with larger loads
 SLIP_CELLS = {"uniform": 23, "hertz": 23, "rim": 81}
 SPIN_BOUND = 0.2  # [%]
 # The friction of a cell at the distance d from the centre of rotation is off by (h / d)^2 / 24; all together

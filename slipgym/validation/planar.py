@@ -1,4 +1,4 @@
-"""The planar engine: the acceptance figures of the physics once more, and slides against PyBullet's."""
+"""Computes the physics figures with the planar engine, and compares its slides with PyBullet's."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ def planar() -> Iterator[Figure]:
 def slide(seed: int, engine: str) -> np.ndarray:
     """Slip displacement at the end of a slide of 5 s that sticks and slips, and usually turns; open loop.
 
-    Object, friction and the grip's profile are drawn: it opens once to twice a second, to between 85 and
-    95 % of what the load needs at static friction.
+    Object, friction and grip profile are sampled at random. The grip opens once to twice a second, to 85 to
+    95 % of the force that holds the load at static friction.
 
     Args:
-        seed: Of the draw.
-        engine: As of `Bench`.
+        seed: Seed of the random numbers.
+        engine: "bullet" or "planar".
 
     Returns:
         (x, y, theta) [m, m, rad].

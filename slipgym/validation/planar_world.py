@@ -1,4 +1,4 @@
-"""The planar engine with the interface of `BulletWorld`, for figures that are measured with both."""
+"""`PlanarWorld`: the planar engine with the interface of `BulletWorld`, for figures that use both."""
 
 from __future__ import annotations
 

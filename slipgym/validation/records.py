@@ -1,6 +1,6 @@
-"""Exact contact data, written independently of what the estimators do with it.
+"""Generates exact contact data, independently of the estimators.
 
-Records are lists of samples (t, wrench, twist) at 120 Hz.
+Records are lists of samples (t, wrench, twist) at 120 Hz, one per control step.
 """
 
 from collections.abc import Iterable, Sequence
@@ -13,9 +13,9 @@ from estimator.limit_surface import disc_friction
 from estimator.online import OnlineEstimator
 
 RATE = 120.0
-"""Slip-velocity samples per second [Hz]."""
+"""Control rate [Hz]."""
 COUNT = 7.94e-6
-"""Travel of one count of the optical velocity sensor [m]."""
+"""Displacement of one count of the optical velocity sensor [m]."""
 
 Sample = tuple[float, tuple[float, float, float, float], tuple[float, float, float]]
 
@@ -80,7 +80,7 @@ def disc(
 
 
 def planar(gamma_t: float, r: float, speed: float = 0.02) -> tuple[float, float]:
-    """(v_t, omega) of a slip with the given share of translation at the true r and scaled speed [m/s]."""
+    """(v_t, omega) of a slip with a given fraction of translation at the true r and scaled speed [m/s]."""
     return gamma_t * speed, np.sqrt(1.0 - gamma_t**2) * speed / r
 
 
@@ -92,8 +92,8 @@ def counted(phases: Sequence[Phase], f_n: float = 5.0) -> tuple[list[Sample], li
     """
     speeds = np.concatenate([np.full(phase.samples, phase.speed) for phase in phases])
     forces = np.concatenate([np.linspace(*phase.f_t, phase.samples) for phase in phases])
-    travel = np.concatenate([[0.0], np.cumsum(speeds) / RATE])
-    velocities = np.diff(np.floor(travel / COUNT)) * COUNT * RATE
+    path = np.concatenate([[0.0], np.cumsum(speeds) / RATE])
+    velocities = np.diff(np.floor(path / COUNT)) * COUNT * RATE
     record = [
         ((k + 1) / RATE, (forces[k], 0.0, f_n, 0.0), (velocities[k], 0.0, 0.0)) for k in range(len(speeds))
     ]
@@ -101,5 +101,5 @@ def counted(phases: Sequence[Phase], f_n: float = 5.0) -> tuple[list[Sample], li
 
 
 def run(est: OnlineEstimator, record: Iterable[Sample]) -> list[estimator.Estimate]:
-    """Feeds a record and collects what comes out."""
+    """Update an estimator with a record; return the estimates."""
     return [est.update(*sample) for sample in record]

@@ -1,4 +1,4 @@
-"""While the object slides, friction lies on the ellipsoid, against the scaled slip twist."""
+"""Checks that friction in steady slip lies on the limit ellipsoid and opposes the scaled slip twist."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ AZIMUTH = 0.6  # [rad], of the force in the contact plane
 def friction_and_twist(bench: Bench, trace: Trace) -> tuple[np.ndarray, np.ndarray]:
     """Friction on the object and slip twist at the pad centre, from the engine's motion alone.
 
-    Friction is what the momentum of the rigid body changes by beyond the load. The wrist
+    Friction is computed as the change of the rigid body's momentum less the load. The wrist
     must rest at the origin.
 
     Returns:

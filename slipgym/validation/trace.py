@@ -1,4 +1,4 @@
-"""What a bench run did, one row per control step."""
+"""`Trace`, the signals of a bench run with one row per control step."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The checks of a vector environment, one after the other."""
+"""Checks a vector environment against Gymnasium's conventions."""
 
 from __future__ import annotations
 
@@ -26,32 +26,32 @@ def check_vector_env(
     episodes: int = 2,
     steps: int = 1000,
 ) -> None:
-    """Check that a vector environment does what Gymnasium's conventions say.
+    """Check that a vector environment follows Gymnasium's conventions.
 
-    Spaces, shapes and types; infos with their masks; nothing returned is shared with anything else; the
-    autoreset modes as `gymnasium.vector.SyncVectorEnv` has them; seeds; determinism, infos included; closing.
-    What Gymnasium leaves open is checked as far as it is offered: where `reset` takes a list of seeds, a row
-    depends on its seed and its actions alone, so that it is the same in every mode and among any number.
+    The checks cover spaces, shapes and types; infos and their masks; that returned arrays share no memory;
+    autoreset modes that behave as in `gymnasium.vector.SyncVectorEnv`; seeds; determinism, including infos;
+    and closing. Optional features are checked if the environment has them: if `reset` takes a list of seeds,
+    a row must depend on its seed and its actions alone, in every mode and for any number of environments.
 
     Args:
         make: Makes an environment from a number of environments and an autoreset mode (None: its own).
         modes: Modes to check.
-        episodes: Episodes of every row that a rollout holds, if `steps` allow.
-        steps: Longest rollout.
+        episodes: Number of episodes of every row in a rollout, if `steps` suffice.
+        steps: Largest number of steps of a rollout.
 
     Raises:
-        AssertionError: The environment does something else; the message says in which mode, call, row, key.
-        ValueError: No episode ends within `steps`, so that nothing can be said about autoreset.
+        AssertionError: The environment violates a convention; the message names mode, call, row and key.
+        ValueError: No episode ends within `steps`, so that autoreset cannot be checked.
     """
-    told: dict[str, list[list[Event]]] = {}
+    rollouts: dict[str, list[list[Event]]] = {}
     for mode in modes:
         checker = _Checker(make, mode, episodes, steps)
         checker.check()
         if checker.by_row:
-            told[checker.name] = checker.events
-    names = list(told)
+            rollouts[checker.name] = checker.events
+    names = list(rollouts)
     for name in names[1:]:
-        _compare(f"{names[0]} and {name}, with equal seeds and actions", told[names[0]], told[name])
+        _compare(f"{names[0]} and {name}, with equal seeds and actions", rollouts[names[0]], rollouts[name])
 
 
 class _Checker:

@@ -1,4 +1,4 @@
-"""Plays a vector environment and tells, for each row, what happened in it."""
+"""Plays a vector environment and records the resets and steps of each row."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ class Event(NamedTuple):
 
 
 class Player:
-    """Plays with the same actions in every row; a row takes its next one whenever it acts.
+    """Plays the same sequence of actions in every row; steps that reset a row do not advance its sequence.
 
     Args:
-        where: What is played, for messages.
+        where: Name of the environment, for error messages.
         env: The environment.
         actions: Actions of one row, in turn.
-        filler: Which of the actions rows get whose action must not matter.
-        spoiling: Whether to overwrite everything that is returned, once read.
+        filler: Index of the action for rows that ignore it because they are reset.
+        spoiling: Whether to overwrite all returned arrays after reading them.
 
     Attributes:
-        events: What happened in each row.
+        events: Resets and steps of each row.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Player:
         self._kept: list[tuple[str, Any, Any]] = []
 
     def reset(self, **arguments: Any) -> None:
-        """Reset rows, all or those of options["reset_mask"]."""
+        """Reset all rows, or those of options["reset_mask"]."""
         n, mask = self._env.num_envs, np.ones(self._env.num_envs, dtype=bool)
         if "options" in arguments:
             mask = arguments["options"]["reset_mask"].copy()
@@ -74,15 +74,15 @@ class Player:
         self._over[mask] = False
 
     def step(self, count: int = 1) -> None:
-        """Make steps; rows whose episodes are over are reset as the mode has it."""
+        """Make steps; rows whose episodes have ended are reset according to the autoreset mode."""
         for _ in range(count):
             self._step()
 
     def play(self, episodes: int, most: int) -> int:
-        """Step until every row has begun a number of episodes, and twice more.
+        """Step until every row has begun more than a number of episodes, then twice more.
 
         Returns:
-            Episodes that were over.
+            Number of episodes that ended.
         """
         for _ in range(most):
             self._step()
@@ -92,7 +92,7 @@ class Player:
         return sum(event.terminated or event.truncated for events in self.events for event in events)
 
     def begun(self, i: int) -> int:
-        """Episodes that row i has begun."""
+        """Number of episodes that row i has begun."""
         return sum(event.kind == "reset" for event in self.events[i])
 
     def _step(self) -> None:
@@ -132,7 +132,7 @@ class Player:
             self.reset(options={"reset_mask": over.copy()})
 
     def _finals(self, where: str, over: np.ndarray, infos: dict[str, Any]) -> dict[int, tuple[Any, Any]]:
-        """Last observations and infos of the episodes that are over, in the mode that has them."""
+        """Last observations and infos of the episodes that ended, in the mode that returns them."""
         if self._mode is not AutoresetMode.SAME_STEP:
             return {}
         for key in ("final_obs", "final_info"):
@@ -154,7 +154,7 @@ class Player:
         self.events[i].append(Event("reset", observation, 0.0, False, False, info))
 
     def _take(self, where: str, said: Any) -> Any:
-        """A copy of what was returned; what was returned before must not have changed since."""
+        """Copy the returned values; check that those of earlier calls have not changed."""
         for before, returned, copy in self._kept:
             unlike = difference(copy, returned)
             demand(not unlike, f"{where} changed what {before} had returned: {unlike}")

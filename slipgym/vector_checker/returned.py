@@ -1,4 +1,4 @@
-"""What `reset` and `step` of a vector environment return: shapes, types, masks."""
+"""Checks the values that `reset` and `step` of a vector environment return: shapes, types, masks."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ def check_attributes(where: str, env: VectorEnv, n: int, mode: AutoresetMode | N
     """Check number, spaces and metadata.
 
     Args:
-        where: What is checked, for messages.
+        where: Name of the call or environment, for error messages.
         env: The environment.
-        n: Environments that were asked for.
-        mode: Autoreset mode that was asked for; None: any.
+        n: Requested number of environments.
+        mode: Requested autoreset mode; None: any.
 
     Returns:
-        Its autoreset mode.
+        The environment's autoreset mode.
 
     Raises:
-        AssertionError: Something is not as it should be.
+        AssertionError: A check fails.
     """
     demand(isinstance(env, VectorEnv), f"{where}: {type(env).__name__} is no gymnasium.vector.VectorEnv")
     demand(env.num_envs == n, f"{where}: num_envs is {env.num_envs}, asked for were {n}")
@@ -47,7 +47,7 @@ def check_observations(where: str, env: VectorEnv, observations: Any) -> list[An
     """Check observations against the spaces, and return them row by row.
 
     Raises:
-        AssertionError: Structure, shape or dtype is another, or a row is outside the space.
+        AssertionError: Structure, shape or dtype differs from the space's, or a row is outside the space.
     """
     expected = dict(arrays(create_empty_array(env.single_observation_space, env.num_envs)))
     found = dict(arrays(observations))
@@ -72,7 +72,7 @@ def check_numbers(where: str, n: int, rewards: Any, terminated: Any, truncated: 
     """Check rewards and flags.
 
     Raises:
-        AssertionError: One is no array (n,) of its kind, or a reward is not finite.
+        AssertionError: One is not an array (n,) of its kind, or a reward is not finite.
     """
     for name, kind, array in (
         ("rewards", "f", rewards),
@@ -92,14 +92,14 @@ def check_infos(where: str, n: int, infos: Any, allowed: np.ndarray, path: str =
     """Check that every info is an array (n, ...) or nested infos, with its mask beside it.
 
     Args:
-        where: What is checked, for messages.
-        n: Environments.
+        where: Name of the call or environment, for error messages.
+        n: Number of environments.
         infos: The infos.
-        allowed: Which rows may have one, (n,).
-        path: Where the infos are.
+        allowed: Rows that may have infos, (n,) bool.
+        path: Path of the infos, for error messages.
 
     Raises:
-        AssertionError: They are not.
+        AssertionError: An info or a mask is missing or has another shape.
     """
     demand(isinstance(infos, Mapping), f"{where}: {path} must be a dict, got {type(infos).__name__}")
     for key, value in infos.items():
@@ -120,7 +120,7 @@ def check_infos(where: str, n: int, infos: Any, allowed: np.ndarray, path: str =
 
 
 def info_of(infos: Mapping[str, Any], i: int) -> dict[str, Any]:
-    """Infos that row i has."""
+    """Infos of row i."""
     own = {}
     for key, value in infos.items():
         if f"_{key}" in infos and infos[f"_{key}"][i]:

@@ -1,4 +1,4 @@
-"""Force loop of a finger: dead time, first-order lag, limits (gripper paper, arXiv 2410.19660)."""
+"""Simulates the force loop of a finger: dead time, first-order lag, limits (arXiv 2410.19660)."""
 
 from __future__ import annotations
 

@@ -1,13 +1,12 @@
-"""Coupling of the planar sub-steps to a rigid-body engine: poses and normal forces in, loads out.
+"""Couples the planar sub-steps to a rigid-body engine: reads poses and normal forces, returns loads.
 
 World plane: x to the right, z up; the grip axis n = x × z = -y points at the viewer. The
 engine integrates with semi-implicit Euler steps, so its velocity is the mean velocity of a
-step. The wrench sent to it is the one that gives the object the mean velocity of the
-sub-stepped motion (friction's mean over the step, staggered by half of one); it and its
-reactions on the fingers cancel, but for the moment that tilts the box out of the plane: the pads'
-pressure carries that. Whatever else the engine did to the object (normal forces,
-collisions) comes back as the difference between the pose expected and the pose found, and is
-taken over.
+step. The wrench sent to it gives the object the mean velocity of the sub-stepped motion
+(friction's mean over the step, staggered by half a step). This wrench and its reactions on the
+fingers cancel, except for the moment that tilts the box out of the plane, which the pads'
+pressure carries. Other effects of the engine on the object (normal forces, collisions) appear as
+the difference between expected and actual pose, and the planar world takes over the actual pose.
 """
 
 from __future__ import annotations

@@ -75,7 +75,7 @@ class BulletWorld:
 
     Args:
         config: Configuration; gripper, physics and the rates are read.
-        plant: Arrays of one world, shared with whoever senses or controls it.
+        plant: Arrays of one world, which sensors and controllers use as well.
     """
 
     def __init__(self, config: Config, plant: Plant) -> None:
@@ -126,7 +126,7 @@ class BulletWorld:
 
     @property
     def reading(self) -> tuple[Any, ...]:
-        """What was read from the engine after its last step.
+        """Readings of the engine after its last step.
 
         Pose and velocity of the box, positions of the wrist's joints, normal forces, speeds of all joints.
         """

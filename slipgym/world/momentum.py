@@ -1,4 +1,4 @@
-"""Normal forces from the momentum of the fingers."""
+"""Computes normal forces from the momentum of the fingers."""
 
 from __future__ import annotations
 

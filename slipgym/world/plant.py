@@ -1,4 +1,4 @@
-"""`Plant`: the arrays of n worlds, and how they are filled from a configuration."""
+"""`Plant`, the arrays of n worlds, and its construction from a configuration."""
 
 from __future__ import annotations
 
@@ -90,8 +90,8 @@ def patch_of(config: Config) -> np.ndarray:
 
     In pure spin they then carry exactly the torque of r.
     """
-    positions, shares = patch_cells(config.contact.pressure, config.contact.cells)
-    return patch(positions / (shares @ np.hypot(*positions.T)), shares)
+    positions, loads = patch_cells(config.contact.pressure, config.contact.cells)
+    return patch(positions / (loads @ np.hypot(*positions.T)), loads)
 
 
 def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:

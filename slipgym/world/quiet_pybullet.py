@@ -1,4 +1,4 @@
-"""PyBullet, imported without the banner ("pybullet build time: ...") that it prints.
+"""Imports PyBullet without its banner ("pybullet build time: ...").
 
 from slipgym.world.quiet_pybullet import p
 """

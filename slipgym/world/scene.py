@@ -1,4 +1,4 @@
-"""Bodies of the PyBullet scene: a gripper on a moving wrist, and a box between its pads.
+"""Creates the bodies of the PyBullet scene: a gripper on a moving wrist, and a box between its pads.
 
 Pads and box have no friction of Bullet's own and no damping; the box's frame is its
 centre of mass. Nothing is read from files, so an episode can change the box cheaply.

@@ -1,4 +1,4 @@
-"""A sub-step of the planar model: object, wrist, fingers and friction. Both engines use it.
+"""Advances the planar model by a sub-step: object, wrist, fingers and friction. Both engines use it.
 
 The object's in-plane motion relative to the pads is stiff (14 000 rad/s in stick), so it
 is integrated here, implicitly and together with the friction of both pads. A rigid-body

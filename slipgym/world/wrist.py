@@ -1,4 +1,4 @@
-"""Velocity commands of the wrist, within the gripper's limits."""
+"""Applies velocity commands to the wrist, within the gripper's limits."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def ramp_wrist(
         pitch_rate_max: The target of the pitch rate is brought down to this [rad/s].
         duration: Length of the ramp [s].
     """
-    share = min(1.0, speed_max / max(math.hypot(x, z), 1e-12))
+    fraction = min(1.0, speed_max / max(math.hypot(x, z), 1e-12))
     rate = min(max(pitch, -pitch_rate_max), pitch_rate_max)
-    world.wrist_acceleration[0] = (share * x - world.wrist_velocity[0]) / duration
-    world.wrist_acceleration[1] = (share * z - world.wrist_velocity[1]) / duration
+    world.wrist_acceleration[0] = (fraction * x - world.wrist_velocity[0]) / duration
+    world.wrist_acceleration[1] = (fraction * z - world.wrist_velocity[1]) / duration
     world.wrist_acceleration[2] = (rate - world.wrist_velocity[2]) / duration

@@ -101,7 +101,7 @@ def test_the_numbers_in_the_text_are_the_defaults(env):
             words = f"({1e3 * value:g} mm)" if length else f"({math.degrees(value):.3g} deg)"
             assert f"`{name}` {words}" in end
     env.reset(seed=0)
-    assert f"{env.simulation.episode['steps'][0]} samples)" in end
+    assert f"{env.simulation.episode['steps'][0]} control steps)" in end
 
 
 def test_the_pages_are_up_to_date():
