@@ -63,7 +63,7 @@ def roomier(sensors: np.ndarray, kept: int) -> np.ndarray:
 
 @compiled
 def sample_force_torque(sensor: Any, pad: Pad, tick: int) -> None:
-    """Store the load on a finger at a sampling instant; `read` applies bias, noise and quantisation.
+    """Store the load on a finger at a sampling instant; `sensed` applies bias, noise and quantisation.
 
     Args:
         sensor: FORCE_TORQUE record.
