@@ -1,4 +1,4 @@
-"""The boundary between what is public in slipgym and what is inner: `policies` and `scripts` use the public part."""
+"""The boundary between public and inner modules of slipgym, which `policies` and `scripts` keep to."""
 
 import ast
 import re
@@ -25,7 +25,7 @@ PUBLIC = (
     "slipgym.validation",
     "slipgym.vector_checker",
 )
-"""Public modules; those below a public folder are public, but for the modules of `slipgym.envs`, which are listed."""
+"""Public modules, with all below them; of `slipgym.envs` those that are listed."""
 INNER = {
     "policies/evaluation/sensor_record.py": "keeps raw sensor samples",
     "policies/play/watch.py": "makes an environment of a class",
