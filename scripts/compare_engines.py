@@ -4,7 +4,9 @@ from typing import Annotated
 
 import typer
 
-TASKS = ["linear_slip", "rotational_slip", "hinge", "planar_slip", "hold"]
+from slipgym.registration import TASK_MODULES
+
+TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
