@@ -17,7 +17,8 @@ from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR, ENGINES, FRICTION_SOURCES, one_of
-from slipgym.tasks import find
+from slipgym.tasks import configure, find
+from slipgym.tasks.configure import recorded
 
 
 class PolicyChoice(Frozen):
@@ -136,8 +137,13 @@ class Experiment(Frozen):
         return common_frame_skip((policy.name for policy in self.policies), self.frame_skip)
 
     def environment_config(self) -> configuration.Config:
-        """The environment's configuration with this experiment's overrides."""
-        return configuration.load(self.config, self.sensors)
+        """The environment's configuration with this experiment's overrides, without the task's settings."""
+        return configure(find(self.task), self.config, self.sensors)[0]
+
+    def recorded(self) -> dict[str, Any]:
+        """Configuration and settings of the environment as plain data, in the shape of overrides."""
+        task = find(self.task)
+        return recorded(*configure(task, self.config, self.sensors), task.key)
 
     def combinations(self) -> list[dict[str, Any]]:
         """Options of reset of each cell."""

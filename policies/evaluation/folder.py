@@ -24,9 +24,9 @@ def stamped(output: str | os.PathLike[str], name: str) -> Path:
 
 
 def write_origin(experiment: Experiment, folder: Path) -> None:
-    """Writes where results come from: the experiment, the environment's configuration, the versions."""
-    documents = {"experiment": experiment, "environment": experiment.environment_config()}
-    for name, model in documents.items():
-        text = yaml.safe_dump(model.model_dump(mode="json"), sort_keys=False, allow_unicode=True)
+    """Writes where results come from: the experiment, configuration and task settings, the versions."""
+    documents = {"experiment": experiment.model_dump(mode="json"), "environment": experiment.recorded()}
+    for name, values in documents.items():
+        text = yaml.safe_dump(values, sort_keys=False, allow_unicode=True)
         (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
     write_versions(folder)

@@ -17,7 +17,7 @@ from slipgym.config.base import Count, Frozen, NonNegative, Positive, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.envs.arguments import CommonArguments, fields
 from slipgym.registration import ENVIRONMENTS
-from slipgym.tasks import TASKS, find
+from slipgym.tasks import TASKS, configure, find
 
 Algorithm: TypeAlias = Literal["ppo", "recurrent_ppo", "sac", "tqc"]
 
@@ -179,7 +179,8 @@ class Training(Frozen):
     def _options_and_shaping_exist(self) -> Self:
         for options in self.combinations():
             find(self.task).options.parse(options)
-        _ = self.shaped
+        for environment in (self.environment, self.shaped):
+            configure(find(self.task), environment.config, environment.sensors, environment.contact)
         return self
 
     @property

@@ -96,7 +96,7 @@ def test_rows_without_an_episode_stay_without():
         each.close()
 
 
-@pytest.mark.parametrize("arguments", [{}, {"observation_mode": "dict"}, {"history": 2}, {"infos": "ends"}])
+@pytest.mark.parametrize("arguments", [{}, {"observation_mode": "dict"}, {"history": 2}])
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
 def test_what_was_handed_out_is_the_callers_to_write_into(mode, arguments):
     """Nothing of it is read again, by a step, by a reset of other environments, or for a state."""

@@ -33,7 +33,10 @@ def test_a_run_folder_holds_everything_and_nothing_else_is_left(run, small, tmp_
     assert list((tmp_path / "runs").iterdir()) == [run]
     assert run.name.startswith("small__0__")
     assert load_experiment(run / "experiment.yaml") == small()
-    assert yaml.safe_load((run / "environment.yaml").read_text())["object"]["mass"] == 0.2
+    environment = yaml.safe_load((run / "environment.yaml").read_text())
+    assert environment["object"]["mass"] == 0.2
+    assert list(environment["tasks"]) == ["linear_slip"]
+    assert environment["tasks"]["linear_slip"]["tolerance"] == 0.002
     assert {"python", "numpy", "gymnasium", "slipgym"} <= set(json.loads((run / "versions.json").read_text()))
 
 

@@ -40,7 +40,7 @@ def test_there_is_one_for_every_friction_source():
 def test_it_solves_most_episodes(name):
     policy, n = policies.load(name), 24
     where = policy.description.environment
-    arguments = {**where.arguments, "autoreset_mode": "Disabled", "infos": "ends"}
+    arguments = {**where.arguments, "autoreset_mode": "Disabled"}
     envs = gym.make_vec(f"slipgym:{where.id}", n, "vector_entry_point", **arguments)
     observations, _ = envs.reset(seed=12345)
     running, solved, state = np.ones(n, bool), np.zeros(n, bool), None
