@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from slipgym.validation.accelerated import accelerated
 from slipgym.validation.agreement import agreement
 from slipgym.validation.breakaway import breakaway
 from slipgym.validation.creep import creep
@@ -23,6 +24,7 @@ from slipgym.validation.steady import steady
 EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     creep,
     breakaway,
+    accelerated,
     steady,
     energy,
     halving,

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from slipgym.validation.accelerated import accelerated
 from slipgym.validation.bench import Bench, Friction
 from slipgym.validation.breakaway import breakaway
 from slipgym.validation.creep import creep
@@ -18,7 +19,7 @@ from slipgym.validation.halving import ANGLE_BOUND, BOUND, DURATION, halving
 from slipgym.validation.steady import steady
 
 ENGINE = "planar"
-PHYSICS = creep, breakaway, steady, energy, halving, fall
+PHYSICS = creep, breakaway, accelerated, steady, energy, halving, fall
 SLIDES = 40
 # Halving the steps may move a slide by 0.1 mm. An error of first order is twice that, on either engine, so
 # that they may be 0.4 mm apart in the worst case; errors of equal sign cancel, hence half in the median.

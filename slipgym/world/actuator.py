@@ -45,6 +45,16 @@ def lowest_force(finger: Finger, tick: int) -> float:
 
 
 @compiled
+def highest_force(finger: Finger, tick: int) -> float:
+    """Highest force until a tick [N]; see `lowest_force`."""
+    most = max(finger.force, finger.command)
+    for k in range(finger.served, finger.queued):
+        if finger.queue_tick[k % QUEUE] < tick:
+            most = max(most, finger.queue_force[k % QUEUE])
+    return most
+
+
+@compiled
 def advance_lag(finger: Finger, h: float) -> float:
     """Advance the first-order lag by h; returns the mean force over h [N]."""
     gap = finger.force - finger.command

@@ -13,12 +13,20 @@ from slipgym.sensors.force_torque import next_sample_read, sample_force_torque
 from slipgym.world.actuator import (
     advance_lag_through_commands,
     apply_due_commands,
+    highest_force,
     lowest_force,
     queue_command,
     ticks_to_next_command,
 )
 from slipgym.world.records import Finger, Records, World
-from slipgym.world.substep import HOLDING, advance_object, pad_axes, resolved_ticks, update_slip
+from slipgym.world.substep import (
+    HOLDING,
+    acceleration_at_rest,
+    advance_object,
+    pad_axes,
+    resolved_ticks,
+    update_slip,
+)
 
 FIRM = 0.95  # of the friction limit: below it sub-steps may have `calm_ticks`; the rest is for changing loads
 FAST = 0.7  # of the friction limit: below it a sub-step may last until the next command
@@ -39,8 +47,8 @@ def step_world(
 ) -> int:
     """Advance world i by one control step under a commanded grip force.
 
-    Both fingers and both pads have the same parameters. If the centres of pressure are the same, too, one pad
-    is solved with half of the object's mass, and its state is copied to the other.
+    If both fingers and both pads are the same in parameters and state, one pad is solved with half of the
+    object's mass, and its state is copied to the other.
 
     Args:
         worlds: WORLD (n,).
@@ -60,8 +68,7 @@ def step_world(
     sensors = force_torque[i, 0], force_torque[i, 1]
     queue_command(first, world.tick, force)
     queue_command(second, world.tick, force)
-    here, there = pads[i, 0].cop, pads[i, 1].cop
-    if here[0] != there[0] or here[1] != there[1]:
+    if not (same_pads(pads[i, 0], pads[i, 1]) and same_fingers(first, second)):
         both, eyes = (pads[i, 0], pads[i, 1]), (slip_sensors[i, 0], slip_sensors[i, 1])
         return advance_substeps(world, both, patches, (first, second), sensors, eyes)
     done = advance_substeps(world, (pads[i, 0],), patches, (first,), sensors, (slip_sensors[i, 0],))
@@ -73,6 +80,23 @@ def step_world(
     for k in range(3):
         slip_sensors[i, 1].moved[k] = slip_sensors[i, 0].moved[k]
     return done
+
+
+@compiled
+def same_pads(first: Pad, second: Pad) -> bool:
+    """Whether two pads have the same friction, centre of pressure and state."""
+    same = first.mu_c == second.mu_c and first.mu_s == second.mu_s and first.r == second.r
+    same = same and first.cop[0] == second.cop[0] and first.cop[1] == second.cop[1]
+    for a in range(3):
+        same = same and first.z[a] == second.z[a]
+    return same and first.slip_speed == second.slip_speed and first.slip_rate == second.slip_rate
+
+
+@compiled
+def same_fingers(first: Finger, second: Finger) -> bool:
+    """Whether two fingers have the same force loop and force."""
+    same = first.lag == second.lag and first.dead_ticks == second.dead_ticks
+    return same and first.force == second.force and first.command == second.command
 
 
 @compiled
@@ -121,13 +145,9 @@ def advance_substeps(
         else:
             ticks = resolved_ticks(world, fingers, force_torque)
         h = ticks * world.tick_length
-        if calm and in_stick(pads):
-            match_velocity(world, h)
         for f in range(len(pads)):
             set_normal_force(world, pads[f], fingers[f], ticks)
         advance_object(world, pads, cells, slip_sensors, h)
-        if calm and in_stick(pads):
-            match_velocity(world, world.substep_ticks * world.tick_length)
         world.tick += ticks
         done += 1
         if world.tick == sample:
@@ -138,43 +158,6 @@ def advance_substeps(
         fingers[f].contact_force = normal_force_of(fingers[f].force)
     update_slip(world)
     return done
-
-
-@compiled
-def in_stick(pads: Records) -> bool:
-    """Whether the pads held the object without slip in the last sub-step."""
-    slip = pads[0].slip_rate != 0.0 or pads[-1].slip_rate != 0.0
-    return not slip and max(pads[0].normal, pads[-1].normal) > HOLDING
-
-
-@compiled
-def match_velocity(world: World, h: float) -> None:
-    """Give an object that rests on the pads their velocity half of the coming sub-step ago.
-
-    Backward Euler takes the mean velocity over a sub-step for the one at its end, half a sub-step late. In
-    equal sub-steps that cancels, and friction balances the acceleration a. A sub-step of h after one of k
-    would need a (k + h) / 2 h instead, many times as much where h is short.
-
-    Args:
-        world: WORLD record.
-        h: Length of the coming sub-step [s].
-    """
-    x, z = world.com[0] - world.wrist[0], world.com[1] - world.wrist[1]
-    vx, vz, omega = world.wrist_velocity
-    ax, az, alpha = acceleration_at_rest(world, x, z)
-    ago = 0.5 * h
-    world.velocity[0] = vx - omega * z - ago * ax
-    world.velocity[1] = vz + omega * x - ago * az
-    world.velocity[2] = omega - ago * alpha
-    world.relative_velocity[:] = 0.0
-
-
-@compiled
-def acceleration_at_rest(world: World, x: float, z: float) -> Vector:
-    """Acceleration of an object at rest on the pads, its centre of mass (x, z) from theirs in the world."""
-    ax, az, alpha = world.wrist_acceleration
-    square = world.wrist_velocity[2] ** 2
-    return ax - alpha * z - square * x, az + alpha * x - square * z, alpha
 
 
 @compiled
@@ -241,8 +224,8 @@ def longest_substep(
         return world.substep_ticks
     normal = normal_force_of(lowest_force(finger, world.tick + ticks))
     if normal <= 0.0:
-        free = finger.contact_force <= 0.0
-        return ticks_to_next_command(finger, world.tick, ticks) if free else world.substep_ticks
+        free = max(finger.contact_force, normal_force_of(highest_force(finger, world.tick + ticks))) <= 0.0
+        return ticks if free else world.substep_ticks
     fx, fy, torque = pad.wrench
     gx, gy = 0.5 * load[0], 0.5 * load[1]
     goal = 0.5 * load[2] - pad.cop[0] * gy + pad.cop[1] * gx
