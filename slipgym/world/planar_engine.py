@@ -18,15 +18,9 @@ from slipgym.world.actuator import (
     queue_command,
     ticks_to_next_command,
 )
+from slipgym.world.object_motion import acceleration_at_rest, pad_axes
 from slipgym.world.records import Finger, Records, World
-from slipgym.world.substep import (
-    HOLDING,
-    acceleration_at_rest,
-    advance_object,
-    pad_axes,
-    resolved_ticks,
-    update_slip,
-)
+from slipgym.world.substep import HOLDING, advance_object, resolved_ticks, update_slip
 
 FIRM = 0.95  # of the friction limit: below it sub-steps may have `calm_ticks`; the rest is for changing loads
 FAST = 0.7  # of the friction limit: below it a sub-step may last until the next command

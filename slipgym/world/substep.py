@@ -17,10 +17,19 @@ import numpy as np
 
 from slipgym._numba.compiled import compiled
 from slipgym.contact.coupled import step_pads
-from slipgym.contact.records import Pad, Vector
+from slipgym.contact.records import Pad
 from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.slip_velocity import accumulate_slip
 from slipgym.world.actuator import advance_lag, apply_due_commands, ticks_to_next_command
+from slipgym.world.object_motion import (
+    drift_on_pads,
+    follow_pads,
+    free_motion,
+    free_motion_on_pads,
+    motion_without_forces,
+    pad_axes,
+    slide,
+)
 from slipgym.world.records import Finger, Records, World
 
 HOLDING = 1e-2  # [N]; pads with less, a fiftieth of the smallest grip, do not hold the object
@@ -155,115 +164,6 @@ def advance_object(
 
 
 @compiled
-def acceleration_by_loads(world: World) -> Vector:
-    """Acceleration of the object by gravity and disturbance, world (x, z, angle) [m/s^2, m/s^2, rad/s^2]."""
-    per_mass = 1.0 / world.mass
-    return (
-        world.external[0] * per_mass,
-        world.external[1] * per_mass - world.gravity,
-        world.external[2] / world.inertia,
-    )
-
-
-@compiled
-def acceleration_at_rest(world: World, x: float, z: float) -> Vector:
-    """Acceleration of an object at rest on the pads, its centre of mass (x, z) from theirs in the world."""
-    ax, az, alpha = world.wrist_acceleration
-    square = world.wrist_velocity[2] ** 2
-    return ax - alpha * z - square * x, az + alpha * x - square * z, alpha
-
-
-@compiled
-def drift_on_pads(world: World, h: float) -> Vector:
-    """Motion over h at the present velocity relative to the pads, in the pad frame, before the wrist moves.
-
-    It contains the distance of the pose from `relative`, which an engine's pose may have.
-    """
-    cos, sin = pad_axes(world)
-    x, z = world.com[0] - world.wrist[0], world.com[1] - world.wrist[1]
-    omega = world.wrist_velocity[2]
-    vx = world.velocity[0] - world.wrist_velocity[0] + omega * z
-    vz = world.velocity[1] - world.wrist_velocity[1] - omega * x
-    x, z = x + h * vx, z + h * vz
-    return (
-        cos * x + sin * z - world.relative[0],
-        cos * z - sin * x - world.relative[1],
-        world.angle - world.wrist[2] - world.relative[2] + h * (world.velocity[2] - omega),
-    )
-
-
-@compiled
-def free_motion_on_pads(world: World, drift: Vector, h: float) -> Vector:
-    """Motion over h without friction by backward Euler in the pad frame, after the wrist has moved.
-
-    The accelerations of the pads, of Coriolis and of the loads are those of the sub-step's end. An object at
-    rest on the pads so gives the friction that its load at this time needs, whatever the sub-steps before.
-    """
-    cos, sin = pad_axes(world)
-    x = cos * world.relative[0] - sin * world.relative[1]
-    z = sin * world.relative[0] + cos * world.relative[1]
-    ax, az, at = acceleration_by_loads(world)
-    pad_x, pad_z, pad_t = acceleration_at_rest(world, x, z)
-    ax, az, at = ax - pad_x, az - pad_z, at - pad_t
-    square, turn = h * h, 2.0 * h * world.wrist_velocity[2]
-    return (
-        drift[0] + square * (cos * ax + sin * az) + turn * drift[1],
-        drift[1] + square * (cos * az - sin * ax) - turn * drift[0],
-        drift[2] + square * at,
-    )
-
-
-@compiled
-def follow_pads(world: World) -> None:
-    """Set the object's pose and velocity from those relative to the pads."""
-    cos, sin = pad_axes(world)
-    p_x, p_y, angle = world.relative
-    v_x, v_y, rate = world.relative_velocity
-    x, z = cos * p_x - sin * p_y, sin * p_x + cos * p_y
-    omega = world.wrist_velocity[2]
-    world.com[0], world.com[1] = world.wrist[0] + x, world.wrist[1] + z
-    world.angle = world.wrist[2] + angle
-    world.velocity[0] = world.wrist_velocity[0] - omega * z + cos * v_x - sin * v_y
-    world.velocity[1] = world.wrist_velocity[1] + omega * x + sin * v_x + cos * v_y
-    world.velocity[2] = omega + rate
-
-
-@compiled
-def free_motion(world: World, drift: Vector, h: float) -> Vector:
-    """Motion over h without friction by the mean of the velocities at both ends, after the wrist has moved."""
-    cos, sin = pad_axes(world)
-    ax, az, at = acceleration_by_loads(world)
-    gain = 0.5 * h * h
-    return (
-        drift[0] + gain * (cos * ax + sin * az),
-        drift[1] + gain * (cos * az - sin * ax),
-        drift[2] + gain * at,
-    )
-
-
-@compiled
-def slide(world: World, free: Vector, motion: Vector, h: float) -> None:
-    """Advance the object's pose and velocity over h; `motion` against `free` tells what friction did."""
-    cos, sin = pad_axes(world)
-    ax, az, at = acceleration_by_loads(world)
-    per_gain = 2.0 / h
-    braking_x = (motion[0] - free[0]) * per_gain
-    braking_y = (motion[1] - free[1]) * per_gain
-    # friction turns with the pads: direction in the middle of the sub-step
-    back = 0.5 * h * (world.wrist_velocity[2] - 0.5 * h * world.wrist_acceleration[2])
-    cos, sin = cos + back * sin, sin - back * cos
-    gained_x = h * ax + cos * braking_x - sin * braking_y
-    gained_z = h * az + sin * braking_x + cos * braking_y
-    gained_t = h * at + (motion[2] - free[2]) * per_gain
-    world.velocity[0] += gained_x
-    world.velocity[1] += gained_z
-    world.velocity[2] += gained_t
-    world.com[0] += h * (world.velocity[0] - 0.5 * gained_x)
-    world.com[1] += h * (world.velocity[1] - 0.5 * gained_z)
-    world.angle += h * (world.velocity[2] - 0.5 * gained_t)
-
-
-@compiled
 def normal_force(finger: Finger, force: float) -> float:
     """Normal force at an actuator's force [N]: the engine's last mean, moved on by the change since."""
     if finger.contact_force <= 0.0:
@@ -286,29 +186,6 @@ def move_wrist(world: World, h: float) -> None:
         world.wrist[a] += step
         world.wrist_plan[a] += step
         world.wrist_velocity[a] += h * world.wrist_acceleration[a]
-
-
-@compiled
-def pad_axes(world: World) -> tuple[float, float]:
-    """Cosine and sine of the wrist's pitch, computed anew when it has changed."""
-    if world.wrist[2] != world.pitch:
-        world.pitch = world.wrist[2]
-        world.axes[0], world.axes[1] = math.cos(world.pitch), math.sin(world.pitch)
-    return world.axes[0], world.axes[1]
-
-
-@compiled
-def motion_without_forces(world: World, h: float) -> Vector:
-    """Motion of the centre of mass in the pad frame over h at its present velocity, after the wrist has moved."""
-    cos, sin = pad_axes(world)
-    x = world.com[0] + h * world.velocity[0] - world.wrist[0]
-    z = world.com[1] + h * world.velocity[1] - world.wrist[1]
-    turned = world.angle + h * world.velocity[2] - world.wrist[2]
-    return (
-        cos * x + sin * z - world.relative[0],
-        cos * z - sin * x - world.relative[1],
-        turned - world.relative[2],
-    )
 
 
 @compiled
