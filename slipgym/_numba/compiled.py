@@ -49,11 +49,15 @@ compiled = _decorator(forceinline=True, fastmath=False)
 compiles it first: results would depend on what was compiled before."""
 unlocked = _decorator(nogil=True, forceinline=True, fastmath=False)
 """`compiled` for functions that several threads run at the same time: it releases Python's lock."""
+compiled_call = _decorator(fastmath=False)
+"""`compiled` for a large function that few callers need: it is called, not copied into them."""
 compiled_sum = _decorator(fastmath={"reassoc"})
 """For loops that sum: additions may be reordered, so that the loop computes several elements at once.
 
 The order is fixed when the function is compiled, so that equal input gives equal bits; a processor with other
 vector instructions may round differently. Functions that it calls keep the order of their operations."""
+inlined_sum = _decorator(forceinline=True, fastmath={"reassoc"})
+"""`compiled_sum` as a part of its caller, in which arguments that are literals simplify the loop."""
 
 
 @contextmanager

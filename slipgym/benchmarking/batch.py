@@ -11,6 +11,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym._numba.compiled import unlocked
+from slipgym._numba.rows import row_of
 from slipgym.benchmarking.measure import Player
 from slipgym.benchmarking.processors import on_either
 from slipgym.benchmarking.report import Figure
@@ -267,6 +268,6 @@ def _contacts(worlds, pads, cells, fingers):
         free = (motion[0], motion[1] - h * h * world.gravity, motion[2])
         pads[i, 0].normal = fingers[i, 0].force
         centre = (world.relative[0], world.relative[1])
-        patch = None if cells is None else cells[i]
+        patch = row_of(cells, i)
         half = 0.5 * world.mass, 0.5 * world.inertia  # pads that are alike are solved as one
         step_pads((pads[i, 0],), patch, half, centre, free, motion, h)

@@ -25,7 +25,8 @@ def load(
             key, at every depth. Lists are replaced as a whole. A group "tasks" is left to
             `slipgym.tasks.configure`.
         sensors: The sensor preset to start from, one of ``names("sensors")``.
-        contact: The friction model to start from, "ellipsoid" or "distributed"; None: the default one.
+        contact: The friction model to start from, one of `slipgym.config.physics.ContactModel`; None: the
+            default one.
 
     Raises:
         FileNotFoundError: The overrides' file does not exist.

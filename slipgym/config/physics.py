@@ -1,11 +1,15 @@
 """Configuration models of friction, gravity and the simulation's rates."""
 
-from typing import Literal, Self
+from typing import Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
 from slipgym.config.base import Count, Frozen, NonNegative, Points, Positive
+from slipgym.config.pad import PadConfig
 from slipgym.contact.pressure import PressureName
+
+ContactModel: TypeAlias = Literal["ellipsoid", "disc", "distributed"]
+"""Names of the friction models."""
 
 
 class Material(Frozen):
@@ -30,13 +34,14 @@ class NominalConfig(Material):
 class ContactConfig(Frozen):
     """The friction model of a pad, apart from the material's coefficients.
 
-    "ellipsoid" is one bristle with an ellipsoidal limit surface. "distributed" is a round patch of
-    cells, each a bristle; its limit surface follows from its pressure profile. Estimators and
-    controllers describe both by r, the torque in pure spin over mu_c times the normal force. A
-    patch whose r differs from that of the whole pad is scaled in proportion.
+    "ellipsoid" is one bristle with an ellipsoidal limit surface, "disc" one with the limit surface of
+    a uniform disc. "distributed" is a round patch of cells, each a bristle; its limit surface follows
+    from its pressure profile, and it breaks away in parts. Estimators and controllers describe all of
+    them by r, the torque in pure spin over mu_c times the normal force. A patch whose r differs from
+    that of the whole pad is scaled in proportion.
     """
 
-    model: Literal["ellipsoid", "distributed"] = Field(description="Friction model of the pads: a name")
+    model: ContactModel = Field(description="Friction model of the pads: a name")
     pressure: PressureName = Field(
         description="Pressure over the patch: constant, Hertz's, or on its edge alone"
     )
@@ -56,6 +61,7 @@ class ContactConfig(Frozen):
         description="Radius r of the equivalent rim contact; null: that of the pressure on the whole pad [m]"
     )
     cop_offset: Points = Field(description="Centre of pressure (x, y) from the pad's centre, per finger [m]")
+    pad: PadConfig = Field(description="What the pads' rubber adds")
 
 
 class PhysicsConfig(Frozen):
@@ -65,6 +71,9 @@ class PhysicsConfig(Frozen):
     control_rate: Count = Field(description="Environment steps per second [Hz]")
     engine_steps: Count = Field(description="Rigid-body engine steps per control step [-]")
     substep_max: Positive = Field(description="Longest friction sub-step [s]")
+    patch_substep_max: Positive = Field(
+        description="Longest friction sub-step of a distributed contact, which turns in parts [s]"
+    )
     planar_substep_max: Positive = Field(
         description="Longest friction sub-step without an engine near the friction limit [s]"
     )

@@ -1,6 +1,6 @@
 """Friction between a pad and an object in planar slip."""
 
 from slipgym.contact.distributed import DistributedContact
-from slipgym.contact.ellipsoid import EllipsoidContact
+from slipgym.contact.ellipsoid import DiscContact, EllipsoidContact
 
-__all__ = ["DistributedContact", "EllipsoidContact"]
+__all__ = ["DiscContact", "DistributedContact", "EllipsoidContact"]

@@ -5,11 +5,12 @@ to the pads within the sub-step. It solves the momentum balance
 
     M (q - q_free) / h^2 + sum_i S_i^T f_i(S_i q) = 0,
 
-with S_i the map from q to the scaled slip displacement at pad i's centre of pressure
-and f_i its friction. Pads are ellipsoids (`slipgym.contact.ellipsoid_kernel`) or, if they have cells,
-patches (`slipgym.contact.distributed_kernel`). `set_friction_level`, `friction_and_jacobian`,
-`update_friction_level`, `store_state` and `detach` call the one or the other. `cells` is None for ellipsoids,
-so that each kind is compiled separately.
+with S_i the map from q to the scaled displacement at pad i's centre of pressure
+and f_i its friction. Pads are hard ellipsoids (`slipgym.contact.ellipsoid_kernel`), soft or discs
+(`slipgym.contact.soft_kernel`), or patches of cells (`slipgym.contact.distributed_kernel`).
+`set_friction_level`, `friction_and_jacobian`, `update_friction_level`, `store_state` and `detach` call the
+right one. The type of `cells` says which, so that each kind is compiled separately: None, an array without
+numbers (p, 0), or patches (p, CELL_FIELDS, m).
 The derivative of a bristle's friction is a multiple of the identity less a dyad, so an
 ellipsoid's pull-back needs no matrix products.
 """
@@ -17,16 +18,16 @@ ellipsoid's pull-back needs no matrix products.
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
 
 import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.contact import distributed_kernel, ellipsoid_kernel
-from slipgym.contact.records import Pad, Pads, Symmetric, Vector
+from slipgym.contact import distributed_kernel, ellipsoid_kernel, soft_kernel
+from slipgym.contact.records import Pad, Pads, Pair, Symmetric, Vector
+from slipgym.contact.soft_pad import let_go, load_pad, prepare_shear
 
-Pair: TypeAlias = tuple[float, float]
-
+PATCHES = 3
+"""Dimensions of `cells` if they are patches, (p, CELL_FIELDS, m)."""
 MAX_NEWTON = 30
 MAX_HALVINGS = 8
 FORCE_TOLERANCE = 1e-10  # of the friction limit; rounding reaches about 1e-13
@@ -35,27 +36,37 @@ FORCE_TOLERANCE = 1e-10  # of the friction limit; rounding reaches about 1e-13
 @compiled
 def lever(pad: Pad, centre: Pair) -> Pair:
     """Vector from the centre of mass to the pad's centre of pressure [m]."""
-    return pad.cop[0] - centre[0], pad.cop[1] - centre[1]
+    return pad.pressure_centre[0] - centre[0], pad.pressure_centre[1] - centre[1]
 
 
 @compiled
-def scaled_displacement(pad: Pad, arm: Pair, motion: Vector) -> Vector:
-    """Scaled slip displacement S q at the centre of pressure."""
-    return (motion[0] - motion[2] * arm[1], motion[1] + motion[2] * arm[0], pad.r * motion[2])
+def scaled_displacement(pad: Pad, cells: np.ndarray | None, arm: Pair, motion: Vector) -> Vector:
+    """Scaled displacement S q at the centre of pressure."""
+    x, y = motion[0] - motion[2] * arm[1], motion[1] + motion[2] * arm[0]
+    if cells is None:
+        return x, y, pad.radius * motion[2]
+    return pad.axes[0] * x, pad.axes[1] * y, pad.radius * motion[2]
 
 
 @compiled
 def generalised_force(pad: Pad, arm: Pair, vector: Vector) -> Vector:
     """Generalised force S^T f of a scaled friction vector f about the centre of mass."""
-    moment = arm[0] * vector[1] - arm[1] * vector[0] + pad.r * vector[2]
-    return vector[0], vector[1], moment
+    return even_force(pad, arm, (pad.axes[0] * vector[0], pad.axes[1] * vector[1], vector[2]))
+
+
+@compiled
+def even_force(pad: Pad, arm: Pair, vector: Vector) -> Vector:
+    """`generalised_force` of a pad that is the same in all directions."""
+    return vector[0], vector[1], arm[0] * vector[1] - arm[1] * vector[0] + pad.radius * vector[2]
 
 
 @compiled
 def generalised_stiffness(pad: Pad, arm: Pair, a: Symmetric) -> Symmetric:
     """S^T a S of a symmetric a = (xx, yy, tt, xy, xt, yt)."""
     xx, yy, tt, xy, xt, yt = a
-    x, y, r = arm[0], arm[1], pad.r
+    u, v = pad.axes
+    xx, yy, xy, xt, yt = u * u * xx, v * v * yy, u * v * xy, u * xt, v * yt
+    x, y, r = arm[0], arm[1], pad.radius
     turn_x = x * xy - y * xx + r * xt
     turn_y = x * yy - y * xy + r * yt
     turn_t = x * yt - y * xt + r * tt
@@ -63,12 +74,24 @@ def generalised_stiffness(pad: Pad, arm: Pair, a: Symmetric) -> Symmetric:
 
 
 @compiled
+def set_normal(pad: Pad, cells: np.ndarray | None, normal: float) -> None:
+    """Set a pad's normal force [N] and, if it is not a hard ellipsoid, what depends on it."""
+    if cells is None:
+        pad.normal = normal
+    else:
+        load_pad(pad, normal)
+
+
+@compiled
 def set_friction_level(pad: Pad, cells: np.ndarray | None, i: int, h: float) -> float:
     """Set the friction levels of a sub-step; returns their mean over the load [-]."""
     if cells is None:
         return ellipsoid_kernel.set_friction_level(pad, h)
-    twist = distributed_kernel.expected_twist(pad, h)
-    return distributed_kernel.set_friction_levels(pad, cells[i], twist)
+    prepare_shear(pad, h)
+    if cells.ndim == PATCHES:
+        twist = distributed_kernel.expected_twist(pad, h)
+        return distributed_kernel.set_friction_levels(pad, cells[i], twist)
+    return soft_kernel.set_friction_level(pad, h)
 
 
 @compiled
@@ -76,19 +99,19 @@ def friction_and_jacobian(
     pad: Pad, cells: np.ndarray | None, i: int, level: float, arm: Pair, motion: Vector, h: float
 ) -> tuple[Vector, Symmetric]:
     """Generalised friction force of one pad about the centre of mass, and its derivative."""
-    delta = scaled_displacement(pad, arm, motion)
+    delta = scaled_displacement(pad, cells, arm, motion)
     if cells is not None:
-        force, derivative = distributed_kernel.friction_and_jacobian(pad, cells[i], delta, h)
+        if cells.ndim == PATCHES:
+            force, derivative = distributed_kernel.friction_and_jacobian(pad, cells[i], delta, h)
+        else:
+            force, derivative = soft_kernel.friction_and_jacobian(pad, delta, level)
         return generalised_force(pad, arm, force), generalised_stiffness(pad, arm, derivative)
-    z = (pad.z[0], pad.z[1], pad.z[2])
-    force, isotropic, radial, direction, _ = ellipsoid_kernel.friction_and_jacobian(
-        pad, z, pad.normal, delta, h, level / pad.sigma_0
-    )
-    nx, ny, nt = generalised_force(pad, arm, direction)
-    return generalised_force(pad, arm, force), (
+    force, isotropic, radial, direction, _, _ = ellipsoid_kernel.friction_and_jacobian(pad, delta, h, level)
+    nx, ny, nt = even_force(pad, arm, direction)
+    return even_force(pad, arm, force), (
         isotropic - radial * nx * nx,
         isotropic - radial * ny * ny,
-        isotropic * (arm[0] ** 2 + arm[1] ** 2 + pad.r**2) - radial * nt * nt,
+        isotropic * (arm[0] ** 2 + arm[1] ** 2 + pad.radius**2) - radial * nt * nt,
         -radial * nx * ny,
         -(isotropic * arm[1] + radial * nx * nt),
         isotropic * arm[0] - radial * ny * nt,
@@ -102,7 +125,9 @@ def update_friction_level(
     """Set the friction levels anew if a solved slip displacement gives others; returns their mean [-]."""
     if cells is None:
         return ellipsoid_kernel.update_friction_level(pad, before, delta, h, level)
-    return distributed_kernel.update_friction_levels(pad, cells[i], delta, h, level)
+    if cells.ndim == PATCHES:
+        return distributed_kernel.update_friction_levels(pad, cells[i], delta, h, level)
+    return soft_kernel.update_friction_level(pad, before, h, level)
 
 
 @compiled
@@ -110,17 +135,21 @@ def store_state(pad: Pad, cells: np.ndarray | None, i: int, level: float, delta:
     """Store the state of a pad after a scaled slip displacement."""
     if cells is None:
         ellipsoid_kernel.store_state(pad, delta, h, level)
-    else:
+    elif cells.ndim == PATCHES:
         distributed_kernel.store_state(pad, cells[i], delta, h)
+    else:
+        soft_kernel.store_state(pad, delta, h, level)
 
 
 @compiled
 def detach(pad: Pad, cells: np.ndarray | None, i: int, delta: Vector, h: float) -> None:
     """Reset the bristles of a pad without normal force, after a scaled slip displacement."""
-    if cells is None:
-        ellipsoid_kernel.detach(pad, math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h)
-    else:
-        distributed_kernel.detach(pad, cells[i], (delta[0] / h, delta[1] / h, delta[2] / h))
+    if cells is not None:
+        let_go(pad)
+        if cells.ndim == PATCHES:
+            distributed_kernel.detach(pad, cells[i], (delta[0] / h, delta[1] / h, delta[2] / h))
+            return
+    ellipsoid_kernel.detach(pad, math.sqrt(delta[0] ** 2 + delta[1] ** 2 + delta[2] ** 2) / h)
 
 
 @compiled
@@ -186,7 +215,7 @@ def solve_motion(
     """Damped semi-smooth Newton iteration for the motion that balances momentum and friction.
 
     If it does not converge from the guess, it is repeated from rest, which lies on the other side of the
-    break-away; the better result is returned.
+    break-away; the better result is returned. It is the last that was evaluated: soft pads keep its results.
     """
     tolerance = 0.0
     for i in range(len(pads)):
@@ -196,6 +225,7 @@ def solve_motion(
         other, rest = iterate(pads, cells, levels, inertia, centre, free, (0.0, 0.0, 0.0), h, tolerance)
         if rest < error:
             return other
+        assemble(pads, cells, levels, inertia, centre, free, motion, h)
     return motion
 
 
@@ -212,7 +242,7 @@ def iterate(
     tolerance: float,
 ) -> tuple[Vector, float]:
     """Newton iteration from a first guess; returns the motion and the norm of its residual [N]."""
-    radius = pads[0].r
+    radius = pads[0].radius
     residual, jacobian = assemble(pads, cells, levels, inertia, centre, free, motion, h)
     error = norm(residual, radius)
     for _ in range(MAX_NEWTON):
@@ -235,11 +265,13 @@ def iterate(
 
 
 @compiled
-def slip_displacements(pads: Pads, centre: Pair, motion: Vector) -> tuple[Vector, Vector]:
+def displacements(
+    pads: Pads, cells: np.ndarray | None, centre: Pair, motion: Vector
+) -> tuple[Vector, Vector]:
     """Scaled slip displacements of the first and the last pad."""
     return (
-        scaled_displacement(pads[0], lever(pads[0], centre), motion),
-        scaled_displacement(pads[-1], lever(pads[-1], centre), motion),
+        scaled_displacement(pads[0], cells, lever(pads[0], centre), motion),
+        scaled_displacement(pads[-1], cells, lever(pads[-1], centre), motion),
     )
 
 
@@ -258,7 +290,8 @@ def step_pads(
     Args:
         pads: PAD records of the one or two pads that hold the object, an array or a tuple; updated.
             A tuple is faster: numba counts references to an array, which takes as long as the friction.
-        cells: Their patches, shape (p, CELL_FIELDS, n); updated. None for ellipsoids.
+        cells: Their patches, shape (p, CELL_FIELDS, n); updated. None for hard ellipsoids, (p, 0) for pads
+            that are soft or discs.
         inertia: Mass [kg] and moment of inertia about the centre of mass [kg m^2].
         centre: Centre of mass in the pad frame [m].
         free: Motion (x, y, theta) of the centre of mass relative to the pads in this
@@ -274,7 +307,7 @@ def step_pads(
     levels = first, first if len(pads) == 1 else set_friction_level(pads[-1], cells, -1, h)
     held = pads[0].normal > 0.0 or pads[-1].normal > 0.0
     motion = solve_motion(pads, cells, levels, inertia, centre, free, guess, h) if held else free
-    slips = slip_displacements(pads, centre, motion)
+    slips = displacements(pads, cells, centre, motion)
     if held:
         first = update_friction_level(pads[0], cells, 0, levels[0], before[0], slips[0], h)
         last = first
@@ -283,7 +316,7 @@ def step_pads(
         if first != levels[0] or last != levels[1]:
             levels = first, last
             motion = solve_motion(pads, cells, levels, inertia, centre, free, motion, h)
-            slips = slip_displacements(pads, centre, motion)
+            slips = displacements(pads, cells, centre, motion)
     for i in range(len(pads)):
         if pads[i].normal > 0.0:
             store_state(pads[i], cells, i, levels[i], slips[i], h)

@@ -8,7 +8,7 @@ force f_n (LuGre patch of Waltersson & Karayiannidis, arXiv 2308.01123):
     f_i = w_i f_n (sigma_0 z_i + sigma_1 dz_i/dt + sigma_2 v_i),    |z_i| <= g_i / sigma_0
     F = -sum f_i,    tau = -sum x_i x f_i
 
-A cell is a bristle of `slipgym.contact.ellipsoid_kernel`, in two dimensions: z_i is brought
+A cell is a bristle of `slipgym.contact.bristle`, in two dimensions: z_i is brought
 into the ball if g_i has fallen, which is loss and not dz_i/dt; then v_i h is added and the
 result projected onto the ball. Hence it truly sticks, takes at least the energy that it
 stores whatever the twist, and has no limit sigma_0 |v| h / g < 1. Steady slip is LuGre's:
@@ -33,22 +33,28 @@ import math
 
 import numpy as np
 
-from slipgym._numba.compiled import compiled, compiled_sum
-from slipgym.contact import ellipsoid_kernel, stribeck
+from slipgym._numba.compiled import compiled, compiled_sum, inlined_sum
+from slipgym.contact import bristle, stribeck
 from slipgym.contact.records import (
     ELASTIC_LIMIT,
     LOAD,
+    RELAXED_X,
+    RELAXED_Y,
     RETENTION,
+    SHEAR_X,
+    SHEAR_Y,
     SPEED_CAP,
     Z_X,
     Z_Y,
     Cells,
     Pad,
+    Pair,
     Symmetric,
     Vector,
     X,
     Y,
 )
+from slipgym.contact.soft_pad import advance_age, load_pad, prepare_shear, sheared
 
 SLIPPING = 0.5
 """Fraction of the load on slipping cells above which the patch counts as slipping [-]."""
@@ -99,7 +105,8 @@ def write_speeds(pad: Pad, cells: Cells, twist: Vector) -> int:
 @compiled
 def write_levels(pad: Pad, cells: Cells, exponent: float) -> None:
     """Replace the scaled slip speeds in ELASTIC_LIMIT by friction levels."""
-    mu_c, mu_s, level = pad.mu_c, pad.mu_s, cells[ELASTIC_LIMIT]
+    level = cells[ELASTIC_LIMIT]
+    mu_c, mu_s = stribeck.levels(pad)
     for i in range(cells.shape[1]):
         level[i] = stribeck.friction_level(mu_c, mu_s, level[i], exponent)
 
@@ -120,7 +127,7 @@ def set_friction_levels(pad: Pad, cells: Cells, twist: Vector) -> float:
     limit, kept = cells[ELASTIC_LIMIT], cells[RETENTION]
     compliance, mean = 1.0 / pad.sigma_0, 0.0
     if write_speeds(pad, cells, twist) == 0:
-        limit[:] = pad.mu_c
+        limit[:] = stribeck.levels(pad)[0]
     elif pad.stribeck_exponent == 2.0:
         write_levels(pad, cells, 2.0)  # a loop of its own, without a power: several cells at once
     else:
@@ -129,25 +136,29 @@ def set_friction_levels(pad: Pad, cells: Cells, twist: Vector) -> float:
         mean += load[i] * limit[i]
         limit[i] *= compliance
         x, y = z_x[i] / kept[i], z_y[i] / kept[i]
-        kept[i] = ellipsoid_kernel.retention((x, y, 0.0), limit[i])
+        kept[i] = bristle.retention((x, y, 0.0), limit[i])
         z_x[i], z_y[i] = kept[i] * x, kept[i] * y
     return mean
 
 
-@compiled_sum
-def friction_and_jacobian(pad: Pad, cells: Cells, delta: Vector, h: float) -> tuple[Vector, Symmetric]:
-    """Friction of all cells after a scaled slip displacement over time h, and its derivative.
+@compiled
+def rear_of(cells: Cells, i: int, give: float, recall: Pair) -> Vector:
+    """What the rubber behind a cell remembers of its shear [m]; nothing without `give`."""
+    if give > 0.0:
+        now, before = recall
+        return (
+            now * cells[SHEAR_X, i] + before * cells[RELAXED_X, i],
+            now * cells[SHEAR_Y, i] + before * cells[RELAXED_Y, i],
+            0.0,
+        )
+    return 0.0, 0.0, 0.0
 
-    Args:
-        pad: PAD record with the parameters and the normal force.
-        cells: Patch (CELL_FIELDS, n) from `set_friction_levels`; read only.
-        delta: Scaled slip displacement (x, y, r theta) of the sub-step [m].
-        h: Sub-step [s].
 
-    Returns:
-        force: Friction opposing `delta`, scaled components [N].
-        derivative: Of `force` by `delta`, symmetric (xx, yy, tt, xy, xt, yt) [N/m].
-    """
+@inlined_sum
+def friction_sum(
+    pad: Pad, cells: Cells, delta: Vector, h: float, give: float, recall: Pair
+) -> tuple[Vector, Symmetric]:
+    """`friction_and_jacobian`; called with the literal 0 for `give` it is compiled without rubber."""
     xs, ys, load = cells[X], cells[Y], cells[LOAD]
     z_x, z_y, limit = cells[Z_X], cells[Z_Y], cells[ELASTIC_LIMIT]
     fx, fy, ft = 0.0, 0.0, 0.0
@@ -155,8 +166,9 @@ def friction_and_jacobian(pad: Pad, cells: Cells, delta: Vector, h: float) -> tu
     for i in range(cells.shape[1]):
         x, y = xs[i], ys[i]
         # as if it carried the whole normal force: what does not differ is computed once
-        force, isotropic, radial, direction, _ = ellipsoid_kernel.friction_and_jacobian(
-            pad, (z_x[i], z_y[i], 0.0), pad.normal, at_cell(x, y, delta), h, limit[i]
+        rear, z = rear_of(cells, i, give, recall), (z_x[i], z_y[i], 0.0)
+        force, isotropic, radial, direction, _, _ = bristle.friction_and_jacobian(
+            pad, give, rear, z, pad.normal, at_cell(x, y, delta), h, limit[i]
         )
         f_x, f_y = load[i] * force[0], load[i] * force[1]
         isotropic, radial = load[i] * isotropic, load[i] * radial
@@ -173,20 +185,38 @@ def friction_and_jacobian(pad: Pad, cells: Cells, delta: Vector, h: float) -> tu
 
 
 @compiled_sum
-def store_cells(pad: Pad, cells: Cells, delta: Vector, twist: Vector, h: float) -> tuple[Vector, float]:
-    """Store bristles and speed caps after a scaled slip displacement.
+def friction_and_jacobian(pad: Pad, cells: Cells, delta: Vector, h: float) -> tuple[Vector, Symmetric]:
+    """Friction of all cells after a scaled displacement over time h, and its derivative.
+
+    Args:
+        pad: PAD record with the parameters and the normal force.
+        cells: Patch (CELL_FIELDS, n) from `set_friction_levels`; read only.
+        delta: Scaled displacement (x, y, r theta) of the sub-step [m].
+        h: Sub-step [s].
 
     Returns:
-        Friction opposing it [N], and the fraction of the load on cells that slip [-].
+        force: Friction opposing `delta`, scaled components [N].
+        derivative: Of `force` by `delta`, symmetric (xx, yy, tt, xy, xt, yt) [N/m].
     """
+    if pad.give > 0.0:
+        return friction_sum(pad, cells, delta, h, pad.give, (pad.recall[0], pad.recall[1]))
+    return friction_sum(pad, cells, delta, h, 0.0, (0.0, 0.0))
+
+
+@inlined_sum
+def stored_sum(
+    pad: Pad, cells: Cells, delta: Vector, twist: Vector, h: float, give: float, recall: Pair
+) -> tuple[Vector, float]:
+    """`store_cells`; called with the literal 0 for `give` it is compiled without rubber."""
     xs, ys, load, cap = cells[X], cells[Y], cells[LOAD], cells[SPEED_CAP]
     z_x, z_y, limit, kept = cells[Z_X], cells[Z_Y], cells[ELASTIC_LIMIT], cells[RETENTION]
     fx, fy, ft, slipping = 0.0, 0.0, 0.0, 0.0
     for i in range(cells.shape[1]):
         x, y = xs[i], ys[i]
         stuck = speed_at(x, y, cap[i], twist)
-        force, _, _, trial, shortening = ellipsoid_kernel.friction_and_jacobian(
-            pad, (z_x[i], z_y[i], 0.0), pad.normal, at_cell(x, y, delta), h, limit[i]
+        rear, z, moved = rear_of(cells, i, give, recall), (z_x[i], z_y[i], 0.0), at_cell(x, y, delta)
+        force, _, _, trial, shortening, slip = bristle.friction_and_jacobian(
+            pad, give, rear, z, pad.normal, moved, h, limit[i]
         )
         f_x, f_y = load[i] * force[0], load[i] * force[1]
         fx, fy, ft = fx + f_x, fy + f_y, ft + (x * f_y - y * f_x)
@@ -194,7 +224,26 @@ def store_cells(pad: Pad, cells: Cells, delta: Vector, twist: Vector, h: float) 
         cap[i] = math.inf if shortening < 1.0 else stuck
         slipping += load[i] if shortening < 1.0 else 0.0
         kept[i] = 1.0
+        if give > 0.0:
+            cells[SHEAR_X, i], cells[RELAXED_X, i] = sheared(
+                pad, cells[SHEAR_X, i], cells[RELAXED_X, i], moved[0] - slip[0], h
+            )
+            cells[SHEAR_Y, i], cells[RELAXED_Y, i] = sheared(
+                pad, cells[SHEAR_Y, i], cells[RELAXED_Y, i], moved[1] - slip[1], h
+            )
     return (fx, fy, ft), slipping
+
+
+@compiled_sum
+def store_cells(pad: Pad, cells: Cells, delta: Vector, twist: Vector, h: float) -> tuple[Vector, float]:
+    """Store bristles, speed caps and shear after a scaled displacement.
+
+    Returns:
+        Friction opposing it [N], and the fraction of the load on cells that slip [-].
+    """
+    if pad.give > 0.0:
+        return stored_sum(pad, cells, delta, twist, h, pad.give, (pad.recall[0], pad.recall[1]))
+    return stored_sum(pad, cells, delta, twist, h, 0.0, (0.0, 0.0))
 
 
 @compiled
@@ -214,7 +263,8 @@ def update_friction_levels(pad: Pad, cells: Cells, delta: Vector, h: float, leve
     expected, found = expected_twist(pad, h), (delta[0] / h, delta[1] / h, delta[2] / h)
     away = length((found[0] - expected[0], found[1] - expected[1], found[2] - expected[2]))
     flat = stribeck.flat_speed(pad.stribeck_exponent) * pad.stribeck_velocity
-    low = level - pad.mu_c < stribeck.LEVEL_TOLERANCE * pad.mu_c
+    mu_c, _ = stribeck.levels(pad)
+    low = level - mu_c < stribeck.LEVEL_TOLERANCE * mu_c
     fast = low and math.hypot(found[0], found[1]) > flat
     if fast or stribeck.level_unchanged(pad, away):
         return level  # without a look at the cells
@@ -234,9 +284,12 @@ def store_state(pad: Pad, cells: Cells, delta: Vector, h: float) -> None:
     twist = pad.twist[0], pad.twist[1], pad.twist[2]
     force, slipping = store_cells(pad, cells, delta, twist, h)
     speed = length(twist)
-    pad.slip_rate = (speed - pad.slip_speed) / between if slipping > SLIPPING else 0.0
+    slips = slipping > SLIPPING
+    pad.slip_rate = (speed - pad.slip_speed) / between if slips else 0.0
     pad.slip_speed = speed
-    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
+    advance_age(pad, speed if slips else 0.0, h)
+    pad.wrench[0], pad.wrench[1] = -pad.axes[0] * force[0], -pad.axes[1] * force[1]
+    pad.wrench[2] = -pad.radius * force[2]
 
 
 @compiled
@@ -248,6 +301,8 @@ def detach(pad: Pad, cells: Cells, twist: Vector) -> None:
         pad.twist[a] = twist[a]
         pad.twist_rate[a] = 0.0
     cells[Z_X], cells[Z_Y], cells[RETENTION], cells[SPEED_CAP] = 0.0, 0.0, 1.0, math.inf
+    for row in (SHEAR_X, SHEAR_Y, RELAXED_X, RELAXED_Y):
+        cells[row] = 0.0
 
 
 @compiled
@@ -269,8 +324,9 @@ def prescribed_step(
         Friction (f_x, f_y, tau) on the object [N, N, N m].
     """
     pad = pads[0]
-    pad.normal = normal
-    twist = (v_x, v_y, pad.r * omega)
+    load_pad(pad, normal)
+    prepare_shear(pad, h)
+    twist = (pad.axes[0] * v_x, pad.axes[1] * v_y, pad.radius * omega)
     set_friction_levels(pad, cells, twist)
     store_state(pad, cells, (h * twist[0], h * twist[1], h * twist[2]), h)
     return pad.wrench[0], pad.wrench[1], pad.wrench[2]

@@ -1,4 +1,4 @@
-"""The ellipsoidal contact as an object, for a prescribed slip twist."""
+"""Contacts without cells as objects, for a prescribed slip twist: the ellipsoid and the disc."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from slipgym.contact.ellipsoid_kernel import prescribed_step
-from slipgym.contact.records import pads, rest
+from slipgym.contact.records import DISC, ELLIPSOID, pads, rest
+from slipgym.contact.soft_kernel import prescribed_step
 from slipgym.contact.validation import check_friction, finite_vector, positive
 
 
@@ -30,6 +30,8 @@ class EllipsoidContact:
     Raises:
         ValueError: A parameter is outside its range; the message names it.
     """
+
+    SURFACE = ELLIPSOID
 
     def __init__(
         self,
@@ -57,6 +59,7 @@ class EllipsoidContact:
             sigma_0=sigma_0,
             sigma_1=sigma_1,
             sigma_2=sigma_2,
+            surface=self.SURFACE,
         )
 
     @property
@@ -114,3 +117,13 @@ class EllipsoidContact:
     def reset(self) -> None:
         """Forget the bristle state, as after a loss of contact."""
         rest(self._pads)
+
+
+class DiscContact(EllipsoidContact):
+    """`EllipsoidContact` with the limit surface of a uniformly loaded disc of radius 3 r / 2.
+
+    The surface is tabulated from the exact one (`slipgym.contact.disc_surface`). In contrast to
+    `DistributedContact` the disc sticks or slips as a whole.
+    """
+
+    SURFACE = DISC

@@ -1,4 +1,4 @@
-"""The friction step: elasto-plastic return mapping onto an ellipsoidal limit surface.
+"""The friction step of a hard pad: elasto-plastic return mapping onto an ellipsoidal limit surface.
 
 Each pad carries three bristle deflections z in the scaled displacement
 (x, y, r theta) at its centre of pressure. Friction per normal force is
@@ -30,12 +30,15 @@ solved once more.
 from __future__ import annotations
 
 import math
-
-import numpy as np
+from typing import Any
 
 from slipgym._numba.compiled import compiled
+from slipgym.contact import bristle
 from slipgym.contact.records import Pad, Vector
 from slipgym.contact.stribeck import LEVEL_TOLERANCE, level_at, level_unchanged
+
+NONE: Vector = (0.0, 0.0, 0.0)
+"""Memory of a hard pad's rubber."""
 
 
 @compiled
@@ -51,50 +54,10 @@ def expected_speed(pad: Pad, h: float) -> float:
 
 
 @compiled
-def retention(z: Vector, elastic_limit: float) -> float:
-    """Fraction of its deflection that a bristle keeps when the elastic limit may have fallen [-]."""
-    squared = z[0] * z[0] + z[1] * z[1] + z[2] * z[2]
-    return elastic_limit / math.sqrt(squared) if squared > elastic_limit * elastic_limit else 1.0
-
-
-@compiled
-def friction_and_jacobian(
-    pad: Pad, z: Vector, normal: float, delta: Vector, h: float, elastic_limit: float
-) -> tuple[Vector, float, float, Vector, float]:
-    """Friction of one bristle after a scaled slip displacement over time h, and its derivative.
-
-    Args:
-        pad: PAD record with the parameters.
-        z: Deflection, not longer than `elastic_limit`, scaled components [m].
-        normal: Normal force that the bristle carries [N].
-        delta: Scaled slip displacement (x, y, r theta) of the sub-step [m].
-        h: Sub-step [s].
-        elastic_limit: Longest deflection g / sigma_0 in this sub-step [m].
-
-    Returns:
-        force: Friction opposing `delta`, scaled components [N].
-        isotropic, radial, direction: Derivative of `force` by `delta`, as
-            isotropic I - radial direction direction^T [N/m].
-        shortening: Factor of the return mapping on the trial deflection (1 = stick).
-    """
-    y = (z[0] + delta[0], z[1] + delta[1], z[2] + delta[2])
-    squared = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
-    rate = 1.0 / h
-    damping = normal * pad.sigma_1 * rate
-    elastic = normal * pad.sigma_0 + damping
-    viscous = normal * pad.sigma_2 * rate
-    shortening, radial = 1.0, 0.0
-    if squared > elastic_limit * elastic_limit:
-        per_length = 1.0 / math.sqrt(squared)
-        shortening = elastic_limit * per_length
-        radial = elastic * shortening * per_length * per_length
-    spring = elastic * shortening
-    force = (
-        spring * y[0] - damping * z[0] + viscous * delta[0],
-        spring * y[1] - damping * z[1] + viscous * delta[1],
-        spring * y[2] - damping * z[2] + viscous * delta[2],
-    )
-    return force, spring + viscous, radial, y, shortening
+def friction_and_jacobian(pad: Pad, delta: Vector, h: float, level: float) -> tuple[Any, ...]:
+    """`bristle.friction_and_jacobian` of a hard pad."""
+    z = (pad.z[0], pad.z[1], pad.z[2])
+    return bristle.friction_and_jacobian(pad, 0.0, NONE, z, pad.normal, delta, h, level / pad.sigma_0)
 
 
 @compiled
@@ -108,7 +71,7 @@ def set_friction_level(pad: Pad, h: float) -> float:
 @compiled
 def shorten_bristles(pad: Pad, level: float) -> None:
     """Shorten the bristles to the elastic limit of a friction level."""
-    fraction = retention((pad.z[0], pad.z[1], pad.z[2]), level / pad.sigma_0)
+    fraction = bristle.retention((pad.z[0], pad.z[1], pad.z[2]), level / pad.sigma_0)
     if fraction < 1.0:  # a product with 1 would have stick wait for root and quotient, a fifth of a sub-step
         for a in range(3):
             pad.z[a] *= fraction
@@ -151,8 +114,7 @@ def update_friction_level(pad: Pad, before: Vector, delta: Vector, h: float, lev
 @compiled
 def store_state(pad: Pad, delta: Vector, h: float, level: float) -> None:
     """Store bristle state, slip speed and wrench after a scaled slip displacement."""
-    z = (pad.z[0], pad.z[1], pad.z[2])
-    force, _, _, trial, shortening = friction_and_jacobian(pad, z, pad.normal, delta, h, level / pad.sigma_0)
+    force, _, _, trial, shortening, _ = friction_and_jacobian(pad, delta, h, level)
     for a in range(3):
         pad.z[a] = shortening * trial[a]
     rate = 1.0 / h
@@ -164,7 +126,7 @@ def store_state(pad: Pad, delta: Vector, h: float, level: float) -> None:
     else:
         pad.slip_rate = 0.0
         pad.slip_speed = min(speed, pad.slip_speed)
-    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.r * force[2]
+    pad.wrench[0], pad.wrench[1], pad.wrench[2] = -force[0], -force[1], -pad.radius * force[2]
 
 
 @compiled
@@ -174,10 +136,3 @@ def detach(pad: Pad, slip_speed: float) -> None:
     pad.wrench[:] = 0.0
     pad.slip_speed = slip_speed
     pad.slip_rate = 0.0
-
-
-@compiled
-def prescribed_step(pad: Pad, twist: np.ndarray, h: float) -> None:
-    """Advance one pad by a prescribed slip twist (v_x, v_y, omega) at its centre of pressure."""
-    delta = (h * twist[0], h * twist[1], h * pad.r * twist[2])
-    store_state(pad, delta, h, set_friction_level(pad, h))

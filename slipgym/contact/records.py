@@ -10,16 +10,44 @@ from slipgym._numba.compiled import compiled
 
 PAD = np.dtype(
     [
-        ("mu_c", "f8"),  # Coulomb friction [-]
-        ("mu_s", "f8"),  # static friction [-]
+        # parameters
+        ("surface", "i8"),  # limit surface of a pad without cells: ELLIPSOID or DISC
+        ("mu_c", "f8"),  # Coulomb friction, at the reference force [-]
+        ("mu_s", "f8"),  # static friction, at the reference force and just after a slip [-]
         ("stribeck_velocity", "f8"),  # v_s [m/s]
         ("stribeck_exponent", "f8"),  # gamma [-]
         ("sigma_0", "f8"),  # bristle stiffness per normal force [1/m]
         ("sigma_1", "f8"),  # bristle damping per normal force [s/m]
         ("sigma_2", "f8"),  # viscous friction per normal force [s/m]
-        ("r", "f8"),  # radius of the equivalent rim contact; a patch's unit of length [m]
-        ("cop", "f8", 2),  # centre of pressure in the pad frame [m]
+        ("r", "f8"),  # radius of the equivalent rim contact, at the reference force [m]
+        ("cop", "f8", 2),  # centre of pressure in the pad frame, without tangential load [m]
+        ("axes", "f8", 2),  # friction along the pad's x and y over its mean [-]
+        # parameters of `slipgym.contact.soft_pad`; 0 switches an effect off
+        ("reference_force", "f8"),  # normal force at which mu_c, mu_s and r hold [N]
+        ("load_exponent", "f8"),  # friction falls with the normal force to the power of this [-]
+        ("radius_exponent", "f8"),  # r grows with it [-]
+        ("radius_max", "f8"),  # largest r [m]
+        ("cop_lever", "f8"),  # shift of the centre of pressure over tangential by normal force [m]
+        ("compliance", "f8"),  # tangential compliance of the rubber [m/N]
+        ("shear_time", "f8"),  # its damping over its stiffness [s]
+        ("creep", "f8"),  # fraction of its stiffness that relaxes [-]
+        ("creep_time", "f8"),  # time constant of that [s]
+        ("aging", "f8"),  # growth of mu_s - mu_c per e-fold of dwell time [-]
+        ("aging_time", "f8"),  # dwell time at which that begins [s]
+        ("aging_distance", "f8"),  # slip after which it is lost [m]
+        # present values that follow from parameters and state
+        ("friction_scale", "f8"),  # of mu_c and mu_s, from the normal force [-]
+        ("static_gain", "f8"),  # of mu_s - mu_c, from the dwell time [-]
+        ("radius", "f8"),  # of the equivalent rim contact, a patch's unit of length [m]
+        ("pressure_centre", "f8", 2),  # in the pad frame [m]
+        ("prepared", "f8"),  # length of the sub-step that `give` and `recall` belong to [s]
+        ("give", "f8"),  # compliance of the rubber within this sub-step [m/N]
+        ("recall", "f8", 2),  # weights of `shear` and `relaxed` in its force over its stiffness [-]
+        # state
         ("z", "f8", 3),  # bristle state in the scaled displacement (x, y, r theta) [m]
+        ("shear", "f8", 3),  # scaled displacement of the rubber's surface against the finger [m]
+        ("relaxed", "f8", 3),  # the part of it to which the relaxing stiffness has come [m]
+        ("dwell", "f8"),  # age of the contact [s]
         ("slip_speed", "f8"),  # scaled slip speed; does not rise in stick [m/s]
         ("slip_rate", "f8"),  # its rate of change [m/s^2]
         ("half_step", "f8"),  # half of the last sub-step: speed and twist are means, those of its middle [s]
@@ -27,9 +55,24 @@ PAD = np.dtype(
         ("twist_rate", "f8", 3),  # its rate of change [m/s^2]
         ("normal", "f8"),  # normal force [N]
         ("wrench", "f8", 3),  # on the object at the centre of pressure, pad frame [N, N, N m]
+        # of `slipgym.contact.soft_kernel`: coefficients of this sub-step, see `slipgym.contact.bristle`
+        ("stiffness", "f8", 3),  # elastic, damping and viscous force per displacement [N/m]
+        ("softer", "f8", 2),  # 1 / (1 + give (E + V)) and 1 / (1 + give V) [-]
+        # and results for the displacement that was evaluated last
+        ("friction", "f8", 3),  # opposing it, scaled [N]
+        ("mapped", "f8", 3),  # bristle state after it [m]
+        ("slip", "f8", 3),  # what of it is slip, scaled [m]
+        ("stuck", "i8"),  # whether the bristles stick
+        ("turn", "f8"),  # position on the disc's curve
+        ("elastic_limit", "f8"),  # longest deflection g / sigma_0 in the last sub-step [m]
+        ("load_anchor", "f8", 4),  # normal force, friction scale, radius about which both are expanded; r
+        ("aged", "f8"),  # dwell time for which `static_gain` was computed [s]
     ]
 )
 """One pad: parameters of the limit surface, bristle state and last wrench."""
+
+ELLIPSOID, DISC = 0, 1
+"""Limit surfaces of a pad without cells."""
 
 Pad: TypeAlias = Any
 """A record of `PAD`. Compiled code reads its fields as attributes, which numpy's types do not describe."""
@@ -37,6 +80,8 @@ Pads: TypeAlias = Any
 """Records of `PAD`, as an array or as a tuple."""
 Cells: TypeAlias = np.ndarray
 """Cells of one pad's patch, (CELL_FIELDS, n)."""
+Pair: TypeAlias = tuple[float, float]
+"""Two numbers (x, y)."""
 Vector: TypeAlias = tuple[float, float, float]
 """A scaled vector (x, y, r theta), or a motion (x, y, theta)."""
 Symmetric: TypeAlias = tuple[float, float, float, float, float, float]
@@ -54,20 +99,37 @@ ELASTIC_LIMIT = 6
 """Longest deflection of a cell's bristle in this step [m]."""
 RETENTION = 7
 """Fraction of its deflection that a cell's bristle has kept in this step's friction level [-]."""
-CELL_FIELDS = 8
+SHEAR_X, SHEAR_Y = 8, 9
+"""Displacement of the rubber's surface at a cell against the finger [m]."""
+RELAXED_X, RELAXED_Y = 10, 11
+"""The part of it to which the relaxing stiffness has come [m]."""
+CELL_FIELDS = 12
 """Rows of a patch, an array (CELL_FIELDS, n): one quantity in a row lets loops over n cells vectorise."""
 
 
+NEUTRAL: dict[str, float] = {
+    "stribeck_exponent": 2.0,
+    "axes": 1.0,
+    "reference_force": 5.0,
+    "radius_max": np.inf,
+    "creep_time": 1.0,
+    "aging_time": 1.0,
+    "aging_distance": 1.0,
+}
+"""Parameters of a pad that are not 0 unless given."""
+
+
 def pads(shape: int | tuple[int, ...], **parameters: float) -> np.ndarray:
-    """Return an array of pads at rest, Stribeck exponent 2 unless given.
+    """Return an array of pads at rest: ellipsoids, Stribeck exponent 2, hard and even, unless given.
 
     Args:
         shape: Shape of the array.
         **parameters: Values of the parameter fields of `PAD`, broadcast over the array.
     """
     array = np.zeros(shape, PAD)
-    for name, value in {"stribeck_exponent": 2.0, **parameters}.items():
+    for name, value in {**NEUTRAL, **parameters}.items():
         array[name] = value
+    rest(array.reshape(-1))
     return array
 
 
@@ -91,6 +153,16 @@ def rest(pads: np.ndarray) -> None:
     for i in range(pads.shape[0]):
         pad = pads[i]
         pad.z[:] = 0.0
+        pad.shear[:] = 0.0
+        pad.relaxed[:] = 0.0
+        pad.dwell = pad.aged = 0.0
+        pad.turn = 0.5
+        pad.elastic_limit = 0.0
+        pad.load_anchor[:] = 0.0
+        pad.prepared = 0.0
+        pad.friction_scale = pad.static_gain = 1.0
+        pad.radius = pad.r
+        pad.pressure_centre[0], pad.pressure_centre[1] = pad.cop[0], pad.cop[1]
         pad.slip_speed = pad.slip_rate = pad.half_step = 0.0
         pad.twist[:] = 0.0
         pad.twist_rate[:] = 0.0
@@ -100,6 +172,6 @@ def rest(pads: np.ndarray) -> None:
 @compiled
 def rest_cells(cells: np.ndarray) -> None:
     """Bring cells (..., CELL_FIELDS, n) to rest: no deflection, no speed."""
-    for row in (Z_X, Z_Y, SPEED_CAP):
+    for row in (Z_X, Z_Y, SPEED_CAP, SHEAR_X, SHEAR_Y, RELAXED_X, RELAXED_Y):
         cells[..., row, :] = 0.0
     cells[..., RETENTION, :] = 1.0

@@ -65,9 +65,17 @@ def friction_level(mu_c: float, mu_s: float, speed: float, exponent: float) -> f
 
 
 @compiled
+def levels(pad: Pad) -> tuple[float, float]:
+    """Coulomb and static friction of a pad at its present normal force and dwell time [-]."""
+    mu_c = pad.friction_scale * pad.mu_c
+    return mu_c, mu_c + pad.friction_scale * pad.static_gain * (pad.mu_s - pad.mu_c)
+
+
+@compiled
 def level_at(pad: Pad, slip_speed: float) -> float:
     """Friction level g of a pad at a slip speed [m/s]."""
-    return friction_level(pad.mu_c, pad.mu_s, slip_speed / pad.stribeck_velocity, pad.stribeck_exponent)
+    mu_c, mu_s = levels(pad)
+    return friction_level(mu_c, mu_s, slip_speed / pad.stribeck_velocity, pad.stribeck_exponent)
 
 
 @compiled
@@ -79,5 +87,5 @@ def level_unchanged(pad: Pad, speed_change: float) -> bool:
     slope = steepest_slope(pad.stribeck_exponent)
     if slope == math.inf:
         return False
-    change = (pad.mu_s - pad.mu_c) * abs(speed_change) * slope
+    change = pad.static_gain * (pad.mu_s - pad.mu_c) * abs(speed_change) * slope
     return change <= LEVEL_TOLERANCE * pad.mu_c * pad.stribeck_velocity

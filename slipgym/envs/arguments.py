@@ -29,9 +29,9 @@ from gymnasium.vector import AutoresetMode
 
 import estimator as estimators
 from slipgym.config.errors import unknown
+from slipgym.config.physics import ContactModel
 
 FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
-Contact: TypeAlias = Literal["ellipsoid", "distributed"]
 ActionMode: TypeAlias = Literal["grip_force", "grip_force_pitch", "grip_force_wrist", "force_increment"]
 ObservationMode: TypeAlias = Literal["flat", "sensor", "dict"]
 Engine: TypeAlias = Literal["bullet", "planar"]
@@ -66,7 +66,9 @@ class CommonArguments(TypedDict, total=False):
             DEFAULT_ESTIMATOR, "a name of `estimator.names()`, or a mapping with its `name` and parameters"
         ),
     ]
-    contact: Annotated[Contact, Argument("ellipsoid", "friction model of the pads (see docs/contact.md)")]
+    contact: Annotated[
+        ContactModel, Argument("ellipsoid", "friction model of the pads (see docs/contact.md)")
+    ]
     sensors: Annotated[str, Argument("realistic", 'sensor preset: `"realistic"` or `"ideal"`')]
     material: Annotated[
         str, Argument("random", 'name of a material, or `"random"` for another in every episode')

@@ -71,7 +71,7 @@ def sample_force_torque(sensor: Any, pad: Pad, tick: int) -> None:
         tick: Time, a multiple of the sensor's period.
     """
     fx, fy, tau = -pad.wrench[0], -pad.wrench[1], -pad.wrench[2]
-    cx, cy = pad.cop
+    cx, cy = pad.pressure_centre
     load = sensor.history[(tick // sensor.period) % sensor.kept]
     load[0], load[1], load[2] = fx, fy, pad.normal
     load[3], load[4] = cy * pad.normal, -cx * pad.normal

@@ -43,6 +43,7 @@ def travel(grip: Signal, refinement: int, com_offset: tuple[float, float], **opt
     finer = {
         "engine_steps": default.engine_steps * refinement,
         "substep_max": default.substep_max / refinement,
+        "patch_substep_max": default.patch_substep_max / refinement,
         "planar_substep_max": default.planar_substep_max / refinement,
     }
     with Bench({"physics": finer}, force=5.0, com_offset=com_offset, size=SIZE, **options) as bench:

@@ -110,8 +110,8 @@ def engine_loads(
         load = fingers[f].reaction
         load[0] += 0.5 * excess_x
         load[1] += 0.5 * excess_z
-        arm_x = world.wrist[0] + cos * pads[f].cop[0] - sin * pads[f].cop[1] - x
-        arm_z = world.wrist[1] + sin * pads[f].cop[0] + cos * pads[f].cop[1] - z
+        arm_x = world.wrist[0] + cos * pads[f].pressure_centre[0] - sin * pads[f].pressure_centre[1] - x
+        arm_z = world.wrist[1] + sin * pads[f].pressure_centre[0] + cos * pads[f].pressure_centre[1] - z
         excess_t -= load[2] + arm_x * load[1] - arm_z * load[0]
     for f in range(2):
         fingers[f].reaction[2] += 0.5 * excess_t
@@ -133,7 +133,7 @@ def engine_loads(
 def reaction(world: World, pad: Pad, finger: Finger, depth: float) -> tuple[Vector, Vector, Vector]:
     """Point, force and torque of friction on a finger, world coordinates."""
     cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])
-    x = world.wrist[0] + cos * pad.cop[0] - sin * pad.cop[1]
-    z = world.wrist[1] + sin * pad.cop[0] + cos * pad.cop[1]
+    x = world.wrist[0] + cos * pad.pressure_centre[0] - sin * pad.pressure_centre[1]
+    z = world.wrist[1] + sin * pad.pressure_centre[0] + cos * pad.pressure_centre[1]
     fx, fz, tau = finger.reaction
     return (x, depth, z), (-fx, 0.0, -fz), (0.0, tau, 0.0)

@@ -9,6 +9,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from slipgym._numba.compiled import compiled
+from slipgym._numba.rows import row_of
 from slipgym.config import Config
 from slipgym.contact.records import Vector
 from slipgym.world import bullet_coupling as coupling
@@ -40,7 +41,7 @@ def _loads(
     return coupling.engine_loads(
         worlds[0],
         pads[0],
-        None if cells is None else cells[0],
+        row_of(cells, 0),
         fingers[0],
         force_torque[0],
         slip_sensors[0],

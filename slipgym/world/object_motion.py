@@ -14,7 +14,7 @@ import math
 
 from slipgym._numba.compiled import compiled
 from slipgym.contact.records import Vector
-from slipgym.world.records import World
+from slipgym.world.records import Records, World
 
 
 @compiled
@@ -65,32 +65,62 @@ def drift_on_pads(world: World, h: float) -> Vector:
 
 
 @compiled
-def free_motion_on_pads(world: World, drift: Vector, h: float) -> Vector:
-    """Motion over h without friction by backward Euler in the pad frame, after the wrist has moved.
-
-    The accelerations of the pads, of Coriolis and of the loads are those of the sub-step's end. An object at
-    rest on the pads so gives the friction that its load at this time needs, whatever the sub-steps before.
-    """
+def acceleration_on_pads(world: World, drift: Vector, h: float) -> Vector:
+    """Acceleration relative to the pads without friction, in the pad frame: by loads, pads and Coriolis."""
     cos, sin = pad_axes(world)
     x = cos * world.relative[0] - sin * world.relative[1]
     z = sin * world.relative[0] + cos * world.relative[1]
     ax, az, at = acceleration_by_loads(world)
     pad_x, pad_z, pad_t = acceleration_at_rest(world, x, z)
     ax, az, at = ax - pad_x, az - pad_z, at - pad_t
-    square, turn = h * h, 2.0 * h * world.wrist_velocity[2]
+    turn = 2.0 * world.wrist_velocity[2] / h
+    return cos * ax + sin * az + turn * drift[1], cos * az - sin * ax - turn * drift[0], at
+
+
+@compiled
+def force_at_start(world: World, pads: Records) -> Vector:
+    """Friction at the end of the last sub-step about the centre of mass, in the pad frame [N, N, N m]."""
+    fx, fy, torque = 0.0, 0.0, 0.0
+    for f in range(len(pads)):
+        x, y, tau = pads[f].wrench
+        arm_x = pads[f].pressure_centre[0] - world.relative[0]
+        arm_y = pads[f].pressure_centre[1] - world.relative[1]
+        fx, fy, torque = fx + x, fy + y, torque + tau + arm_x * y - arm_y * x
+    both = 2.0 / len(pads)
+    return both * fx, both * fy, both * torque
+
+
+@compiled
+def free_motion_on_pads(world: World, drift: Vector, before: Vector, elastic: bool, h: float) -> Vector:
+    """Motion over h in the pad frame without the friction at its end, after the wrist has moved.
+
+    By backward Euler: the accelerations are those of the sub-step's end, and an object at rest on the pads
+    gives the friction that its load needs at this time, whatever the sub-steps before. On elastic pads by the
+    mean of both ends (trapezoidal rule); loads and pads keep their acceleration within a sub-step, but for a
+    turn.
+
+    Args:
+        world: WORLD record.
+        drift: Motion at the present velocity.
+        before: `force_at_start`, zero for backward Euler.
+        elastic: Which of the two.
+        h: Sub-step [s].
+    """
+    x, y, turned = acceleration_on_pads(world, drift, h)
+    square = (0.5 if elastic else 1.0) * h * h
+    half = 0.25 * h * h
     return (
-        drift[0] + square * (cos * ax + sin * az) + turn * drift[1],
-        drift[1] + square * (cos * az - sin * ax) - turn * drift[0],
-        drift[2] + square * at,
+        drift[0] + square * x + half * before[0] / world.mass,
+        drift[1] + square * y + half * before[1] / world.mass,
+        drift[2] + square * turned + half * before[2] / world.inertia,
     )
 
 
 @compiled
-def follow_pads(world: World) -> None:
-    """Set the object's pose and velocity from those relative to the pads."""
+def follow_pads(world: World, v_x: float, v_y: float, rate: float) -> None:
+    """Set the object's pose from the relative one, its velocity from one relative to the pads."""
     cos, sin = pad_axes(world)
     p_x, p_y, angle = world.relative
-    v_x, v_y, rate = world.relative_velocity
     x, z = cos * p_x - sin * p_y, sin * p_x + cos * p_y
     omega = world.wrist_velocity[2]
     world.com[0], world.com[1] = world.wrist[0] + x, world.wrist[1] + z

@@ -8,7 +8,11 @@ from __future__ import annotations
 import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.contact.records import Pad, Vector
+from slipgym._numba.rows import row_of
+from slipgym.contact.coupled import PATCHES, set_normal
+from slipgym.contact.disc_surface import INNER
+from slipgym.contact.records import DISC, Pad, Vector
+from slipgym.contact.soft_pad import load_pad, static_limit
 from slipgym.sensors.force_torque import next_sample_read, sample_force_torque
 from slipgym.world.actuator import (
     advance_lag_through_commands,
@@ -57,7 +61,9 @@ def step_world(
     Returns:
         Number of sub-steps.
     """
-    world, patches = worlds[i], None if cells is None else cells[i]
+    world, patches = worlds[i], row_of(cells, i)
+    for f in range(2):
+        load_pad(pads[i, f], pads[i, f].normal)
     first, second = fingers[i, 0], fingers[i, 1]
     sensors = force_torque[i, 0], force_torque[i, 1]
     queue_command(first, world.tick, force)
@@ -140,7 +146,7 @@ def advance_substeps(
             ticks = resolved_ticks(world, fingers, force_torque)
         h = ticks * world.tick_length
         for f in range(len(pads)):
-            set_normal_force(world, pads[f], fingers[f], ticks)
+            set_normal_force(world, pads[f], cells, fingers[f], ticks)
         advance_object(world, pads, cells, slip_sensors, h)
         world.tick += ticks
         done += 1
@@ -177,13 +183,14 @@ def normal_force_of(force: float) -> float:
 
 
 @compiled
-def set_normal_force(world: World, pad: Pad, finger: Finger, ticks: int) -> None:
+def set_normal_force(world: World, pad: Pad, cells: np.ndarray | None, finger: Finger, ticks: int) -> None:
     """Set a pad's normal force: the actuator's mean over a sub-step in slip, its value at the end in stick.
 
     The value at the end would give the momentum of a slide under a closing grip an error of first order.
     """
     mean = advance_lag_through_commands(finger, world.tick, ticks, world.tick_length)
-    pad.normal = finger.contact_force = normal_force_of(mean if pad.slip_rate != 0.0 else finger.force)
+    finger.contact_force = normal_force_of(mean if pad.slip_rate != 0.0 else finger.force)
+    set_normal(pad, cells, finger.contact_force)
 
 
 @compiled
@@ -222,11 +229,17 @@ def longest_substep(
         return ticks if free else world.substep_ticks
     fx, fy, torque = pad.wrench
     gx, gy = 0.5 * load[0], 0.5 * load[1]
-    goal = 0.5 * load[2] - pad.cop[0] * gy + pad.cop[1] * gx
+    goal = 0.5 * load[2] - pad.pressure_centre[0] * gy + pad.pressure_centre[1] * gx
     most = max(squared_norm(pad, fx, fy, torque), squared_norm(pad, gx, gy, goal))
-    limit = (pad.r * pad.mu_s * normal) ** 2
+    weaker = min(pad.axes[0], pad.axes[1])
+    limit = (pad.radius * weaker * static_limit(pad, normal)) ** 2
     swing = squared_norm(pad, fx - gx, fy - gy, torque - goal) + squared_vibration_force(world, pad, normal)
-    firm, fast = (FIRM, FAST) if cells is None else (PATCH_FIRM, PATCH_FAST)
+    firm, fast = FIRM, FAST
+    if cells is not None:
+        if cells.ndim == PATCHES:
+            firm, fast = PATCH_FIRM, PATCH_FAST
+        elif pad.surface == DISC:
+            firm, fast = INNER * FIRM, INNER * FAST
     if most > firm * firm * limit or swing > STILL * STILL * limit:
         return world.substep_ticks
     return world.calm_ticks if most > fast * fast * limit else ticks
@@ -235,7 +248,7 @@ def longest_substep(
 @compiled
 def squared_norm(pad: Pad, fx: float, fy: float, torque: float) -> float:
     """Square of a wrench in the norm of the limit surface, times r [N^2 m^2]."""
-    return pad.r * pad.r * (fx * fx + fy * fy) + torque * torque
+    return pad.radius * pad.radius * (fx * fx + fy * fy) + torque * torque
 
 
 @compiled
@@ -246,4 +259,5 @@ def squared_vibration_force(world: World, pad: Pad, normal: float) -> float:
     """
     vx, vy, omega = world.relative_velocity
     energy = world.mass * (vx * vx + vy * vy) + world.inertia * omega * omega
-    return 0.5 * pad.r * pad.r * pad.sigma_0 * normal * energy
+    bristles = pad.sigma_0 * normal
+    return 0.5 * pad.radius * pad.radius * bristles / (1.0 + pad.compliance * bristles) * energy

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.contact.pressure import patch_cells
-from slipgym.contact.records import pads, patch
+from slipgym.contact.pressure import OUTER_RADII, patch_cells
+from slipgym.contact.records import DISC, ELLIPSOID, X, Y, pads, patch
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.force_torque import force_torque
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
@@ -31,7 +32,7 @@ class Plant:
     pads: np.ndarray
     """PAD (n, 2)."""
     cells: np.ndarray | None
-    """Patches (n, 2, CELL_FIELDS, m); None for ellipsoids."""
+    """Patches (n, 2, CELL_FIELDS, m); None for hard ellipsoids, (n, 2, 0) for pads that are soft or discs."""
     fingers: np.ndarray
     """FINGER (n, 2)."""
     force_torque: np.ndarray
@@ -94,12 +95,26 @@ def patch_of(config: Config) -> np.ndarray:
     return patch(positions / (loads @ np.hypot(*positions.T)), loads)
 
 
+def stretched(cells: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """Cells (..., CELL_FIELDS, m) of an anisotropic pad, positions by its `axes` (..., 2).
+
+    A scaled displacement along x changes with the position along y, and the other way round.
+    """
+    cells = cells.copy()
+    cells[..., X, :] *= axes[..., 1, None]
+    cells[..., Y, :] *= axes[..., 0, None]
+    return cells
+
+
 def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
     world = np.zeros(n, WORLD)
     world["tick_length"] = 1.0 / tick_rate
     world["control_ticks"] = tick_rate // config.physics.control_rate
     world["engine_ticks"] = tick_rate // config.physics.engine_rate
-    world["substep_ticks"] = max(1, math.floor(config.physics.substep_max * tick_rate * (1 + 1e-9)))
+    physics = config.physics
+    patches = config.contact.model == "distributed"
+    longest = min(physics.substep_max, physics.patch_substep_max) if patches else physics.substep_max
+    world["substep_ticks"] = max(1, math.floor(longest * tick_rate * (1 + 1e-9)))
     world["calm_ticks"] = max(1, math.floor(config.physics.planar_substep_max * tick_rate * (1 + 1e-9)))
     world["gravity"] = config.physics.gravity
     world["axes"] = 1.0, 0.0
@@ -111,14 +126,33 @@ def _pads(config: Config, n: int) -> np.ndarray:
     fields = "stribeck_velocity", "stribeck_exponent", "sigma_0", "sigma_1", "sigma_2"
     array = pads((n, 2), r=config.contact_radius, **{field: getattr(contact, field) for field in fields})
     array["cop"] = contact.cop_offset
+    array["surface"] = DISC if contact.model == "disc" else ELLIPSOID
+    array["radius_max"] = config.gripper.pad_radius / OUTER_RADII[config.contact.pressure]
+    for name, value in pad_parameters(config).items():
+        array[name] = value
     return array
 
 
+def pad_parameters(config: Config) -> dict[str, Any]:
+    """Fields of PAD that `contact.pad` sets."""
+    pad = config.contact.pad.model_dump()
+    anisotropy, compliance = pad.pop("anisotropy"), pad.pop("shear_compliance")
+    return {**pad, "compliance": compliance, "axes": (1.0 + anisotropy, 1.0 - anisotropy)}
+
+
 def _cells(config: Config, n: int) -> np.ndarray | None:
-    """The patch of every pad; an episode scales it by its r alone."""
-    if config.contact.model == "ellipsoid":
+    """The patch of every pad, which an episode scales by its r alone, or what says that there is none."""
+    if config.contact.model == "distributed":
+        cells = np.tile(patch_of(config), (n, 2, 1, 1))
+        return stretched(cells, np.full((n, 2, 2), pad_parameters(config)["axes"]))
+    if config.contact.model == "ellipsoid" and config.contact.pad.hard:
         return None
-    return np.tile(patch_of(config), (n, 2, 1, 1))
+    return uncelled(n)
+
+
+def uncelled(n: int) -> np.ndarray:
+    """`Plant.cells` of pads that are soft or discs: no numbers, only their kind."""
+    return np.zeros((n, 2, 0))
 
 
 def _fingers(config: Config, n: int) -> np.ndarray:

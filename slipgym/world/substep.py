@@ -16,14 +16,16 @@ import math
 import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.contact.coupled import step_pads
+from slipgym.contact.coupled import set_normal, step_pads
 from slipgym.contact.records import Pad
+from slipgym.contact.soft_pad import load_pad
 from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.slip_velocity import accumulate_slip
 from slipgym.world.actuator import advance_lag, apply_due_commands, ticks_to_next_command
 from slipgym.world.object_motion import (
     drift_on_pads,
     follow_pads,
+    force_at_start,
     free_motion,
     free_motion_on_pads,
     motion_without_forces,
@@ -59,6 +61,8 @@ def advance_engine_step(
     for f in range(2):
         fingers[f].mean_force = 0.0
         fingers[f].reaction[:] = 0.0
+    for f in range(2):
+        load_pad(pads[f], pads[f].normal)
     both = (pads[0], pads[1]), cells, (fingers[0], fingers[1]), (slip_sensors[0], slip_sensors[1])
     while world.tick < end:
         for f in range(2):
@@ -108,7 +112,8 @@ def substep(
         mean = advance_lag(fingers[f], h)
         fingers[f].mean_force += fraction * mean
         # in slip the momentum counts, hence the mean force; in stick the force at the sub-step's end
-        pads[f].normal = normal_force(fingers[f], mean if pads[f].slip_rate != 0.0 else fingers[f].force)
+        force = mean if pads[f].slip_rate != 0.0 else fingers[f].force
+        set_normal(pads[f], cells, normal_force(fingers[f], force))
     advance_object(world, pads, cells, slip_sensors, h)
     cos, sin = pad_axes(world)
     for f in range(2):
@@ -134,28 +139,42 @@ def advance_object(
     # in stick: backward Euler. In slip or without contact: the mean of the velocities at both ends, of second
     # order. Where slip ends within the sub-step that would reverse the velocity: this counts as stick
     held = sticks(pads[0], h) or sticks(pads[-1], h)
+    # rubber vibrates slowly: the mean of the forces at both ends, of second order, where sub-steps resolve it
+    elastic = False
+    if held and cells is not None:
+        elastic = pads[0].compliance > 0.0 and h < 1.001 * world.substep_ticks * world.tick_length
+    part = 0.5 * len(pads)  # one pad holds half of the object
     if held:
         drift = drift_on_pads(world, h)
+        before = force_at_start(world, pads) if elastic else (0.0, 0.0, 0.0)
         move_wrist(world, h)
-        free, middle = free_motion_on_pads(world, drift, h), (0.0, 0.0)
+        free = free_motion_on_pads(world, drift, before, elastic, h)
+        part, middle = (4.0 if elastic else 1.0) * part, (0.0, 0.0)
     else:
         move_wrist(world, h)
         drift = motion_without_forces(world, h)
-        free, middle = free_motion(world, drift, h), (0.5 * drift[0], 0.5 * drift[1])
+        free = free_motion(world, drift, h)
+        part, middle = 2.0 * part, (0.5 * drift[0], 0.5 * drift[1])
     # levers at the time at which the accelerations apply
     centre = (world.relative[0] + middle[0], world.relative[1] + middle[1])
     # only firm stick takes sub-steps this long: the drift without friction would lie far beyond break-away,
     # from where Newton's iteration may not converge
     firm = h > 1.001 * world.calm_ticks * world.tick_length
     guess = (0.0, 0.0, 0.0) if firm else drift
-    part = (0.5 if held else 1.0) * len(pads)  # one pad holds half of the object
     motion = step_pads(pads, cells, (part * world.mass, part * world.inertia), centre, free, guess, h)
     rate = 1.0 / h  # a product costs less than a quotient
     for a in range(3):
         world.relative[a] += motion[a]
         world.relative_velocity[a] = motion[a] * rate
     if held:
-        follow_pads(world)
+        # at the end: by backward Euler that of the sub-step, else twice it less that at the start
+        both, start = (2.0 * rate, rate) if elastic else (rate, 0.0)
+        follow_pads(
+            world,
+            both * motion[0] - start * drift[0],
+            both * motion[1] - start * drift[1],
+            both * motion[2] - start * drift[2],
+        )
     else:
         slide(world, free, motion, h)
     slip = (motion[0] + motion[2] * centre[1], motion[1] - motion[2] * centre[0], motion[2])

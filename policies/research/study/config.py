@@ -12,6 +12,7 @@ from policies.task_names import canonical
 from slipgym.config import load_randomization
 from slipgym.config.base import Count, Frozen, Positive, PositiveInterval, as_tuple
 from slipgym.config.errors import unknown
+from slipgym.config.physics import ContactModel
 
 Kind: TypeAlias = Literal["classic", "learned"]
 Source: TypeAlias = Literal["none", "nominal", "estimated", "true"]
@@ -28,7 +29,7 @@ class World(Frozen):
 
     label: str = Field(min_length=1, description="How tables and figures call it [-]")
     engine: Literal["bullet", "planar"] = Field(description="What moves the bodies [-]")
-    contact: Literal["ellipsoid", "distributed"] = Field(description="Friction model [-]")
+    contact: ContactModel = Field(description="Friction model [-]")
     presets: Names = Field(default=(), description="Presets to run here; none given: all of the study [-]")
     sources: Sources = Field(default=SOURCES, description="Friction sources to run here [-]")
     estimators: Names = Field(default=(), description="Estimators to run here; none given: all [-]")
