@@ -20,7 +20,7 @@ from slipgym.contact.coupled import step_pads
 from slipgym.contact.records import Pad
 from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.slip_velocity import accumulate_slip
-from slipgym.world.actuator import advance_lag, apply_due_commands, ticks_to_next_command
+from slipgym.world.actuator import advance_fingers, apply_due_commands, mean_force, ticks_to_next_command
 from slipgym.world.object_motion import (
     drift_on_pads,
     follow_pads,
@@ -104,11 +104,12 @@ def substep(
         h: Time [s].
         fraction: Of the engine step: weight in its mean force and friction.
     """
+    mean = advance_fingers(fingers, h)
+    now = mean_force(fingers)
     for f in range(2):
-        mean = advance_lag(fingers[f], h)
         fingers[f].mean_force += fraction * mean
         # in slip the momentum counts, hence the mean force; in stick the force at the sub-step's end
-        pads[f].normal = normal_force(fingers[f], mean if pads[f].slip_rate != 0.0 else fingers[f].force)
+        pads[f].normal = normal_force(fingers[f], mean if pads[f].slip_rate != 0.0 else now)
     advance_object(world, pads, cells, slip_sensors, h)
     cos, sin = pad_axes(world)
     for f in range(2):
