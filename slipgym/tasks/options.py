@@ -25,7 +25,9 @@ class EpisodeOptions(Frozen):
     finger_friction: Factors | None = Field(
         default=None, description="Friction of each finger over mu_s and mu_c [-]"
     )
-    finger_radius: Factors | None = Field(default=None, description="Contact radius of each finger over r [-]")
+    finger_radius: Factors | None = Field(
+        default=None, description="Contact radius of each finger over r [-]"
+    )
     cop_offset: Points | None = Field(
         default=None, description="Centre of pressure (x, y) from the pad's centre, per finger [m]"
     )
