@@ -29,7 +29,7 @@ DIFFERENCES = {
     "finger_lag": Difference(_PER_FINGER, "gripper"),
     "force_gain": Difference(_PER_FINGER, "gripper"),
 }
-"""Name in the configuration, among the fields of `Ranges` and among the reset options -> what it consists of."""
+"""Name in the configuration, in `Ranges` and among the reset options -> what it consists of."""
 
 Numbers = tuple[float, ...]
 

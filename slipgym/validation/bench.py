@@ -84,9 +84,9 @@ class Bench:
         self.friction = friction or Friction()
         self.box = uniform_box(self.config, **box)
         self.plant = build(self.config)
-        contact = self.config.contact
+        own = self.config.contact
         for field in ("mu_s", "mu_c", "r"):
-            factors = contact.finger_radius if field == "r" else contact.finger_friction
+            factors = own.finger_radius if field == "r" else own.finger_friction
             self.plant.pads[field] = getattr(self.friction, field) * np.array(factors)
         self._alone = engine == "planar"
         make = PlanarWorld if self._alone else _WatchedWorld
