@@ -215,8 +215,8 @@ def expected_wrench(pads: Records, f: int, load: Vector) -> Vector:
     if len(pads) == 1:
         gx, gy = 0.5 * load[0], 0.5 * load[1]
         return gx, gy, 0.5 * load[2] - pad.cop[0] * gy + pad.cop[1] * gx
-    # pads that differ keep what they have; of a change each takes half of the force, at its centre of pressure,
-    # and of the torque a part in proportion to its bristles' stiffness
+    # pads that differ keep what they have; of a change each takes half of the force, at its centre of
+    # pressure, and of the torque a part in proportion to its bristles' stiffness
     gx, gy, torque, stiffness = load[0], load[1], load[2], 0.0
     for k in range(len(pads)):
         fx, fy, tau = pads[k].wrench
