@@ -2,6 +2,7 @@
 
 import re
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
@@ -182,6 +183,27 @@ def test_drift_and_jumps_keep_the_fingers_factors(make, engine):
         np.testing.assert_allclose(info["true_per_finger"], start * [factor, factor, 1.0], rtol=1e-12)
         np.testing.assert_allclose(info["true"], info["true_per_finger"].mean(axis=0), rtol=1e-12)
         np.testing.assert_allclose(observation[-6:-3], info["true"], rtol=1e-6)
+
+
+def test_rows_with_fingers_of_their_own_equal_scalar_environments():
+    rows = [UNLIKE, None, {"force_gain": (1.2, 0.8)}]
+    arguments = {"randomization": "eval_ood", "config": {"contact": {"radius": 0.009}}}
+    env = gym.make_vec(LINEAR, num_envs=3, **arguments)
+    said = [env.reset(seed=5, options={"r": 0.008, "rows": rows})]
+    actions = np.full((3, 1), -0.7, np.float32)
+    said += [env.step(actions) for _ in range(80)]
+    env.close()
+    for i, row in enumerate(rows):
+        one = gym.make(LINEAR, engine="planar", **arguments).unwrapped
+        observation, info = one.reset(seed=5 + i, options={"r": 0.008, **(row or {})})
+        np.testing.assert_array_equal(said[0][0][i], observation)
+        for step in said[1:]:
+            observation, reward, *_, info = one.step(actions[0])
+            np.testing.assert_array_equal(step[0][i], observation)
+            assert step[1][i] == reward
+            for name in ("true", "true_per_finger", "grip_force", "slip"):
+                np.testing.assert_array_equal(step[-1][name][i], info[name])
+        one.close()
 
 
 def test_fingers_measure_their_own_centre_of_pressure(make):
