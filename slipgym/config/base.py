@@ -31,6 +31,8 @@ Count = Annotated[int, Field(ge=1)]
 _LIST = BeforeValidator(as_tuple)
 Point = Annotated[tuple[float, float], _LIST]
 Points = Annotated[tuple[Point, Point], _LIST]
+_Factor = Annotated[float, Field(ge=0.1, le=10.0)]
+Factors = Annotated[tuple[_Factor, _Factor], _LIST]
 Size = Annotated[tuple[Positive, Positive, Positive], _LIST]
 Interval = Annotated[tuple[NonNegative, NonNegative], _LIST, AfterValidator(ordered)]
 PositiveInterval = Annotated[tuple[Positive, Positive], _LIST, AfterValidator(ordered)]

@@ -4,7 +4,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
-from slipgym.config.base import Frozen, NonNegative, Point, Positive, Size
+from slipgym.config.base import Factors, Frozen, NonNegative, Point, Positive, Size
 
 
 def box_inertia(mass: float, a: float, b: float) -> float:
@@ -23,7 +23,9 @@ class GripperConfig(Frozen):
         description="Commands below this open the force loop: no force applied [N]"
     )
     lag: NonNegative = Field(description="Time constant of the closed force loop, first order [s]")
+    finger_lag: Factors = Field(description="Time constant of each finger's force loop over lag [-]")
     dead_time: NonNegative = Field(description="Dead time of the force loop, before its lag [s]")
+    force_gain: Factors = Field(description="Force of each finger's actuator over the commanded [-]")
     force_step: Positive = Field(
         description="Largest change of the commanded force per control step in mode force_increment [N]"
     )

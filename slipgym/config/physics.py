@@ -4,7 +4,7 @@ from typing import Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
-from slipgym.config.base import Count, Frozen, NonNegative, Points, Positive
+from slipgym.config.base import Count, Factors, Frozen, NonNegative, Points, Positive
 from slipgym.config.pad import PadConfig
 from slipgym.contact.pressure import PressureName
 
@@ -60,6 +60,8 @@ class ContactConfig(Frozen):
     radius: Positive | None = Field(
         description="Radius r of the equivalent rim contact; null: that of the pressure on the whole pad [m]"
     )
+    finger_friction: Factors = Field(description="Friction of each finger over the material's [-]")
+    finger_radius: Factors = Field(description="Contact radius of each finger over r [-]")
     cop_offset: Points = Field(description="Centre of pressure (x, y) from the pad's centre, per finger [m]")
     pad: PadConfig = Field(description="What the pads' rubber adds")
 

@@ -47,6 +47,15 @@ class Ranges(Frozen):
     radius_scale: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
         default=None, description="Contact radius r over the task's"
     )
+    finger_friction: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
+        default=None, description="Friction over that of the material, for each finger"
+    )
+    finger_radius: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
+        default=None, description="Contact radius over r, for each finger"
+    )
+    cop_offset: Annotated[Distribution | None, within(-0.05, 0.05)] = Field(
+        default=None, description="Centre of pressure off the pad's centre, each finger's x and y [m]"
+    )
     pressure: Pressures | None = Field(
         default=None, description="Pressure profiles of the patch to sample from"
     )
@@ -65,8 +74,14 @@ class Ranges(Frozen):
     lag: Annotated[Distribution | None, within(0.0, 0.2)] = Field(
         default=None, description="Time constant of the force loop [s]"
     )
+    finger_lag: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
+        default=None, description="Time constant over lag, for each finger"
+    )
     dead_time: Annotated[Distribution | None, within(0.0, 0.1)] = Field(
         default=None, description="Dead time of the force loop [s]"
+    )
+    force_gain: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
+        default=None, description="Actuator force over the commanded, for each finger"
     )
     noise_scale: Annotated[Distribution | None, within(0.0, 10.0)] = Field(
         default=None, description="White noise of all sensors over the configured"

@@ -1,6 +1,7 @@
 """`Config`, the configuration of an environment without its task's settings."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from typing import Self
 
 from pydantic import Field, model_validator
@@ -61,7 +62,19 @@ class Config(Frozen):
             )
         self.check_patch(name, r)
 
+    def check_cop_offset(self, name: str, points: Sequence[tuple[float, float]]) -> None:
+        """Raise ValueError if a finger's centre of pressure lies outside its pad; `name` is its key."""
+        pad = self.gripper.pad_radius
+        for f, (x, y) in enumerate(points, 1):
+            if math.hypot(x, y) > pad:
+                raise ValueError(
+                    f"{name}: ({x:g}, {y:g}) m of finger {f} must lie on the pad, whose radius is {pad:g} m"
+                )
+
     @model_validator(mode="after")
     def _contact_fits_pad(self) -> Self:
         self.check_radius("contact.radius", self.contact_radius)
+        largest = self.contact_radius * max(self.contact.finger_radius)
+        self.check_radius("contact.finger_radius: the larger radius r", largest)
+        self.check_cop_offset("contact.cop_offset", self.contact.cop_offset)
         return self

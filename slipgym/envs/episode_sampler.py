@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -12,6 +12,7 @@ from slipgym.config import Config
 from slipgym.config.errors import unknown
 from slipgym.config.hardware import box_inertia
 from slipgym.config.task import TaskConfig
+from slipgym.envs.finger_differences import chosen_differences
 from slipgym.envs.hardware_randomization import HardwareRandomization
 from slipgym.envs.randomizer import Draw, Randomizer, schedule_disturbance
 from slipgym.envs.reset_kernels import NUMBERS, START, begin_episode
@@ -30,7 +31,7 @@ LATENCY = "velocity_delay"
 
 @dataclass(frozen=True)
 class Friction:
-    """True friction of an episode."""
+    """True friction of an episode, to which each finger's own factors apply."""
 
     mu_s: float
     """Static friction [-]."""
@@ -98,7 +99,8 @@ class EpisodeSampler:
             settings = options.applied_to(self._settings)
             friction = draw_friction(self._config, options, settings, material, draw, rng)
             box = make_box(self._config, options, settings, draw, rng)
-            numbers[k] = self._numbers(i, settings, draw, friction, box)
+            differences = chosen_differences(draw.config, options, draw.differences, friction.r)
+            numbers[k] = self._numbers(i, settings, draw, friction, box, differences)
             begin_episode(self._episode, self._blank, starts, k)
             episode = self._episode[i]
             self._task.start(settings, options, rng, episode)
@@ -106,11 +108,18 @@ class EpisodeSampler:
                 schedule_disturbance(disturbance, u, episode)
             rng.standard_normal(out=biases[k])
             keys[k], shares[k] = draw_sensors(2, rng)
+            self._hardware.apply_differences(i, differences, draw.values["lag"])
             self._note(i, options, draw, friction, box)
         return starts
 
     def _numbers(
-        self, i: int, settings: TaskConfig, draw: Draw, friction: Friction, box: Box
+        self,
+        i: int,
+        settings: TaskConfig,
+        draw: Draw,
+        friction: Friction,
+        box: Box,
+        differences: Mapping[str, tuple[float, ...]],
     ) -> tuple[Any, ...]:
         """Fields `NUMBERS` of START."""
         pad = self._config.gripper.pad_radius
@@ -124,6 +133,8 @@ class EpisodeSampler:
             (box.size[0] / 2 - pad, box.size[2] / 2 - pad),
             (-box.grasp_offset[0], -box.grasp_offset[1]),
             (friction.mu_s, friction.mu_c, friction.r),
+            differences["finger_friction"],
+            differences["finger_radius"],
             draw.values["friction_drift"],
             draw.values["bias_scale"],
         )

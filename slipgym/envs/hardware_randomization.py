@@ -51,6 +51,20 @@ class HardwareRandomization:
         dead_ticks(self._config, most["dead_time"], "randomization.dead_time")
         check_slip_latency(self._config, round(most["slip_latency"]), "randomization.slip_latency")
 
+    def apply_differences(self, i: int, differences: Mapping[str, Sequence[float]], lag: float) -> None:
+        """Set what differs between the fingers of a world, except their friction and radius.
+
+        Args:
+            i: Index of the world.
+            differences: See `slipgym.envs.finger_differences`.
+            lag: Time constant of the force loop that each finger's factor applies to [s].
+        """
+        fingers, cop = self._plant.fingers, self._plant.pads["cop"]
+        first, second = differences["finger_lag"]
+        fingers["lag"][i] = first * lag, second * lag
+        fingers["gain"][i] = differences["force_gain"]
+        cop[i].flat = differences["cop_offset"]
+
     def apply(self, i: int, values: Mapping[str, float], pressure: str) -> None:
         """Set the parameters of a world's episode.
 
@@ -64,7 +78,6 @@ class HardwareRandomization:
             plant.pads[field][i] = values[field]
         if plant.cells is not None:
             plant.cells[i] = self._cells[pressure]
-        plant.fingers["lag"][i] = values["lag"]
         plant.fingers["dead_ticks"][i] = dead_ticks(self._config, values["dead_time"])
         plant.force_torque["noise"][i] = values["noise_scale"] * self._force_noise
         plant.slip_sensors["noise"][i] = values["noise_scale"] * self._slip_noise

@@ -35,7 +35,16 @@ class Info(NamedTuple):
 
 
 NUMBERS = (
-    Info("true", (3,), "-, -, m", "true (mu_s, mu_c, r) now", "ground_truth[i, {0}]"),
+    Info(
+        "true", (3,), "-, -, m", "true (mu_s, mu_c, r) now, mean of both fingers", "ground_truth[i, {0}]"
+    ),
+    Info(
+        "true_per_finger",
+        (2, 3),
+        "-, -, m",
+        "true (mu_s, mu_c, r) of each finger now",
+        "(pads[i, {0}].mu_s, pads[i, {0}].mu_c, pads[i, {0}].r)[{1}]",
+    ),
     Info(
         "estimated",
         (3,),

@@ -12,6 +12,13 @@ import numpy as np
 from slipgym.config import Config, Material, Randomization, Ranges, TaskConfig
 from slipgym.config.disturbances import AnyDisturbance, FrictionJump, MassChange, Push, Shake, SurfaceRegion
 from slipgym.config.errors import unknown
+from slipgym.envs.finger_differences import (
+    DIFFERENCES,
+    Numbers,
+    named,
+    nominal_differences,
+    sample_difference,
+)
 from slipgym.envs.hardware_randomization import with_pressure
 from slipgym.tasks.options import EpisodeOptions
 
@@ -26,11 +33,12 @@ _FIXED_BY = {
     "com_x": "com_offset",
     "com_z": "com_offset",
     "radius_scale": "r",
+    **{name: name for name in DIFFERENCES},
 }
 
 
 def nominal_values(config: Config) -> dict[str, float]:
-    """Values of the numeric fields of `Ranges` without randomization, except those in `FRICTION`."""
+    """Values of the numeric fields of `Ranges` without randomization, except `FRICTION` and `DIFFERENCES`."""
     contact, gripper = config.contact, config.gripper
     return {
         "friction_drift": 0.0,
@@ -62,6 +70,8 @@ class Draw:
     """Fraction of the randomization's ranges, 0 (no randomization) to 1."""
     values: Mapping[str, float]
     """Every number of `nominal_values`, sampled or not."""
+    differences: Mapping[str, Numbers]
+    """Every number of `DIFFERENCES`, sampled or not."""
     drawn: tuple[str, ...]
     """Names of the values that were sampled."""
     friction: Mapping[str, float]
@@ -83,9 +93,13 @@ class Draw:
     def report(self, options: EpisodeOptions) -> dict[str, Any]:
         """Sampled values that options do not fix, JSON-like; friction and mass come from the episode."""
         kept = [name for name in self.drawn if getattr(options, _FIXED_BY.get(name, ""), None) is None]
+        numbers = {}
+        for name in kept:
+            own = self.differences.get(name)
+            numbers |= {name: self.values[name]} if own is None else named(name, own)
         happened = ", ".join(disturbance.kind for disturbance, _ in self.disturbances)
         return {
-            **{name: self.values[name] for name in kept},
+            **numbers,
             "pressure": self.config.contact.pressure,
             "disturbances": happened,
         }
@@ -111,7 +125,7 @@ class Randomizer:
 
     def __init__(self, config: Config, settings: TaskConfig, task: str, randomization: Randomization) -> None:
         self._ranges = randomization.of(task)
-        self._nominal = nominal_values(config)
+        self._nominal, self._alike = nominal_values(config), nominal_differences(config)
         self.active = self._ranges != Ranges()
         fields = ((name, getattr(self._ranges, name)) for name in Ranges.model_fields)
         self._drawn = [
@@ -128,10 +142,19 @@ class Randomizer:
         for material in self._ranges.materials or ():
             if material not in config.materials:
                 raise ValueError(f"randomization: {unknown('material', material, config.materials)}")
+        if self._ranges.cop_offset is not None:
+            least, most = self._ranges.cop_offset.ends
+            farthest = max(abs(least), abs(most))
+            config.check_cop_offset("randomization.cop_offset: the farthest", [(farthest, farthest)])
         for variant in self._configs.values():
             r = self.most["radius_scale"] * (settings.radius or variant.contact_radius)
+            r *= self._largest("finger_radius")
             if self.active:
                 _check_radius(variant, r)
+
+    def _largest(self, name: str) -> float:
+        field, nominal = getattr(self._ranges, name), self._alike[name]
+        return max(*nominal, field.ends[1]) if field else max(nominal)
 
     def draws(self, name: str) -> bool:
         """Whether a number of `nominal_values` is randomized."""
@@ -145,8 +168,14 @@ class Randomizer:
             scale: 0 for the configuration, 1 for the full ranges. Numbers are interpolated; names and
                 disturbances are sampled with this probability.
         """
-        values, friction, names, drawn = dict(self._nominal), {}, {}, []
+        values, differences = dict(self._nominal), self._alike
+        friction, names, drawn = {}, {}, []
         for name, field in self._drawn:
+            if name in DIFFERENCES:
+                numbers = sample_difference(field, self._alike[name], scale, rng)
+                differences = {**differences, name: numbers}
+                drawn.append(name)
+                continue
             u, gate = rng.random(2).tolist()
             if isinstance(field, tuple):
                 names[name] = field[int(u * len(field))] if gate < scale else None
@@ -163,7 +192,14 @@ class Randomizer:
                 disturbances.append((disturbance, np.array(u)))
         config = self._configs[names.get("pressure") or self._pressure]
         return Draw(
-            scale, values, tuple(drawn), friction, names.get("materials"), config, tuple(disturbances)
+            scale=scale,
+            values=values,
+            differences=differences,
+            drawn=tuple(drawn),
+            friction=friction,
+            material=names.get("materials"),
+            config=config,
+            disturbances=tuple(disturbances),
         )
 
 

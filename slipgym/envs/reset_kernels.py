@@ -22,6 +22,8 @@ START = np.dtype(
         ("reach", "f8", 2),  # as in EPISODE, like the next one
         ("object_centre", "f8", 2),
         ("friction", "f8", 3),  # mu_s, mu_c [-], r [m]
+        ("finger_friction", "f8", 2),  # of either pad over mu_s and mu_c [-]
+        ("finger_radius", "f8", 2),  # of either pad over r [-]
         ("drift", "f8"),  # relative rate of mu_s and mu_c [1/s]
         ("bias_scale", "f8"),  # spread of the biases beyond the configured one, over the noise [-]
         # drawn last
@@ -52,6 +54,7 @@ def begin_episode(episodes, blank, starts, k):
     episode.mu_s, episode.mu_c, episode.drift = start.friction[0], start.friction[1], start.drift
     for a in range(2):
         episode.reach[a], episode.object_centre[a] = start.reach[a], start.object_centre[a]
+        episode.finger_friction[a] = start.finger_friction[a]
 
 
 @compiled
@@ -86,18 +89,22 @@ def equip(starts, spread, noise, pads, force_torque, slip_sensors, ground_truth)
         pads: PAD (n, 2).
         force_torque: FORCE_TORQUE (n, 2).
         slip_sensors: SLIP_SENSOR (n, 2).
-        ground_truth: Output (n, 6), of which the first three are mu_s, mu_c, r.
+        ground_truth: Output (n, 6), of which the first three are mu_s, mu_c, r, mean of both pads.
     """
     for k in range(starts.shape[0]):
         start = starts[k]
         i = start.row
-        for a in range(3):
-            ground_truth[i, a] = start.friction[a]
         for f in range(2):
-            pads[i, f].mu_s, pads[i, f].mu_c, pads[i, f].r = start.friction
+            pad, factor = pads[i, f], start.finger_friction[f]
+            pad.mu_s, pad.mu_c = factor * start.friction[0], factor * start.friction[1]
+            pad.r = start.finger_radius[f] * start.friction[2]
             for a in range(6):
                 scale = spread[a] + start.bias_scale * noise[a]
                 force_torque[i, f].bias[a] = scale * start.biases[f, a]
+        first, second = pads[i, 0], pads[i, 1]
+        ground_truth[i, 0] = 0.5 * (first.mu_s + second.mu_s)
+        ground_truth[i, 1] = 0.5 * (first.mu_c + second.mu_c)
+        ground_truth[i, 2] = 0.5 * (first.r + second.r)
         start_sensors(force_torque[i], slip_sensors[i], start.keys, start.shares)
 
 

@@ -27,6 +27,7 @@ FIELDS = [
     ("mass_factor", "f8"),  # after over before [-]
     ("mu_s", "f8"),  # at reset [-]
     ("mu_c", "f8"),
+    ("finger_friction", "f8", 2),  # of either pad over these [-]
     ("drift", "f8"),  # relative rate of both [1/s]
     ("jump_step", "i8"),  # control step at which both change
     ("jump_factor", "f8"),  # after over before [-]
@@ -81,7 +82,7 @@ def disturb(episodes, worlds, pads, friction):
         episodes: EPISODE (n,).
         worlds: WORLD (n,).
         pads: PAD (n, 2).
-        friction: Output (n, 3): mu_s and mu_c now; r is unchanged.
+        friction: Output (n, 3): mu_s and mu_c now, mean of both pads; r is unchanged.
     """
     for i in range(episodes.shape[0]):
         episode, world = episodes[i], worlds[i]
@@ -92,6 +93,8 @@ def disturb(episodes, worlds, pads, friction):
         heavier = episode.mass_factor if episode.step >= episode.mass_step else 1.0
         world.mass, world.inertia = heavier * episode.mass, heavier * episode.inertia
         factor = friction_factor(episode, world)
-        friction[i, 0], friction[i, 1] = factor * episode.mu_s, factor * episode.mu_c
-        for f in range(pads.shape[1]):
-            pads[i, f].mu_s, pads[i, f].mu_c = friction[i, 0], friction[i, 1]
+        for f in range(2):
+            own = factor * episode.finger_friction[f]
+            pads[i, f].mu_s, pads[i, f].mu_c = own * episode.mu_s, own * episode.mu_c
+        friction[i, 0] = 0.5 * (pads[i, 0].mu_s + pads[i, 1].mu_s)
+        friction[i, 1] = 0.5 * (pads[i, 0].mu_c + pads[i, 1].mu_c)

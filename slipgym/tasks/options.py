@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import Field, ValidationError, create_model
 
-from slipgym.config.base import Frozen, Point, Positive, Size
+from slipgym.config.base import Factors, Frozen, Point, Points, Positive, Size
 from slipgym.config.errors import unknown
 from slipgym.config.task import Reset, SettingsT, TaskConfig
 
@@ -22,6 +22,21 @@ class EpisodeOptions(Frozen):
     mu_s: Positive | None = Field(default=None, le=5.0, description="Static friction, >= mu_c [-]")
     mu_c: Positive | None = Field(default=None, le=5.0, description="Coulomb friction [-]")
     r: Positive | None = Field(default=None, le=0.1, description="Radius of the equivalent rim contact [m]")
+    finger_friction: Factors | None = Field(
+        default=None, description="Friction of each finger over mu_s and mu_c [-]"
+    )
+    finger_radius: Factors | None = Field(
+        default=None, description="Contact radius of each finger over r [-]"
+    )
+    cop_offset: Points | None = Field(
+        default=None, description="Centre of pressure (x, y) from the pad's centre, per finger [m]"
+    )
+    finger_lag: Factors | None = Field(
+        default=None, description="Time constant of each finger's force loop over the gripper's [-]"
+    )
+    force_gain: Factors | None = Field(
+        default=None, description="Force of each finger's actuator over the commanded [-]"
+    )
     object_mass: float | None = Field(default=None, ge=0.01, le=5.0, description="Mass of the object [kg]")
     object_size: Size | None = Field(default=None, description="Extent along x, the grip axis and z [m]")
     com_offset: Point | None = Field(

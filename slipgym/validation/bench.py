@@ -22,7 +22,7 @@ SETTLE_TIME = 0.25  # [s]; twenty time constants of the force loop
 
 @dataclass(frozen=True)
 class Friction:
-    """Friction of both pads."""
+    """Friction of both pads, to which each finger's factors of the configuration apply."""
 
     mu_s: float = 0.5155
     """Static friction [-]; wood."""
@@ -84,8 +84,10 @@ class Bench:
         self.friction = friction or Friction()
         self.box = uniform_box(self.config, **box)
         self.plant = build(self.config)
+        own = self.config.contact
         for field in ("mu_s", "mu_c", "r"):
-            self.plant.pads[field] = getattr(self.friction, field)
+            factors = own.finger_radius if field == "r" else own.finger_friction
+            self.plant.pads[field] = getattr(self.friction, field) * np.array(factors)
         self._alone = engine == "planar"
         make = PlanarWorld if self._alone else _WatchedWorld
         self.world: PlanarWorld | _WatchedWorld = make(self.config, self.plant)

@@ -62,7 +62,12 @@ class PlanarWorld:
         world, fingers = self._plant.world[0], self._plant.fingers[0]
         (x, z), angle, (v_x, v_z, omega) = world["com"], float(world["angle"]), world["velocity"]
         pose = (x, 0.0, z), (0.0, -math.sin(angle / 2), 0.0, math.cos(angle / 2))
-        return pose, ((v_x, 0.0, v_z), (0.0, -omega, 0.0)), tuple(world["wrist"]), tuple(fingers["force"])
+        return (
+            pose,
+            ((v_x, 0.0, v_z), (0.0, -omega, 0.0)),
+            tuple(world["wrist"]),
+            tuple(fingers["contact_force"]),
+        )
 
     def close(self) -> None:
         """There is nothing to release."""

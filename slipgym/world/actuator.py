@@ -1,10 +1,20 @@
-"""Simulates the force loop of a finger: dead time, first-order lag, limits (arXiv 2410.19660)."""
+"""Simulates the force loop of a finger: dead time, first-order lag, limits (arXiv 2410.19660).
+
+The jaws are coupled, as a parallel gripper's are: what presses on either pad is the mean of both fingers'
+forces. Unequal forces on an object at rest along the grip axis are impossible.
+"""
 
 from __future__ import annotations
 
 from slipgym._numba.compiled import compiled
 from slipgym.contact.decay import decay
-from slipgym.world.records import QUEUE, Finger
+from slipgym.world.records import QUEUE, Finger, Records
+
+
+@compiled
+def actuator_force(finger: Finger, force: float) -> float:
+    """Force that a finger's actuator settles at under a force command [N]."""
+    return min(finger.gain * force, finger.force_limit)
 
 
 @compiled
@@ -14,7 +24,7 @@ def queue_command(finger: Finger, tick: int, force: float) -> None:
         force = 0.0
     slot = finger.queued % QUEUE
     finger.queue_tick[slot] = tick + finger.dead_ticks
-    finger.queue_force[slot] = min(force, finger.force_limit)
+    finger.queue_force[slot] = actuator_force(finger, force)
     finger.queued += 1
 
 
@@ -79,3 +89,48 @@ def advance_lag_through_commands(finger: Finger, tick: int, ticks: int, tick_len
         total += piece * advance_lag(finger, piece * tick_length)
         tick += piece
     return total / ticks
+
+
+@compiled
+def mean_force(fingers: Records) -> float:
+    """Force on either pad now [N]: the mean over one finger or two."""
+    total = 0.0
+    for f in range(len(fingers)):
+        total += fingers[f].force
+    return total / len(fingers)
+
+
+@compiled
+def advance_fingers(fingers: Records, h: float) -> float:
+    """Advance the lag of one finger or two by h; returns the force on either pad, its mean over h [N]."""
+    total = 0.0
+    for f in range(len(fingers)):
+        total += advance_lag(fingers[f], h)
+    return total / len(fingers)
+
+
+@compiled
+def advance_fingers_through_commands(fingers: Records, tick: int, ticks: int, tick_length: float) -> float:
+    """`advance_fingers` by some ticks, with the commands that fall due in them."""
+    total = 0.0
+    for f in range(len(fingers)):
+        total += advance_lag_through_commands(fingers[f], tick, ticks, tick_length)
+    return total / len(fingers)
+
+
+@compiled
+def lowest_mean_force(fingers: Records, tick: int) -> float:
+    """Lower bound of the force on either pad until a tick [N]."""
+    total = 0.0
+    for f in range(len(fingers)):
+        total += lowest_force(fingers[f], tick)
+    return total / len(fingers)
+
+
+@compiled
+def highest_mean_force(fingers: Records, tick: int) -> float:
+    """Upper bound of the force on either pad until a tick [N]."""
+    total = 0.0
+    for f in range(len(fingers)):
+        total += highest_force(fingers[f], tick)
+    return total / len(fingers)

@@ -151,7 +151,7 @@ class BulletWorld:
         if any(wrist):
             self._place(wrist)
         *bodies, speeds = self._read()
-        self._reading = *bodies, (force, force), speeds
+        self._reading = *bodies, tuple(self._plant.fingers["contact_force"][0].tolist()), speeds
 
     def command(self, force: float) -> None:
         """Command a grip force per finger [N]; both fingers get the same."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from slipgym._numba.compiled import compiled
 from slipgym.contact.records import Vector, rest, rest_cells
+from slipgym.world.actuator import actuator_force, mean_force
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box
 
@@ -19,7 +20,7 @@ def place(plant: Plant, i: int, box: Box, force: float, wrist: tuple[float, floa
         plant: Arrays of n worlds.
         i: Which of them.
         box: The box.
-        force: Grip force per finger [N].
+        force: Commanded grip force per finger, established [N].
         wrist: Pad centre (x, z) and pitch [m, m, rad].
     """
     body = box.mass, box.inertia, box.size[1] / 2, *box.grasp_from_com
@@ -59,8 +60,11 @@ def place_world(
     for f in range(2):
         finger = fingers[i, f]
         finger.queued = finger.served = 0
-        finger.command = finger.force = finger.mean_force = force
-        finger.contact_mean_force = finger.contact_force = force
+        finger.command = finger.force = actuator_force(finger, force)
+    normal = mean_force(fingers[i])
+    for f in range(2):
+        finger = fingers[i, f]
+        finger.mean_force = finger.contact_mean_force = finger.contact_force = normal
     rest(pads[i])
     if cells is not None:
         rest_cells(cells[i])

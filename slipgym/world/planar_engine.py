@@ -1,6 +1,6 @@
 """The planar engine: object, wrist and fingers without PyBullet, a control step at a time.
 
-The actuators' forces are the pads' normal forces. Sub-steps are long while the contact is calm.
+The mean of both actuators' forces is either pad's normal force. Sub-steps are long while the contact is calm.
 """
 
 from __future__ import annotations
@@ -15,10 +15,11 @@ from slipgym.contact.records import DISC, Pad, Vector
 from slipgym.contact.soft_pad import load_pad, static_limit
 from slipgym.sensors.force_torque import next_sample_read, sample_force_torque
 from slipgym.world.actuator import (
-    advance_lag_through_commands,
+    advance_fingers_through_commands,
     apply_due_commands,
-    highest_force,
-    lowest_force,
+    highest_mean_force,
+    lowest_mean_force,
+    mean_force,
     queue_command,
     ticks_to_next_command,
 )
@@ -95,7 +96,7 @@ def same_pads(first: Pad, second: Pad) -> bool:
 @compiled
 def same_fingers(first: Finger, second: Finger) -> bool:
     """Whether two fingers have the same force loop and force."""
-    same = first.lag == second.lag and first.dead_ticks == second.dead_ticks
+    same = first.lag == second.lag and first.dead_ticks == second.dead_ticks and first.gain == second.gain
     return same and first.force == second.force and first.command == second.command
 
 
@@ -145,8 +146,7 @@ def advance_substeps(
         else:
             ticks = resolved_ticks(world, fingers, force_torque)
         h = ticks * world.tick_length
-        for f in range(len(pads)):
-            set_normal_force(world, pads[f], cells, fingers[f], ticks)
+        set_normal_forces(world, pads, cells, fingers, ticks)
         advance_object(world, pads, cells, slip_sensors, h)
         world.tick += ticks
         done += 1
@@ -154,8 +154,9 @@ def advance_substeps(
             for f in range(2):
                 sample_force_torque(force_torque[f], pads[min(f, len(pads) - 1)], sample)
             sample = next_sample_read(force_torque[0], sample, world.control_ticks)
+    normal = normal_force_of(mean_force(fingers))
     for f in range(len(pads)):
-        fingers[f].contact_force = normal_force_of(fingers[f].force)
+        fingers[f].contact_force = normal
     update_slip(world)
     return done
 
@@ -178,19 +179,23 @@ def wrench_at_rest(world: World) -> Vector:
 
 @compiled
 def normal_force_of(force: float) -> float:
-    """Normal force of a pad at an actuator force [N]: 0 if the open force loop has let it go."""
+    """Normal force of a pad at the mean actuator force [N]: 0 if the open force loop has let it go."""
     return force if force > HOLDING else 0.0
 
 
 @compiled
-def set_normal_force(world: World, pad: Pad, cells: np.ndarray | None, finger: Finger, ticks: int) -> None:
-    """Set a pad's normal force: the actuator's mean over a sub-step in slip, its value at the end in stick.
+def set_normal_forces(
+    world: World, pads: Records, cells: np.ndarray | None, fingers: Records, ticks: int
+) -> None:
+    """Set the pads' normal forces: the mean over a sub-step in slip, the value at its end in stick.
 
     The value at the end would give the momentum of a slide under a closing grip an error of first order.
     """
-    mean = advance_lag_through_commands(finger, world.tick, ticks, world.tick_length)
-    finger.contact_force = normal_force_of(mean if pad.slip_rate != 0.0 else finger.force)
-    set_normal(pad, cells, finger.contact_force)
+    mean = advance_fingers_through_commands(fingers, world.tick, ticks, world.tick_length)
+    now = mean_force(fingers)
+    for f in range(len(pads)):
+        fingers[f].contact_force = normal_force_of(mean if pads[f].slip_rate != 0.0 else now)
+        set_normal(pads[f], cells, fingers[f].contact_force)
 
 
 @compiled
@@ -200,13 +205,42 @@ def longest_common_substep(
     """Ticks of the longest sub-step that resolves the contact of every pad, at most those until `stop`."""
     asked = ticks = stop - world.tick
     for f in range(len(pads)):
-        ticks = min(ticks, longest_substep(world, pads[f], cells, fingers[f], load, asked))
+        goal = expected_wrench(pads, f, load)
+        ticks = min(ticks, longest_substep(world, pads[f], cells, fingers, goal, asked))
     return ticks
 
 
 @compiled
+def expected_wrench(pads: Records, f: int, load: Vector) -> Vector:
+    """Wrench that a pad will have at its centre of pressure when all pads carry a load [N, N, N m].
+
+    Args:
+        pads: Two PAD records, or one that stands for both.
+        f: Which of them.
+        load: Wrench that both pads are to carry, see `wrench_at_rest`.
+    """
+    pad = pads[f]
+    if len(pads) == 1:
+        gx, gy = 0.5 * load[0], 0.5 * load[1]
+        return gx, gy, 0.5 * load[2] - pad.pressure_centre[0] * gy + pad.pressure_centre[1] * gx
+    # pads that differ keep what they have; of a change each takes half of the force, at its centre of
+    # pressure, and of the torque a part in proportion to its bristles' stiffness
+    gx, gy, torque, stiffness = load[0], load[1], load[2], 0.0
+    for k in range(len(pads)):
+        fx, fy, tau = pads[k].wrench
+        gx, gy = gx - fx, gy - fy
+        torque -= tau + pads[k].pressure_centre[0] * fy - pads[k].pressure_centre[1] * fx
+        stiffness += pads[k].radius * pads[k].radius
+    gx, gy = 0.5 * gx, 0.5 * gy
+    for k in range(len(pads)):
+        torque -= pads[k].pressure_centre[0] * gy - pads[k].pressure_centre[1] * gx
+    fx, fy, tau = pad.wrench
+    return fx + gx, fy + gy, tau + torque * pad.radius * pad.radius / stiffness
+
+
+@compiled
 def longest_substep(
-    world: World, pad: Pad, cells: np.ndarray | None, finger: Finger, load: Vector, ticks: int
+    world: World, pad: Pad, cells: np.ndarray | None, fingers: Records, goal: Vector, ticks: int
 ) -> int:
     """Ticks of the longest sub-step that resolves a pad's contact, at most `ticks`, or more.
 
@@ -217,23 +251,22 @@ def longest_substep(
         world: WORLD record.
         pad: PAD record.
         cells: None for ellipsoids; a patch breaks away in parts.
-        finger: FINGER record.
-        load: Wrench that both pads are to carry, see `wrench_at_rest`.
+        fingers: The FINGER records of all pads.
+        goal: Wrench that the pad is to carry, see `expected_wrench`.
         ticks: Ticks asked for.
     """
     if pad.slip_rate != 0.0:
         return world.substep_ticks
-    normal = normal_force_of(lowest_force(finger, world.tick + ticks))
+    normal = normal_force_of(lowest_mean_force(fingers, world.tick + ticks))
     if normal <= 0.0:
-        free = max(finger.contact_force, normal_force_of(highest_force(finger, world.tick + ticks))) <= 0.0
-        return ticks if free else world.substep_ticks
+        highest = normal_force_of(highest_mean_force(fingers, world.tick + ticks))
+        return ticks if max(fingers[0].contact_force, highest) <= 0.0 else world.substep_ticks
     fx, fy, torque = pad.wrench
-    gx, gy = 0.5 * load[0], 0.5 * load[1]
-    goal = 0.5 * load[2] - pad.pressure_centre[0] * gy + pad.pressure_centre[1] * gx
-    most = max(squared_norm(pad, fx, fy, torque), squared_norm(pad, gx, gy, goal))
+    gx, gy, turned = goal
+    most = max(squared_norm(pad, fx, fy, torque), squared_norm(pad, gx, gy, turned))
     weaker = min(pad.axes[0], pad.axes[1])
     limit = (pad.radius * weaker * static_limit(pad, normal)) ** 2
-    swing = squared_norm(pad, fx - gx, fy - gy, torque - goal) + squared_vibration_force(world, pad, normal)
+    swing = squared_norm(pad, fx - gx, fy - gy, torque - turned) + squared_vibration_force(world, pad, normal)
     firm, fast = FIRM, FAST
     if cells is not None:
         if cells.ndim == PATCHES:

@@ -124,7 +124,8 @@ def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
 def _pads(config: Config, n: int) -> np.ndarray:
     contact = config.contact
     fields = "stribeck_velocity", "stribeck_exponent", "sigma_0", "sigma_1", "sigma_2"
-    array = pads((n, 2), r=config.contact_radius, **{field: getattr(contact, field) for field in fields})
+    array = pads((n, 2), **{field: getattr(contact, field) for field in fields})
+    array["r"] = config.contact_radius * np.array(contact.finger_radius)
     array["cop"] = contact.cop_offset
     array["surface"] = DISC if contact.model == "disc" else ELLIPSOID
     array["radius_max"] = config.gripper.pad_radius / OUTER_RADII[config.contact.pressure]
@@ -158,7 +159,8 @@ def uncelled(n: int) -> np.ndarray:
 def _fingers(config: Config, n: int) -> np.ndarray:
     gripper = config.gripper
     fingers = np.zeros((n, 2), FINGER)
-    fingers["lag"] = gripper.lag
+    fingers["lag"] = gripper.lag * np.array(gripper.finger_lag)
+    fingers["gain"] = gripper.force_gain
     fingers["dead_ticks"] = dead_ticks(config, gripper.dead_time)
     fingers["force_limit"] = gripper.force_limit
     fingers["open_below"] = gripper.open_below

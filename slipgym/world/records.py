@@ -43,21 +43,22 @@ FINGER = np.dtype(
     [
         ("lag", "f8"),  # time constant of the force loop [s]
         ("dead_ticks", "i8"),  # dead time in ticks
+        ("gain", "f8"),  # actuator force over the commanded [-]
         ("force_limit", "f8"),  # hard limit of the actuator [N]
         ("open_below", "f8"),  # commands below it open the force loop [N]
         ("queued", "i8"),  # commands ever queued
         ("served", "i8"),  # commands ever put into effect
-        ("command", "f8"),  # command in effect [N]
+        ("command", "f8"),  # command in effect, times gain [N]
         ("force", "f8"),  # actuator force now [N]
         ("relaxed", "f8"),  # sub-step over lag that `decay` and `mean_decay` belong to [-]
         ("decay", "f8"),  # of the gap to the command over a sub-step [-]
         ("mean_decay", "f8"),  # its mean over the sub-step [-]
-        ("mean_force", "f8"),  # actuator force, mean over the engine step [N]
-        ("contact_mean_force", "f8"),  # actuator force, mean over the step of `contact_force` [N]
+        ("mean_force", "f8"),  # mean force of both actuators, mean over the engine step [N]
+        ("contact_mean_force", "f8"),  # the same over the step of `contact_force` [N]
         ("contact_force", "f8"),  # normal force of the engine, mean over its last step [N]
         ("reaction", "f8", 3),  # friction on the object, world, mean over the engine step
         ("queue_tick", "i8", QUEUE),  # when a command takes effect
-        ("queue_force", "f8", QUEUE),  # its value [N]
+        ("queue_force", "f8", QUEUE),  # its value, times gain [N]
     ]
 )
 """One finger: force loop, normal contact and the friction impulse it passes on."""

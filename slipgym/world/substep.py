@@ -21,7 +21,7 @@ from slipgym.contact.records import Pad
 from slipgym.contact.soft_pad import load_pad
 from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.slip_velocity import accumulate_slip
-from slipgym.world.actuator import advance_lag, apply_due_commands, ticks_to_next_command
+from slipgym.world.actuator import advance_fingers, apply_due_commands, mean_force, ticks_to_next_command
 from slipgym.world.object_motion import (
     drift_on_pads,
     follow_pads,
@@ -108,11 +108,12 @@ def substep(
         h: Time [s].
         fraction: Of the engine step: weight in its mean force and friction.
     """
+    mean = advance_fingers(fingers, h)
+    now = mean_force(fingers)
     for f in range(2):
-        mean = advance_lag(fingers[f], h)
         fingers[f].mean_force += fraction * mean
         # in slip the momentum counts, hence the mean force; in stick the force at the sub-step's end
-        force = mean if pads[f].slip_rate != 0.0 else fingers[f].force
+        force = mean if pads[f].slip_rate != 0.0 else now
         set_normal(pads[f], cells, normal_force(fingers[f], force))
     advance_object(world, pads, cells, slip_sensors, h)
     cos, sin = pad_axes(world)

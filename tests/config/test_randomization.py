@@ -120,18 +120,20 @@ def test_train_keeps_the_tasks_feasible(task):
 
     mass = (settings.mass_range or (thing.mass, thing.mass))[1] * ends("mass_scale")[1]
     own = config.gripper.pad_radius / max(OUTER_RADII[name] for name in ranges.pressure or ("uniform",))
-    r = (settings.radius or own) * ends("radius_scale")[0]
+    r = (settings.radius or own) * ends("radius_scale")[0] * ends("finger_radius")[0]
     seconds = settings.duration + getattr(settings, "settle", 0.0) + getattr(settings, "hold", 0.0)
-    mu_c = ends("mu_c")[0] * math.exp(seconds * ends("friction_drift", 0.0)[0])
+    mu_c = ends("mu_c")[0] * ends("finger_friction")[0] * math.exp(seconds * ends("friction_drift", 0.0)[0])
     aside = ends("size_scale")[1] * (abs(thing.grasp_offset[0]) + ends("com_x", 0.0)[1] * thing.size[0])
     if task == "planar_slip":  # after the longest slide the object is turned to the side
         aside += settings.slide[1]
+    aside += ends("cop_offset", 0.0)[1]
     needed = 0.5 * mass * config.physics.gravity * math.hypot(1.0, aside / r) / mu_c
+    needed /= ends("force_gain")[0]
     assert needed < 0.8 * config.gripper.force_max
     if task == "linear_slip":  # and the lightest object slides at the smallest grip
         weight = thing.mass * ends("mass_scale")[0] * config.physics.gravity
-        mu_s = ends("mu_c")[1] * ends("friction_ratio")[1]
-        assert 2.0 * config.gripper.force_min * mu_s < 0.9 * weight
+        mu_s = ends("mu_c")[1] * ends("friction_ratio")[1] * ends("finger_friction")[1]
+        assert 2.0 * config.gripper.force_min * ends("force_gain")[1] * mu_s < 0.9 * weight
 
 
 def test_the_old_name_of_a_surface_region_warns():

@@ -17,6 +17,7 @@ ROOM = {  # from pad centre to edge, less the pad's radius [m]
 SHAPES = {
     "true": (3,),
     "estimated": (3,),
+    "true_per_finger": (2, 3),
     "estimated_per_finger": (2, 3),
     "slip": (3,),
     "slip_twist": (3,),

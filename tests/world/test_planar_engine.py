@@ -12,7 +12,7 @@ from slipgym.sensors.measure import measure
 from slipgym.validation.bench import Bench, Friction
 from slipgym.validation.planar import slides
 from slipgym.world.placing import place
-from slipgym.world.planar_engine import FAST, FIRM, STILL, longest_substep, step_world
+from slipgym.world.planar_engine import FAST, FIRM, STILL, longest_common_substep, step_world
 from slipgym.world.plant import build
 from slipgym.world.scene import Box
 
@@ -58,7 +58,7 @@ STIFFNESS = 5.0 * load().contact.sigma_0  # of its bristles [N/m]
 def test_long_sub_steps_are_for_a_firm_grip(contact, carried, expected):
     world, pad, finger = contact(wrench=carried)
     load = 2.0 * np.array(carried)  # on both pads
-    assert longest_substep(world, pad, None, finger, tuple(load), ASKED) == expected
+    assert longest_common_substep(world, (pad,), None, (finger,), tuple(load), ASKED) == expected
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,10 @@ def test_long_sub_steps_are_for_a_firm_grip(contact, carried, expected):
 )
 def test_but_not_for_what_lets_go_or_slips(contact, fields, expected):
     world, pad, finger = contact(wrench=(0.0, 0.9 * FIRM * LIMIT, 0.0), **fields)
-    assert longest_substep(world, pad, None, finger, (0.0, 1.8 * FIRM * LIMIT, 0.0), ASKED) == expected
+    assert (
+        longest_common_substep(world, (pad,), None, (finger,), (0.0, 1.8 * FIRM * LIMIT, 0.0), ASKED)
+        == expected
+    )
 
 
 @pytest.mark.parametrize(("share", "expected"), [(0.99, ASKED), (1.01, SHORT)])
@@ -93,7 +96,7 @@ def test_nor_for_vibration(contact, off, speed, share, expected):
     amplitude = share * STILL * LIMIT
     world, pad, finger = contact(wrench=(0.0, 1.0, 0.0), relative_velocity=amplitude * np.array(speed))
     load = 2.0 * (np.array([0.0, 1.0, 0.0]) + amplitude * np.array(off))
-    assert longest_substep(world, pad, None, finger, tuple(load), ASKED) == expected
+    assert longest_common_substep(world, (pad,), None, (finger,), tuple(load), ASKED) == expected
 
 
 @pytest.mark.parametrize(
@@ -101,7 +104,7 @@ def test_nor_for_vibration(contact, off, speed, share, expected):
 )
 def test_nor_for_a_load_that_is_about_to_change(contact, load):
     world, pad, finger = contact()
-    assert longest_substep(world, pad, None, finger, load, ASKED) == SHORT
+    assert longest_common_substep(world, (pad,), None, (finger,), load, ASKED) == SHORT
 
 
 def test_a_poke_breaks_a_firm_hold_away_as_on_pybullet():
