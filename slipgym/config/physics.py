@@ -55,6 +55,12 @@ class ContactConfig(Frozen):
     radius: Positive | None = Field(
         description="Radius r of the equivalent rim contact; null: that of the pressure on the whole pad [m]"
     )
+    normal_stiffness: float = Field(
+        gt=0, le=1e7, description="Stiffness of a pad along the grip axis, with physics.tilt [N/m]"
+    )
+    normal_damping: float = Field(
+        ge=0, le=1e4, description="Damping of a pad along the grip axis, with physics.tilt [N s/m]"
+    )
     cop_offset: Points = Field(description="Centre of pressure (x, y) from the pad's centre, per finger [m]")
 
 
@@ -69,6 +75,10 @@ class PhysicsConfig(Frozen):
         description="Longest friction sub-step without an engine near the friction limit [s]"
     )
     solver_iterations: Count = Field(description="Iterations of the engine's contact solver per step [-]")
+
+    tilt: bool = Field(
+        description="Whether the object may tilt and move along the grip axis, with PyBullet alone"
+    )
 
     @property
     def engine_rate(self) -> int:

@@ -6,6 +6,7 @@ from slipgym._numba.compiled import compiled
 from slipgym.contact.decay import decay
 from slipgym.world.records import QUEUE, Finger
 
+FINGER_DAMPING = 10.0  # [N s/m]; equal forces leave fingers and box free to drift along the grip axis
 
 @compiled
 def queue_command(finger: Finger, tick: int, force: float) -> None:
