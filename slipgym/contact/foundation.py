@@ -19,7 +19,9 @@ from slipgym.contact.records import Vector
 
 
 @compiled
-def press(depth: float, slope: tuple[float, float], rates: Vector, radius: float, relaxation: float) -> Vector:
+def press(
+    depth: float, slope: tuple[float, float], rates: Vector, radius: float, relaxation: float
+) -> Vector:
     """Normal force of a pad and its moment about the pad's centre, per stiffness; the pad does not pull.
 
     Args:

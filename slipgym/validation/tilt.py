@@ -34,7 +34,7 @@ def tilting(overrides: dict[str, Any] | None = None, **options: Any) -> Bench:
 def thrown(roll: float = 0.0, **options: Any) -> Bench:
     """A bench whose jaws are far open, around an object that nothing holds."""
     bench = tilting(force=0.0, roll=roll, **options)
-    bench.plant.tilt["closure"] = -0.2
+    bench.plant.tilt["closure"] = -10.0
     return bench
 
 

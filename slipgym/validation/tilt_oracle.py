@@ -70,7 +70,12 @@ def free_attitude(principal: np.ndarray, spin: np.ndarray, times: np.ndarray) ->
         omega, (x, y, z, w) = state[:3], state[3:]
         faster = np.cross(principal * omega, omega) / principal
         a, b, c = omega
-        turning = (w * a + y * c - z * b, w * b + z * a - x * c, w * c + x * b - y * a, -x * a - y * b - z * c)
+        turning = (
+            w * a + y * c - z * b,
+            w * b + z * a - x * c,
+            w * c + x * b - y * a,
+            -x * a - y * b - z * c,
+        )
         return np.concatenate([faster, 0.5 * np.array(turning)])
 
     start = np.concatenate([spin, [0.0, 0.0, 0.0, 1.0]])

@@ -8,6 +8,7 @@ from slipgym.world.records import QUEUE, Finger
 
 FINGER_DAMPING = 10.0  # [N s/m]; equal forces leave fingers and box free to drift along the grip axis
 
+
 @compiled
 def queue_command(finger: Finger, tick: int, force: float) -> None:
     """Queue a force command [N]; it takes effect one dead time after `tick`."""

@@ -96,9 +96,8 @@ def advance_tilt(
             tilt.normal[f] += pressed
             tilt.moment[f, 0] += m_x
             tilt.moment[f, 1] += m_z
-        gravity = -tilt.gravity * math.sin(roll) - tilt.sway[2] + tilt.roll[2] * middle_z
-        gravity += roll_rate * (roll_rate * height + 2.0 * rate_z)
-        gained = h * (gravity + force_y / world.mass)
+        falling = acceleration_along_y(tilt, roll, roll_rate, height, middle_z, rate_z)
+        gained = h * (falling + force_y / world.mass)
         y += h * (v + 0.5 * gained)
         v += gained
         resisting = force_c + tilt.jaw_damping * v_c
@@ -139,6 +138,22 @@ def advance_tilt(
         tilt.moment[f, 0] /= steps
         tilt.moment[f, 1] /= steps
         shift_pressure(world, tilt, pads[f], f)
+
+
+@compiled
+def acceleration_along_y(tilt: Tilt, roll: float, roll_rate: float, y: float, z: float, v_z: float) -> float:
+    """Acceleration of a free object along y in the frame that rolls and sways [m/s^2].
+
+    Args:
+        tilt: TILT record.
+        roll: [rad].
+        roll_rate: [rad/s].
+        y: Position of the centre of mass [m].
+        z: Likewise [m].
+        v_z: Its velocity along z [m/s].
+    """
+    weight = -tilt.gravity * math.sin(roll) - tilt.sway[2]
+    return weight + tilt.roll[2] * z + roll_rate * (roll_rate * y + 2.0 * v_z)
 
 
 @compiled

@@ -18,7 +18,7 @@ from slipgym.contact.records import Vector
 from slipgym.world.bullet_coupling import engine_loads
 from slipgym.world.records import Records, Tilt, World
 from slipgym.world.rotation import Quaternion, inertia_tensor, rotation_between, times
-from slipgym.world.tilt import advance_tilt
+from slipgym.world.tilt import acceleration_along_y, advance_tilt
 
 
 @compiled
@@ -50,8 +50,10 @@ def set_inertial_loads(world: World, tilt: Tilt, dt: float) -> None:
     world.gravity = tilt.gravity * math.cos(roll)
     if tilt.roll[1] != 0.0 or tilt.roll[2] != 0.0:
         y, z = tilt.height + half * tilt.speed, world.com[1] + half * world.velocity[1]
-        sway = tilt.sway[1] + half * tilt.sway[2]
-        added = rate * (rate * z - sway - 2.0 * tilt.speed) - tilt.roll[2] * y
+        sway, speed = tilt.sway[1] + half * tilt.sway[2], tilt.speed
+        if tilt.normal[0] == 0.0 and tilt.normal[1] == 0.0:
+            speed += half * acceleration_along_y(tilt, roll, rate, y, z, world.velocity[1])
+        added = rate * (rate * z - sway - 2.0 * speed) - tilt.roll[2] * y
         world.external[1] += world.mass * added
         world.external[2] -= rate * tilt.momentum[2]
 
@@ -107,11 +109,10 @@ def tilted_loads(
     push = world.external[1], world.external[2]
     set_inertial_loads(world, tilt, dt)
     before, closure = (position[0], position[2], world.angle), tilt.closure
-    torque_in_plane = world.external[2]
     pose = position, orientation, linear, angular, wrist, normals
     _, first, second, _, goal = engine_loads(world, pads, cells, fingers, force_torque, slip_sensors, *pose)
     world.external[1], world.external[2] = push
-    advance_tilt(world, tilt, pads, fingers, before, torque_in_plane, dt)
+    advance_tilt(world, tilt, pads, fingers, before, push[1], dt)
     after = (tilt.attitude[0], tilt.attitude[1], tilt.attitude[2], tilt.attitude[3])
     turn = rotation_between(orientation, after)
     per_step, per_turn = world.mass / dt, world.inertia / dt
@@ -136,7 +137,9 @@ def tilted_loads(
 
 
 @compiled
-def with_pressure(tilt: Tilt, reaction: tuple[Vector, Vector, Vector], f: int) -> tuple[Vector, Vector, Vector]:
+def with_pressure(
+    tilt: Tilt, reaction: tuple[Vector, Vector, Vector], f: int
+) -> tuple[Vector, Vector, Vector]:
     """Friction's reaction on a finger, together with that of its pad's pressure, which acts along the grip axis."""
     point, force, torque = reaction
     return point, (force[0], (1.0 - 2.0 * f) * tilt.normal[f], force[2]), torque
