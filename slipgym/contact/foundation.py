@@ -1,13 +1,13 @@
 """The normal contact of a pad against a tilted flat face: a disc of independent springs and dampers.
 
-A round elastic layer (Winkler foundation) of stiffness k and radius R has the pressure k d / (pi R^2) where it is
-compressed by d > 0. With the depth d_0 at its centre and the slope s of the face, d = d_0 + s x along the slope,
-and with a = d_0 / (s R), over the disc's compressed part x > -a R,
+A round elastic layer (Winkler foundation) of stiffness k and radius R has the pressure k d / (pi R^2) where
+it is compressed by d > 0. With the depth d_0 at its centre and the slope s of the face, d = d_0 + s x along
+the slope. With a = d_0 / (s R), over the disc's compressed part x > -a R,
 
     f_n = k s R (a A + B) / pi,    M = k s R^2 (a B + C) / pi,
 
-A, B, C being the area and its first and second moment on the unit disc. Up to the lift-off of an edge, a = 1 and
-M = f_n R / 4, this is f_n = k d_0 and M = k R^2 s / 4; beyond it M grows to at most f_n R.
+A, B, C being the area and its first and second moment on the unit disc. Up to the lift-off of an edge,
+at a = 1 and M = f_n R / 4, this is f_n = k d_0 and M = k R^2 s / 4; beyond it M grows to at most f_n R.
 """
 
 from __future__ import annotations

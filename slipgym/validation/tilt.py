@@ -31,17 +31,23 @@ def tilting(overrides: dict[str, Any] | None = None, **options: Any) -> Bench:
     return Bench(merged, friction=Friction(3.0, 3.0), **options)
 
 
+def record(bench: Bench) -> np.void:
+    """The TILT record of a bench."""
+    assert bench.plant.tilt is not None
+    return bench.plant.tilt[0]
+
+
 def thrown(roll: float = 0.0, **options: Any) -> Bench:
     """A bench whose jaws are far open, around an object that nothing holds."""
     bench = tilting(force=0.0, roll=roll, **options)
-    bench.plant.tilt["closure"] = -10.0
+    record(bench)["closure"] = -10.0
     return bench
 
 
 def roll_over(bench: Bench, roll: float, duration: float = 0.6) -> None:
     """Roll the wrist to an angle [rad] at rest, and let the object settle."""
     steps = round(duration / bench.step_time)
-    tilt = bench.plant.tilt[0]
+    tilt = record(bench)
     for k in range(steps):
         share = (k + 1) / steps
         rate = roll / duration * (1.0 - math.cos(math.tau * share))
@@ -53,7 +59,7 @@ def roll_over(bench: Bench, roll: float, duration: float = 0.6) -> None:
 
 def tilt_angle(bench: Bench) -> float:
     """Angle of the object out of the contact plane [rad]."""
-    return float(np.linalg.norm(Rotation.from_quat(bench.plant.tilt["attitude"][0]).as_rotvec()[[0, 2]]))
+    return float(np.linalg.norm(Rotation.from_quat(record(bench)["attitude"]).as_rotvec()[[0, 2]]))
 
 
 def balance(lever: float) -> tuple[float, float, float]:
@@ -90,7 +96,7 @@ def oscillation(axis: int) -> float:
     """Frequency of a small tilt oscillation about x (0) or z (2) over sqrt(2 K / I), less 1 [%]."""
     pads = {"normal_stiffness": 1e4, "normal_damping": 0.0}
     with tilting({"contact": pads, "physics": {"gravity": 0.0}}, force=FORCE) as bench:
-        tilt = bench.plant.tilt[0]
+        tilt = record(bench)
         inertia = bench.box.mass * float(tilt["gyration"][axis])
         expected = math.sqrt(2.0 * 1e4 * bench.config.gripper.pad_radius**2 / 4.0 / inertia)
         tilt["momentum"][axis] = 0.01 * expected * inertia
@@ -120,7 +126,7 @@ def falling(roll: float) -> float:
 def tumbling() -> tuple[float, float]:
     """A thrown object: its attitude over the angle turned, and its angular momentum, against theory [%]."""
     with thrown() as bench:
-        tilt = bench.plant.tilt[0]
+        tilt = record(bench)
         principal = bench.box.mass * tilt["gyration"].copy()
         tilt["momentum"] = principal * SPIN
         attitudes = []
@@ -139,7 +145,7 @@ def rolling_frame() -> float:
     """A thrown object seen from a wrist that rolls and sways, against its parabola in space [mm]."""
     worst, rate, sway = 0.0, 2.0, 0.2
     with thrown(0.3, wrist=(0.0, 0.1, 0.0)) as bench:
-        tilt, dt = bench.plant.tilt[0], bench.step_time
+        tilt, dt = record(bench), bench.step_time
         tilt["roll"][1], tilt["sway"][1] = rate, sway
         y, z = 0.0, float(bench.plant.world["com"][0, 1])
         tilt["momentum"] = bench.box.mass * tilt["gyration"] * (rate, 0.0, 0.0)

@@ -1,9 +1,10 @@
-"""Independent formulations of tilt: pads by quadrature, a balance by root finding, a free body by scipy's integrator."""
+"""Independent formulations of tilt: pads by quadrature, a balance by root finding, Euler's equations."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy.integrate import dblquad, solve_ivp
@@ -26,7 +27,7 @@ def pressed(depth: float, slope: float, stiffness: float, radius: float) -> tupl
             start = -radius if depth > 0.0 else radius
         else:
             start = min(max(-depth / slope, -radius), radius)
-        value, _ = dblquad(
+        value = dblquad(
             lambda _, x: weight(x) * (depth + slope * x),
             start,
             radius,
@@ -34,7 +35,7 @@ def pressed(depth: float, slope: float, stiffness: float, radius: float) -> tupl
             lambda x: math.sqrt(max(0.0, radius**2 - x**2)),
             epsabs=1e-16,
             epsrel=1e-8,
-        )
+        )[0]
         return stiffness / (math.pi * radius**2) * value
 
     return integral(lambda _: 1.0), integral(lambda x: x)
@@ -43,7 +44,8 @@ def pressed(depth: float, slope: float, stiffness: float, radius: float) -> tupl
 def depth_at(force: float, slope: float, stiffness: float, radius: float) -> float:
     """Depth at a pad's centre under a force on a sloping face, by bisection [m]."""
     reach = slope * radius + force / stiffness
-    return brentq(lambda d: pressed(d, slope, stiffness, radius)[0] - force, -reach, reach, xtol=1e-15)
+    found: Any = brentq(lambda d: pressed(d, slope, stiffness, radius)[0] - force, -reach, reach, xtol=1e-15)
+    return found
 
 
 def slope_of_balance(forces: tuple[float, float], moment: float, stiffness: float, radius: float) -> float:

@@ -1,4 +1,4 @@
-"""Steps PyBullet with an object that may tilt: its contact between pads and box is off, the pads are computed."""
+"""Steps PyBullet with an object that may tilt; pads and object do not collide there."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ TILT = np.dtype(
         ("cop", "f8", (2, 2)),  # the same with tilt, as last written to PAD [m]
     ]
 )
-"""Motion of one object and its gripper out of the contact plane, in the world frame that rolls with the wrist."""
+"""Motion of one object and its gripper out of the contact plane, in the frame that rolls with the wrist."""
 
 World: TypeAlias = Any
 """A record of `WORLD`. Compiled code reads its fields as attributes, which numpy's types do not describe."""

@@ -1,4 +1,4 @@
-"""Rotations in space: quaternions (x, y, z, w), rotation vectors, and angular velocity from angular momentum."""
+"""Rotations in space: quaternions (x, y, z, w), rotation vectors, inertia and angular velocity."""
 
 from __future__ import annotations
 

@@ -177,9 +177,9 @@ def release(client: int, gripper: int, body: int) -> int:
 def set_mass(client: int, body: int, mass: float, inertia: float, tilt: bool = False) -> None:
     """Give the body a mass [kg] and a moment of inertia about the grip axis [kg m^2].
 
-    About the other axes it is infinite, for which Bullet takes 0: flat pads do not let a box tilt. With `tilt`
-    it is the same about all, see `slipgym.world.tilt_coupling`. Bullet turns a body with a new inertia from the
-    end of a step on: here one is taken, and taken back.
+    About the other axes it is infinite, for which Bullet takes 0: flat pads do not let a box tilt. With
+    `tilt` it is the same about all, see `slipgym.world.tilt_coupling`. Bullet turns a body with a new inertia
+    from the end of a step on: here one is taken, and taken back.
     """
     state = p.saveState(physicsClientId=client)
     diagonal = (inertia, inertia, inertia) if tilt else (0.0, inertia, 0.0)

@@ -1,15 +1,16 @@
 """Moves the object and the jaws out of the contact plane: along the grip axis, and in tilt.
 
-The frame is the contact plane's, which rolls about x and sways along y with the wrist: x and z span the plane,
-finger 1 is on the side of +y. The planar world advances first; its motion in the plane and its friction are given
-here. In steps as short as the stiffest contact needs, each of second order:
+The frame is the contact plane's, which rolls about x and sways along y with the wrist: x and z span the
+plane, finger 1 is on the side of +y. The planar world advances first; its motion in the plane and its
+friction are given here. The steps are as short as the stiffest contact needs, and of second order.
 
 - Either pad presses as a disc of springs (`slipgym.contact.foundation`). Its force acts along y: it moves and
   tilts the object and opens the jaws.
-- The jaws mirror each other, as a parallel gripper with one motor does. Both actuators close them; what is left
-  over between the pads the mechanism carries, so that a weight along the grip axis cannot push the jaws away.
-- Without contact the object is a free rigid body in three dimensions, and its angle in the plane comes from here.
-  While pads hold it, friction decides about that angle; the tilt's equations contain it exactly.
+- The jaws mirror each other, as those of a parallel gripper with one motor do. Both actuators close them. The
+  difference of the normal forces is carried by the mechanism, so that a weight along the grip axis does not
+  push both jaws aside.
+- Without contact the object is a free rigid body in three dimensions, and its angle in the plane is computed
+  here. While pads hold it, the planar world determines that angle.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from slipgym._numba.compiled import compiled
 from slipgym.contact.coupled import solve_symmetric
 from slipgym.contact.foundation import press
 from slipgym.contact.records import Symmetric, Vector
+from slipgym.world.object_motion import pad_axes
 from slipgym.world.records import Records, Tilt, World
 from slipgym.world.rotation import (
     angle_in_plane,
@@ -30,7 +32,6 @@ from slipgym.world.rotation import (
     upright,
     with_angle,
 )
-from slipgym.world.substep import pad_axes
 
 _ANGLE = 0.25  # [rad] by which the stiffest oscillation advances in a step, at most
 _DECAY = 0.4  # fraction that the strongest damping takes in a step, at most

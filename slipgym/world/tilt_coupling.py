@@ -1,9 +1,9 @@
-"""Couples the motion out of the plane to a rigid-body engine, as `slipgym.world.bullet_coupling` does that in it.
+"""Couples the motion out of the contact plane to a rigid-body engine.
 
-The engine receives loads that give the object the mean velocity and angular velocity of the step, so that its pose
-lands on the one computed here. Where the engine had other ideas, its pose is taken over. Its own gravity is off.
-The object's inertia is the same about all axes for the engine: its gyroscopic term then vanishes, and the true
-one acts in `slipgym.world.tilt`.
+As in the plane (`slipgym.world.bullet_coupling`), the engine receives loads that give the object the mean
+velocity and angular velocity of the step, so that its pose lands on the one computed here. A
+pose that differs is taken over. The engine's own gravity is off. To the engine the object's inertia is the
+same about all axes: its gyroscopic term then vanishes, and the true one acts in `slipgym.world.tilt`.
 """
 
 from __future__ import annotations
@@ -40,9 +40,8 @@ def take_over(world: World, tilt: Tilt, height: float, attitude: Quaternion, dt:
 def set_inertial_loads(world: World, tilt: Tilt, dt: float) -> None:
     """Set the plane's gravity, and add what roll and sway do in the plane to the external load.
 
-    The values are those of the step's middle. With the position r and velocity v of the object, the roll's rate p
-    about x and the sway's velocity u along y, a frame that rolls and sways adds -p u - dp/dt y + p^2 z - 2 p v_y to
-    the acceleration along z.
+    The values are those of the step's middle. In a frame that rolls about x at the rate p and sways along y
+    at the velocity u, the acceleration along z gains -p u - dp/dt y + p^2 z - 2 p v_y.
     """
     half = 0.5 * dt
     rate = tilt.roll[1] + half * tilt.roll[2]
@@ -99,8 +98,8 @@ def tilted_loads(
         wrist: Wrist joint positions (x, z, pitch) [m, m, rad].
 
     Returns:
-        Force and torque on the object at its centre of mass; for either finger the point, force and torque of its
-        contact's reaction; joint velocities of wrist and fingers; normal forces, mean over the step.
+        Force and torque on the object at its centre of mass; for either finger the point, force and torque of
+        its contact's reaction; joint velocities of wrist and fingers; normal forces, mean over the step.
     """
     dt = world.engine_ticks * world.tick_length
     take_over(world, tilt, position[1], orientation, dt)
@@ -140,6 +139,6 @@ def tilted_loads(
 def with_pressure(
     tilt: Tilt, reaction: tuple[Vector, Vector, Vector], f: int
 ) -> tuple[Vector, Vector, Vector]:
-    """Friction's reaction on a finger, together with that of its pad's pressure, which acts along the grip axis."""
+    """Friction's reaction on a finger, together with that of its pad's pressure along the grip axis."""
     point, force, torque = reaction
     return point, (force[0], (1.0 - 2.0 * f) * tilt.normal[f], force[2]), torque

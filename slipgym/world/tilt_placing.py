@@ -16,7 +16,8 @@ def gyration(box: Box) -> tuple[float, float, float]:
     """
     x, y, z = box.size
     scale = box.inertia / box_inertia(box.mass, x, z) / box.mass
-    return tuple(scale * box_inertia(box.mass, a, b) for a, b in ((y, z), (x, z), (x, y)))
+    unit = scale * box.mass
+    return box_inertia(unit, y, z), box_inertia(unit, x, z), box_inertia(unit, x, y)
 
 
 def place_tilt(plant: Plant, i: int, box: Box, force: float, roll: float) -> None:

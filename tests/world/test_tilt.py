@@ -54,7 +54,6 @@ def test_damping_is_that_of_dampers_beside_the_springs(depth):
     here = press(depth, tuple(slope), (0.0,) * 3, RADIUS, 0.0)
     damped = press(depth, tuple(slope), tuple(rates), RADIUS, 1e-3)
     expected = 1e-3 * np.subtract(there, here) / time
-    # the rate across the slope turns it: the springs' moment turns as well, which dampers of a whole pad see alike
     np.testing.assert_allclose(np.subtract(damped, here)[0], expected[0], rtol=1e-3)
     if depth > 1.5e-4:
         np.testing.assert_allclose(np.subtract(damped, here), expected, rtol=1e-6)
