@@ -203,3 +203,17 @@ def test_an_upright_grip_moves_as_without_tilt():
 
 def test_without_tilt_there_is_no_such_state():
     assert build(load()).tilt is None
+
+
+def test_friction_holds_an_oblique_object_in_a_rolling_wrist():
+    """A box whose axes are oblique to the roll's axis has a product of inertia: it pulls at the grip's angle."""
+    rate, angle = 5.0, 0.6
+    with tilting({"physics": {"gravity": 0.0}}, force=10.0, wrist=(0.0, 0.0, angle)) as bench:
+        for k in range(120):
+            speed = rate * min(1.0, (k + 1) / 60)
+            ramp_tilt(bench.plant.tilt[0], speed, 0.0, 10.0, 1.0, bench.step_time)
+            bench.run(bench.step_time)
+        a, _, b = bench.box.mass * bench.plant.tilt["gyration"][0]
+        product = (a - b) * math.sin(angle) * math.cos(angle)
+        torque = bench.plant.pads["wrench"][0, :, 2].sum()
+    assert torque == pytest.approx(rate**2 * product, rel=0.01)
