@@ -206,7 +206,7 @@ def test_without_tilt_there_is_no_such_state():
 
 
 def test_friction_holds_an_oblique_object_in_a_rolling_wrist():
-    """A box whose axes are oblique to the roll's axis has a product of inertia: it pulls at the grip's angle."""
+    """A box whose axes are oblique to the roll's axis has a product of inertia: it turns in the grip."""
     rate, angle = 5.0, 0.6
     with tilting({"physics": {"gravity": 0.0}}, force=10.0, wrist=(0.0, 0.0, angle)) as bench:
         for k in range(120):
