@@ -172,6 +172,21 @@ def distributed(player: Player, env_id: str, pairs: int) -> list[Figure]:
     return figures
 
 
+def tilted(player: Player, env_id: str, pairs: int) -> list[Figure]:
+    """The environment with `physics.tilt` against the same without, and against the bare loop."""
+    other = Player(env_id, config={"physics": {"tilt": True}})
+    compare(player.block, other.block, 3)  # warm up
+    result = compare(player.block, other.block, pairs)
+    bare = {figure.name: figure for figure in against_bare(other, pairs)}["environment / bare loop"]
+    other.env.close()
+    name = "environment, physics.tilt"
+    return [
+        Figure(f"{name}, per engine step", 1e6 * result.second, "us"),
+        Figure(f"{name} / without", result.quartiles[1], "-"),
+        Figure(f"{name} / bare loop", bare.value, "-", "<= 1.4"),
+    ]
+
+
 def contact(calls: int = 2000) -> list[Figure]:
     """One step of the contact object, called from Python."""
     twist, figures = (0.003, -0.02, 0.5), []

@@ -25,6 +25,7 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
         *substeps(player.rest(), max(3, pairs // 3)),
         *measure.life(env_id, max(3, pairs // 10)),
         *measure.distributed(player, env_id, max(3, pairs // 5)),
+        *measure.tilted(player, env_id, max(3, pairs // 5)),
         *measure.contact(),
         *measure.patch(max(3, pairs)),
         *batch(player, env_id, max(3, pairs // 10)),

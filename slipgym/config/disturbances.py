@@ -44,6 +44,12 @@ class Shake(Disturbance):
     amplitude: Annotated[Distribution, within(0.0, 0.05)] = Field(description="Along x and z [m]")
     pitch: Annotated[Distribution, within(0.0, 0.5)] = Field(description="In pitch [rad]")
     frequency: Annotated[Distribution, within(0.01, 20.0)] = Field(description="Of each axis [Hz]")
+    roll: Annotated[Distribution | None, within(0.0, 0.5)] = Field(
+        default=None, description="In roll; needs `physics.tilt` [rad]"
+    )
+    sway: Annotated[Distribution | None, within(0.0, 0.05)] = Field(
+        default=None, description="Along the grip axis; needs `physics.tilt` [m]"
+    )
 
 
 class MassChange(Disturbance):

@@ -14,6 +14,9 @@ from pydantic_core import ErrorDetails
 SourceOf = Callable[[tuple[int | str, ...]], str]
 """Names the file or argument that a location in the configuration came from."""
 
+NEEDS_TILT = 'needs config={"physics": {"tilt": True}} and engine="bullet"'
+"""End of the messages about motions out of the contact plane."""
+
 _BOUNDS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
 _KINDS = {
     "number": "a finite number",

@@ -62,6 +62,12 @@ class ContactConfig(Frozen):
     )
     finger_friction: Factors = Field(description="Friction of each finger over the material's [-]")
     finger_radius: Factors = Field(description="Contact radius of each finger over r [-]")
+    normal_stiffness: float = Field(
+        gt=0, le=1e7, description="Stiffness of a pad along the grip axis, with physics.tilt [N/m]"
+    )
+    normal_damping: float = Field(
+        ge=0, le=1e4, description="Damping of a pad along the grip axis, with physics.tilt [N s/m]"
+    )
     cop_offset: Points = Field(description="Centre of pressure (x, y) from the pad's centre, per finger [m]")
     pad: PadConfig = Field(description="What the pads' rubber adds")
 
@@ -80,6 +86,10 @@ class PhysicsConfig(Frozen):
         description="Longest friction sub-step without an engine near the friction limit [s]"
     )
     solver_iterations: Count = Field(description="Iterations of the engine's contact solver per step [-]")
+
+    tilt: bool = Field(
+        description="Whether the object may tilt and move along the grip axis, with PyBullet alone"
+    )
 
     @property
     def engine_rate(self) -> int:

@@ -18,7 +18,7 @@ from slipgym.envs.reset_kernels import WARM_UP_STEPS, equip, open_episodes
 from slipgym.envs.simulation import Simulation, SimulationState
 from slipgym.sensors.measure import measure
 from slipgym.tasks import Task
-from slipgym.tasks.disturbance import disturb
+from slipgym.tasks.disturbance import disturb, shake_tilt
 from slipgym.tasks.episode import begin_step
 from slipgym.world.bullet_engine import BulletWorld
 
@@ -131,7 +131,7 @@ class BulletSimulation(Simulation):
     def _reset(self, starts: np.ndarray) -> None:
         force, episode = starts["force"].item(), self.episode
         x, z, pitch = episode["wrist_start"][0].tolist()
-        self.world.reset(self.boxes[0], force, (x, z, pitch))
+        self.world.reset(self.boxes[0], force, (x, z, pitch), episode["wrist_roll"].item())
         self._guard.reset()
         equip(starts, *self._biases, *self._equipped)
         for _ in range(WARM_UP_STEPS):
@@ -148,6 +148,8 @@ class BulletSimulation(Simulation):
         disturb(episode, plant.world, plant.pads, self.ground_truth)
         self.world.update_mass()
         self.task.script_wrist(episode, plant.world)
+        if plant.tilt is not None:
+            shake_tilt(episode, plant.tilt)
         self._advance(self.commands.item(0))
         episode["step"] += 1
         self.estimator.update(self.time, self._wrench_rows, self._twist_rows)

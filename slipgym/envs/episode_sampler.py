@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.config.errors import unknown
+from slipgym.config.errors import NEEDS_TILT, unknown
 from slipgym.config.hardware import box_inertia
 from slipgym.config.task import TaskConfig
 from slipgym.envs.finger_differences import chosen_differences
@@ -103,6 +103,7 @@ class EpisodeSampler:
             numbers[k] = self._numbers(i, settings, draw, friction, box, differences)
             begin_episode(self._episode, self._blank, starts, k)
             episode = self._episode[i]
+            episode["wrist_roll"] = checked_roll(self._config, options)
             self._task.start(settings, options, rng, episode)
             for disturbance, u in draw.disturbances:
                 schedule_disturbance(disturbance, u, episode)
@@ -249,6 +250,18 @@ def _check_inside(
         raise ValueError(
             f"{name} {tuple(point)} m{around} must lie on the object, {size[0]:g} m by {size[2]:g} m"
         )
+
+
+def checked_roll(config: Config, options: EpisodeOptions) -> float:
+    """Roll of the wrist at reset [rad].
+
+    Raises:
+        ValueError: It is given without `physics.tilt`.
+    """
+    roll = options.wrist_roll or 0.0
+    if roll and not config.physics.tilt:
+        raise ValueError(f"option wrist_roll = {roll:g} rad {NEEDS_TILT}")
+    return roll
 
 
 def checked_force(config: Config, settings: TaskConfig) -> float:

@@ -34,6 +34,9 @@ class PlanarSimulation(Simulation):
         rewards: Sum of the last step's reward terms, (n,); 0 for environments that made no step.
         terminated: Whether the object was dropped in the last step, (n,).
         truncated: Whether the last step reached the time limit without a drop, (n,).
+
+    Raises:
+        ValueError: The configuration lets the object tilt, or a value is not allowed.
     """
 
     def __init__(
@@ -46,6 +49,8 @@ class PlanarSimulation(Simulation):
         n: int = 1,
         threads: int | None = None,
     ) -> None:
+        if config.physics.tilt:
+            raise ValueError('physics.tilt = true needs engine="bullet": the planar engine has no tilt')
         super().__init__(config, settings, task, estimator, randomization, n)
         self._threads = Threads(n, threads)
         self._closed = False

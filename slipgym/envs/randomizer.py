@@ -11,7 +11,7 @@ import numpy as np
 
 from slipgym.config import Config, Material, Randomization, Ranges, TaskConfig
 from slipgym.config.disturbances import AnyDisturbance, FrictionJump, MassChange, Push, Shake, SurfaceRegion
-from slipgym.config.errors import unknown
+from slipgym.config.errors import NEEDS_TILT, unknown
 from slipgym.envs.finger_differences import (
     DIFFERENCES,
     Numbers,
@@ -120,11 +120,15 @@ class Randomizer:
         most: Largest possible value of every number.
 
     Raises:
-        ValueError: A material is unknown, or the largest contact radius does not fit on the pads.
+        ValueError: A material is unknown, the largest contact radius does not fit on the pads, or the wrist
+            shakes out of the contact plane without `physics.tilt`.
     """
 
     def __init__(self, config: Config, settings: TaskConfig, task: str, randomization: Randomization) -> None:
         self._ranges = randomization.of(task)
+        for disturbance in () if config.physics.tilt else self._ranges.disturbances:
+            if isinstance(disturbance, Shake) and (disturbance.roll or disturbance.sway):
+                raise ValueError(f"randomization: shake in roll or sway {NEEDS_TILT}")
         self._nominal, self._alike = nominal_values(config), nominal_differences(config)
         self.active = self._ranges != Ranges()
         fields = ((name, getattr(self._ranges, name)) for name in Ranges.model_fields)
@@ -243,6 +247,11 @@ def _shake(shake: Shake, u: list[float], episode: np.void) -> None:
     omega = [math.tau * shake.frequency.at(each) for each in u[2:5]]
     phase = [math.tau * each for each in u[5:8]]
     episode["shakes"][1] = np.column_stack(([along, along, pitch], omega, phase))
+    if shake.roll is not None or shake.sway is not None:
+        more = np.random.default_rng(int(u[7] * 2.0**53)).random(6).tolist()  # beyond `UNIFORMS`, which stays
+        sizes = [0.0 if each is None else each.at(more[k]) for k, each in enumerate((shake.roll, shake.sway))]
+        omega = [math.tau * shake.frequency.at(each) for each in more[2:4]]
+        episode["tilt_shakes"] = np.column_stack((sizes, omega, [math.tau * each for each in more[4:6]]))
 
 
 def _mass_change(change: MassChange, u: list[float], episode: np.void) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from slipgym._numba.compiled import compiled
+from slipgym.world.wrist import ramp_tilt
 
 SHAKES = 2
 """Number of wrist oscillations that add up: the task's own and a sampled one."""
@@ -21,6 +22,7 @@ FIELDS = [
         "f8",
         (SHAKES, 3, 3),
     ),  # per axis: amplitude [m, rad], omega [rad/s], phase [rad]
+    ("tilt_shakes", "f8", (2, 3)),  # the same in roll and along the grip axis, with `physics.tilt`
     ("mass", "f8"),  # of the object at reset [kg]
     ("inertia", "f8"),  # likewise [kg m^2]
     ("mass_step", "i8"),  # control step at which both change
@@ -61,6 +63,27 @@ def shake_velocity(episode, axis, time):
             speed *= 0.5 - 0.5 * math.cos(math.pi * time / _SHAKE_RISE)
         total += speed
     return total
+
+
+@compiled
+def shake_tilt(episodes, tilts):
+    """Before a control step, ramp the wrist's roll and its motion along the grip axis to their oscillations.
+
+    The gripper's limits of pitch rate and speed apply.
+
+    Args:
+        episodes: EPISODE (n,).
+        tilts: TILT (n,).
+    """
+    for i in range(episodes.shape[0]):
+        episode = episodes[i]
+        time = (episode.step + 1) * episode.step_time
+        rise = 0.5 - 0.5 * math.cos(math.pi * min(time / _SHAKE_RISE, 1.0))
+        (a, rate_a, phase_a), (b, rate_b, phase_b) = episode.tilt_shakes[0], episode.tilt_shakes[1]
+        roll = rise * a * rate_a * math.cos(rate_a * time + phase_a)
+        sway = rise * b * rate_b * math.cos(rate_b * time + phase_b)
+        limits = episode.wrist_pitch_rate_max, episode.wrist_speed_max
+        ramp_tilt(tilts[i], roll, sway, limits[0], limits[1], episode.step_time)
 
 
 @compiled

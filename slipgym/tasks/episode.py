@@ -46,6 +46,7 @@ EPISODE = np.dtype(
         ("slide_tolerance", "f8"),  # largest slip at the pad centre for success [m]
         ("tilt_tolerance", "f8"),  # largest tilt for success [rad]
         ("wrist_start", "f8", 3),  # pad centre (x, z) and pitch at reset [m, m, rad]
+        ("wrist_roll", "f8"),  # at reset [rad]
         ("reach", "f8", 2),  # pad centre may lie this far from the object's centre, (x, z) [m]
         ("object_centre", "f8", 2),  # geometric centre from the grasp point, body frame [m]
         ("pad_radius", "f8"),  # [m]

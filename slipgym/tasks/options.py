@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Self
 
@@ -41,6 +42,12 @@ class EpisodeOptions(Frozen):
     object_size: Size | None = Field(default=None, description="Extent along x, the grip axis and z [m]")
     com_offset: Point | None = Field(
         default=None, description="Centre of mass (x, z) from the geometric centre [m]"
+    )
+    wrist_roll: float | None = Field(
+        default=None,
+        ge=-math.pi,
+        le=math.pi,
+        description="Roll of the wrist about x at the start; needs `physics.tilt` [rad]",
     )
     randomization_scale: float | None = Field(
         default=None, ge=0.0, le=1.0, description="Fraction of the randomization's ranges: 0 none, 1 all [-]"

@@ -20,6 +20,7 @@ from slipgym.validation.patch_stick import patch_stick
 from slipgym.validation.patch_surface import patch_surface
 from slipgym.validation.planar import planar, slides
 from slipgym.validation.steady import steady
+from slipgym.validation.tilt import tilt
 
 EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     creep,
@@ -37,6 +38,7 @@ EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     patch_stick,
     patch_steps,
     patch_rate,
+    tilt,
     estimation,
 )
 """Each yields its figures; together about a hundred seconds."""

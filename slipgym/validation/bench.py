@@ -67,6 +67,7 @@ class Bench:
         wrist: Pad centre (x, z) and pitch at the start [m, m, rad].
         contact: Friction model of the pads.
         engine: What moves the bodies: "bullet" or "planar".
+        roll: Of the wrist at the start, with `physics.tilt` [rad].
         **box: Fields of `Box` that differ from the configured object.
     """
 
@@ -78,6 +79,7 @@ class Bench:
         wrist: tuple[float, float, float] = (0.0, 0.0, 0.0),
         contact: str = "ellipsoid",
         engine: str = "bullet",
+        roll: float = 0.0,
         **box: Any,
     ) -> None:
         self.config = load(overrides, "ideal", contact)
@@ -91,7 +93,7 @@ class Bench:
         self._alone = engine == "planar"
         make = PlanarWorld if self._alone else _WatchedWorld
         self.world: PlanarWorld | _WatchedWorld = make(self.config, self.plant)
-        self.world.reset(self.box, force, wrist)
+        self.world.reset(self.box, force, wrist, **({"roll": roll} if roll else {}))
         self.time = 0.0
         self._force: float = force
         self._steps = 0

@@ -17,6 +17,9 @@ def actuator_force(finger: Finger, force: float) -> float:
     return min(finger.gain * force, finger.force_limit)
 
 
+FINGER_DAMPING = 10.0  # [N s/m]; equal forces leave fingers and box free to drift along the grip axis
+
+
 @compiled
 def queue_command(finger: Finger, tick: int, force: float) -> None:
     """Queue a force command [N]; it takes effect one dead time after `tick`."""

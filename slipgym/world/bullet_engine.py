@@ -8,64 +8,19 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from slipgym._numba.compiled import compiled
-from slipgym._numba.rows import row_of
 from slipgym.config import Config
-from slipgym.contact.records import Vector
-from slipgym.world import bullet_coupling as coupling
-from slipgym.world import scene
-from slipgym.world.actuator import queue_command
+from slipgym.world import bullet_tilt, scene
+from slipgym.world.bullet_rows import loads as _loads
+from slipgym.world.bullet_rows import queue as _queue_command
+from slipgym.world.bullet_rows import read_engine as _read_engine
 from slipgym.world.momentum import normal_forces
 from slipgym.world.placing import place
 from slipgym.world.plant import Plant
 from slipgym.world.quiet_pybullet import p
 from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
 from slipgym.world.snapshot import EngineState, load_engine, save_engine
-from slipgym.world.substep import update_slip
+from slipgym.world.tilt_placing import place_tilt
 from slipgym.world.wrist import ramp_wrist
-
-
-@compiled
-def _loads(
-    worlds: np.ndarray,
-    pads: np.ndarray,
-    cells: np.ndarray | None,
-    fingers: np.ndarray,
-    force_torque: np.ndarray,
-    slip_sensors: np.ndarray,
-    pose: tuple,
-    velocity: tuple,
-    wrist: Vector,
-    normals: tuple[float, float],
-) -> tuple[Any, ...]:
-    return coupling.engine_loads(
-        worlds[0],
-        pads[0],
-        row_of(cells, 0),
-        fingers[0],
-        force_torque[0],
-        slip_sensors[0],
-        pose[0],
-        pose[1],
-        velocity[0],
-        velocity[1],
-        wrist,
-        normals,
-    )
-
-
-@compiled
-def _read_engine(
-    worlds: np.ndarray, fingers: np.ndarray, pose: tuple, wrist: Vector, normals: tuple[float, float]
-) -> None:
-    coupling.read_engine(worlds[0], fingers[0], pose[0], pose[1], wrist, normals)
-    update_slip(worlds[0])
-
-
-@compiled
-def _queue_command(worlds: np.ndarray, fingers: np.ndarray, force: float) -> None:
-    for f in range(2):
-        queue_command(fingers[0, f], worlds[0].tick, force)
 
 
 class BulletWorld:
@@ -133,13 +88,20 @@ class BulletWorld:
         """
         return self._reading
 
-    def reset(self, box: Box, force: float, wrist: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
+    def reset(
+        self,
+        box: Box,
+        force: float,
+        wrist: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        roll: float = 0.0,
+    ) -> None:
         """Start an episode: the box held still by both fingers.
 
         Args:
             box: The object.
             force: Grip force per finger, already established [N].
             wrist: Pad centre (x, z) and pitch [m, m, rad].
+            roll: Of the wrist, with `physics.tilt` [rad].
         """
         client = self.client
         if self._box is None or _geometry(box) != _geometry(self._box):
@@ -148,7 +110,9 @@ class BulletWorld:
         p.restoreState(stateId=self._saved, physicsClientId=client)
         self._box = box
         place(self._plant, 0, box, force, wrist)
-        if any(wrist):
+        if self._plant.tilt is not None:
+            place_tilt(self._plant, 0, box, force, roll)
+        if any(wrist) or self._plant.tilt is not None:
             self._place(wrist)
         *bodies, speeds = self._read()
         self._reading = *bodies, tuple(self._plant.fingers["contact_force"][0].tolist()), speeds
@@ -184,6 +148,16 @@ class BulletWorld:
 
     def step(self) -> None:
         """Advance by one control step."""
+        if self._plant.tilt is None:
+            self._step()
+        else:
+            bodies, steps = (self.client, self._body, self._gripper), self._config.physics.engine_steps
+            self._reading = bullet_tilt.step(*bodies, self._plant, self._reading, self._read, steps)
+        self._place_links()
+        plant, reading = self._plant, self._reading
+        _read_engine(plant.world, plant.fingers, reading[0], reading[2], reading[3])
+
+    def _step(self) -> None:
         client, body, gripper, plant = self.client, self._body, self._gripper, self._plant
         push, twist, drive = p.applyExternalForce, p.applyExternalTorque, p.setJointMotorControlArray
         (first, second), world = FINGER_LINKS, p.WORLD_FRAME
@@ -221,8 +195,6 @@ class BulletWorld:
             pose, velocity, wrist, after = self._read()
             normals = normal_forces(efforts, before, after, inertia)
             self._reading = pose, velocity, wrist, normals, after
-        self._place_links()
-        _read_engine(plant.world, plant.fingers, self._reading[0], self._reading[2], self._reading[3])
 
     def get_state(self) -> EngineState:
         """Everything that the engine's next step depends on, except the plant's arrays.
@@ -277,7 +249,7 @@ class BulletWorld:
 
     def _set_mass(self, mass: float, inertia: float) -> None:
         if (mass, inertia) != self._mass_set:
-            scene.set_mass(self.client, self._body, mass, inertia)
+            scene.set_mass(self.client, self._body, mass, inertia, self._plant.tilt is not None)
             self._mass_set = mass, inertia
 
     def _place_links(self) -> None:
@@ -296,7 +268,10 @@ class BulletWorld:
         self._mass_set = None
         self._gripper = scene.add_gripper(client, self._config, box.size[1])
         self._body = scene.add_box(client, box)
-        self._saved = scene.settle(client, self._config, self._gripper)
+        if self._plant.tilt is None:
+            self._saved = scene.settle(client, self._config, self._gripper)
+        else:
+            self._saved = scene.release(client, self._gripper, self._body)
 
     def _place(self, wrist: tuple[float, float, float]) -> None:
         client = self.client
@@ -304,9 +279,13 @@ class BulletWorld:
             p.resetJointState(self._gripper, joint, position, 0.0, physicsClientId=client)
         x, z = self._plant.world["com"][0]
         half = -0.5 * wrist[2]
-        p.resetBasePositionAndOrientation(
-            self._body, [x, 0.0, z], [0.0, math.sin(half), 0.0, math.cos(half)], physicsClientId=client
-        )
+        y, attitude = 0.0, [0.0, math.sin(half), 0.0, math.cos(half)]
+        tilt = self._plant.tilt
+        if tilt is not None:
+            y, attitude = tilt["height"].item(), tilt["attitude"][0]
+            for joint in FINGER_LINKS:
+                p.resetJointState(self._gripper, joint, tilt["closure"].item(), 0.0, physicsClientId=client)
+        p.resetBasePositionAndOrientation(self._body, [x, y, z], attitude, physicsClientId=client)
 
 
 def _geometry(box: Box) -> tuple[tuple[float, ...], ...]:

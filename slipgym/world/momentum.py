@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from slipgym.world.scene import FINGER_DAMPING
+from slipgym.world.actuator import FINGER_DAMPING
 
 _LEAST = 1e-9  # [N]; less is rounding of a finger that touches nothing
 

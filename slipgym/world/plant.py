@@ -15,7 +15,8 @@ from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.force_torque import force_torque
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
 from slipgym.sensors.slip_velocity import SLIP_SENSOR, chip_positions
-from slipgym.world.records import FINGER, QUEUE, WORLD
+from slipgym.world.actuator import FINGER_DAMPING
+from slipgym.world.records import FINGER, QUEUE, TILT, WORLD
 
 MIRROR = (1.0, -1.0)  # finger 2 sees the grip axis from the other side
 
@@ -39,6 +40,8 @@ class Plant:
     """FORCE_TORQUE (n, 2)."""
     slip_sensors: np.ndarray
     """SLIP_SENSOR (n, 2)."""
+    tilt: np.ndarray | None = None
+    """TILT (n,); None without `physics.tilt`."""
 
     def restore(self, other: Plant) -> None:
         """Copy every array of another plant of the same size into this one."""
@@ -58,6 +61,7 @@ def build(config: Config, n: int = 1) -> Plant:
         fingers=_fingers(config, n),
         force_torque=_force_torque(config, n, tick_rate),
         slip_sensors=_slip_sensors(config, n),
+        tilt=_tilt(config, n),
     )
 
 
@@ -209,3 +213,17 @@ def _slip_sensors(config: Config, n: int) -> np.ndarray:
     slip_sensors["at"] = positions
     slip_sensors["spread"] = np.sum(positions**2)
     return slip_sensors
+
+
+def _tilt(config: Config, n: int) -> np.ndarray | None:
+    if not config.physics.tilt:
+        return None
+    tilt = np.zeros(n, TILT)
+    tilt["stiffness"] = config.contact.normal_stiffness
+    tilt["relaxation"] = config.contact.normal_damping / config.contact.normal_stiffness
+    tilt["pad_radius"] = config.gripper.pad_radius
+    tilt["jaw_mass"] = 2.0 * config.gripper.finger_mass
+    tilt["jaw_damping"] = 2.0 * FINGER_DAMPING
+    tilt["gravity"] = config.physics.gravity
+    tilt["cop_rest"] = tilt["cop"] = config.contact.cop_offset
+    return tilt

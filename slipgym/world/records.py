@@ -63,9 +63,37 @@ FINGER = np.dtype(
 )
 """One finger: force loop, normal contact and the friction impulse it passes on."""
 
+TILT = np.dtype(
+    [
+        ("stiffness", "f8"),  # of a pad's normal contact [N/m]
+        ("relaxation", "f8"),  # its damping over its stiffness [s]
+        ("pad_radius", "f8"),  # [m]
+        ("jaw_mass", "f8"),  # of both fingers [kg]
+        ("jaw_damping", "f8"),  # of both fingers [N s/m]
+        ("gravity", "f8"),  # [m/s^2]
+        ("gyration", "f8", 3),  # squared radii of gyration about the object's axes (x, grip axis, z) [m^2]
+        ("roll", "f8", 3),  # wrist roll, its rate and acceleration [rad, rad/s, rad/s^2]
+        ("sway", "f8", 3),  # wrist along +y: position, velocity, acceleration [m, m/s, m/s^2]
+        ("height", "f8"),  # centre of mass along +y from the gripper's middle [m]
+        ("speed", "f8"),  # its rate [m/s]
+        ("attitude", "f8", 4),  # quaternion (x, y, z, w) of the object
+        ("momentum", "f8", 3),  # angular momentum about the centre of mass [kg m^2/s]
+        ("spin", "f8", 3),  # angular velocity [rad/s]
+        ("closure", "f8"),  # of either jaw beyond first touch of an upright object [m]
+        ("closing", "f8"),  # its rate [m/s]
+        ("normal", "f8", 2),  # normal force of finger 1 and 2, mean over the engine step [N]
+        ("moment", "f8", (2, 2)),  # of either pad's pressure about the pad's centre [N m], likewise
+        ("cop_rest", "f8", (2, 2)),  # centre of either pad's pressure without tilt, pad frame [m]
+        ("cop", "f8", (2, 2)),  # the same with tilt, as last written to PAD [m]
+    ]
+)
+"""Motion of one object and its gripper out of the contact plane, in the frame that rolls with the wrist."""
+
 World: TypeAlias = Any
 """A record of `WORLD`. Compiled code reads its fields as attributes, which numpy's types do not describe."""
 Finger: TypeAlias = Any
 """A record of `FINGER`."""
+Tilt: TypeAlias = Any
+"""A record of `TILT`."""
 Records: TypeAlias = Any
 """Records of the two fingers, pads or sensors, as an array or as a tuple."""

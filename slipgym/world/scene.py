@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from slipgym.config import Config
 from slipgym.config.hardware import box_inertia
+from slipgym.world.actuator import FINGER_DAMPING
 from slipgym.world.quiet_pybullet import p
 
 WRIST_JOINTS = (0, 1, 2)
@@ -20,7 +21,6 @@ WRIST_FORCE = (1e4, 1e4, 1e3)
 PAD_THICKNESS = 0.01
 _NO_ROTATION = (0.0, 0.0, 0.0, 1.0)
 _WRIST_MASS = 1.0
-FINGER_DAMPING = 10.0  # [N s/m]; equal forces leave fingers and box free to drift along the grip axis
 _SETTLE_STEPS = 60
 _SETTLE_FORCES = (5.0, 5.0)
 _SETTLE_MASS = 0.2  # whichever mass the first episode has, the saved state is the same
@@ -158,14 +158,32 @@ def settle(client: int, config: Config, gripper: int) -> int:
     return p.saveState(physicsClientId=client)
 
 
-def set_mass(client: int, body: int, mass: float, inertia: float) -> None:
+def release(client: int, gripper: int, body: int) -> int:
+    """Turn off gravity and the contact between pads and box, which are computed for an object that may tilt.
+
+    Returns:
+        PyBullet's id of the saved state.
+    """
+    p.setGravity(0.0, 0.0, 0.0, physicsClientId=client)
+    for link in FINGER_LINKS:
+        p.setCollisionFilterPair(body, gripper, -1, link, 0, physicsClientId=client)
+    p.setJointMotorControlArray(
+        gripper, JOINTS, p.VELOCITY_CONTROL, forces=(*WRIST_FORCE, *WRIST_FORCE[:2]), physicsClientId=client
+    )
+    p.stepSimulation(physicsClientId=client)
+    return p.saveState(physicsClientId=client)
+
+
+def set_mass(client: int, body: int, mass: float, inertia: float, tilt: bool = False) -> None:
     """Give the body a mass [kg] and a moment of inertia about the grip axis [kg m^2].
 
-    About the other axes it is infinite, for which Bullet takes 0: flat pads do not let a box tilt. Bullet
-    turns a body with a new inertia from the end of a step on: here one is taken, and taken back.
+    About the other axes it is infinite, for which Bullet takes 0: flat pads do not let a box tilt. With
+    `tilt` it is the same about all, see `slipgym.world.tilt_coupling`. Bullet turns a body with a new inertia
+    from the end of a step on: here one is taken, and taken back.
     """
     state = p.saveState(physicsClientId=client)
-    p.changeDynamics(body, -1, mass=mass, localInertiaDiagonal=(0.0, inertia, 0.0), physicsClientId=client)
+    diagonal = (inertia, inertia, inertia) if tilt else (0.0, inertia, 0.0)
+    p.changeDynamics(body, -1, mass=mass, localInertiaDiagonal=diagonal, physicsClientId=client)
     p.stepSimulation(physicsClientId=client)
     p.restoreState(stateId=state, physicsClientId=client)
     p.removeState(state, physicsClientId=client)

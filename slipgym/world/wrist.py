@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from slipgym._numba.compiled import compiled
-from slipgym.world.records import World
+from slipgym.world.records import Tilt, World
 
 
 @compiled
@@ -28,3 +28,23 @@ def ramp_wrist(
     world.wrist_acceleration[0] = (fraction * x - world.wrist_velocity[0]) / duration
     world.wrist_acceleration[1] = (fraction * z - world.wrist_velocity[1]) / duration
     world.wrist_acceleration[2] = (rate - world.wrist_velocity[2]) / duration
+
+
+@compiled
+def ramp_tilt(
+    tilt: Tilt, roll_rate: float, sway: float, rate_max: float, speed_max: float, duration: float
+) -> None:
+    """Ramp the wrist's roll rate and its velocity along the grip axis to a target.
+
+    Args:
+        tilt: TILT record.
+        roll_rate: Target [rad/s].
+        sway: Target of the velocity along +y, from finger 2 to finger 1 [m/s].
+        rate_max: The roll rate is brought down to this [rad/s].
+        speed_max: The velocity is brought down to this [m/s].
+        duration: Length of the ramp [s].
+    """
+    roll_rate = min(max(roll_rate, -rate_max), rate_max)
+    sway = min(max(sway, -speed_max), speed_max)
+    tilt.roll[2] = (roll_rate - tilt.roll[1]) / duration
+    tilt.sway[2] = (sway - tilt.sway[1]) / duration

@@ -1,0 +1,92 @@
+"""The compiled functions that a single world in PyBullet calls, on the first row of its arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from slipgym._numba.compiled import compiled
+from slipgym._numba.rows import row_of
+from slipgym.contact.records import Vector
+from slipgym.world.actuator import queue_command
+from slipgym.world.bullet_coupling import engine_loads
+from slipgym.world.bullet_coupling import read_engine as coupled_reading
+from slipgym.world.substep import update_slip
+from slipgym.world.tilt_coupling import tilted_loads as coupled_loads
+
+
+@compiled
+def loads(
+    worlds: np.ndarray,
+    pads: np.ndarray,
+    cells: np.ndarray | None,
+    fingers: np.ndarray,
+    force_torque: np.ndarray,
+    slip_sensors: np.ndarray,
+    pose: tuple,
+    velocity: tuple,
+    wrist: Vector,
+    normals: tuple[float, float],
+) -> tuple[Any, ...]:
+    """`engine_loads` of the first world."""
+    return engine_loads(
+        worlds[0],
+        pads[0],
+        row_of(cells, 0),
+        fingers[0],
+        force_torque[0],
+        slip_sensors[0],
+        pose[0],
+        pose[1],
+        velocity[0],
+        velocity[1],
+        wrist,
+        normals,
+    )
+
+
+@compiled
+def tilted_loads(
+    worlds: np.ndarray,
+    tilts: np.ndarray,
+    pads: np.ndarray,
+    cells: np.ndarray | None,
+    fingers: np.ndarray,
+    force_torque: np.ndarray,
+    slip_sensors: np.ndarray,
+    pose: tuple,
+    velocity: tuple,
+    wrist: Vector,
+) -> tuple[Any, ...]:
+    """`slipgym.world.tilt_coupling.tilted_loads` of the first world."""
+    return coupled_loads(
+        worlds[0],
+        tilts[0],
+        pads[0],
+        row_of(cells, 0),
+        fingers[0],
+        force_torque[0],
+        slip_sensors[0],
+        pose[0],
+        pose[1],
+        velocity[0],
+        velocity[1],
+        wrist,
+    )
+
+
+@compiled
+def read_engine(
+    worlds: np.ndarray, fingers: np.ndarray, pose: tuple, wrist: Vector, normals: tuple[float, float]
+) -> None:
+    """`read_engine` of the first world, and its slip."""
+    coupled_reading(worlds[0], fingers[0], pose[0], pose[1], wrist, normals)
+    update_slip(worlds[0])
+
+
+@compiled
+def queue(worlds: np.ndarray, fingers: np.ndarray, force: float) -> None:
+    """`queue_command` of both fingers of the first world [N]."""
+    for f in range(2):
+        queue_command(fingers[0, f], worlds[0].tick, force)

@@ -1,0 +1,58 @@
+"""Steps PyBullet with an object that may tilt; pads and object do not collide there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from slipgym.world.bullet_rows import tilted_loads
+from slipgym.world.plant import Plant
+from slipgym.world.quiet_pybullet import p
+from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE
+
+_FORCES = (*WRIST_FORCE, 1e4, 1e4)
+
+
+def step(
+    client: int,
+    body: int,
+    gripper: int,
+    plant: Plant,
+    reading: tuple[Any, ...],
+    read: Callable[[], tuple[Any, ...]],
+    steps: int,
+) -> tuple[Any, ...]:
+    """Advance by some engine steps.
+
+    Args:
+        client: PyBullet's client.
+        body: The box.
+        gripper: The gripper.
+        plant: Arrays of one world, with `tilt`.
+        reading: `BulletWorld.reading`.
+        read: Reads pose and velocity of the box, the wrist's joints, and the speeds of all joints.
+        steps: Number of engine steps.
+
+    Returns:
+        The new reading.
+    """
+    push, twist, drive = p.applyExternalForce, p.applyExternalTorque, p.setJointMotorControlArray
+    (first, second), world, motor = FINGER_LINKS, p.WORLD_FRAME, p.VELOCITY_CONTROL
+    assert plant.tilt is not None
+    contacts = plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
+    for _ in range(steps):
+        pose, velocity, wrist, _, _ = reading
+        (force, torque), at_first, at_second, speeds, normals = tilted_loads(
+            plant.world, plant.tilt, *contacts, pose, velocity, wrist
+        )
+        push(body, -1, force, pose[0], world, client)
+        twist(body, -1, torque, world, client)
+        push(gripper, first, at_first[1], at_first[0], world, client)
+        twist(gripper, first, at_first[2], world, client)
+        push(gripper, second, at_second[1], at_second[0], world, client)
+        twist(gripper, second, at_second[2], world, client)
+        drive(gripper, JOINTS, motor, targetVelocities=speeds, forces=_FORCES, physicsClientId=client)
+        p.stepSimulation(client)
+        pose, velocity, wrist, after = read()
+        reading = pose, velocity, wrist, normals, after
+    return reading
