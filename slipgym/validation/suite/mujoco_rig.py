@@ -46,9 +46,11 @@ _MODEL = """
   </worldbody>
 </mujoco>
 """
-# the order of the joints: wrist x, z, fingers, object x, z, y, angle
-_FINGERS = slice(2, 4)
-_OBJECT = [4, 5, 7]
+
+FINGER_JOINTS = slice(2, 4)
+"""Of the joints, which are wrist x and z, the fingers, and x, z, y and angle of the object."""
+OBJECT_JOINTS = [4, 5, 7]
+"""x, z and angle of the object."""
 
 
 def pad(points: int) -> tuple[str, float]:
@@ -96,11 +98,11 @@ class MujocoRig:
     """
 
     def __init__(self, grasp: Grasp, impratio: float, noslip: int, points: int) -> None:
-        mujoco = library("mujoco", "'slipgym[suite]'", "mujoco")
+        mujoco = library("mujoco", "'slipgym[suite]'", "the engine mujoco")
         self._model = mujoco.MjModel.from_xml_string(model_text(grasp, impratio, noslip, points))
         self._data = mujoco.MjData(self._model)
         self._advance = mujoco.mj_step
-        self._data.qfrc_applied[_FINGERS] = grasp.force
+        self._data.qfrc_applied[FINGER_JOINTS] = grasp.force
         self._heavy = WRIST_MASS + 2.0 * FINGER_MASS
         self.step_time = STEP
 
@@ -108,22 +110,22 @@ class MujocoRig:
         """Advance by one step of MuJoCo."""
         data = self._data
         data.qfrc_applied[:2] = self._heavy * (wrist - data.qvel[:2]) / STEP
-        data.qfrc_applied[_OBJECT] = load
+        data.qfrc_applied[OBJECT_JOINTS] = load
         self._advance(self._model, data)
 
     def throw(self, velocity: np.ndarray) -> None:
         """Set the object's joint velocities."""
-        self._data.qvel[_OBJECT] = velocity
+        self._data.qvel[OBJECT_JOINTS] = velocity
 
     @property
     def position(self) -> np.ndarray:
         """Centre of mass and angle, (3,) [m, m, rad]."""
-        return self._data.qpos[_OBJECT]
+        return self._data.qpos[OBJECT_JOINTS]
 
     @property
     def velocity(self) -> np.ndarray:
         """Velocity of them, (3,) [m/s, m/s, rad/s]."""
-        return self._data.qvel[_OBJECT]
+        return self._data.qvel[OBJECT_JOINTS]
 
     @property
     def wrist(self) -> np.ndarray:
@@ -136,12 +138,16 @@ class MujocoRig:
 
 def variants() -> list[Variant]:
     """Impedance ratios without and with the no-slip solver."""
-    rows = [(impratio, noslip, 1) for impratio in (1, 10, 100) for noslip in (0, 10)] + [(100, 0, 4), (100, 10, 4)]
+    rows = [(impratio, noslip, 1) for impratio in (1, 10, 100) for noslip in (0, 10)] + [
+        (100, 0, 4),
+        (100, 10, 4),
+    ]
     return [
         Variant(
             "mujoco",
-            f"impratio {impratio}{f', noslip {noslip}' if noslip else ''}{', 4 points' if points == 4 else ''}",
+            f"impratio {impratio}" + f", noslip {noslip}" * (noslip > 0) + ", 4 points" * (points == 4),
             partial(MujocoRig, impratio=impratio, noslip=noslip, points=points),
+            drawn=(impratio, noslip, points) == (100, 10, 1),
         )
         for impratio, noslip, points in rows
     ]

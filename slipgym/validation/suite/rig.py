@@ -93,15 +93,17 @@ class Variant:
     """Its settings in a few words."""
     make: Callable[[Grasp], Rig]
     """Return a rig at rest; its pads may still have to settle."""
+    drawn: bool = False
+    """Whether the figure shows it."""
 
 
-def library(name: str, package: str, engine: str) -> Any:
-    """Import a module of an engine's.
+def library(name: str, package: str, purpose: str) -> Any:
+    """Import a module of an optional library.
 
     Args:
         name: Of the module.
         package: What installs it.
-        engine: Name of the engine.
+        purpose: What it is for.
 
     Raises:
         RuntimeError: It is not installed.
@@ -109,5 +111,5 @@ def library(name: str, package: str, engine: str) -> Any:
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
-        text = f"the engine {engine!r} is not installed ({error.name} is missing): pip install {package}"
+        text = f"{purpose} needs {error.name}, which is not installed: pip install {package}"
         raise RuntimeError(text) from error

@@ -19,10 +19,12 @@ REST = np.zeros(2)
 HOLD_LEVEL = 0.8
 """Load of the hold over the friction limit [-]."""
 HOLD_TIME = 60.0
-"""[s]"""
+"""How long a weight is held [s]."""
+BOTH_TIME = 10.0
+"""How long a force and a torque are held together [s]."""
 LOST = 100.0
 """Slip at which a hold ends, since the pads come near the edge of the object [mm]."""
-RAMP_START, RAMP_RATE, RAMP_END = 0.5, 0.02, 1.6
+RAMP_START, RAMP_RATE, RAMP_END = 0.9, 0.02, 1.5
 """Load of the ramp over the friction limit: from, rate [1/s], to."""
 BROKEN = 1e-3
 """Scaled slip speed that counts as broken away [m/s]."""
@@ -40,7 +42,7 @@ SLIDE_WINDOW = 0.005, 0.045
 """Time since the throw over which friction is averaged [s]."""
 THROWS = (0.3, 0.0, 0.0), (0.0, 0.0, 0.3), (0.2, 0.1, 0.2), (-0.1, 0.2, -0.3)
 """Scaled velocities (v_x, v_z, r omega) from which energy is watched [m/s]."""
-SHAKE_TIME = 10.0
+SHAKE_TIME = 5.0
 """[s]"""
 SHAKE_LEVEL = 0.9
 """Largest load of the shaken wrist over the friction limit [-]."""
@@ -56,19 +58,27 @@ def grasped_point(rig: Rig) -> np.ndarray:
     return np.array([x - rig.wrist[0], z - rig.wrist[1], angle])
 
 
-def run(rig: Rig, duration: float, load: Callable[[float], np.ndarray], wrist: Callable[[float], np.ndarray] | None = None) -> np.ndarray:
+def run(
+    rig: Rig,
+    duration: float,
+    load: Callable[[float], np.ndarray],
+    wrist: Callable[[float], np.ndarray] | None = None,
+) -> np.ndarray:
     """Run for a time and return the slip after every step, (n, 3) [m, m, rad].
 
     Args:
         rig: Grasp.
         duration: [s].
-        load: Of the time since the start [s], on the centre of mass (3,).
+        load: Of the time since the start [s]: force, and torque about the pad centre (3,).
         wrist: Velocity (2,) of the time [m/s]; at rest by default.
     """
     rows = []
     for i in range(round(duration / rig.step_time)):
         t = i * rig.step_time
-        rig.step(load(t), REST if wrist is None else wrist(t + rig.step_time))
+        f_x, f_z, torque = load(t)
+        x, z, _ = grasped_point(rig)  # the force acts on the centre of mass
+        lever = np.array([f_x, f_z, torque - x * f_z + z * f_x])
+        rig.step(lever, REST if wrist is None else wrist(t + rig.step_time))
         rows.append(grasped_point(rig))
     return np.array(rows)
 
@@ -105,7 +115,7 @@ class Held:
     angle: float
     """The same, angle [deg]."""
     duration: float
-    """How long the object was held, at most `HOLD_TIME` [s]."""
+    """How long the object was held [s]."""
     cost: float
     """Processor time per simulated second [-]."""
 
@@ -115,11 +125,17 @@ class Held:
         return self.distance >= LOST
 
 
-def hold(variant: Variant, gamma: float, duration: float = HOLD_TIME) -> Held:
-    """Hold an object at 80 % of the limit; a load of its weight in the direction of `limit_load`."""
-    mass = Grasp().mass
-    grasp = Grasp(force=mass * GRAVITY / (HOLD_LEVEL * Grasp(force=1.0).limit))
-    load = mass * GRAVITY * scaled(limit_load(gamma))
+def hold(variant: Variant, gamma: float, duration: float) -> Held:
+    """Hold an object at 80 % of the limit.
+
+    Args:
+        variant: Engine.
+        gamma: Direction of the load, as `limit_load`. At 1 the load is the object's weight.
+        duration: How long to hold it, if it is not lost before [s].
+    """
+    weight = Grasp().mass * GRAVITY
+    grasp = Grasp(force=weight / (HOLD_LEVEL * Grasp(force=1.0).limit))
+    load = weight * scaled(limit_load(gamma))
     rig = settled(variant, grasp)
     run(rig, 0.5, lambda t: 2.0 * t * load)
     start = run(rig, 0.5, lambda _: load)[-1]
@@ -209,9 +225,10 @@ def shake(t: float) -> np.ndarray:
 
 def shaken(variant: Variant) -> float:
     """Largest slip of an object whose weight and inertia load the pads to at most 90 % of the limit [mm]."""
-    times = np.linspace(0.0, SHAKE_TIME, 20001)
+    times = np.linspace(0.0, SHAKE_TIME, 10001)
     velocity = np.array([shake(t) for t in times])
-    needed = np.gradient(velocity, times, axis=0) + (0.0, GRAVITY)
+    needed = np.gradient(velocity, times, axis=0)
+    needed[:, 1] += GRAVITY
     mass = Grasp().mass
     grasp = Grasp(force=mass * float(np.hypot(*needed.T).max()) / (SHAKE_LEVEL * Grasp(force=1.0).limit))
     weight = np.array([0.0, -mass * GRAVITY, 0.0])

@@ -92,6 +92,6 @@ def variants() -> list[Variant]:
         "distributed": ("bullet", "distributed"),
     }
     return [
-        Variant("slipgym", name, partial(SlipgymRig, engine=engine, contact=contact))
+        Variant("slipgym", name, partial(SlipgymRig, engine=engine, contact=contact), engine == "bullet")
         for name, (engine, contact) in rows.items()
     ]
