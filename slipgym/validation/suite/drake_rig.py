@@ -160,11 +160,10 @@ class DrakeRig:
 
 
 def variants() -> list[Variant]:
-    """The contact approximations."""
+    """The preferred approximation, with the default stiction tolerance and with a small one."""
     rows = {
         "lagged": Settings(),
         "lagged, stiction 1e-6 m/s": Settings(stiction=1e-6),
-        "sap": Settings("sap"),
     }
     return [
         Variant("drake", name, partial(DrakeRig, settings=settings), drawn=name == "lagged")

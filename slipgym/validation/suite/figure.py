@@ -48,7 +48,7 @@ def draw(variants: Sequence[Variant], path: Path) -> None:
             name = f"{variant.engine}, {variant.settings}"
             friction = np.array([scenes.steady(variant, gamma)[0] for gamma in GAMMAS])
             f_t, torque = np.hypot(friction[:, 0], friction[:, 1]), np.abs(friction[:, 2])
-            surface.plot(f_t, torque, linewidth=0.8, **look)
+            surface.plot(f_t, torque, linestyle="none", **look)
             slid = [scenes.slide(variant, SLIDING, throw(spin)) for spin in SPINS]
             distance.plot(SPINS, slid, linewidth=0.8, label=name, **look)
         figure.legend(*distance.get_legend_handles_labels(), loc="outside lower center", ncols=3)

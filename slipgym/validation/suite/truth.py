@@ -22,7 +22,7 @@ def friction(twist: np.ndarray) -> np.ndarray:
     return exact_friction("uniform", (twist * _SCALE)[None])[0] * _SCALE
 
 
-def slide(grasp: Grasp, velocity: np.ndarray, step: float = 1e-4) -> np.ndarray:
+def slide(grasp: Grasp, velocity: np.ndarray, step: float = 5e-4) -> np.ndarray:
     """Where a thrown object comes to rest, by the midpoint rule.
 
     Args:
@@ -31,16 +31,14 @@ def slide(grasp: Grasp, velocity: np.ndarray, step: float = 1e-4) -> np.ndarray:
         step: Length of a step [s].
 
     Returns:
-        Displacement of the object's point at the pad centre, and angle, (3,) [m, m, rad].
+        Displacement of the centre of mass, and angle, (3,) [m, m, rad].
     """
     position, velocity = np.zeros(3), np.array(velocity, dtype=float)
     while True:
-        rate = acceleration(grasp, position, velocity)
-        middle = velocity + 0.5 * step * rate
-        rate = acceleration(grasp, position + 0.5 * step * velocity, middle)
-        after = velocity + step * rate
-        if after @ (velocity * (1.0, 1.0, R * R)) <= 0.0:
+        middle = velocity + 0.5 * step * acceleration(grasp, position, velocity)
+        if middle @ (velocity * (1.0, 1.0, R * R)) <= 0.0:  # it comes to rest within the step
             return position
+        after = velocity + step * acceleration(grasp, position + 0.5 * step * velocity, middle)
         position, velocity = position + 0.5 * step * (velocity + after), after
 
 
