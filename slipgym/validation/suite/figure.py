@@ -51,6 +51,7 @@ def draw(variants: Sequence[Variant], path: Path) -> None:
             surface.plot(f_t, torque, linestyle="none", **look)
             slid = [scenes.slide(variant, SLIDING, throw(spin)) for spin in SPINS]
             distance.plot(SPINS, slid, linewidth=0.8, label=name, **look)
+        distance.set_ylim(bottom=0.0)
         figure.legend(*distance.get_legend_handles_labels(), loc="outside lower center", ncols=3)
         figure.savefig(path, dpi=150)
 
@@ -70,5 +71,4 @@ def _draw_truth(surface: Any, distance: Any) -> None:
     distance.plot(spins, slid, "k-", linewidth=2.0, label="exact, uniform disc")
     distance.set_xlabel("spin r omega over sliding speed when thrown")
     distance.set_ylabel("distance slid [mm]")
-    distance.set_ylim(0.0, None)
     distance.set_title("A thrown object, until it rests", loc="left")
