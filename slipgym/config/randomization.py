@@ -8,10 +8,11 @@ from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
-from slipgym.config.base import Frozen, as_tuple
+from slipgym.config.base import as_tuple
 from slipgym.config.distribution import Distribution, within
 from slipgym.config.disturbances import AnyDisturbance, renamed
 from slipgym.config.errors import unknown
+from slipgym.config.pad_ranges import PadRanges
 from slipgym.contact.pressure import PressureName
 
 PUSHES_MAX = 16
@@ -20,7 +21,7 @@ Names = Annotated[tuple[str, ...], Field(min_length=1), BeforeValidator(as_tuple
 Pressures = Annotated[tuple[PressureName, ...], Field(min_length=1), BeforeValidator(as_tuple)]
 
 
-class Ranges(Frozen):
+class Ranges(PadRanges):
     """Distributions of one task; a field that is null or left out is not randomized."""
 
     materials: Names | None = Field(

@@ -27,6 +27,7 @@ from __future__ import annotations
 import math
 
 from slipgym._numba.compiled import compiled
+from slipgym.contact import stribeck
 from slipgym.contact.records import Pad, Vector
 
 EXPANDED = 0.05
@@ -75,6 +76,15 @@ def at_load(pad: Pad, normal: float) -> tuple[float, float]:
     """Factor of the friction [-] and radius r, not limited [m], at a normal force [N]."""
     ratio = math.log(max(normal, LIGHTEST) / pad.reference_force)
     return math.exp(-pad.load_exponent * ratio), pad.r * math.exp(pad.radius_exponent * ratio)
+
+
+@compiled
+def present_friction(pad: Pad) -> Vector:
+    """Static and Coulomb friction [-] and radius r [m] at the last normal force and dwell time."""
+    if pad.friction_scale == 1.0 and pad.static_gain == 1.0:
+        return pad.mu_s, pad.mu_c, pad.radius
+    mu_c, mu_s = stribeck.levels(pad)
+    return mu_s, mu_c, pad.radius
 
 
 @compiled

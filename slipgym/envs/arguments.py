@@ -84,8 +84,8 @@ class CommonArguments(TypedDict, total=False):
         str | os.PathLike[str] | Mapping[str, Any],
         Argument(
             "none",
-            'parameters sampled per episode: `"none"`, `"train"`, `"eval_ood"`, a file or a mapping (see '
-            "docs/randomization.md)",
+            'parameters sampled per episode: `"none"`, `"train"`, `"lab"`, `"eval_ood"`, a file or a mapping '
+            "(see docs/randomization.md)",
         ),
     ]
     frame_skip: Annotated[

@@ -7,8 +7,17 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from slipgym.config import Config
+from slipgym.config.pad import EFFECTS
 from slipgym.contact.records import CELL_FIELDS
-from slipgym.world.plant import Plant, check_slip_latency, dead_ticks, patch_of
+from slipgym.world.plant import (
+    Plant,
+    check_slip_latency,
+    dead_ticks,
+    pad_parameters,
+    patch_of,
+    stretched,
+    without_cells,
+)
 
 
 def with_pressure(config: Config, pressure: str) -> Config:
@@ -23,13 +32,14 @@ class HardwareRandomization:
         config: Configuration of the plant.
         plant: The plant as it was built; its patches are enlarged to the size of the largest one.
         pressures: Pressure profiles that an episode may have.
+        soft: Whether pads may be soft or uneven.
 
     Attributes:
         biases: Standard deviation of the force/torque sensors' biases, and their noise, which the sampled
             bias scale multiplies, (6,) each [N, N m].
     """
 
-    def __init__(self, config: Config, plant: Plant, pressures: Sequence[str]) -> None:
+    def __init__(self, config: Config, plant: Plant, pressures: Sequence[str], soft: bool) -> None:
         self._config, self._plant = config, plant
         self._force_noise = plant.force_torque["noise"][0, 0].copy()
         self._slip_noise = plant.slip_sensors["noise"][0, 0].copy()
@@ -38,13 +48,16 @@ class HardwareRandomization:
         spread = np.array([tangential, tangential, normal, torque, torque, torque], dtype=float)
         self.biases = spread, self._force_noise
         self._cells: dict[str, np.ndarray] = {}
-        if plant.cells is not None:
+        if soft and plant.cells is None:
+            plant.cells = without_cells(len(plant.pads))
+        if config.contact.model == "distributed":
             patches = {pressure: patch_of(with_pressure(config, pressure)) for pressure in pressures}
             size = max(cells.shape[1] for cells in patches.values())
             for pressure, cells in patches.items():
                 self._cells[pressure] = np.zeros((CELL_FIELDS, size))  # a cell of weight 0 does nothing
                 self._cells[pressure][:, : cells.shape[1]] = cells
-            plant.cells = np.tile(self._cells[config.contact.pressure], (*plant.pads.shape, 1, 1))
+            cells = np.tile(self._cells[config.contact.pressure], (*plant.pads.shape, 1, 1))
+            plant.cells = stretched(cells, plant.pads["axes"])
 
     def check(self, most: Mapping[str, float]) -> None:
         """Raise ValueError unless the plant's buffers hold the longest delays that may be sampled."""
@@ -76,8 +89,10 @@ class HardwareRandomization:
         plant = self._plant
         for field in ("stribeck_velocity", "sigma_0"):
             plant.pads[field][i] = values[field]
-        if plant.cells is not None:
-            plant.cells[i] = self._cells[pressure]
+        for name, value in pad_parameters({name: values[name] for name in EFFECTS}).items():
+            plant.pads[name][i] = value
+        if self._cells and plant.cells is not None:
+            plant.cells[i] = stretched(np.stack([self._cells[pressure]] * 2), plant.pads["axes"][i])
         plant.fingers["dead_ticks"][i] = dead_ticks(self._config, values["dead_time"])
         plant.force_torque["noise"][i] = values["noise_scale"] * self._force_noise
         plant.slip_sensors["noise"][i] = values["noise_scale"] * self._slip_noise

@@ -12,6 +12,7 @@ import numpy as np
 from slipgym.config import Config, Material, Randomization, Ranges, TaskConfig
 from slipgym.config.disturbances import AnyDisturbance, FrictionJump, MassChange, Push, Shake, SurfaceRegion
 from slipgym.config.errors import NEEDS_TILT, unknown
+from slipgym.config.pad import EFFECTS
 from slipgym.envs.finger_differences import (
     DIFFERENCES,
     Numbers,
@@ -54,6 +55,7 @@ def nominal_values(config: Config) -> dict[str, float]:
         "noise_scale": 1.0,
         "bias_scale": 0.0,
         "slip_latency": config.sensors.slip.latency_samples,
+        **{name: getattr(contact.pad, name) for name in EFFECTS},
     }
 
 
@@ -116,6 +118,7 @@ class Randomizer:
 
     Attributes:
         active: Whether anything is sampled.
+        soft: Whether pads may be soft or uneven.
         pressures: Pressure profiles that an episode may have.
         most: Largest possible value of every number.
 
@@ -131,6 +134,7 @@ class Randomizer:
                 raise ValueError(f"randomization: shake in roll or sway {NEEDS_TILT}")
         self._nominal, self._alike = nominal_values(config), nominal_differences(config)
         self.active = self._ranges != Ranges()
+        self.soft = any(self.draws(name) for name in EFFECTS)
         fields = ((name, getattr(self._ranges, name)) for name in Ranges.model_fields)
         self._drawn = [
             (name, field) for name, field in fields if name != "disturbances" and field is not None

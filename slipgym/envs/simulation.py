@@ -87,7 +87,7 @@ class Simulation(ABC):
         self.config, self.settings, self.task, self.n = config, settings, task, n
         self.plant = build(config, n)
         randomizer = Randomizer(config, settings, task.key, randomization or Randomization())
-        hardware = HardwareRandomization(config, self.plant, randomizer.pressures)
+        hardware = HardwareRandomization(config, self.plant, randomizer.pressures, randomizer.soft)
         hardware.check(randomizer.most)
         self.estimator_choice = _chosen_estimator(estimator)
         self.estimator = estimators.make_batch(n=2 * n, **self.estimator_choice)

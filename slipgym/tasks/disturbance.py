@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from slipgym._numba.compiled import compiled
+from slipgym.contact.soft_pad import present_friction
 from slipgym.world.wrist import ramp_tilt
 
 SHAKES = 2
@@ -105,7 +106,7 @@ def disturb(episodes, worlds, pads, friction):
         episodes: EPISODE (n,).
         worlds: WORLD (n,).
         pads: PAD (n, 2).
-        friction: Output (n, 3): mu_s and mu_c now, mean of both pads; r is unchanged.
+        friction: Output (n, 3): mu_s, mu_c and r now, mean of both pads; r as it is unless a pad is soft.
     """
     for i in range(episodes.shape[0]):
         episode, world = episodes[i], worlds[i]
@@ -119,5 +120,7 @@ def disturb(episodes, worlds, pads, friction):
         for f in range(2):
             own = factor * episode.finger_friction[f]
             pads[i, f].mu_s, pads[i, f].mu_c = own * episode.mu_s, own * episode.mu_c
-        friction[i, 0] = 0.5 * (pads[i, 0].mu_s + pads[i, 1].mu_s)
-        friction[i, 1] = 0.5 * (pads[i, 0].mu_c + pads[i, 1].mu_c)
+        first, second = present_friction(pads[i, 0]), present_friction(pads[i, 1])
+        friction[i, 0], friction[i, 1] = 0.5 * (first[0] + second[0]), 0.5 * (first[1] + second[1])
+        if pads[i, 0].radius_exponent != 0.0:
+            friction[i, 2] = 0.5 * (first[2] + second[2])

@@ -89,7 +89,7 @@ def same_pads(first: Pad, second: Pad) -> bool:
     same = first.mu_c == second.mu_c and first.mu_s == second.mu_s and first.r == second.r
     same = same and first.cop[0] == second.cop[0] and first.cop[1] == second.cop[1]
     for a in range(3):
-        same = same and first.z[a] == second.z[a]
+        same = same and first.z[a] == second.z[a] and first.shear[a] == second.shear[a]
     return same and first.slip_speed == second.slip_speed and first.slip_rate == second.slip_rate
 
 

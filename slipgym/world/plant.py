@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -133,29 +134,30 @@ def _pads(config: Config, n: int) -> np.ndarray:
     array["cop"] = contact.cop_offset
     array["surface"] = DISC if contact.model == "disc" else ELLIPSOID
     array["radius_max"] = config.gripper.pad_radius / OUTER_RADII[config.contact.pressure]
-    for name, value in pad_parameters(config).items():
+    for name, value in pad_parameters(config.contact.pad.model_dump()).items():
         array[name] = value
     return array
 
 
-def pad_parameters(config: Config) -> dict[str, Any]:
-    """Fields of PAD that `contact.pad` sets."""
-    pad = config.contact.pad.model_dump()
-    anisotropy, compliance = pad.pop("anisotropy"), pad.pop("shear_compliance")
-    return {**pad, "compliance": compliance, "axes": (1.0 + anisotropy, 1.0 - anisotropy)}
+def pad_parameters(pad: Mapping[str, float]) -> dict[str, Any]:
+    """Fields of PAD from those of `slipgym.config.pad.PadConfig`, all or those that change."""
+    same = {name: value for name, value in pad.items() if name not in ("anisotropy", "shear_compliance")}
+    anisotropy = pad["anisotropy"]
+    axes = 1.0 + anisotropy, 1.0 - anisotropy
+    return {**same, "compliance": pad["shear_compliance"], "axes": axes}
 
 
 def _cells(config: Config, n: int) -> np.ndarray | None:
     """The patch of every pad, which an episode scales by its r alone, or what says that there is none."""
     if config.contact.model == "distributed":
         cells = np.tile(patch_of(config), (n, 2, 1, 1))
-        return stretched(cells, np.full((n, 2, 2), pad_parameters(config)["axes"]))
+        return stretched(cells, np.full((n, 2, 2), pad_parameters(config.contact.pad.model_dump())["axes"]))
     if config.contact.model == "ellipsoid" and config.contact.pad.hard:
         return None
-    return uncelled(n)
+    return without_cells(n)
 
 
-def uncelled(n: int) -> np.ndarray:
+def without_cells(n: int) -> np.ndarray:
     """`Plant.cells` of pads that are soft or discs: no numbers, only their kind."""
     return np.zeros((n, 2, 0))
 

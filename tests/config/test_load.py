@@ -30,7 +30,7 @@ def test_presets_differ_in_what_they_say_they_do():
 def test_names():
     assert config.names("materials") == ("cardboard", "case", "plastic", "wood")
     assert config.names("sensors") == ("ideal", "realistic")
-    assert config.names("randomization") == ("eval_ood", "none", "train")
+    assert config.names("randomization") == ("eval_ood", "lab", "none", "train")
     with pytest.raises(ValueError, match="materials, randomization, sensors"):
         config.names("colours")
 
@@ -109,7 +109,7 @@ WRONG = [
     ({"sensors": {"slip": {"counts": 1}}}, ["sensors.slip.counts = 1", "true or false"]),
     ({"sensors": {"slip": {"rate": 60}}}, ["sensors.slip.rate", "60", "120"]),
     ({"physics": {"engine_steps": 2.5}}, ["physics.engine_steps = 2.5", "a whole number >= 1"]),
-    ({"contact": {"model": "point"}}, ["contact.model = 'point'", "'ellipsoid', 'distributed'"]),
+    ({"contact": {"model": "point"}}, ["contact.model = 'point'", "'ellipsoid', 'disc', 'distributed'"]),
     ({"contact": {"sigma_0": 10.0}}, ["contact.sigma_0 = 10.0", ">= 100000"]),
     ({"contact": {"radius": 0.02}}, ["contact.radius", "gripper.pad_radius", "0.02", "0.015"]),
     ({"contact": {"cop_offset": [[0, 0], [0, "a"]]}}, ["contact.cop_offset.1.1 = 'a'", "finite"]),

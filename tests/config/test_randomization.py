@@ -31,7 +31,7 @@ WRONG = [
     ({"disturbances": 3}, "disturbances = 3", "a list"),
     ({"tasks": {"hinj": {}}}, "unknown task 'hinj'", "did you mean 'hinge'"),
     ({"tasks": {"hinge": {"mu_s": {"choices": [1.0]}}}}, "tasks.hinge: mu_s needs", "mu_c"),
-    (3, "randomization = 3", "eval_ood, none, train"),
+    (3, "randomization = 3", "eval_ood, lab, none, train"),
 ]
 
 

@@ -33,7 +33,7 @@ def rows(title: str) -> list[list[str]]:
 
 
 def test_the_table_of_fields_is_the_presets():
-    presets = [load_randomization(name) for name in ("train", "eval_ood")]
+    presets = [load_randomization(name) for name in ("train", "lab", "eval_ood")]
     expected = [
         [f"`{name}`", field.description, *(said(getattr(preset, name)) for preset in presets)]
         for name, field in Ranges.model_fields.items()
