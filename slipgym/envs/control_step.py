@@ -147,7 +147,7 @@ class Kernels:
         states: Dtype of its state.
         parameters: Dtype of its parameters.
         force_torque: Dtype of the force/torque sensors.
-        patches: Whether pads have cells.
+        cells: Dimensions of `slipgym.world.plant.Plant.cells`, 0 for None.
 
     Attributes:
         state: Type of `BatchState`.
@@ -162,7 +162,7 @@ class Kernels:
         states: np.dtype,
         parameters: np.dtype,
         force_torque: np.dtype,
-        patches: bool,
+        cells: int,
     ) -> None:
         self._task, self._update = task, update
         episodes, worlds, fingers = array(EPISODE), array(WORLD), array(FINGER, 2)
@@ -171,7 +171,7 @@ class Kernels:
         fields = {
             "worlds": worlds,
             "pads": array(PAD, 2),
-            "cells": array(types.float64, 4) if patches else types.none,
+            "cells": array(types.float64, cells) if cells else types.none,
             "fingers": fingers,
             "force_torque": array(force_torque, 2),
             "slip_sensors": array(SLIP_SENSOR, 2),

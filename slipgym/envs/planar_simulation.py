@@ -58,7 +58,8 @@ class PlanarSimulation(Simulation):
         kind, plant = specification(self.estimator_choice["name"]), self.plant
         batch = self.estimator
         dtypes = batch.states.dtype, batch.parameters_array.dtype, plant.force_torque.dtype
-        self._drive, self._start = compiled_batch(task, kind.update_batch, *dtypes, plant.cells is not None)
+        cells = 0 if plant.cells is None else plant.cells.ndim
+        self._drive, self._start = compiled_batch(task, kind.update_batch, *dtypes, cells)
         self._state = BatchState(
             worlds=plant.world,
             pads=plant.pads,

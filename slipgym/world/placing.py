@@ -7,10 +7,14 @@ import math
 import numpy as np
 
 from slipgym._numba.compiled import compiled
+from slipgym.contact.coupled import PATCHES
 from slipgym.contact.records import Vector, rest, rest_cells
 from slipgym.world.actuator import actuator_force, mean_force
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box
+
+PATCHES_OF_WORLDS = PATCHES + 1
+"""Dimensions of `Plant.cells` if they are patches."""
 
 
 def place(plant: Plant, i: int, box: Box, force: float, wrist: tuple[float, float, float]) -> None:
@@ -66,5 +70,7 @@ def place_world(
         finger = fingers[i, f]
         finger.mean_force = finger.contact_mean_force = finger.contact_force = normal
     rest(pads[i])
-    if cells is not None:
+    if cells is None:
+        return
+    if cells.ndim == PATCHES_OF_WORLDS:
         rest_cells(cells[i])

@@ -11,7 +11,7 @@ import numpy as np
 
 from slipgym.config import Config
 from slipgym.contact.pressure import OUTER_RADII, patch_cells
-from slipgym.contact.records import DISC, ELLIPSOID, X, Y, pads, patch
+from slipgym.contact.records import DISC, ELLIPSOID, X, Y, pads, patch, rest
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.force_torque import force_torque
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
@@ -136,6 +136,7 @@ def _pads(config: Config, n: int) -> np.ndarray:
     array["radius_max"] = config.gripper.pad_radius / OUTER_RADII[config.contact.pressure]
     for name, value in pad_parameters(config.contact.pad.model_dump()).items():
         array[name] = value
+    rest(array.reshape(-1))
     return array
 
 

@@ -17,6 +17,7 @@ from slipgym.contact.coupled import (
     step_pads,
 )
 from slipgym.contact.records import pads
+from slipgym.contact.soft_pad import load_pad
 
 H = 5e-4
 NO_CELLS = None
@@ -47,6 +48,7 @@ def problems(draw):
         direction = np.array(draw(st.tuples(*[st.floats(-1.0, 1.0)] * 3)))
         length = max(np.linalg.norm(direction), 1e-3)
         pad["z"] = direction / length * draw(st.floats(0.0, 1.0)) * pad["mu_c"] / pad["sigma_0"]
+        load_pad(pad, pad["normal"])
     inertia = draw(st.floats(0.05, 0.5)), draw(st.floats(2e-5, 2e-3))
     centre = draw(st.tuples(*[st.floats(-0.03, 0.03)] * 2))
     scale = 10.0 ** draw(st.floats(-9.0, -4.0))
@@ -178,7 +180,10 @@ def test_momentum_is_balanced_however_far_the_guess(h):
         )
         array["mu_c"] = rng.uniform(0.2, 0.8)
         array["mu_s"] = array["mu_c"] * rng.uniform(1.0, 1.9)
-        array["r"], array["normal"] = rng.uniform(0.004, 0.01), rng.uniform(1.0, 25.0)
+        array["r"] = rng.uniform(0.004, 0.01)
+        normal = rng.uniform(1.0, 25.0)
+        for one in array:
+            load_pad(one, normal)
         pad = array[0]
         held = 2.0 * pad["mu_s"] * pad["normal"]
         z, load = (v / np.linalg.norm(v) for v in rng.normal(size=(2, 3)))

@@ -9,6 +9,7 @@ from scipy.optimize import minimize
 from slipgym.contact.coupled import assemble, norm, set_friction_level, solve_motion, step_pads
 from slipgym.contact.pressure import patch_cells
 from slipgym.contact.records import ELASTIC_LIMIT, LOAD, SPEED_CAP, Z_X, Z_Y, X, Y, pads, patch
+from slipgym.contact.soft_pad import load_pad
 
 H = 2.5e-4
 LAW = {"mu_c": 0.4, "mu_s": 0.5, "stribeck_velocity": 1e-3, "sigma_0": 1e6, "sigma_1": 80.0, "sigma_2": 0.2}
@@ -34,7 +35,7 @@ def problems(draw):
         pad["sigma_1"] = rng.uniform(0.0, 200.0)
         pad["r"] = rng.uniform(0.003, 0.015)
         pad["cop"] = rng.uniform(-0.005, 0.005, 2)
-        pad["normal"] = rng.uniform(0.1, 30.0)
+        load_pad(pad, rng.uniform(0.1, 30.0))
         pad["twist"] = rng.normal(size=3) * 10.0 ** rng.uniform(-6.0, -1.0)
         own[SPEED_CAP] = np.where(rng.random(size) < 0.5, np.inf, 10.0 ** rng.uniform(-6.0, -2.0, size))
         length, angle = pad["mu_s"] / pad["sigma_0"] * rng.random(size), rng.uniform(0.0, 2.0 * np.pi, size)

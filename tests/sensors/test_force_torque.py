@@ -5,6 +5,7 @@ import pytest
 
 from slipgym.config import load
 from slipgym.contact.records import pads
+from slipgym.contact.soft_pad import load_pad
 from slipgym.sensors.force_torque import (
     next_sample_read,
     read_force_torque,
@@ -24,7 +25,8 @@ def sensors(preset: str = "ideal", **force_torque):
 def loaded_pad(wrench=(1.5, -0.7, 0.012), normal=4.0, cop=(0.0, 0.0)):
     """A pad that carries a friction wrench on the object."""
     pad = pads(1)[0]
-    pad["wrench"], pad["normal"], pad["cop"] = wrench, normal, cop
+    pad["wrench"], pad["cop"] = wrench, cop
+    load_pad(pad, normal)
     return pad
 
 
