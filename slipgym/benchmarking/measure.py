@@ -25,6 +25,30 @@ from slipgym.world.plant import Plant
 
 BLOCK = 50  # control steps
 ACTIONS = -0.97, -0.7  # 1 to 4.3 N; the default box needs 2 to 3 N, so that it slips a fifth of the time
+SOFT_PADS = {
+    "load_exponent": 0.2,
+    "radius_exponent": 0.2,
+    "cop_lever": 0.002,
+    "shear_compliance": 5e-5,
+    "creep": 0.3,
+    "aging": 0.05,
+    "anisotropy": 0.1,
+}
+"""Values of `contact.pad` that switch every effect on."""
+FINGERS = {
+    "contact": {"pad": SOFT_PADS, "finger_friction": [0.95, 1.05], "finger_radius": [0.95, 1.0]},
+    "gripper": {"finger_lag": [0.9, 1.1], "force_gain": [0.98, 1.02]},
+}
+OPTIONS: dict[str, dict[str, Any]] = {
+    "disc": {"contact": "disc"},
+    "soft pads": {"config": {"contact": {"pad": SOFT_PADS}}},
+    "physics.tilt": {"config": {"physics": {"tilt": True}}},
+    "all of these and unlike fingers": {
+        "contact": "disc",
+        "config": {**FINGERS, "physics": {"tilt": True}},
+    },
+}
+"""Options of the physics, each against the default."""
 _FIRST_STEP = (
     "import gymnasium as gym; env = gym.make('slipgym:{env_id}'); env.reset(seed=0); "
     "env.step(env.action_space.sample())"
@@ -172,19 +196,21 @@ def distributed(player: Player, env_id: str, pairs: int) -> list[Figure]:
     return figures
 
 
-def tilted(player: Player, env_id: str, pairs: int) -> list[Figure]:
-    """The environment with `physics.tilt` against the same without, and against the bare loop."""
-    other = Player(env_id, config={"physics": {"tilt": True}})
-    compare(player.block, other.block, 3)  # warm up
-    result = compare(player.block, other.block, pairs)
-    bare = {figure.name: figure for figure in against_bare(other, pairs)}["environment / bare loop"]
-    other.env.close()
-    name = "environment, physics.tilt"
-    return [
-        Figure(f"{name}, per engine step", 1e6 * result.second, "us"),
-        Figure(f"{name} / without", result.quartiles[1], "-"),
-        Figure(f"{name} / bare loop", bare.value, "-", "<= 1.4"),
-    ]
+def options(player: Player, env_id: str, pairs: int) -> list[Figure]:
+    """The environment with options of the physics against the same without, and against the bare loop."""
+    figures = []
+    for name, arguments in OPTIONS.items():
+        other = Player(env_id, **arguments)
+        compare(player.block, other.block, 3)  # warm up
+        result = compare(player.block, other.block, pairs)
+        bare = {figure.name: figure for figure in against_bare(other, pairs)}["environment / bare loop"]
+        other.env.close()
+        figures += [
+            Figure(f"environment, {name}, per engine step", 1e6 * result.second, "us"),
+            Figure(f"environment, {name} / without", result.quartiles[1], "-"),
+            Figure(f"environment, {name} / bare loop", bare.value, "-", "<= 1.4"),
+        ]
+    return figures
 
 
 def contact(calls: int = 2000) -> list[Figure]:

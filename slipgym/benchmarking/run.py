@@ -6,7 +6,7 @@ from pathlib import Path
 
 from slipgym.benchmarking import measure, report
 from slipgym.benchmarking.batch import batch
-from slipgym.benchmarking.substeps import substeps
+from slipgym.benchmarking.substeps import softer, substeps
 
 
 def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
@@ -23,9 +23,10 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
         *measure.against_bare(player, pairs),
         *measure.breakdown(player, max(1, pairs // 3)),
         *substeps(player.rest(), max(3, pairs // 3)),
+        *softer(env_id, max(3, pairs // 3)),
         *measure.life(env_id, max(3, pairs // 10)),
         *measure.distributed(player, env_id, max(3, pairs // 5)),
-        *measure.tilted(player, env_id, max(3, pairs // 5)),
+        *measure.options(player, env_id, max(3, pairs // 5)),
         *measure.contact(),
         *measure.patch(max(3, pairs)),
         *batch(player, env_id, max(3, pairs // 10)),

@@ -16,7 +16,9 @@ from typing import Any
 import numpy as np
 
 from slipgym._numba.compiled import compiled
+from slipgym.benchmarking.measure import OPTIONS, Player
 from slipgym.benchmarking.report import Figure
+from slipgym.benchmarking.timing import compare
 from slipgym.world.plant import Plant
 from slipgym.world.substep import substep
 
@@ -76,6 +78,22 @@ def block(start: Plant, forces: np.ndarray, run: Any = repeat) -> tuple[float, i
     before = process_time()
     run(plant.world[0], plant.pads[0], cells, plant.fingers[0], plant.slip_sensors[0], forces, STEPS)
     return process_time() - before, STEPS
+
+
+def softer(env_id: str, pairs: int) -> list[Figure]:
+    """Time of a sub-step with the disc and with soft pads over that of hard ellipsoids, in turns."""
+    plants = {}
+    for name, arguments in {"hard": {}, **{key: OPTIONS[key] for key in ("disc", "soft pads")}}.items():
+        player = Player(env_id, **arguments)
+        plants[name] = deepcopy(player.rest())
+        player.env.close()
+    figures = []
+    for kind in ("disc", "soft pads"):
+        pair = zip(regimes(plants["hard"]), regimes(plants[kind]), strict=True)
+        for (name, hard, forces), (_, soft, others) in pair:
+            result = compare(partial(block, hard, forces), partial(block, soft, others), pairs)
+            figures.append(Figure(f"sub-step, {name}, {kind} / hard", result.quartiles[1], "-"))
+    return figures
 
 
 def substeps(plant: Plant, repeats: int) -> list[Figure]:

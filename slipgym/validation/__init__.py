@@ -8,6 +8,7 @@ from slipgym.validation.accelerated import accelerated
 from slipgym.validation.agreement import agreement
 from slipgym.validation.breakaway import breakaway
 from slipgym.validation.creep import creep
+from slipgym.validation.disc import disc
 from slipgym.validation.distributed import distributed
 from slipgym.validation.energy import energy
 from slipgym.validation.estimation import estimation
@@ -19,6 +20,7 @@ from slipgym.validation.patch_steps import patch_steps
 from slipgym.validation.patch_stick import patch_stick
 from slipgym.validation.patch_surface import patch_surface
 from slipgym.validation.planar import planar, slides
+from slipgym.validation.soft import soft
 from slipgym.validation.steady import steady
 from slipgym.validation.tilt import tilt
 
@@ -33,6 +35,8 @@ EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     agreement,
     planar,
     slides,
+    disc,
+    soft,
     distributed,
     patch_surface,
     patch_stick,
