@@ -132,4 +132,4 @@ def accelerated(**options: Any) -> Iterator[Figure]:
     for name in ("+x", "oblique", "pitch"):
         moved, wrong = shake(DIRECTIONS[name], SHAKE_TIME, **options)
         yield Figure(f"wrist shaken at 90 %, {name}, creep", DRIFT_BOUND, moved, "mm")
-        yield Figure(f"wrist shaken at 90 %, {name}, friction", BOUND, 100.0 * wrong, "% of the limit")
+        yield Figure(f"wrist shaken at 90 %, {name}, friction", BOUND, 100.0 * wrong, "%")
