@@ -70,6 +70,8 @@ def place_world(
         finger = fingers[i, f]
         finger.mean_force = finger.contact_mean_force = finger.contact_force = normal
     rest(pads[i])
+    for f in range(2):
+        pads[i, f].normal = force
     if cells is None:
         return
     if cells.ndim == PATCHES_OF_WORLDS:
