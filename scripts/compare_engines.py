@@ -18,6 +18,9 @@ def main(
     ] = None,
     trials: Annotated[int, typer.Option(min=1, help="Trials of each.")] = 200,
     sensors: Annotated[str, typer.Option(help="Sensor preset.")] = "realistic",
+    randomization: Annotated[
+        str, typer.Option(help="Randomization preset; lab has soft pads and unlike fingers.")
+    ] = "none",
 ) -> None:
     """Prints how far apart the episodes of both engines end, and how often they succeed."""
     from policies.evaluation import load_experiment
@@ -25,9 +28,8 @@ def main(
     from policies.research.leaderboard.tables import markdown
 
     try:
-        chosen = [
-            load_experiment(name).model_copy(update={"sensors": sensors}) for name in experiments or TASKS
-        ]
+        changes = {"sensors": sensors, "randomization": randomization}
+        chosen = [load_experiment(name).model_copy(update=changes) for name in experiments or TASKS]
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
     for experiment in chosen:

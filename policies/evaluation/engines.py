@@ -84,6 +84,7 @@ def halved(experiment: Experiment) -> Experiment:
     finer = {
         "engine_steps": 2 * physics.engine_steps,
         "substep_max": physics.substep_max / 2,
+        "patch_substep_max": physics.patch_substep_max / 2,
         "planar_substep_max": physics.planar_substep_max / 2,
     }
     own = {**experiment.config.get("physics", {}), **finer}

@@ -226,10 +226,10 @@ def stored_sum(
         kept[i] = 1.0
         if give > 0.0:
             cells[SHEAR_X, i], cells[RELAXED_X, i] = sheared(
-                pad, cells[SHEAR_X, i], cells[RELAXED_X, i], moved[0] - slip[0], h
+                pad, cells[SHEAR_X, i], cells[RELAXED_X, i], moved[0] - slip[0]
             )
             cells[SHEAR_Y, i], cells[RELAXED_Y, i] = sheared(
-                pad, cells[SHEAR_Y, i], cells[RELAXED_Y, i], moved[1] - slip[1], h
+                pad, cells[SHEAR_Y, i], cells[RELAXED_Y, i], moved[1] - slip[1]
             )
     return (fx, fy, ft), slipping
 

@@ -43,6 +43,7 @@ PAD = np.dtype(
         ("prepared", "f8"),  # length of the sub-step that `give` and `recall` belong to [s]
         ("give", "f8"),  # compliance of the rubber within this sub-step [m/N]
         ("recall", "f8", 2),  # weights of `shear` and `relaxed` in its force over its stiffness [-]
+        ("relaxing", "f8"),  # fraction of the way to `shear` that `relaxed` goes in this sub-step [-]
         # state
         ("z", "f8", 3),  # bristle state in the scaled displacement (x, y, r theta) [m]
         ("shear", "f8", 3),  # scaled displacement of the rubber's surface against the finger [m]
@@ -56,6 +57,7 @@ PAD = np.dtype(
         ("normal", "f8"),  # normal force [N]
         ("wrench", "f8", 3),  # on the object at the centre of pressure, pad frame [N, N, N m]
         # of `slipgym.contact.soft_kernel`: coefficients of this sub-step, see `slipgym.contact.bristle`
+        ("loaded", "f8", 2),  # normal force [N] and sub-step [s] that they belong to
         ("stiffness", "f8", 3),  # elastic, damping and viscous force per displacement [N/m]
         ("softer", "f8", 2),  # 1 / (1 + give (E + V)) and 1 / (1 + give V) [-]
         # and results for the displacement that was evaluated last
@@ -160,6 +162,7 @@ def rest(pads: np.ndarray) -> None:
         pad.elastic_limit = 0.0
         pad.load_anchor[:] = 0.0
         pad.prepared = 0.0
+        pad.loaded[:] = 0.0
         pad.friction_scale = pad.static_gain = 1.0
         pad.radius = pad.r
         pad.pressure_centre[0], pad.pressure_centre[1] = pad.cop[0], pad.cop[1]

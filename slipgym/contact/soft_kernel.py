@@ -90,10 +90,12 @@ def friction_and_jacobian(pad: Pad, delta: Vector, level: float) -> tuple[Vector
 def set_friction_level(pad: Pad, h: float) -> float:
     """Set the friction level of a sub-step and shorten the bristles to it; returns the level [-]."""
     prepare_shear(pad, h)
-    stiffness = bristle.coefficients(pad, pad.normal, h)
-    for a in range(3):
-        pad.stiffness[a] = stiffness[a]
-    pad.softer[0], pad.softer[1] = bristle.softening(stiffness, pad.give)
+    if pad.loaded[0] != pad.normal or pad.loaded[1] != h:
+        pad.loaded[0], pad.loaded[1] = pad.normal, h
+        stiffness = bristle.coefficients(pad, pad.normal, h)
+        for a in range(3):
+            pad.stiffness[a] = stiffness[a]
+        pad.softer[0], pad.softer[1] = bristle.softening(stiffness, pad.give)
     level = expected_level(pad, h)
     shorten_bristles(pad, level)
     return level
@@ -163,7 +165,7 @@ def store_state(pad: Pad, delta: Vector, h: float, level: float) -> None:
         pad.slip_rate = (speed - pad.slip_speed) / between
         pad.slip_speed = speed
         advance_age(pad, speed, h)
-    advance_shear(pad, delta, (x, y, t), h)
+    advance_shear(pad, delta, (x, y, t))
     pad.wrench[0], pad.wrench[1] = -pad.axes[0] * pad.friction[0], -pad.axes[1] * pad.friction[1]
     pad.wrench[2] = -pad.radius * pad.friction[2]
 

@@ -103,7 +103,8 @@ def prepare_shear(pad: Pad, h: float) -> None:
         pad.give = 0.0
     elif pad.prepared != h:  # sub-steps take few lengths
         pad.prepared = h
-        relaxing = pad.creep * pad.creep_time / (pad.creep_time + h)
+        pad.relaxing = h / (pad.creep_time + h)
+        relaxing = pad.creep * (1.0 - pad.relaxing)
         lasting = 1.0 - pad.creep + relaxing
         per_stiffness = 1.0 / (lasting + pad.shear_time / h)
         pad.give = pad.compliance * per_stiffness
@@ -111,25 +112,27 @@ def prepare_shear(pad: Pad, h: float) -> None:
 
 
 @compiled
-def sheared(pad: Pad, shear: float, relaxed: float, gained: float, h: float) -> tuple[float, float]:
-    """`shear` and `relaxed` of one direction after the shear has grown by `gained` in a sub-step of h [m]."""
+def sheared(pad: Pad, shear: float, relaxed: float, gained: float) -> tuple[float, float]:
+    """`shear` and `relaxed` of one direction after the shear has grown by `gained` in a sub-step [m]."""
     shear += gained
-    return shear, (pad.creep_time * relaxed + h * shear) / (pad.creep_time + h)
+    return shear, relaxed + pad.relaxing * (shear - relaxed)
 
 
 @compiled
-def advance_shear(pad: Pad, motion: Vector, slip: Vector, h: float) -> None:
+def advance_shear(pad: Pad, motion: Vector, slip: Vector) -> None:
     """Advance the shear of a pad without cells: what of a scaled motion is not slip."""
     if pad.give > 0.0:
         for a in range(3):
-            pad.shear[a], pad.relaxed[a] = sheared(pad, pad.shear[a], pad.relaxed[a], motion[a] - slip[a], h)
+            pad.shear[a], pad.relaxed[a] = sheared(pad, pad.shear[a], pad.relaxed[a], motion[a] - slip[a])
 
 
 @compiled
 def advance_age(pad: Pad, slip_speed: float, h: float) -> None:
     """Age the contact over h: with time in stick (slip speed 0), towards that of a steady slip otherwise."""
     if pad.aging > 0.0:
-        pad.dwell = (pad.dwell + h) / (1.0 + h * slip_speed / pad.aging_distance)  # backward Euler
+        pad.dwell += h
+        if slip_speed > 0.0:
+            pad.dwell /= 1.0 + h * slip_speed / pad.aging_distance  # backward Euler
         if abs(pad.dwell - pad.aged) > AGED * pad.aged:
             pad.aged = pad.dwell
             pad.static_gain = 1.0 + pad.aging * math.log1p(pad.dwell / pad.aging_time)

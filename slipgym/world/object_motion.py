@@ -108,11 +108,14 @@ def free_motion_on_pads(world: World, drift: Vector, before: Vector, elastic: bo
     """
     x, y, turned = acceleration_on_pads(world, drift, h)
     square = (0.5 if elastic else 1.0) * h * h
-    half = 0.25 * h * h
+    if not elastic:
+        return drift[0] + square * x, drift[1] + square * y, drift[2] + square * turned
+    quarter = 0.25 * h * h
+    per_mass = quarter / world.mass
     return (
-        drift[0] + square * x + half * before[0] / world.mass,
-        drift[1] + square * y + half * before[1] / world.mass,
-        drift[2] + square * turned + half * before[2] / world.inertia,
+        drift[0] + square * x + per_mass * before[0],
+        drift[1] + square * y + per_mass * before[1],
+        drift[2] + square * turned + quarter / world.inertia * before[2],
     )
 
 
