@@ -140,6 +140,7 @@ def test_figures_are_written_at_once(tmp_path):
 @pytest.mark.parametrize(
     "env_id", ["slipgym/LinearSlip-v0", pytest.param("slipgym/Hold-v0", marks=pytest.mark.slow)]
 )
+@pytest.mark.slow  # it compiles every option of the physics
 def test_the_script_runs(tmp_path, env_id):
     path = tmp_path / "figures.json"
     script = ROOT / "scripts" / "benchmark.py"

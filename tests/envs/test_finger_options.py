@@ -185,6 +185,7 @@ def test_drift_and_jumps_keep_the_fingers_factors(make, engine):
         np.testing.assert_allclose(observation[-6:-3], info["true"], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_rows_with_fingers_of_their_own_equal_scalar_environments():
     rows = [UNLIKE, None, {"force_gain": (1.2, 0.8)}]
     arguments = {"randomization": "eval_ood", "config": {"contact": {"radius": 0.009}}}
