@@ -78,13 +78,13 @@ def shorten_bristles(pad: Pad, level: float) -> None:
 
 
 @compiled
-def update_friction_level(pad: Pad, before: Vector, delta: Vector, h: float, level: float) -> float:
-    """Set the friction level anew if the slip speed of the solved sub-step gives another one.
+def found_level(pad: Pad, slip: Vector, stuck: bool, h: float, level: float) -> float:
+    """Friction level at the slip speed of a solved sub-step [-].
 
     Args:
         pad: PAD record.
-        before: Bristles at the start of the sub-step [m].
-        delta: Scaled slip displacement solved for with `level` [m].
+        slip: Scaled slip displacement solved for with `level` [m].
+        stuck: Whether the bristles stick after it.
         h: Sub-step [s].
         level: The level so far [-].
 
@@ -92,22 +92,31 @@ def update_friction_level(pad: Pad, before: Vector, delta: Vector, h: float, lev
         The level; `level` itself if the two differ by less than LEVEL_TOLERANCE.
     """
     expected = expected_speed(pad, h)
-    x, y, t = pad.z[0] + delta[0], pad.z[1] + delta[1], pad.z[2] + delta[2]
-    elastic_limit = level / pad.sigma_0
-    stuck = x * x + y * y + t * t <= elastic_limit * elastic_limit
     if stuck and level_unchanged(pad, max(expected, pad.slip_speed)):
         return level
-    speed = math.sqrt(delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]) * (1.0 / h)
+    speed = math.sqrt(slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]) * (1.0 / h)
     if stuck:
         speed = min(speed, pad.slip_speed)
     if level_unchanged(pad, speed - expected):
         return level
     found = level_at(pad, speed)
-    if abs(found - level) <= LEVEL_TOLERANCE * level:
-        return level
-    for a in range(3):
-        pad.z[a] = before[a]
-    shorten_bristles(pad, found)
+    return level if abs(found - level) <= LEVEL_TOLERANCE * level else found
+
+
+@compiled
+def update_friction_level(pad: Pad, before: Vector, delta: Vector, h: float, level: float) -> float:
+    """Set the friction level anew if the solved displacement `delta` [m] gives another one.
+
+    `before` are the bristles at the start of the sub-step [m]; returns the level, see `found_level`.
+    """
+    x, y, t = pad.z[0] + delta[0], pad.z[1] + delta[1], pad.z[2] + delta[2]
+    elastic_limit = level / pad.sigma_0
+    stuck = x * x + y * y + t * t <= elastic_limit * elastic_limit
+    found = found_level(pad, delta, stuck, h, level)
+    if found != level:
+        for a in range(3):
+            pad.z[a] = before[a]
+        shorten_bristles(pad, found)
     return found
 
 

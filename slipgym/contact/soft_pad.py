@@ -65,7 +65,7 @@ def expand_load(pad: Pad, normal: float) -> None:
 
 @compiled
 def power(x: float, exponent: float) -> float:
-    """(1 + x)^exponent for |x| < EXPANDED and an exponent of -1/2 to 1/3; to 1e-6."""
+    """(1 + x)^exponent for |x| < EXPANDED and an exponent of -1/2 to 1/3; to 2e-6."""
     second = 0.5 * (exponent - 1.0)
     third = (exponent - 2.0) / 3.0
     return 1.0 + exponent * x * (1.0 + second * x * (1.0 + third * x))

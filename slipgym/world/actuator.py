@@ -10,14 +10,13 @@ from slipgym._numba.compiled import compiled
 from slipgym.contact.decay import decay
 from slipgym.world.records import QUEUE, Finger, Records
 
+FINGER_DAMPING = 10.0  # [N s/m]; equal forces leave fingers and box free to drift along the grip axis
+
 
 @compiled
 def actuator_force(finger: Finger, force: float) -> float:
     """Force that a finger's actuator settles at under a force command [N]."""
     return min(finger.gain * force, finger.force_limit)
-
-
-FINGER_DAMPING = 10.0  # [N s/m]; equal forces leave fingers and box free to drift along the grip axis
 
 
 @compiled

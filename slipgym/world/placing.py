@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.contact.coupled import PATCHES
+from slipgym.contact.kinds import PATCHES
 from slipgym.contact.records import Vector, rest, rest_cells
 from slipgym.world.actuator import actuator_force, mean_force
 from slipgym.world.plant import Plant

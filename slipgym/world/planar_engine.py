@@ -9,8 +9,8 @@ import numpy as np
 
 from slipgym._numba.compiled import compiled
 from slipgym._numba.rows import row_of
-from slipgym.contact.coupled import PATCHES, set_normal
 from slipgym.contact.disc_surface import INNER
+from slipgym.contact.kinds import PATCHES, set_normal
 from slipgym.contact.records import DISC, Pad, Vector
 from slipgym.contact.soft_pad import load_pad, static_limit
 from slipgym.sensors.force_torque import next_sample_read, sample_force_torque
@@ -52,7 +52,7 @@ def step_world(
     Args:
         worlds: WORLD (n,).
         pads: PAD (n, 2).
-        cells: Patches (n, 2, CELL_FIELDS, m); None for ellipsoids.
+        cells: As `slipgym.world.plant.Plant.cells`.
         fingers: FINGER (n, 2).
         force_torque: FORCE_TORQUE (n, 2).
         slip_sensors: SLIP_SENSOR (n, 2).
@@ -250,7 +250,7 @@ def longest_substep(
     Args:
         world: WORLD record.
         pad: PAD record.
-        cells: None for ellipsoids; a patch breaks away in parts.
+        cells: Which kind of pad; a patch breaks away in parts.
         fingers: The FINGER records of all pads.
         goal: Wrench that the pad is to carry, see `expected_wrench`.
         ticks: Ticks asked for.

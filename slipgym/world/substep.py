@@ -16,7 +16,8 @@ import math
 import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.contact.coupled import set_normal, step_pads
+from slipgym.contact.coupled import step_pads
+from slipgym.contact.kinds import set_normal
 from slipgym.contact.records import Pad
 from slipgym.contact.soft_pad import load_pad
 from slipgym.sensors.force_torque import sample_force_torque

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from slipgym.contact import (
     DistributedContact,
     EllipsoidContact,
-    distributed_kernel,
+    cell_levels,
     ellipsoid_kernel,
     stribeck,
 )
@@ -83,8 +83,8 @@ def test_a_patchs_levels_are_those_of_the_speed_found(exponent, expected, found)
     pad = pads(1, stribeck_exponent=exponent, normal=5.0, **LAW)
     positions, loads = patch_cells("uniform", 5)
     cells = patch(positions, loads)
-    cells[distributed_kernel.SPEED_CAP] = np.inf  # all cells slip
+    cells[cell_levels.SPEED_CAP] = np.inf  # all cells slip
     pad["twist"], pad["half_step"] = (expected, 0.0, 0.0), 0.5 * H
-    level = distributed_kernel.set_friction_levels(pad[0], cells, (expected, 0.0, 0.0))
-    new = distributed_kernel.update_friction_levels(pad[0], cells, (found * H, 0.0, 0.0), H, level)
+    level = cell_levels.set_friction_levels(pad[0], cells, (expected, 0.0, 0.0))
+    new = cell_levels.update_friction_levels(pad[0], cells, (found * H, 0.0, 0.0), H, level)
     assert abs(new - curve(found, exponent)) <= 1.001 * stribeck.LEVEL_TOLERANCE * new

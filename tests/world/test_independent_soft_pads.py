@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from slipgym.benchmarking.measure import SOFT_PADS
 from slipgym.validation.bench import Bench, Friction
 
 MU_S, MU_C, R, MASS = 0.6, 0.4, 0.008, 0.2
@@ -157,17 +158,6 @@ def test_slip_wears_the_age_of_a_contact_off():
     assert contact._pads["dwell"][0] == pytest.approx(expected, rel=0.02)
 
 
-ALL = {
-    "load_exponent": 0.2,
-    "radius_exponent": 0.2,
-    "cop_lever": 0.002,
-    "shear_compliance": 5e-5,
-    "creep": 0.3,
-    "aging": 0.05,
-    "anisotropy": 0.1,
-}
-
-
 @pytest.mark.parametrize("contact", ["ellipsoid", "disc", "distributed"])
 @pytest.mark.parametrize("seed", range(4))
 def test_a_closed_box_of_soft_pads_never_gives_energy(contact, seed):
@@ -175,7 +165,7 @@ def test_a_closed_box_of_soft_pads_never_gives_energy(contact, seed):
     from slipgym.contact.records import PAD
 
     rng = np.random.default_rng(seed)
-    pad = {key: value for key, value in ALL.items() if key not in ("cop_lever", "load_exponent")}
+    pad = {key: value for key, value in SOFT_PADS.items() if key not in ("cop_lever", "load_exponent")}
     with bench(pad, "planar", contact, force=5.0) as held:
         assert held.plant.pads.dtype == PAD
         held.settle()
@@ -201,7 +191,7 @@ def test_engines_agree_with_all_of_it(contact):
 
     ends = []
     for engine in ENGINES:
-        with bench(ALL, engine, contact, gravity=9.81, force=3.0, com_offset=(0.002, -0.01)) as held:
+        with bench(SOFT_PADS, engine, contact, gravity=9.81, force=3.0, com_offset=(0.002, -0.01)) as held:
             held.settle()
             ends.append(held.run(2.0, force=grip).slip[-1])
     assert np.hypot(*ends[0][:2]) > 2e-3
