@@ -20,12 +20,14 @@ from estimator.online import OnlineEstimator, make
 from estimator.registry import DEFAULT, FilterMatrices, Specification, names
 
 if TYPE_CHECKING:
+    from estimator.augmented.parameters import AdaptiveParameters
     from estimator.disc import DiscParameters
     from estimator.joint import JointParameters
     from estimator.rls import RlsParameters
     from estimator.ukf import UkfParameters
 
 _PARAMETERS = {
+    "AdaptiveParameters": "estimator.augmented.parameters",
     "DiscParameters": "estimator.disc",
     "JointParameters": "estimator.joint",
     "RlsParameters": "estimator.rls",
@@ -36,6 +38,7 @@ _PARAMETERS = {
 __all__ = [
     "DEFAULT",
     "ESTIMATE",
+    "AdaptiveParameters",
     "BatchEstimator",
     "DiscParameters",
     "Estimate",

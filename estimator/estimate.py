@@ -25,11 +25,15 @@ class Estimate(NamedTuple):
     gamma_tau: float
     """Fraction of rotation: |r omega| / v or, at low speed, from the torque [-]."""
     confidence_mu_s: float
-    """events_mu_s / (events_mu_s + 1) [-]."""
+    """events_mu_s / (events_mu_s + 1) [-]; "adaptive": as `confidence_mu_c`."""
     confidence_mu_c: float
-    """Fraction of mu_c's fading memory that is filled by data, 1 - forgetting**updates_mu_c [-]."""
+    """Fraction of mu_c's fading memory that is filled by data, 1 - forgetting**updates_mu_c [-].
+
+    "adaptive": 1 / (1 + (sd_mu_c / (0.1 mu_c))**2), one half at a deviation of 10 %; 0 before any update.
+    """
     confidence_r: float
-    """Fraction of r's fading memory that is filled by data, 1 - forgetting**updates_r [-]."""
+    """Fraction of r's fading memory that is filled by data, 1 - forgetting**updates_r [-]; "adaptive": as
+    `confidence_mu_c`."""
     events_mu_s: int
     """Stick-slip events that set mu_s."""
     updates_mu_c: int
@@ -43,9 +47,9 @@ class Estimate(NamedTuple):
     sd_mu_s: float
     """Standard deviation of mu_s [-], from the scatter of its events; initialised to the value itself."""
     sd_mu_c: float
-    """Standard deviation of mu_c [-], due to noise alone; initialised to the value itself."""
+    """Standard deviation of mu_c [-], due to noise alone but in "adaptive"; first the value itself."""
     sd_r: float
-    """Standard deviation of r [m], due to noise alone; initialised to the value itself."""
+    """Standard deviation of r [m], due to noise alone but in "adaptive"; first the value itself."""
     observable_mu_c: bool
     """Whether this sample updated mu_c."""
     observable_r: bool

@@ -19,9 +19,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
 from estimator.limit_surface.inverse import slip_factors, spin_radius
 from estimator.parameters import parameter

@@ -98,8 +98,8 @@ class OnlineEstimator:
     def covariance(self) -> NDArray[np.float64] | None:
         """P of (mu_c, r) after the last update, (2, 2).
 
-        "rls": diagonal, without the variance of the noise [1/N^2]. "ukf": of (ln mu_c, ln r) [-]. "joint" and
-        "disc": diagonal [1, m^2], because mu_c and r are averaged separately.
+        "rls": diagonal, without the variance of the noise [1/N^2]. "ukf" and "adaptive": of (ln mu_c, ln r)
+        [-]. "joint" and "disc": diagonal [1, m^2], because mu_c and r are averaged separately.
         """
         return _first(self.batch.matrices.covariance)
 
@@ -112,7 +112,8 @@ class OnlineEstimator:
         """Takes one sample.
 
         Call it once per sample of the slip-velocity sensor (nominally 120 Hz) with the newest force. Only
-        magnitudes enter, so the sign convention and the mirroring of the second finger do not matter.
+        magnitudes enter, so the sign convention and the mirroring of the second finger do not matter;
+        "adaptive" uses directions, too, and needs force and velocity in one frame.
 
         Args:
             t: Time [s], later than that of the last sample.

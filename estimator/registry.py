@@ -11,9 +11,9 @@ from estimator.parameters import Parameters
 from estimator.reference import is_reference, referenced
 
 DEFAULT = "disc"
-"""Name of the default estimator, also of the environments: first of the leaderboard (docs/leaderboard.md)."""
+"""Name of the default estimator, also of the environments (docs/leaderboard.md compares them)."""
 
-_MODULES = {name: f"estimator.{name}" for name in ("disc", "joint", "rls", "ukf")}
+_MODULES = {name: f"estimator.{name}" for name in ("adaptive", "disc", "joint", "rls", "ukf")}
 """Name -> module that holds its SPECIFICATION; imported on first use, because numba is slow to import."""
 
 

@@ -5,7 +5,7 @@
 
 import math
 
-from numba import njit
+from estimator._numba.caching import njit
 
 
 @njit

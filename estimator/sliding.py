@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from estimator._numba.caching import njit
 from estimator.limit_surface import DISC_RADIUS
 from estimator.limit_surface.inverse import load_size
 from estimator.parameters import parameter
@@ -45,16 +45,13 @@ JUMP = 3.0
 
 
 @dataclass(frozen=True)
-class SlidingParameters(StickSlipParameters):
+class NoiseParameters(StickSlipParameters):
     """Table 1 of Waltersson & Karayiannidis (ISER 2025) where shared; the noise is that of realistic sensors.
 
     Raises:
         ValueError: A value has the wrong type, is NaN, lies outside its interval or contradicts another one.
     """
 
-    disc: bool = parameter(
-        False, "Whether the limit surface is that of a uniform disc; otherwise it is the ellipsoid."
-    )
     heuristic: bool = parameter(
         False, "Whether a fast rise of f_n halts all updates; the test of sliding makes it unnecessary."
     )
@@ -65,14 +62,8 @@ class SlidingParameters(StickSlipParameters):
     n_a: int = parameter(
         1, "How many of the largest buffered ratios are averaged to mu_s.", f"[1, {BUFFER_CAPACITY}]"
     )
-    gain_mu_s: float = parameter(
-        0.2, "Weight of a new event in mu_s, once 1 / gain_mu_s events have been averaged.", "(0, 1]"
-    )
     jump_mu_s: float = parameter(
         0.15, "Relative change, if above three deviations too, at which mu_s starts afresh.", "(0, inf]"
-    )
-    velocity_delay: int = parameter(
-        1, "Age of the velocity in samples: how long ago its window closed.", f"[0, {DELAY_MAX}]"
     )
 
     noise_gate: float = parameter(
@@ -85,6 +76,25 @@ class SlidingParameters(StickSlipParameters):
     sd_spin: float = parameter(6.5e-3, "Standard deviation of omega.", "(0, inf)", "rad/s")
     law_error: float = parameter(
         0.02, "Relative error of the friction law in a sample, as if it were white.", "[0, inf)"
+    )
+
+
+@dataclass(frozen=True)
+class SlidingParameters(NoiseParameters):
+    """Those of sensors and pad, and how velocities are paired with forces and events averaged.
+
+    Raises:
+        ValueError: A value has the wrong type, is NaN, lies outside its interval or contradicts another one.
+    """
+
+    disc: bool = parameter(
+        False, "Whether the limit surface is that of a uniform disc; otherwise it is the ellipsoid."
+    )
+    gain_mu_s: float = parameter(
+        0.2, "Weight of a new event in mu_s, once 1 / gain_mu_s events have been averaged.", "(0, 1]"
+    )
+    velocity_delay: int = parameter(
+        1, "Age of the velocity in samples: how long ago its window closed.", f"[0, {DELAY_MAX}]"
     )
 
 

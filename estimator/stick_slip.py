@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from estimator._numba.caching import njit
 from estimator.estimate import COMMON_STATE
 from estimator.parameters import Parameters, parameter
 from estimator.sample import clamped

@@ -17,6 +17,11 @@ def main() -> None:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures there, too")
     parser.add_argument("--learning", action="store_true", help="learning instead; needs the extra train")
     parser.add_argument(
+        "--workloads",
+        action="store_true",
+        help="every task instead: held firmly, about the slip limit, its controller, its learned policy",
+    )
+    parser.add_argument(
         "--optimisations",
         action="store_true",
         help="what slipgym._numba's optimisations are worth instead",
@@ -29,6 +34,10 @@ def main() -> None:
 
         print(line(machine()))
         publish(optimisations(env_id, max(3, arguments.pairs // 20)), arguments.json)
+    elif arguments.workloads:
+        from policies.evaluation.workloads import benchmark as workloads
+
+        workloads(env_id, arguments.pairs, arguments.json)
     elif arguments.learning:
         from policies.training.benchmark import benchmark as learning
 

@@ -1,7 +1,6 @@
 """Compiles the function of an estimator that Python calls."""
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ from estimator._numba.caching import compiler
 from estimator.estimate import ESTIMATE
 
 # error_model="numpy": a division by zero gives inf or NaN; the kernels refuse both where it matters
-_compiled = compiler(Path(__file__).parents[1], error_model="numpy", forceinline=True)
+_compiled = compiler(error_model="numpy", forceinline=True)
 
 
 def _array(dtype: Any, ndim: int) -> Any:

@@ -13,7 +13,7 @@ every term is positive and nothing cancels, even close to pure translation or pu
 
 import math
 
-from numba import njit
+from estimator._numba.caching import njit
 
 DISC_RADIUS = 2.0 / 3.0
 """Radius of the equivalent rim contact of a uniform disc, in radii of the disc."""

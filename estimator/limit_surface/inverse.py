@@ -12,8 +12,8 @@ are tabulated here once from the exact surface (`disc_friction`). Linear interpo
 import math
 
 import numpy as np
-from numba import njit
 
+from estimator._numba.caching import njit
 from estimator.limit_surface.disc import DISC_RADIUS, disc_friction
 
 _INTERVALS = 512

@@ -12,9 +12,9 @@ import pandas as pd
 import policies
 from policies.learned import LearnedPolicy
 from policies.stepping import steps
+from slipgym.envs.bullet_simulation import BulletSimulation
 from slipgym.envs.observation import ObservationBuffers
-from slipgym.envs.simulation import Simulation
-from slipgym.sensors.force_torque import HISTORY, roomier, sensed
+from slipgym.sensors.force_torque import HISTORY, sensed
 from slipgym.sensors.slip_velocity import read_slip
 from slipgym.tasks import find
 
@@ -77,7 +77,7 @@ class _Tap:
         finger: 0 or 1.
     """
 
-    def __init__(self, simulation: Simulation, finger: int) -> None:
+    def __init__(self, simulation: BulletSimulation, finger: int) -> None:
         self.simulation, self._finger = simulation, finger
         self._start = int(simulation.plant.world["tick"][0])
         force, world = simulation.plant.force_torque[0, finger], simulation.plant.world[0]
@@ -88,7 +88,7 @@ class _Tap:
                 f"sensors.force_torque.rate = {rate} Hz: {needed} samples, a control step and the latency, "
                 f"would have to be kept; at most {HISTORY} are"
             )
-        simulation.plant.force_torque = roomier(simulation.plant.force_torque, needed)
+        simulation.keep_samples(needed)
         self._taken = self._start // int(force["period"])
         self._forces: list[tuple[float, ...]] = []
         self._twists: list[tuple[float, ...]] = []

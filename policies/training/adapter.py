@@ -15,6 +15,8 @@ from slipgym.envs.vector_env import SlipVectorEnv
 
 _AUTORESET = {False: AutoresetMode.SAME_STEP, True: AutoresetMode.DISABLED}
 """Whether there are scenarios -> the mode that a batch needs."""
+_GOLDEN = (5.0**0.5 - 1.0) / 2.0
+"""Multiples of it, modulo 1, are spread evenly over the unit interval, however many they are."""
 _OF_ONE = {"action_space": "single_action_space", "observation_space": "single_observation_space"}
 
 
@@ -28,6 +30,8 @@ class SlipVecEnv(VecEnv):
         env: The batch, with autoreset mode "SameStep".
         scenarios: Options of reset of each environment, for all its episodes; then the autoreset mode must be
             "Disabled". Options that are set for the next reset come on top.
+        spread: Whether `reset` plays with actions of zero until the environments are at times spread evenly
+            over their episodes. Otherwise a short rollout of equally long episodes has only one part of them.
 
     Attributes:
         env: The batch.
@@ -37,13 +41,18 @@ class SlipVecEnv(VecEnv):
         ValueError: The autoreset mode is another one, or there is not a scenario for each environment.
     """
 
-    def __init__(self, env: SlipVectorEnv, scenarios: Sequence[Mapping[str, Any]] | None = None) -> None:
+    def __init__(
+        self,
+        env: SlipVectorEnv,
+        scenarios: Sequence[Mapping[str, Any]] | None = None,
+        spread: bool = False,
+    ) -> None:
         mode, needed = env.metadata["autoreset_mode"], _AUTORESET[scenarios is not None]
         if mode is not needed:
             raise ValueError(f"autoreset_mode = {mode.value!r} must be {needed.value!r}")
         if scenarios is not None and len(scenarios) != env.num_envs:
             raise ValueError(f"{env.num_envs} environments need as many scenarios, got {len(scenarios)}")
-        self.env, self._scenarios = env, scenarios
+        self.env, self._scenarios, self._spread = env, scenarios, spread
         super().__init__(env.num_envs, env.single_observation_space, env.single_action_space)
         self._actions = np.zeros(env.action_space.shape or (), dtype=np.float32)
 
@@ -61,7 +70,7 @@ class SlipVecEnv(VecEnv):
         self._reset_seeds()
         self._reset_options()
         self.reset_infos = _split(infos, np.arange(self.num_envs))
-        return observations
+        return self._spread_out() if self._spread else observations
 
     def step_async(self, actions: np.ndarray) -> None:
         """Take the actions (n, m) of the next `step_wait`, which does the work."""
@@ -88,10 +97,7 @@ class SlipVecEnv(VecEnv):
                 last, final = infos.pop("final_obs"), infos.pop("final_info")
             else:
                 last, final = observations, infos
-                rows = [
-                    options if done else None for options, done in zip(self._scenarios, dones, strict=True)
-                ]
-                observations, infos = self.env.reset(options={"reset_mask": dones, "rows": rows})
+                observations, infos = self._begin(dones)
             splits = _split(final, ended), _split(infos, ended)
             for i, info, start in zip(ended.tolist(), *splits, strict=True):
                 info["terminal_observation"] = last[i]
@@ -143,6 +149,32 @@ class SlipVecEnv(VecEnv):
         """False for each of some environments: those of a batch have no wrappers."""
         return [False] * len(self._rows(indices))
 
+    def _begin(self, mask: np.ndarray) -> tuple[VecEnvObs, dict[str, Any]]:
+        """Start episodes of the environments of a mask (n,), with their scenarios."""
+        options: dict[str, Any] = {"reset_mask": mask}
+        if self._scenarios is not None:
+            pairs = zip(self._scenarios, mask, strict=True)
+            options["rows"] = [scenario if begins else None for scenario, begins in pairs]
+        return self.env.reset(options=options)
+
+    def _spread_out(self) -> VecEnvObs:
+        """Play until environment i is at the share i * _GOLDEN mod 1 of its episode."""
+        skip = round(self.env.config.physics.control_rate / self.env.metadata["render_fps"])
+        lengths = -(-self.env.simulation.episode["steps"] // skip)
+        played = 1 + (np.arange(self.num_envs) * _GOLDEN % 1.0 * lengths).astype(int)
+        left, idle = lengths.max(), np.zeros(self.env.action_space.shape or (), dtype=np.float32)
+        observations: VecEnvObs = ()
+        for steps in range(left, 0, -1):
+            begins = played == steps
+            if begins.any():
+                _, infos = self._begin(begins)
+                rows = np.flatnonzero(begins)
+                for i, start in zip(rows.tolist(), _split(infos, rows), strict=True):
+                    self.reset_infos[i] = start
+            self.step_async(idle)
+            observations = self.step_wait()[0]
+        return observations
+
     def _rows(self, indices: VecEnvIndices) -> list[int]:
         rows = list(self._get_indices(indices))
         for row in rows:
@@ -167,6 +199,7 @@ def make_vec_env(
     threads: int | None = None,
     normalise: Mapping[str, Any] | None = None,
     scenarios: Sequence[Mapping[str, Any]] | None = None,
+    spread: bool = False,
     **keywords: Any,
 ) -> VecMonitor | VecNormalize:
     """Environments for Stable-Baselines3, stepped by one compiled call, with statistics of their episodes.
@@ -179,6 +212,7 @@ def make_vec_env(
         threads: Threads that share the environments; None: as many as processors, if there is work for them.
         normalise: Keyword arguments of a `VecNormalize` around them, {} for its own; None: there is none.
         scenarios: Options of reset of each environment, for all its episodes; None: there are none.
+        spread: Whether a reset leaves the environments at times spread over their episodes, see `SlipVecEnv`.
         **keywords: Of the environment.
 
     Returns:
@@ -197,7 +231,7 @@ def make_vec_env(
         **keywords,
     )
     assert isinstance(batch, SlipVectorEnv)
-    envs = VecMonitor(SlipVecEnv(batch, scenarios))
+    envs = VecMonitor(SlipVecEnv(batch, scenarios, spread))
     if seed is not None:
         envs.seed(seed)
     return envs if normalise is None else VecNormalize(envs, **normalise)

@@ -13,6 +13,7 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import DummyVecEnv, VecEnv, VecMonitor
 
 from policies.training.adapter import make_vec_env
+from policies.training.sample_cost import configuration, sample_cost
 from slipgym.benchmarking import report
 from slipgym.benchmarking.measure import ACTIONS
 from slipgym.benchmarking.report import Figure
@@ -34,7 +35,8 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
 
     Args:
         env_id: Id of the environment.
-        pairs: Pairs of timed blocks; a tenth as many of steps, a fiftieth of PPO, but at least 2.
+        pairs: Pairs of timed blocks; a fiftieth of PPO, a twentieth of updates of a configuration, but at
+            least 2.
         json: File to write the figures to.
     """
     print(report.line(report.machine(*LIBRARIES)))
@@ -42,6 +44,7 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
     figures = learning(env_id, max(2, pairs // 50))
     for size in SIZES:
         figures += shares(env_id, size, STEPS)
+    figures += sample_cost(configuration(env_id), max(2, pairs // 20))
     report.publish(figures, json, *LIBRARIES)
 
 

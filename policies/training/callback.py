@@ -42,24 +42,28 @@ class TrainingCallback(BaseCallback):
         curve: The evaluations so far.
         ended: Why the run is over, "success" or "budget"; empty while it is not.
         seconds: Time spent so far [s].
+        cpu_seconds: Time of the processor spent so far by this process [s].
     """
 
     def __init__(self, config: Training, path: Path, envs: VecEnv, bar: tqdm) -> None:
         super().__init__()
         self._config, self._path, self._envs, self._bar = config, path, envs, bar
         self.curve: list[Row] = []
-        self.ended, self.seconds = "", 0.0
+        self.ended, self.seconds, self.cpu_seconds = "", 0.0, 0.0
         self._next_evaluation, self._next_checkpoint = 0, config.checkpoints.every
-        self._since = time.perf_counter()
+        self._since = time.perf_counter(), time.process_time()
 
     def get_state(self) -> dict[str, Any]:
         """The record as plain data."""
-        now = time.perf_counter()
-        self.seconds, self._since = self.seconds + now - self._since, now
+        now = time.perf_counter(), time.process_time()
+        self.seconds += now[0] - self._since[0]
+        self.cpu_seconds += now[1] - self._since[1]
+        self._since = now
         return {
             "curve": [asdict(row) for row in self.curve],
             "ended": self.ended,
             "seconds": self.seconds,
+            "cpu_seconds": self.cpu_seconds,
             "next": [self._next_evaluation, self._next_checkpoint],
         }
 
@@ -67,6 +71,7 @@ class TrainingCallback(BaseCallback):
         """Go on from a record."""
         self.curve = [Row(**values) for values in state["curve"]]
         self.ended, self.seconds = state["ended"], state["seconds"]
+        self.cpu_seconds = state.get("cpu_seconds", 0.0)  # checkpoints of 0.1.0 have none
         self._next_evaluation, self._next_checkpoint = state["next"]
         folder.write_curve(self._path, self.curve)
 

@@ -129,6 +129,10 @@ class Training(Frozen):
     vary: Mapping[str, list[Any]] = Field(
         default={}, description="Options of reset; environment i always has combination i modulo their number"
     )
+    spread: bool = Field(
+        default=False,
+        description="Whether the batch begins to learn with its environments spread over their episodes [-]",
+    )
     environment: Environment = Field(default=Environment(), description="The environment [-]")
     shaping: Mapping[str, Any] = Field(
         default={},
@@ -173,6 +177,12 @@ class Training(Frozen):
             raise ValueError(f"residual: {self.residual.controller} needs action_mode {needs!r}")
         if getattr(controller, "task", None) not in (None, self.task):
             raise ValueError(f"residual: {self.residual.controller} is not for {self.task}")
+        return self
+
+    @model_validator(mode="after")
+    def _can_spread(self) -> Self:
+        if self.spread and self.engine != "planar":
+            raise ValueError("spread needs engine 'planar'")
         return self
 
     @model_validator(mode="after")

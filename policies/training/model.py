@@ -19,6 +19,8 @@ from policies.training.config import Training
 
 _CLASSES: dict[str, Any] = {"ppo": PPO, "recurrent_ppo": RecurrentPPO, "sac": SAC, "tqc": TQC}
 _ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "elu": nn.ELU}
+_EPSILON = {"ppo": 1e-5, "recurrent_ppo": 1e-5}
+"""Epsilon of Adam where it is not torch's; that of Stable-Baselines3."""
 _OF_POLICY = ("net_arch", "activation", "log_std_init", "lstm_hidden_size", "n_critics")
 _COUNTERS = ("num_timesteps", "_episode_num", "_n_updates", "_current_progress_remaining")
 _LAST = ("_last_obs", "_last_episode_starts", "_last_original_obs")
@@ -54,6 +56,7 @@ def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
     policy: dict[str, Any] = {name: values.pop(name) for name in _OF_POLICY if name in values}
     policy["activation_fn"] = _ACTIVATIONS[policy.pop("activation")]
     policy["net_arch"] = list(policy["net_arch"])
+    policy["optimizer_kwargs"] = {"eps": _EPSILON.get(config.algorithm, 1e-8), "fused": True}
     if config.algorithm == "tqc":
         policy["n_quantiles"] = 25
     return _CLASSES[config.algorithm](

@@ -78,6 +78,7 @@ def _finish(
         "ended": callback.ended,
         "steps": callback.curve[-1].steps,
         "seconds": callback.seconds,
+        "cpu_seconds": callback.cpu_seconds,
         "best": best["row"],
     }
     folder.write_result(path, result)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from policies.evaluation.folder import stamped
 from policies.evaluation.plots.style import STYLE, styled
@@ -63,10 +64,16 @@ def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -
     lines = [
         f"  {run.name}: solved {result['best']['success']:.0%} of the held-out episodes at step "
         f"{result['best']['steps']}; ended by {result['ended']} at step {result['steps']} "
-        f"after {result['seconds']:.0f} s" + ("" if result["steps"] else "; nothing was learned")
+        f"after {_time(result)}" + ("" if result["steps"] else "; nothing was learned")
         for run, result in zip(runs, results, strict=True)
     ]
     return "\n".join([f"Look at {path}", *lines])
+
+
+def _time(result: Mapping[str, Any]) -> str:
+    """How long a run took; runs of slipgym 0.1.0 do not know their time of the processor."""
+    known = "cpu_seconds" in result
+    return f"{result['seconds']:.0f} s" + (f", {result['cpu_seconds']:.0f} s of CPU" if known else "")
 
 
 def _draw(path: Path, runs: Sequence[Path]) -> None:

@@ -52,7 +52,13 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
     if config.engine == "planar":
         varied = scenarios if config.vary else None
         made = make_vec_env(
-            _id(config.task), count, seed, config.engine_threads, scenarios=varied, **keywords
+            _id(config.task),
+            count,
+            seed,
+            config.engine_threads,
+            scenarios=varied,
+            spread=config.spread and shaped,
+            **keywords,
         )
     else:
         made = scalar(config.task, count, combinations, config.processes, **keywords)

@@ -1,4 +1,4 @@
-"""`compiled`: numba with a cache that notices a change in any file of slipgym.
+"""`compiled`: numba with a cache that notices a change in anything that a function uses.
 
 A division by zero gives an infinity or a NaN, as in numpy, and not an exception: the check would keep
 loops from running on several elements at once. Functions are compiled into their callers.
@@ -10,10 +10,10 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any, ParamSpec, Protocol, TypeVar
 
 from estimator._numba.caching import compiler
+from estimator._numba.linking import resting
 from slipgym._numba.switches import DISABLED
 
 P = ParamSpec("P")
@@ -29,17 +29,8 @@ class Decorator(Protocol):
 
 
 def _decorator(**options: Any) -> Decorator:
-    """`estimator._numba.caching.compiler` for slipgym; a cache stamp for each set of switches."""
-    decorate = compiler(Path(__file__).parents[1], error_model="numpy", **options)
-
-    def decorated(function: Callable[P, R]) -> Callable[P, R]:
-        dispatcher = decorate(function)
-        if DISABLED:
-            file = dispatcher._cache._cache_file
-            file._source_stamp = (*file._source_stamp, *sorted(DISABLED))
-        return dispatcher
-
-    return decorated
+    """`estimator._numba.caching.compiler` with programs of their own for each set of switches."""
+    return compiler(tuple(sorted(DISABLED)), error_model="numpy", **options)
 
 
 compiled = _decorator(forceinline=True, fastmath=False)
@@ -49,7 +40,7 @@ compiled = _decorator(forceinline=True, fastmath=False)
 compiles it first: results would depend on what was compiled before."""
 unlocked = _decorator(nogil=True, forceinline=True, fastmath=False)
 """`compiled` for functions that several threads run at the same time: it releases Python's lock."""
-compiled_call = _decorator(fastmath=False)
+compiled_call = _decorator(forceinline=False, fastmath=False)
 """`compiled` for a large function that few callers need: it is called, not copied into them."""
 compiled_sum = _decorator(fastmath={"reassoc"})
 """For loops that sum: additions may be reordered, so that the loop computes several elements at once.
@@ -73,6 +64,7 @@ def patience(what: str, after: float = 2.0) -> Iterator[None]:
     timer.daemon = True
     timer.start()
     try:
-        yield
+        with resting():
+            yield
     finally:
         timer.cancel()

@@ -6,9 +6,8 @@ place k, so that a name cannot come apart from its value.
 
 from __future__ import annotations
 
-import hashlib
 import textwrap
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,9 +23,7 @@ def generate(
 ) -> Any:
     """Build a function from source text and compile it.
 
-    The text is kept as `__source__` of the Python function, `generate(...).py_func.__source__`. Numba's disk
-    cache compares neither constants nor names, so the function carries a digest of its text and its namespace
-    as a closure variable, which the cache does compare.
+    The text is kept as `__source__` of the Python function, `generate(...).py_func.__source__`.
 
     Args:
         name: Name of the function, unique among those that are generated for `file`.
@@ -43,37 +40,12 @@ def generate(
     Raises:
         SyntaxError: The body is not Python; the message holds the line.
     """
-    lines = [f"def {name}({', '.join(arguments)}):", f"    {doc!r}", "    _digest"]
+    lines = [f"def {name}({', '.join(arguments)}):", f"    {doc!r}"]
     lines += textwrap.indent("\n".join(body), "    ").splitlines()
     source = "\n".join(lines) + "\n"
-    factory = f"def _make(_digest):\n{textwrap.indent(source, '    ')}    return {name}\n"
     where = file if Path(file).is_file() else __file__
     made: dict[str, Any] = {**namespace, "__name__": namespace.get("__name__", __name__)}
-    exec(compile(factory, where, "exec"), made)
-    function = made["_make"](_digest(source, namespace))
-    function.__qualname__ = name
+    exec(compile(source, where, "exec"), made)
+    function = made[name]
     function.__source__ = source
     return decorator(function)
-
-
-def _digest(source: str, namespace: Mapping[str, Any]) -> int:
-    """Number that changes with the text, the constants and the files of the functions that it uses."""
-    parts = [source]
-    for key in sorted(namespace):
-        if not key.startswith("__"):
-            parts += [key, *_stamps(namespace[key])]
-    return int.from_bytes(hashlib.sha256("\0".join(parts).encode()).digest()[:7], "big")
-
-
-def _stamps(value: Any) -> Iterator[str]:
-    function = getattr(value, "py_func", value)
-    code = getattr(function, "__code__", None)
-    if code is not None:
-        yield code.co_qualname
-        yield getattr(function, "__source__", "")
-        path = Path(code.co_filename)
-        if path.is_file():
-            state = path.stat()
-            yield f"{path}:{state.st_mtime_ns}:{state.st_size}"
-    elif isinstance(value, (bool, int, float, str)):
-        yield repr(value)

@@ -10,7 +10,7 @@ from typing import Any
 
 from numba import types
 from numba.core import cgutils
-from numba.experimental.function_type import FunctionModel, unbox_function_type
+from numba.experimental.function_type import FunctionModel
 from numba.extending import NativeValue, register_model, unbox
 
 from slipgym._numba.switches import DISABLED
@@ -27,21 +27,29 @@ class Known(types.FunctionType):
 
 
 class Pointer:
-    """Address of a compiled function, looked up once. With the optimisation off: the function itself.
+    """Address of a compiled function, looked up once; with the optimisation off, at every call.
+
+    The `Known` parameter that it is passed to has the function's signature, or one whose arguments are passed
+    in the same way: arrays of other records, for example.
 
     Args:
         function: The compiled function.
-        signature: Its signature; that of the `Known` parameter that it is passed to.
+        signature: Its signature.
     """
 
-    def __new__(cls, function: Any, signature: Any) -> Any:
-        """A pointer, or `function` if the optimisation is switched off."""
-        return super().__new__(cls) if _ENABLED else function
-
     def __init__(self, function: Any, signature: Any) -> None:
-        self._function = function  # keeps the machine code alive
-        compiled = function.get_compile_result(signature)
-        self.address: int = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
+        self._function, self._signature = function, signature  # keeps the machine code alive
+        if _ENABLED:
+            self.address = self._found()
+
+    def __getattr__(self, name: str) -> int:
+        if name != "address":
+            raise AttributeError(name)
+        return self._found()
+
+    def _found(self) -> int:
+        compiled = self._function.get_compile_result(self._signature)
+        return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name))
 
 
 def _unbox_pointer(kind: Any, pointer: Any, c: Any) -> NativeValue:
@@ -54,4 +62,4 @@ def _unbox_pointer(kind: Any, pointer: Any, c: Any) -> NativeValue:
 
 
 register_model(Known)(FunctionModel)
-unbox(Known)(_unbox_pointer if _ENABLED else unbox_function_type)
+unbox(Known)(_unbox_pointer)

@@ -44,10 +44,13 @@ _ask: Any = intrinsic(_asking)
 
 @unlocked
 def fetch(array: np.ndarray, first: int, stop: int) -> None:
-    """Prefetch rows of records, (n,) or (n, 2), from `first` to before `stop`, as far as there are any."""
+    """Prefetch rows of records, (n,) or (n, 2), from `first` to before `stop`, as far as there are any.
+
+    An array of the first bytes of records, (n,), stands for them.
+    """
     if not _ENABLED:
         return
-    row = array.strides[0]
-    for start in range(first * row, min(stop, array.shape[0]) * row, array.itemsize):
-        for offset in range(start, start + min(HEAD, array.itemsize), LINE):
+    row, record = array.strides[0], array.strides[array.ndim - 1]
+    for start in range(first * row, min(stop, array.shape[0]) * row, record):
+        for offset in range(start, start + min(HEAD, record), LINE):
             _ask(array, offset)

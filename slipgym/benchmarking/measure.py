@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from copy import copy
 from functools import partial
 from statistics import median
 from time import perf_counter
@@ -20,7 +19,6 @@ from slipgym.benchmarking.timing import Stopwatches, compare, per_call
 from slipgym.contact import DistributedContact, EllipsoidContact
 from slipgym.envs import bullet_simulation as loops
 from slipgym.envs.slip_env import SlipEnv
-from slipgym.world import bullet_engine as bullet
 from slipgym.world.plant import Plant
 
 BLOCK = 50  # control steps
@@ -53,7 +51,14 @@ _FIRST_STEP = (
     "import gymnasium as gym; env = gym.make('slipgym:{env_id}'); env.reset(seed=0); "
     "env.step(env.action_space.sample())"
 )
-PARTS = ("Bullet and its calls", "kernel", "sensors", "estimator", "task", "observation", "info")
+PARTS = (
+    "Bullet and its calls",
+    "kernel",
+    "action, disturbances, wrist",
+    "sensors, estimator, task, observation",
+    "copies of the observation",
+    "info",
+)
 
 
 class Player:
@@ -109,11 +114,11 @@ def against_bare(player: Player, pairs: int) -> list[Figure]:
     lower, middle, upper = result.quartiles
     real_time = 1.0 / (config.physics.engine_rate * result.second)
     return [
-        Figure("bare Bullet simulation, per engine step", 1e6 * result.first, "us"),
+        Figure("bare Bullet loop, per engine step", 1e6 * result.first, "us"),
         Figure("environment, per engine step", 1e6 * result.second, "us"),
         Figure("environment / bare loop", middle, "-", "<= 1.4"),
-        Figure("environment / bare simulation, lower quartile", lower, "-"),
-        Figure("environment / bare simulation, upper quartile", upper, "-"),
+        Figure("environment / bare loop, lower quartile", lower, "-"),
+        Figure("environment / bare loop, upper quartile", upper, "-"),
         Figure("real-time factor of env.step", real_time, "-", ">= 40"),
     ]
 
@@ -125,21 +130,12 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
     assert isinstance(simulation, loops.BulletSimulation)
     rows: list[list[float]] = []
     with Stopwatches() as watches:
-        for name in ("_loads", "_read_engine", "_queue_command"):
-            watches.watch("kernel", bullet, name)
-        watches.watch("Bullet and its calls", simulation.world, "step")
-        watches.watch("sensors", loops, "measure")
-        watches.watch("estimator", simulation.estimator, "update")
-        watches.watch("estimator", loops, "combine")
-        watches.watch("observation", loops, "observe")
-        watches.watch("observation", env._observer, "read")
+        watches.watch("kernel", simulation.world.rows, "loads")
+        watches.watch("Bullet and its calls", simulation.world, "move")
+        watches.watch("action, disturbances, wrist", simulation, "_open")
+        watches.watch("sensors, estimator, task, observation", simulation, "_finish")
+        watches.watch("copies of the observation", env._observer, "read")
         watches.watch("info", env, "_info")
-        task = simulation.task
-        timed = {
-            name: watches.timed("task", getattr(task, name)) for name in ("script_wrist", "evaluate_step")
-        }
-        simulation.task = copy(task)
-        vars(simulation.task).update(timed)  # in place of the cached properties
         for _ in range(blocks):
             watches.running = False
             player.begin()
@@ -149,11 +145,10 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
             parts = [watches.spent[label] for label in PARTS]
             samples = steps / env.config.physics.engine_steps
             rows.append([part / samples for part in (*parts, seconds - sum(parts))])
-        simulation.task = task
     times = (median(column) for column in zip(*rows, strict=True))
     return [
         Figure(f"env.step: {label}", 1e6 * time, "us")
-        for label, time in zip((*PARTS, "noise draws, checks, watches"), times, strict=True)
+        for label, time in zip((*PARTS, "checks, watches"), times, strict=True)
     ]
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from slipgym.benchmarking import measure, report
 from slipgym.benchmarking.batch import batch
+from slipgym.benchmarking.resets import resets
 from slipgym.benchmarking.substeps import softer, substeps
 
 
@@ -30,6 +31,7 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
         *measure.contact(),
         *measure.patch(max(3, pairs)),
         *batch(player, env_id, max(3, pairs // 10)),
+        *resets(env_id, max(3, pairs // 10)),
     ]
     player.env.close()
     report.publish(figures, json)

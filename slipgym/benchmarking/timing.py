@@ -56,13 +56,16 @@ class Stopwatches:
     A function called by another timed one counts for itself only. The watches' own cost is
     measured and taken off.
 
+    Args:
+        clock: Returns a time [s]; the wall clock if None.
+
     Attributes:
         running: Whether calls are timed.
         spent: Time by label [s].
     """
 
-    def __init__(self) -> None:
-        self.running = True
+    def __init__(self, clock: Callable[[], float] | None = None) -> None:
+        self.running, self._clock = True, clock or perf_counter
         self.spent: dict[str, float] = {}
         self._inner = [0.0]
         self._replaced: list[tuple[Any, str, Any, bool]] = []
@@ -79,18 +82,18 @@ class Stopwatches:
 
     def timed(self, label: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """The function with a stopwatch, for whoever puts it in place by other means than `watch`."""
-        spent, inner = self.spent, self._inner
+        spent, inner, clock = self.spent, self._inner, self._clock
         spent.setdefault(label, 0.0)
 
         def timed(*arguments: Any, **keywords: Any) -> Any:
             if not self.running:
                 return function(*arguments, **keywords)
             inner.append(0.0)
-            start = perf_counter()
+            start = clock()
             try:
                 return function(*arguments, **keywords)
             finally:
-                elapsed = perf_counter() - start
+                elapsed = clock() - start
                 spent[label] += elapsed - inner.pop()
                 inner[-1] += elapsed + self._cost
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 from typing import Annotated, Self
 
@@ -12,6 +13,10 @@ from slipgym.config.base import Frozen, PositiveInterval, as_tuple, ordered
 
 Ends = Annotated[tuple[float, float], BeforeValidator(as_tuple), AfterValidator(ordered)]
 Numbers = Annotated[tuple[float, ...], Field(min_length=1), BeforeValidator(as_tuple)]
+
+
+EVEN, LOGARITHMIC, CHOICES = range(3)
+"""Kinds of distributions."""
 
 
 class Distribution(Frozen):
@@ -43,12 +48,37 @@ class Distribution(Frozen):
         Args:
             share: The fraction, in [0, 1).
         """
-        if self.choices is not None:
-            return self.choices[int(share * len(self.choices))]
+        return quantile(*self.parameters, self.choices or (), share)
+
+    @property
+    def parameters(self) -> tuple[int, float, float, float]:
+        """The first arguments of `quantile`."""
         low, high = self.ends
+        if self.choices is not None:
+            return CHOICES, low, high, 0.0
         if self.log_uniform is not None:
-            return min(max(low * math.exp(share * math.log(high / low)), low), high)
-        return min(low + share * (high - low), high)
+            return LOGARITHMIC, low, high, math.log(high / low)
+        return EVEN, low, high, high - low
+
+
+def quantile(
+    kind: int, low: float, high: float, span: float, choices: Sequence[float], share: float
+) -> float:
+    """The number of a distribution below which a fraction of the samples lies; it can be compiled.
+
+    Args:
+        kind: EVEN, LOGARITHMIC or CHOICES.
+        low: Smallest value.
+        high: Largest value.
+        span: Length of the range, or its logarithmic length.
+        choices: Values of the same probability.
+        share: The fraction, in [0, 1).
+    """
+    if kind == CHOICES:
+        return choices[int(share * len(choices))]
+    if kind == LOGARITHMIC:
+        return min(max(low * math.exp(share * span), low), high)
+    return min(low + share * span, high)
 
 
 def _within(low: float, high: float, drawn: Distribution | None) -> Distribution | None:

@@ -1,8 +1,12 @@
 """Configuration models of the two sensors of each finger."""
 
+from typing import Annotated
+
 from pydantic import Field
 
 from slipgym.config.base import Count, Frozen, NonNegative, Positive
+
+Probability = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
 
 class ForceTorqueConfig(Frozen):
@@ -27,7 +31,22 @@ class ForceTorqueConfig(Frozen):
     force_range: Positive = Field(description="Saturation of the tangential forces, either sign [N]")
     normal_range: Positive = Field(description="Saturation of the normal force [N]")
     torque_range: Positive = Field(description="Saturation of the torque, either sign [N m]")
-    latency: NonNegative = Field(description="Latency of a reading [s]")
+    latency: NonNegative = Field(description="Smallest latency of a reading [s]")
+    latency_spread: NonNegative = Field(description="Largest latency on top of that, sampled per episode [s]")
+    dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
+    tilt: float = Field(
+        ge=0.0, le=0.5, description="Largest tilt of the frame about x and y, per episode [rad]"
+    )
+    crosstalk: float = Field(
+        ge=0.0,
+        le=0.2,
+        description="Largest part of an axis's load that another reads, over their ranges, per episode [-]",
+    )
+    off_centre: float = Field(
+        ge=0.0,
+        le=0.05,
+        description="Largest distance of the pad's centre from its place along x and y, per episode [m]",
+    )
 
 
 class SlipConfig(Frozen):
@@ -42,7 +61,16 @@ class SlipConfig(Frozen):
     chips: int = Field(ge=2, le=4, description="Number of chips, evenly spaced on their circle [-]")
     noise: NonNegative = Field(description="White noise per chip axis and sample, sd [counts]")
     window: Count = Field(description="Length of the moving average [samples]")
-    latency_samples: int = Field(ge=0, description="Latency of a reading [samples]")
+    latency_samples: int = Field(ge=0, description="Smallest latency of a reading [samples]")
+    latency_spread: int = Field(
+        ge=0, description="Largest latency on top of that, sampled per episode [samples]"
+    )
+    jitter: Probability = Field(description="Probability that a reading is one sample older [-]")
+    dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
+    scale_error: float = Field(
+        ge=0.0, le=0.5, description="Largest relative error of the counts, per episode [-]"
+    )
+    chip_failure: Probability = Field(description="Probability that one chip counts nothing, per episode [-]")
     speed_max: Positive = Field(description="Saturation of each chip axis, either sign [m/s]")
 
 

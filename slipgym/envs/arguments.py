@@ -69,7 +69,7 @@ class CommonArguments(TypedDict, total=False):
     contact: Annotated[
         ContactModel, Argument("ellipsoid", "friction model of the pads (see docs/contact.md)")
     ]
-    sensors: Annotated[str, Argument("realistic", 'sensor preset: `"realistic"` or `"ideal"`')]
+    sensors: Annotated[str, Argument("realistic", 'sensor preset: `"realistic"`, `"ideal"` or `"lab"`')]
     material: Annotated[
         str, Argument("random", 'name of a material, or `"random"` for another in every episode')
     ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from dataclasses import replace
 from typing import Any
 
@@ -11,18 +11,19 @@ import numpy as np
 
 from slipgym._numba.compiled import patience
 from slipgym.config import Config, Randomization, TaskConfig
-from slipgym.envs.actions import interpret
+from slipgym.envs.actions import COMPONENT
+from slipgym.envs.bullet_step import compiled_step
 from slipgym.envs.nan_guard import Guard
-from slipgym.envs.observation import ObservationBuffers, combine, observe
-from slipgym.envs.reset_kernels import WARM_UP_STEPS, equip, open_episodes
+from slipgym.envs.observation import SENSORS, ObservationBuffers
+from slipgym.envs.reset_kernels import WARM_UP_STEPS
 from slipgym.envs.simulation import Simulation, SimulationState
-from slipgym.sensors.measure import measure
+from slipgym.sensors.force_torque import roomier
 from slipgym.tasks import Task
-from slipgym.tasks.disturbance import disturb, shake_tilt
-from slipgym.tasks.episode import begin_step
+from slipgym.tasks.disturbance import shake_tilt
 from slipgym.world.bullet_engine import BulletWorld
 
-_NOTHING: AbstractContextManager[None] = nullcontext()
+_NO_ACTION = np.zeros((1, 0)), np.zeros(0, COMPONENT), np.ones(1, dtype=bool)
+"""Changes no command."""
 
 
 class BulletSimulation(Simulation):
@@ -49,9 +50,13 @@ class BulletSimulation(Simulation):
     ) -> None:
         super().__init__(config, settings, task, estimator, randomization)
         self.world = BulletWorld(config, self.plant)
+        self._open, self._finish = compiled_step(*self._kinds)
         self._guard = Guard()
-        self._compiled: set[str] = set()
-        self._wrench_rows, self._twist_rows = self.wrenches.reshape(2, 4), self.twists.reshape(2, 3)
+        self._first = True
+        m = len(SENSORS) + len(task.columns)
+        low, high = np.full((2, m), [[-np.inf], [np.inf]], dtype=np.float32)
+        out = np.zeros((1, m), dtype=np.float32)
+        self._unseen = ObservationBuffers(np.zeros(0, dtype=np.int64), self.estimated, low, high, out)
 
     def step(
         self,
@@ -62,30 +67,23 @@ class BulletSimulation(Simulation):
         buffers: ObservationBuffers,
     ) -> None:
         """See `Simulation.step`."""
-        with self._patience("step"):
-            self._step(actions, components, skip, active, buffers)
-
-    def _step(
-        self,
-        actions: np.ndarray,
-        components: np.ndarray,
-        skip: int,
-        active: np.ndarray,
-        buffers: ObservationBuffers,
-    ) -> None:
-        episode, terms = self.episode, self.infos.terms
-        terms[:] = 0.0
+        action = actions, components, active
+        self.infos.terms[:] = 0.0
         for _ in range(skip if active[0] else 0):
-            interpret(actions, components, episode, self.commands)
-            self._control_step()
-            terms += episode["terms"][:, : terms.shape[1]]
-            if episode["dropped"].item() or episode["step"].item() >= episode["steps"].item():
+            self._control_step(action, buffers)
+            if self.over:
                 break
-        plant = self.plant
-        observe(
-            self.wrenches, self.twists, plant.slip_sensors, episode, self.task_part, plant.world, *buffers
-        )
-        self._write_infos()
+
+    def keep_samples(self, count: int) -> None:
+        """Have the force/torque sensors keep their newest samples for the caller to read; they keep none yet.
+
+        Args:
+            count: How many, at most `slipgym.sensors.force_torque.HISTORY`.
+        """
+        self.plant.force_torque = roomier(self.plant.force_torque, count)
+        self._choose_programs()
+        self._open, self._finish = compiled_step(*self._kinds)
+        self.world.bind()
 
     def sample(self, force: float) -> None:
         """One control step with a grip force per finger [N], the wrist as the task scripts it.
@@ -94,7 +92,7 @@ class BulletSimulation(Simulation):
             FloatingPointError: A quantity is not finite; the environment needs a reset.
         """
         self.commands[0] = force, 0.0, 0.0, 0.0
-        self._control_step()
+        self._control_step(_NO_ACTION, self._unseen)
 
     def get_state(self) -> SimulationState:
         """See `Simulation.get_state`."""
@@ -117,54 +115,44 @@ class BulletSimulation(Simulation):
         """Release the physics client; closing twice is harmless."""
         self.world.close()
 
-    def _begin(self, starts: np.ndarray) -> None:
-        with self._patience("reset"):
-            self._reset(starts)
+    def _begin(self, starts: np.ndarray, values: np.ndarray) -> None:
+        with patience(f"the reset of {self.task.name} with PyBullet") if self._first else nullcontext():
+            self._reset(starts, values)
+        self._first = False
 
-    def _patience(self, stage: str) -> AbstractContextManager[None]:
-        """Explains on stderr that code is being compiled, if the first reset or step takes long."""
-        if stage in self._compiled:
-            return _NOTHING
-        self._compiled.add(stage)
-        return patience(f"the {stage} of {self.task.name} with PyBullet")
-
-    def _reset(self, starts: np.ndarray) -> None:
+    def _reset(self, starts: np.ndarray, values: np.ndarray) -> None:
         force, episode = starts["force"].item(), self.episode
+        self.stages.equip(
+            starts, values, *self._hardware, self.state, self.plant.cells, self.plant.force_torque
+        )
         x, z, pitch = episode["wrist_start"][0].tolist()
         self.world.reset(self.boxes[0], force, (x, z, pitch), episode["wrist_roll"].item())
         self._guard.reset()
-        equip(starts, *self._biases, *self._equipped)
         for _ in range(WARM_UP_STEPS):
-            self._advance(force)
-        open_episodes(starts, *self._fresh, *self._opened, self.infos.terms)
-        combine(self.estimator.estimates, self.per_finger, self.estimated)
-        self.task.evaluate_step(episode, self.plant.world, self.plant.fingers, self.task_part)
+            self._settle(force)
+        self.stages.open(starts, self._fresh, self.state, self.infos.terms)
+        self.stages.evaluate(self.state, 0, 1)
         self._write_infos()
 
-    def _control_step(self) -> None:
-        """Act, move, measure, estimate, evaluate: the stages of `slipgym.envs.control_step`."""
-        plant, episode = self.plant, self.episode
-        begin_step(episode, self.commands)
-        disturb(episode, plant.world, plant.pads, self.ground_truth)
-        self.world.update_mass()
-        self.task.script_wrist(episode, plant.world)
-        if plant.tilt is not None:
-            shake_tilt(episode, plant.tilt)
-        self._advance(self.commands.item(0))
-        episode["step"] += 1
-        self.estimator.update(self.time, self._wrench_rows, self._twist_rows)
-        combine(self.estimator.estimates, self.per_finger, self.estimated)
-        self.task.evaluate_step(episode, plant.world, plant.fingers, self.task_part)
-        arrays = plant.world, plant.pads, plant.fingers, self.wrenches, self.twists, self.per_finger, episode
-        try:
-            self._guard.watch(self.time, 0, *arrays)
-        except FloatingPointError:
-            self.world.discard()
-            raise
+    def _control_step(self, action: tuple[np.ndarray, ...], buffers: ObservationBuffers) -> None:
+        """The stages of `slipgym.envs.control_step`; PyBullet moves the bodies."""
+        world = self.world
+        world.update_mass(self._open(self.state, action))
+        if self.plant.tilt is not None:
+            shake_tilt(self.episode, self.plant.tilt)
+        world.move()
+        bad = self._end(buffers, self._guard.next())
+        if bad > 0:
+            world.discard()
+            self._guard.check(bad)
 
-    def _advance(self, force: float) -> None:
-        """One control step of the world and its sensors."""
-        plant = self.plant
+    def _settle(self, force: float) -> None:
+        """One control step of the world and its sensors alone, with a grip force per finger [N]."""
         self.world.command(force)
-        self.world.step()
-        measure(plant.world, plant.force_torque, plant.slip_sensors, self.wrenches, self.twists)
+        self.world.move()
+        self._end(self._unseen, -1)
+
+    def _end(self, buffers: ObservationBuffers, at: int) -> int:
+        pose, _, wrist, normals, _ = self.world.reading
+        sensors, kept = self.plant.force_torque, self._guard.rows
+        return self._finish(self.state, sensors, pose, wrist, normals, buffers, self.infos, kept, at)

@@ -3,44 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from slipgym.config import Config
 from slipgym.config.errors import NEEDS_TILT, unknown
-from slipgym.config.hardware import box_inertia
 from slipgym.config.task import TaskConfig
-from slipgym.envs.finger_differences import chosen_differences
-from slipgym.envs.hardware_randomization import HardwareRandomization
-from slipgym.envs.randomizer import Draw, Randomizer, schedule_disturbance
-from slipgym.envs.reset_kernels import NUMBERS, START, begin_episode
+from slipgym.envs.drawn import Drawn
+from slipgym.envs.episode_kernels import GIVEN, compose, inside
+from slipgym.envs.finger_differences import check_contacts, fixed_differences
+from slipgym.envs.randomizer import Randomizer
+from slipgym.envs.reset_kernels import START
 from slipgym.sensors.starting import draw_sensors
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.world.scene import Box
 
-Row: TypeAlias = tuple[int, EpisodeOptions, np.random.Generator]
-"""An environment to reset, its options, and its random generator."""
-
-LATENCY = "velocity_delay"
-"""Parameter of an estimator: the latency of the slip velocity."""
+_CHECKED = "mu_s", "mu_c", "r", "finger_radius"
+"""Options that can contradict sampled values."""
 
 
-@dataclass(frozen=True)
-class Friction:
-    """True friction of an episode, to which each finger's own factors apply."""
+class _Chosen(NamedTuple):
+    """What reset options and the name of a material fix."""
 
-    mu_s: float
-    """Static friction [-]."""
-    mu_c: float
-    """Coulomb friction [-]."""
-    r: float
-    """Radius of the equivalent rim contact [m]."""
-    material: str
-    """Name of the material it came from."""
+    settings: TaskConfig
+    """The task's settings, with the options in place."""
+    given: np.ndarray
+    """GIVEN (1,)."""
+    radii: np.ndarray
+    """Radius r by pressure profile [m]."""
+    fixed: Mapping[str, object]
+    """Fields of VALUES, and what stands in place of sampled values."""
+    reported: tuple[str, ...]
+    """See `Drawn.reported`."""
 
 
 class EpisodeSampler:
@@ -51,15 +48,12 @@ class EpisodeSampler:
         settings: The task's settings.
         task: The task.
         randomizer: Samples the randomized parameters.
-        hardware: Applies the sampled parameters of gripper and sensors.
         episode: EPISODE (n,); rows are filled in.
-        parameters: Of estimators whose `velocity_delay` follows the slip sensor's latency, (2 n,), or (1,)
-            for all; None if it stays as it is.
 
     Attributes:
         materials: Name of every episode's material.
-        boxes: Every episode's object.
-        drawn: Values that the randomization sampled for every episode, JSON-like; may be empty.
+        boxes: Every episode's object; None before the first reset.
+        drawn: Values that the randomization sampled for every episode.
     """
 
     def __init__(
@@ -68,88 +62,135 @@ class EpisodeSampler:
         settings: TaskConfig,
         task: Task,
         randomizer: Randomizer,
-        hardware: HardwareRandomization,
         episode: np.ndarray,
-        parameters: np.ndarray | None,
     ) -> None:
         n = len(episode)
         self._config, self._task, self._randomizer = config, task, randomizer
-        self._hardware, self._episode, self._parameters = hardware, episode, parameters
-        self._settings = settings
+        self._episode, self._settings = episode, settings
         self._blank = _blank_episode(config, settings, task)
+        self._names = sorted(config.materials)
+        friction = [(config.materials[name].mu_s, config.materials[name].mu_c) for name in self._names]
+        self._friction = np.array(friction)
+        self._variants = list(randomizer.variants.values())
+        self._last: tuple[EpisodeOptions, str, _Chosen] | None = None
         self.materials: list[str] = [""] * n
         self.boxes: list[Any] = [None] * n
-        self.drawn: list[dict[str, Any]] = [{} for _ in range(n)]
+        self.drawn = Drawn(randomizer, n)
 
-    def sample(self, rows: Sequence[Row], material: str) -> np.ndarray:
-        """Sample episodes, one generator after the other; returns START (m,).
+    def sample(
+        self,
+        rows: np.ndarray,
+        generators: Sequence[np.random.Generator],
+        options: EpisodeOptions,
+        material: str,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Sample episodes; the draws of an environment do not depend on the others.
 
         Args:
-            rows: Of m environments.
+            rows: Environments to reset, (m,).
+            generators: Random generator of each.
+            options: Parameters to fix for all of them.
             material: Name of a material, or "random".
+
+        Returns:
+            START (m,) and VALUES (m,).
 
         Raises:
             ValueError: The options contradict each other or the configuration.
         """
-        starts = np.zeros(len(rows), START)
-        numbers, biases, keys, shares = starts[NUMBERS], starts["biases"], starts["keys"], starts["shares"]
-        for k, (i, options, rng) in enumerate(rows):
-            scale = 1.0 if options.randomization_scale is None else options.randomization_scale
-            draw = self._randomizer.draw(rng, scale)
-            settings = options.applied_to(self._settings)
-            friction = draw_friction(self._config, options, settings, material, draw, rng)
-            box = make_box(self._config, options, settings, draw, rng)
-            differences = chosen_differences(draw.config, options, draw.differences, friction.r)
-            numbers[k] = self._numbers(i, settings, draw, friction, box, differences)
-            begin_episode(self._episode, self._blank, starts, k)
-            episode = self._episode[i]
-            episode["wrist_roll"] = checked_roll(self._config, options)
-            self._task.start(settings, options, rng, episode)
-            for disturbance, u in draw.disturbances:
-                schedule_disturbance(disturbance, u, episode)
-            rng.standard_normal(out=biases[k])
-            keys[k], shares[k] = draw_sensors(2, rng)
-            self._hardware.apply_differences(i, differences, draw.values["lag"])
-            self._note(i, options, draw, friction, box)
-        return starts
-
-    def _numbers(
-        self,
-        i: int,
-        settings: TaskConfig,
-        draw: Draw,
-        friction: Friction,
-        box: Box,
-        differences: Mapping[str, tuple[float, ...]],
-    ) -> tuple[Any, ...]:
-        """Fields `NUMBERS` of START."""
-        pad = self._config.gripper.pad_radius
-        return (
-            i,
-            checked_force(self._config, settings),
-            box.mass,
-            box.inertia,
-            box.size[1] / 2,
-            box.grasp_from_com,
-            (box.size[0] / 2 - pad, box.size[2] / 2 - pad),
-            (-box.grasp_offset[0], -box.grasp_offset[1]),
-            (friction.mu_s, friction.mu_c, friction.r),
-            differences["finger_friction"],
-            differences["finger_radius"],
-            draw.values["friction_drift"],
-            draw.values["bias_scale"],
+        chosen = self._choose(options, material)
+        m, settings, scale = len(rows), chosen.settings, chosen.given["scale"].item()
+        shares, picked, mass_shares = (
+            np.empty((m, self._randomizer.count)),
+            np.empty(m, np.int64),
+            np.zeros(m),
         )
+        weighs, count = settings.mass_range is not None, len(self._names)
+        for k, rng in enumerate(generators):
+            rng.random(out=shares[k])
+            picked[k] = rng.integers(count)  # drawn always, so that options do not shift later draws
+            if weighs:
+                mass_shares[k] = rng.random()
+        values, starts = self._randomizer.sample(shares, scale), np.zeros(m, START)
+        starts["row"] = rows
+        for name, numbers in chosen.fixed.items():
+            values[name] = numbers
+        tables = self._friction, chosen.radii, values, starts, self._episode, self._blank
+        valid = compose(picked, mass_shares, chosen.given, *tables)
+        if not valid or any(getattr(options, name) is not None for name in _CHECKED):
+            for start, value in zip(starts, values, strict=True):
+                self._check(start, value, options)
+        if options.wrist_roll:
+            self._episode["wrist_roll"][rows] = options.wrist_roll
+        start_task, biases, keys, rests = self._task.start, starts["biases"], starts["keys"], starts["shares"]
+        for k, (i, rng) in enumerate(zip(rows.tolist(), generators, strict=True)):
+            start_task(settings, options, rng, self._episode[i])
+            rng.standard_normal(out=biases[k])
+            keys[k], rests[k] = draw_sensors(2, rng)
+        happened = self._randomizer.schedule(shares, scale, rows, self._episode)
+        self._note(rows, starts)
+        self.drawn.keep(rows, chosen.reported, starts, values, happened)
+        return starts, values
 
-    def _note(self, i: int, options: EpisodeOptions, draw: Draw, friction: Friction, box: Box) -> None:
-        """Store the episode's reported values; apply its parameters to gripper, sensors and estimators."""
-        self.materials[i], self.boxes[i] = friction.material, box
-        if self._parameters is not None:
-            own = self._parameters[2 * i : 2 * i + 2] if len(self._parameters) > 1 else self._parameters
-            own[LATENCY] = draw.values["slip_latency"]
-        if self._randomizer.active:  # else the parameters are those of the configuration
-            start = {"mu_s": friction.mu_s, "mu_c": friction.mu_c, "mass": box.mass}
-            self.drawn[i] = {**start, **draw.report(options)}
-            self._hardware.apply(i, draw.values, draw.config.contact.pressure)
+    def _choose(self, options: EpisodeOptions, material: str) -> _Chosen:
+        """What options and the name of a material fix.
+
+        Raises:
+            ValueError: The options contradict the configuration.
+        """
+        if self._last is not None and self._last[:2] == (options, material):
+            return self._last[2]
+        config, settings = self._config, options.applied_to(self._settings)
+        name, default = options.material or material, settings.object or config.object
+        if name not in ("random", *self._names):
+            raise ValueError(unknown("material", name, ["random", *self._names]))
+        if options.wrist_roll and not config.physics.tilt:
+            raise ValueError(f"option wrist_roll = {options.wrist_roll:g} rad {NEEDS_TILT}")
+        fields = {
+            "scale": 1.0 if options.randomization_scale is None else options.randomization_scale,
+            "force": checked_force(config, settings),
+            "material": -1 if name == "random" else self._names.index(name),
+            **{each: getattr(options, each) for each in ("mu_s", "mu_c", "r", "object_mass")},
+            "object_com": options.com_offset,
+            "mass": default.mass,
+            "mass_range": settings.mass_range,
+            "size": options.object_size or default.size,
+            "com_offset": default.com_offset,
+            "grasp_offset": default.grasp_offset,
+            "inertia": default.inertia,
+            "pad_radius": config.gripper.pad_radius,
+        }
+        given = np.zeros(1, GIVEN)
+        for each, value in fields.items():
+            given[each] = np.nan if value is None else value
+        fixed: dict[str, object] = dict(fixed_differences(config, options))
+        if options.object_size is not None:
+            fixed["size_scale"] = 1.0
+        radii = np.array([settings.radius or variant.contact_radius for variant in self._variants])
+        chosen = _Chosen(settings, given, radii, fixed, self.drawn.reported(options))
+        self._last = options, material, chosen
+        return chosen
+
+    def _check(self, start: np.void, value: np.void, options: EpisodeOptions) -> None:
+        """Raise ValueError if the options contradict sampled values."""
+        mu_s, mu_c, r = start["friction"].tolist()
+        if mu_s < mu_c:
+            name = self._names[start["material"]]
+            raise ValueError(f"mu_s = {mu_s:g} must be at least mu_c = {mu_c:g} (material {name!r})")
+        size, margin = tuple(start["size"].tolist()), self._config.gripper.pad_radius
+        _check_inside("com_offset", start["com_offset"].tolist(), size, margin=0.0)
+        _check_inside("grasp_offset", start["grasp_offset"].tolist(), size, margin=margin)
+        variant = self._variants[start["pressure"]]
+        check_contacts(variant, options, r, tuple(value["finger_radius"].tolist()))
+
+    def _note(self, rows: np.ndarray, starts: np.ndarray) -> None:
+        """Store materials and objects."""
+        points = (
+            zip(*starts[name].T.tolist(), strict=True) for name in ("size", "com_offset", "grasp_offset")
+        )
+        boxes = map(Box, *points, starts["mass"].tolist(), starts["inertia"].tolist())
+        for i, box, place in zip(rows.tolist(), boxes, starts["material"].tolist(), strict=True):
+            self.boxes[i], self.materials[i] = box, self._names[place]
 
 
 def _blank_episode(config: Config, settings: TaskConfig, task: Task) -> np.ndarray:
@@ -164,104 +205,13 @@ def _blank_episode(config: Config, settings: TaskConfig, task: Task) -> np.ndarr
     return episode
 
 
-def draw_friction(
-    config: Config,
-    options: EpisodeOptions,
-    task: TaskConfig,
-    material: str,
-    draw: Draw,
-    rng: np.random.Generator,
-) -> Friction:
-    """Friction of an episode: the options' values, else randomized ones, else the material's.
-
-    If a material is named, friction is not randomized. Options that fix only mu_s or only mu_c keep the
-    sampled ratio of the two.
-
-    Raises:
-        ValueError: The material is unknown, mu_s would be below mu_c, or the pad has no room for r.
-    """
-    names = sorted(config.materials)
-    drawn = names[rng.integers(len(names))]  # drawn always, so that options do not shift later draws
-    name = options.material or material
-    random = name == "random"
-    if random:
-        name = draw.material or drawn
-    if name not in config.materials:
-        raise ValueError(unknown("material", name, ["random", *names]))
-    mu_s, mu_c = config.materials[name].mu_s, config.materials[name].mu_c
-    if random and draw.friction:
-        mu_s, mu_c = draw.friction_of(config.materials[name])
-        if options.mu_s is not None:
-            mu_c *= options.mu_s / mu_s
-        elif options.mu_c is not None:
-            mu_s *= options.mu_c / mu_c
-    mu_s, mu_c = options.mu_s or mu_s, options.mu_c or mu_c
-    if mu_s < mu_c:
-        raise ValueError(f"mu_s = {mu_s:g} must be at least mu_c = {mu_c:g} (material {name!r})")
-    r = options.r or draw.values["radius_scale"] * (task.radius or draw.config.contact_radius)
-    draw.config.check_patch("option r", r)
-    return Friction(mu_s, mu_c, r, name)
-
-
-def make_box(
-    config: Config, options: EpisodeOptions, task: TaskConfig, draw: Draw, rng: np.random.Generator
-) -> Box:
-    """The configured object, with the values that the task and the randomization sample or the options fix.
-
-    Raises:
-        ValueError: The pads or the centre of mass would not lie on the object.
-    """
-    default, values = task.object or config.object, draw.values
-    mass = default.mass if task.mass_range is None else rng.uniform(*task.mass_range)
-    mass *= values["mass_scale"]
-    scale = 1.0 if options.object_size is not None else values["size_scale"]
-    x, y, z = default.size if options.object_size is None else options.object_size
-    size = scale * x, y, scale * z
-    grasp_offset = scale * default.grasp_offset[0], scale * default.grasp_offset[1]
-    com_offset = (
-        scale * default.com_offset[0] + values["com_x"] * size[0],
-        scale * default.com_offset[1] + values["com_z"] * size[2],
-    )
-    if options.object_mass is not None:
-        mass = options.object_mass
-    if options.com_offset is not None:
-        com_offset = options.com_offset
-    _check_inside("com_offset", com_offset, size, margin=0.0)
-    _check_inside("grasp_offset", grasp_offset, size, margin=config.gripper.pad_radius)
-    inertia = box_inertia(mass, size[0], size[2])
-    if default.inertia is not None:
-        inertia = default.inertia * values["mass_scale"] * scale**2
-    return Box(
-        size=size,
-        com_offset=com_offset,
-        grasp_offset=grasp_offset,
-        mass=float(mass),
-        inertia=float(inertia),
-    )
-
-
-def _check_inside(
-    name: str, point: tuple[float, float], size: tuple[float, float, float], margin: float
-) -> None:
+def _check_inside(name: str, point: list[float], size: tuple[float, ...], margin: float) -> None:
     """Raise ValueError unless a point (x, z) lies on the object, `margin` away from its edges."""
-    room = size[0] / 2 - margin, size[2] / 2 - margin
-    if abs(point[0]) > room[0] or abs(point[1]) > room[1]:
+    if not inside(tuple(point), size, margin):
         around = f" with the pad of radius {margin:g} m around it" if margin else ""
         raise ValueError(
             f"{name} {tuple(point)} m{around} must lie on the object, {size[0]:g} m by {size[2]:g} m"
         )
-
-
-def checked_roll(config: Config, options: EpisodeOptions) -> float:
-    """Roll of the wrist at reset [rad].
-
-    Raises:
-        ValueError: It is given without `physics.tilt`.
-    """
-    roll = options.wrist_roll or 0.0
-    if roll and not config.physics.tilt:
-        raise ValueError(f"option wrist_roll = {roll:g} rad {NEEDS_TILT}")
-    return roll
 
 
 def checked_force(config: Config, settings: TaskConfig) -> float:

@@ -1,14 +1,12 @@
-"""In what the two fingers differ: values of the configuration, sampled ones, and those that options fix."""
+"""In what the two fingers differ: values of the configuration, and checks of those that options fix."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.config.distribution import Distribution
 from slipgym.tasks.options import EpisodeOptions
 
 
@@ -31,61 +29,39 @@ DIFFERENCES = {
 }
 """Name in the configuration, in `Ranges` and among the reset options -> what it consists of."""
 
-Numbers = tuple[float, ...]
 
-
-def _flat(value: object) -> Numbers:
-    return tuple(np.ravel(np.asarray(value, dtype=float)).tolist())
-
-
-def nominal_differences(config: Config) -> dict[str, Numbers]:
+def nominal_differences(config: Config) -> dict[str, np.ndarray]:
     """Numbers of `DIFFERENCES` without randomization."""
-    return {name: _flat(getattr(getattr(config, own.group), name)) for name, own in DIFFERENCES.items()}
+    return {name: np.ravel(getattr(getattr(config, own.group), name)) for name, own in DIFFERENCES.items()}
 
 
-def sample_difference(
-    field: Distribution, nominal: Numbers, scale: float, rng: np.random.Generator
-) -> Numbers:
-    """Sample each number on its own.
+def fixed_differences(config: Config, options: EpisodeOptions) -> dict[str, np.ndarray]:
+    """Numbers of `DIFFERENCES` that options fix.
 
-    Args:
-        field: Distribution of each.
-        nominal: Numbers of the configuration.
-        scale: 0 for these, 1 for the sampled numbers, linear between.
-        rng: Random generator; one draw a number, whatever the scale.
+    Raises:
+        ValueError: A centre of pressure does not lie on its pad.
     """
-    shares = rng.random(len(nominal)).tolist()
-    return tuple(
-        (1.0 - scale) * value + scale * field.at(u) for value, u in zip(nominal, shares, strict=True)
-    )
+    if options.cop_offset is not None:
+        config.check_cop_offset("option cop_offset", options.cop_offset)
+    given = {name: getattr(options, name) for name in DIFFERENCES}
+    return {name: np.ravel(value) for name, value in given.items() if value is not None}
 
 
-def chosen_differences(
-    config: Config, options: EpisodeOptions, drawn: Mapping[str, Numbers], r: float
-) -> Mapping[str, Numbers]:
-    """Numbers of `DIFFERENCES` of an episode: the options' values, else the sampled ones.
+def check_contacts(config: Config, options: EpisodeOptions, r: float, factors: tuple[float, ...]) -> None:
+    """Check that the contacts of both fingers fit on their pads.
 
     Args:
         config: Configuration with the episode's pressure profile.
         options: Reset options.
-        drawn: Numbers of the configuration or sampled ones.
         r: Radius of the equivalent rim contact [m].
+        factors: Radius of each finger over r [-].
 
     Raises:
-        ValueError: A contact or its centre of pressure does not fit on the pad.
+        ValueError: One does not.
     """
-    fixed = {name: value for name in DIFFERENCES if (value := getattr(options, name)) is not None}
-    if "cop_offset" in fixed:
-        config.check_cop_offset("option cop_offset", fixed["cop_offset"])
-    chosen = {**drawn, **{name: _flat(value) for name, value in fixed.items()}} if fixed else drawn
-    largest = r * max(chosen["finger_radius"])
-    if "finger_radius" in fixed:
+    config.check_patch("option r", r)
+    largest = r * max(factors)
+    if options.finger_radius is not None:
         config.check_radius("option finger_radius: the larger radius r", largest)
     elif largest != r:
         config.check_patch("option r times finger_radius", largest)
-    return chosen
-
-
-def named(name: str, numbers: Numbers) -> dict[str, float]:
-    """Numbers of one of `DIFFERENCES`, each by its name."""
-    return {f"{name}_{part}": value for part, value in zip(DIFFERENCES[name].parts, numbers, strict=True)}

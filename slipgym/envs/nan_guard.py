@@ -7,12 +7,12 @@ import math
 import tempfile
 import uuid
 from pathlib import Path
-from typing import NamedTuple, NoReturn
+from typing import NamedTuple
 
 import numpy as np
 
 from slipgym import atomic_io
-from slipgym._numba.compiled import compiled
+from slipgym._numba.compiled import unlocked
 from slipgym.envs.readings import finite_check, row_writer
 
 KEPT = 120
@@ -107,66 +107,67 @@ sound = finite_check(
 )
 
 
-@compiled
-def note(row, i, worlds, pads, fingers, wrenches, twists, per_finger, episodes):
-    """Write the quantities of environment i.
+@unlocked
+def note(rows, at, state, i):
+    """Write the time and the quantities of environment i.
 
     Args:
-        row: Output (len(QUANTITIES),).
+        rows: Output (m, 1 + len(QUANTITIES)).
+        at: Row that is written.
+        state: `slipgym.envs.control_step.BatchState`.
         i: Index of the environment.
-        worlds: WORLD (n,).
-        pads: PAD (n, 2).
-        fingers: FINGER (n, 2).
-        wrenches: Measured wrenches (n, 2, 4) [N, N, N, N m].
-        twists: Measured twists (n, 2, 3) [m/s, m/s, rad/s].
-        per_finger: Estimated mu_s, mu_c, r (n, 2, 3).
-        episodes: EPISODE (n,), for the reward terms.
 
     Returns:
-        Index of the first quantity that is not finite; -1 if there is none.
+        Place in the row of the first quantity that is not finite; 0 if there is none.
     """
-    _write_quantities(row, i, worlds, pads, fingers, wrenches, twists, per_finger, episodes)
-    for k in range(row.shape[0]):
+    row, episode = rows[at], state.episodes[i]
+    row[0] = episode.step * episode.step_time
+    _write_quantities(
+        row[1:], i, state.worlds, state.pads, state.fingers, state.wrenches, state.twists, state.per_finger,
+        state.episodes,
+    )  # fmt: skip
+    for k in range(1, row.shape[0]):
         if not math.isfinite(row[k]):
             return k
-    return -1
+    return 0
 
 
 class Guard:
-    """Keeps the quantities of the last control steps; stops a simulation in which one is not finite."""
+    """Keeps the quantities of the last control steps; stops a simulation in which one is not finite.
+
+    Attributes:
+        rows: Time and `QUANTITIES` of control steps, (KEPT, 1 + len(QUANTITIES)).
+    """
 
     def __init__(self) -> None:
-        self._rows = np.zeros((KEPT, len(QUANTITIES)))
-        self._times = np.zeros(KEPT)
+        self.rows = np.zeros((KEPT, 1 + len(QUANTITIES)))
         self._count = 0
 
     def reset(self) -> None:
         """Forget the last episode."""
         self._count = 0
 
-    def watch(self, time: float, i: int, *arrays: np.ndarray) -> None:
-        """Store the quantities of a control step.
+    def next(self) -> int:
+        """The row for the next control step, which `note` writes."""
+        self._count += 1
+        return (self._count - 1) % KEPT
+
+    def check(self, bad: int) -> None:
+        """Write the kept control steps to a file if a quantity of the last one is not finite.
 
         Args:
-            time: [s].
-            i: Index of the environment.
-            *arrays: Arrays of the environments, in the order of `note`.
+            bad: What `note` returned for the last one.
 
         Raises:
-            FloatingPointError: A quantity is not finite. The message names the first one and the file that
-                the kept control steps were written to.
+            FloatingPointError: The message names the quantity, and the file.
         """
-        at = self._count % KEPT
-        self._count += 1
-        self._times[at] = time
-        bad = note(self._rows[at], i, *arrays)
-        if bad >= 0:
-            self._stop(_NAMES[bad], self._rows[at, bad], time)
-
-    def _stop(self, name: str, value: float, time: float) -> NoReturn:
+        if bad == 0:
+            return
         kept = min(self._count, KEPT)
+        time, *values = self.rows[(self._count - 1) % KEPT].tolist()
+        name, value = _NAMES[bad - 1], values[bad - 1]
         order = np.arange(self._count - kept, self._count) % KEPT
-        table = np.column_stack([self._times[order], self._rows[order]])
+        table = self.rows[order]
         text = io.StringIO()
         np.savetxt(text, table, delimiter=",", header="time," + ",".join(_NAMES), comments="")
         csv = Path(tempfile.gettempdir(), f"slipgym-{uuid.uuid4().hex}.csv")

@@ -273,16 +273,3 @@ def observe(wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, 
             out[i, at + k] = friction[i, k]
         for k in range(out.shape[1]):
             out[i, k] = min(max(out[i, k], low[k]), high[k])
-
-
-@compiled
-def observe_some(
-    rows, wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, friction, low, high, out
-):
-    """`observe` for some environments, rows (m,)."""
-    for i in rows:
-        row = slice(i, i + 1)
-        observe(
-            wrenches[row], twists[row], slip_sensors[row], episodes[row], task_part[row], worlds[row],
-            wrist, friction[row], low, high, out[row],
-        )  # fmt: skip

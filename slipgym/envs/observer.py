@@ -8,12 +8,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.envs import privileged
-from slipgym.envs.observation import (
-    ObservationBuffers,
-    columns,
-    observe_some,
-    wrist_part,
-)
+from slipgym.envs.observation import ObservationBuffers, columns, wrist_part
 from slipgym.envs.simulation import Simulation
 from slipgym.tasks.task import Column
 
@@ -116,16 +111,7 @@ class Observer:
             self._frames[:] = frames
 
     def _look(self, rows: np.ndarray) -> None:
-        simulation = self._simulation
-        arrays = (
-            simulation.wrenches,
-            simulation.twists,
-            simulation.plant.slip_sensors,
-            simulation.episode,
-            simulation.task_part,
-            simulation.plant.world,
-        )
-        observe_some(rows, *arrays, *self.buffers)
+        self._simulation.stages.look_at(rows, self._simulation.state, self.buffers)
 
 
 def first(observations: Observation) -> Observation:

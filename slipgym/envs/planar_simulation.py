@@ -7,9 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
-from slipgym.envs.control_step import BatchState
 from slipgym.envs.nan_guard import Guard
 from slipgym.envs.observation import ObservationBuffers
 from slipgym.envs.planar_step import compiled_batch
@@ -55,31 +53,9 @@ class PlanarSimulation(Simulation):
         self._threads = Threads(n, threads)
         self._closed = False
         self._blank()
-        kind, plant = specification(self.estimator_choice["name"]), self.plant
-        batch = self.estimator
-        dtypes = batch.states.dtype, batch.parameters_array.dtype, plant.force_torque.dtype
-        cells = 0 if plant.cells is None else plant.cells.ndim
-        self._drive, self._start = compiled_batch(task, kind.update_batch, *dtypes, cells)
-        self._state = BatchState(
-            worlds=plant.world,
-            pads=plant.pads,
-            cells=plant.cells,
-            fingers=plant.fingers,
-            force_torque=plant.force_torque,
-            slip_sensors=plant.slip_sensors,
-            parameters=batch.parameters_array,
-            estimator_states=batch.states,
-            estimates=batch.estimates,
-            episodes=self.episode,
-            commands=self.commands,
-            wrenches=self.wrenches,
-            twists=self.twists,
-            per_finger=self.per_finger,
-            estimated=self.estimated,
-            task_part=self.task_part,
-            ground_truth=self.ground_truth,
-        )
-        self._begun = *self._fresh, *self._biases
+        self._drive, self._start = compiled_batch(*self._kinds)
+        self._contact = self.plant.cells, self.plant.force_torque
+        self._begun = *self._hardware, self._fresh
 
     def step(
         self,
@@ -106,7 +82,7 @@ class PlanarSimulation(Simulation):
         results = *self.infos, self.rewards, self.terminated, self.truncated
 
         def part(lo: int, hi: int) -> int:
-            return self._drive(self._state, buffers, action, results, skip, lo, hi)
+            return self._drive(self.state, self._contact, buffers, action, results, skip, lo, hi)
 
         for bad in self._threads.run(part, meanwhile):
             if bad >= 0:
@@ -122,8 +98,8 @@ class PlanarSimulation(Simulation):
         self._threads.close()
         self._closed = True
 
-    def _begin(self, starts: np.ndarray) -> None:
-        self._start(starts, self._state, self._begun, self.infos)
+    def _begin(self, starts: np.ndarray, values: np.ndarray) -> None:
+        self._start(starts, values, self.state, self._contact, self._begun, self.infos)
 
     def _blank(self) -> None:
         """Make new arrays for the results of a step: the caller owns those of the last step."""
@@ -131,11 +107,10 @@ class PlanarSimulation(Simulation):
 
     def _explain(self, bad: int) -> None:
         """Raise FloatingPointError that names the first quantity of an environment that is not finite."""
-        state, time = self._state, self.episode["step"].item(bad) * self.step_time
-        bodies = state.worlds, state.pads, state.fingers
-        arrays = *bodies, state.wrenches, state.twists, state.per_finger, state.episodes
+        guard = Guard()
+        found = self.stages.note(guard.rows, guard.next(), self.state, bad)
         try:
-            Guard().watch(time, bad, *arrays)
+            guard.check(found)
         except FloatingPointError as error:
             where = f"environment {bad}: " if self.n > 1 else ""
             raise FloatingPointError(f"{where}{error}") from None

@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
+import numpy as np
 from numba import types
 
 from slipgym._numba.compiled import patience, unlocked
 from slipgym._numba.prefetch import fetch
-from slipgym.envs.actions import COMPONENT, interpret
-from slipgym.envs.control_step import (
-    Kernels,
-    array,
-    begin_control_step,
-    end_control_step,
-    entry_point,
-    evaluate,
-    measure_rows,
-)
-from slipgym.envs.infos import write_infos
 from slipgym.envs.nan_guard import sound
-from slipgym.envs.observation import observe
-from slipgym.envs.reset_kernels import START, WARM_UP_STEPS, equip, grip, open_episodes
+from slipgym.envs.reset_kernels import HARDWARE, START, WARM_UP_STEPS, grip
+from slipgym.envs.stages import (
+    ACTION,
+    BUFFERS,
+    F1,
+    F3,
+    FLAGS,
+    FRESH,
+    INFOS,
+    STATE,
+    VALUES_TYPE,
+    WHOLE,
+    Program,
+    array,
+    cells_type,
+    compiled_stages,
+)
 from slipgym.world.planar_engine import step_world
 
 BLOCK = 64
@@ -31,41 +36,41 @@ to prefetch each array."""
 
 
 @unlocked
-def _move_rows(state, lo, hi):
-    """Move the bodies of rows lo to hi, and prefetch those of the next block."""
+def _move(state, cells, force_torque, lo, hi):
+    """Move the bodies of rows lo to hi with the planar engine, and prefetch those of the next block.
+
+    Args:
+        state: `BatchState`.
+        cells: As `slipgym.world.plant.Plant.cells`.
+        force_torque: FORCE_TORQUE (n, 2).
+        lo: First row.
+        hi: Row after the last.
+    """
     for i in range(lo, hi):
         ahead = i + hi - lo  # the same row of the next block
         fetch(state.worlds, ahead, ahead + 1)
         fetch(state.pads, ahead, ahead + 1)
         fetch(state.fingers, ahead, ahead + 1)
-        fetch(state.force_torque, ahead, ahead + 1)
+        fetch(force_torque, ahead, ahead + 1)
         fetch(state.slip_sensors, ahead, ahead + 1)
-        fetch(state.estimator_states, 2 * ahead, 2 * ahead + 2)
-        fetch(state.estimates, 2 * ahead, 2 * ahead + 2)
-        fetch(state.episodes, ahead, ahead + 1)
-        _move(state, i, state.commands[i, 0])
+        step_world(
+            state.worlds, state.pads, cells, state.fingers, force_torque, state.slip_sensors,
+            state.commands[i, 0], i,
+        )  # fmt: skip
 
 
 @unlocked
-def _move(state, i, force):
-    """Move the bodies of row i by a control step, under a grip force commanded to both fingers [N]."""
-    step_world(
-        state.worlds, state.pads, state.cells, state.fingers, state.force_torque, state.slip_sensors, force, i
-    )
-
-
-@unlocked
-def _drive(script_wrist, evaluate_step, update, batch, buffers, action, results, skip, lo, hi):
+def _drive(stages, move, state, contact, buffers, action, results, skip, lo, hi):
     """Make `skip` control steps in the active rows among lo to hi; a row stops when its episode ends.
 
     Rewards, ends of episodes and infos are gathered here, while the rows are in the cache: gathering them
     later from thousands of records would cost a cache miss each.
 
     Args:
-        script_wrist: Function of the task.
-        evaluate_step: Function of the task.
-        update: Function of the estimator.
-        batch: `BatchState`.
+        stages: `Linked`.
+        move: `_move`.
+        state: `BatchState`.
+        contact: Patches and force/torque sensors, as in `_move`.
         buffers: `ObservationBuffers`.
         action: Actions (n, m), their meaning COMPONENT (m,), and which rows are active (n,).
         results: Output: infos as in `InfoBuffer`, the sums of the reward terms (n,), and whether each episode
@@ -77,9 +82,8 @@ def _drive(script_wrist, evaluate_step, update, batch, buffers, action, results,
     Returns:
         The first row with a number that is not finite; -1 if there is none.
     """
-    state = batch
-    wrist, friction, low, high, out = buffers
-    actions, components, active = action
+    cells, force_torque = contact
+    active = action[2]
     numbers, flags, terms, rewards, terminated, truncated = results
     episodes = state.episodes
     bad = -1
@@ -88,19 +92,24 @@ def _drive(script_wrist, evaluate_step, update, batch, buffers, action, results,
     while start < hi:
         stop = start
         while stop < hi and active[stop] and stop - start < size:
-            terms[stop] = 0.0
+            for k in range(terms.shape[1]):
+                terms[stop, k] = 0.0
             stop += 1
         if stop == start:
             start += 1
             continue
-        rows = slice(start, stop)
         for _ in range(skip):
-            interpret(actions[rows], components, episodes[rows], state.commands[rows])
-            begin_control_step(script_wrist, state, start, stop)
-            _move_rows(state, start, stop)
-            end_control_step(update, evaluate_step, state, start, stop)
+            stages.begin(stages.script_wrist, state, action, start, stop)
+            move(state, cells, force_torque, start, stop)
+            stages.measure(state, force_torque, start, stop)
+            stages.estimate(stages.update, state, start, stop)
+            stages.evaluate(stages.evaluate_step, state, start, stop)
             over = False
             for i in range(start, stop):
+                ahead = i + stop - start  # the same row of the next block
+                fetch(state.estimator_states[:, 0], 2 * ahead, 2 * ahead + 2)
+                fetch(state.estimates, 2 * ahead, 2 * ahead + 2)
+                fetch(episodes, ahead, ahead + 1)
                 for k in range(terms.shape[1]):
                     terms[i, k] += episodes[i].terms[k]
                 if bad < 0 and not sound(
@@ -110,89 +119,74 @@ def _drive(script_wrist, evaluate_step, update, batch, buffers, action, results,
                 over = episodes[i].dropped or episodes[i].step >= episodes[i].steps
             if over:  # a block of several rows has a single control step anyway
                 break
-        observe(
-            state.wrenches[rows], state.twists[rows], state.slip_sensors[rows], episodes[rows],
-            state.task_part[rows], state.worlds[rows], wrist, friction[rows], low, high, out[rows],
-        )  # fmt: skip
+        stages.look(state, buffers, start, stop)
         for i in range(start, stop):
             rewards[i] = 0.0
             for k in range(terms.shape[1]):
                 rewards[i] += terms[i, k]
             terminated[i] = episodes[i].dropped
             truncated[i] = episodes[i].step >= episodes[i].steps and not terminated[i]
-        _write_infos(state, numbers, flags, start, stop)
+        stages.report(state, numbers, flags, start, stop)
         start = stop
     return bad
 
 
 @unlocked
-def _write_infos(state, numbers, flags, lo, hi):
-    """Write the infos of rows lo to hi."""
-    rows = slice(lo, hi)
-    write_infos(
-        numbers[rows], flags[rows], state.worlds[rows], state.pads[rows], state.fingers[rows],
-        state.episodes[rows], state.ground_truth[rows], state.estimated[rows], state.per_finger[rows],
-    )  # fmt: skip
-
-
-@unlocked
-def _start(evaluate_step, starts, batch, begun, infos):
+def _start(stages, move, starts, values, state, contact, begun, infos):
     """Begin episodes.
 
     Args:
-        evaluate_step: Function of the task.
+        stages: `Linked`.
+        move: `_move`.
         starts: START (m,).
-        batch: `BatchState` of all rows.
-        begun: Initial estimator states and estimates of both fingers; spread and noise of `equip`.
+        values: VALUES (m,).
+        state: `BatchState` of all rows.
+        contact: Patches and force/torque sensors, as in `_move`.
+        begun: Hardware and patches of `equip`, and of both fingers the initial states of the estimators, as
+            bytes, and estimates.
         infos: Output, see `InfoBuffer`.
     """
-    state = batch
-    numbers, flags, terms = infos
-    fresh_states, fresh_estimates, spread, noise = begun
-    grip(starts, state.episodes, state.worlds, state.pads, state.cells, state.fingers)
-    equip(starts, spread, noise, state.pads, state.force_torque, state.slip_sensors, state.ground_truth)
+    cells, force_torque = contact
+    hardware, patches, fresh = begun
+    stages.equip(starts, values, hardware, patches, state, cells, force_torque)
+    grip(starts, state.episodes, state.worlds, state.pads, cells, state.fingers)
     for k in range(starts.shape[0]):
         i = starts[k].row
+        state.commands[i, 0] = starts[k].force
         for _ in range(WARM_UP_STEPS):
-            _move(state, i, starts[k].force)
-            measure_rows(state, i, i + 1)
-    open_episodes(
-        starts, fresh_states, fresh_estimates, state.slip_sensors, state.estimator_states, state.estimates,
-        state.episodes, state.commands, terms,
-    )  # fmt: skip
+            move(state, cells, force_torque, i, i + 1)
+            stages.measure(state, force_torque, i, i + 1)
+    stages.open(starts, fresh, state, infos.terms)
     for k in range(starts.shape[0]):
         i = starts[k].row
-        evaluate(evaluate_step, state, i, i + 1)
-        _write_infos(state, numbers, flags, i, i + 1)
+        stages.evaluate(stages.evaluate_step, state, i, i + 1)
+        stages.report(state, infos.numbers, infos.flags, i, i + 1)
 
 
 @cache
-def compiled_batch(*kinds: Any) -> tuple[Any, Any]:
+def compiled_batch(task: Any, update: Any, force_torque: np.dtype, cells: int) -> tuple[Any, Any]:
     """Return the compiled functions that step and reset environments of the planar engine.
 
-    The first call on a machine compiles them, which takes about half a minute; the result is cached beside
-    the sources.
+    The first call on a machine compiles them, see docs/numba.md.
 
     Args:
-        *kinds: Arguments of `slipgym.envs.control_step.Kernels`; the first is the task.
+        task: The task.
+        update: The estimator's compiled `update_batch`.
+        force_torque: Dtype of the force/torque sensors.
+        cells: Dimensions of `slipgym.world.plant.Plant.cells`, 0 for None.
 
     Returns:
-        Functions of the arguments of `_drive` but the first three, and of `_start` but the first.
+        Functions of the arguments of `_drive` and `_start` but the first two.
     """
-    kernels = Kernels(*kinds)
-    f1, f2 = array(types.float64), array(types.float64, 2)
-    single, flags = array(types.float32), array(types.boolean)
-    functions = kernels.script_wrist, kernels.evaluate_step, kernels.update
-    buffers = types.Tuple([array(types.int64), f2, single, single, array(types.float32, 2)])
-    action, infos = types.Tuple([f2, array(COMPONENT), flags]), [f2, array(types.boolean, 2), f2]
-    results = types.Tuple([*infos, f1, flags, flags])
-    whole = types.int64
-    drive = whole(*functions, kernels.state, buffers, action, results, whole, whole, whole)
-    begun = types.Tuple([*kernels.fresh, f1, f1])
-    start = types.void(kernels.evaluate_step, array(START), kernels.state, begun, types.Tuple(infos))
-    with patience(f"the batch of {kinds[0].name}"):
-        pointers = kernels.pointers()
-        return (
-            entry_point(_drive, drive, *pointers.values()),
-            entry_point(_start, start, pointers["evaluate_step"]),
-        )
+    stages = compiled_stages(task, update, force_torque, cells)
+    contact = types.Tuple([cells_type(cells), array(force_torque, 2)])
+    with patience(f"the batch of {task.name}"):
+        rows = WHOLE, WHOLE
+        move = Program(_move, types.void(STATE, *contact.types, *rows))
+        results = types.Tuple([*INFOS.types, F1, FLAGS, FLAGS])
+        arguments = STATE, contact, BUFFERS, ACTION, results, WHOLE
+        drive = stages.program(_drive, WHOLE, move.known, *arguments, *rows)
+        begun = types.Tuple([array(HARDWARE), F3, FRESH])
+        arguments = array(START), VALUES_TYPE, STATE, contact, begun, INFOS
+        start = stages.program(_start, types.void, move.known, *arguments)
+    return partial(drive, move.pointer), partial(start, move.pointer)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipgym._numba.compiled import compiled
+from slipgym._numba.compiled import compiled, unlocked
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
-from slipgym.world.placing import place_world
+from slipgym.world.placing import PATCHES_OF_WORLDS, place_world
+from slipgym.world.plant import friction_axes, stretch
 
 WARM_UP_STEPS = 6
 """Control steps before time 0 in which grip and sensors settle."""
@@ -15,17 +16,18 @@ START = np.dtype(
     [
         ("row", "i8"),  # which environment
         ("force", "f8"),  # grip force per finger [N]
+        ("material", "i8"),  # place in the sorted names
+        ("pressure", "i8"),  # place of the pressure profile among those of the randomization
+        ("friction", "f8", 3),  # mu_s, mu_c [-], r [m]
         ("mass", "f8"),  # [kg]
         ("inertia", "f8"),  # about the centre of mass and the grip axis [kg m^2]
+        ("size", "f8", 3),  # as in `slipgym.world.scene.Box`, like the next two
+        ("com_offset", "f8", 2),
+        ("grasp_offset", "f8", 2),
         ("half_thickness", "f8"),  # of the object along the grip axis [m]
         ("grasp_point", "f8", 2),  # pad centre (x, z) at the grasp from the centre of mass [m]
         ("reach", "f8", 2),  # as in EPISODE, like the next one
         ("object_centre", "f8", 2),
-        ("friction", "f8", 3),  # mu_s, mu_c [-], r [m]
-        ("finger_friction", "f8", 2),  # of either pad over mu_s and mu_c [-]
-        ("finger_radius", "f8", 2),  # of either pad over r [-]
-        ("drift", "f8"),  # relative rate of mu_s and mu_c [1/s]
-        ("bias_scale", "f8"),  # spread of the biases beyond the configured one, over the noise [-]
         # drawn last
         ("biases", "f8", (2, 6)),  # standard normal
         ("keys", "u8", (KEYS, 2)),  # of the sensors' noise
@@ -33,28 +35,16 @@ START = np.dtype(
     ]
 )
 """Sampled initial conditions of an episode; its task and its disturbances write the others into EPISODE."""
-NUMBERS = [name for name in START.names or () if name not in ("biases", "keys", "shares")]
-"""Fields of START that are sampled before those of the sensors."""
-
-
-@compiled
-def begin_episode(episodes, blank, starts, k):
-    """Fill in the fields of an episode that all tasks have in common.
-
-    Args:
-        episodes: EPISODE (n,).
-        blank: Initial values of every episode, EPISODE (1,).
-        starts: START (m,).
-        k: Index in `starts`.
-    """
-    start = starts[k]
-    episodes[start.row] = blank[0]
-    episode = episodes[start.row]
-    episode.mass, episode.inertia = start.mass, start.inertia
-    episode.mu_s, episode.mu_c, episode.drift = start.friction[0], start.friction[1], start.drift
-    for a in range(2):
-        episode.reach[a], episode.object_centre[a] = start.reach[a], start.object_centre[a]
-        episode.finger_friction[a] = start.finger_friction[a]
+HARDWARE = np.dtype(
+    [
+        ("spread", "f8", 6),  # standard deviation of the force/torque sensors' biases [N, N m]
+        ("noise", "f8", 6),  # of these sensors, which a sampled bias scale multiplies, too [N, N m]
+        ("slip_noise", "f8"),  # of the slip sensors [m]
+        ("clock", "f8"),  # ticks per second
+        ("randomized", "?"),  # whether pads, force loop and sensors are sampled
+    ]
+)
+"""What sampled parameters of the hardware refer to."""
 
 
 @compiled
@@ -79,57 +69,103 @@ def grip(starts, episodes, worlds, pads, cells, fingers):
 
 
 @compiled
-def equip(starts, spread, noise, pads, force_torque, slip_sensors, ground_truth):
-    """Set the friction of the pads and reset the sensors.
+def equip(starts, values, hardware, patches, pads, cells, fingers, force_torque, slip_sensors, ground_truth):
+    """Set the parameters of pads, force loops and sensors; reset the sensors. `grip` comes later.
 
     Args:
         starts: START (m,).
-        spread: Standard deviation of the force/torque sensors' biases, (6,) [N, N m].
-        noise: Noise of these sensors, which a sampled bias scale multiplies, (6,) [N, N m].
+        values: VALUES (m,).
+        hardware: HARDWARE (1,).
+        patches: Patch of each pressure profile, (p, CELL_FIELDS, q).
         pads: PAD (n, 2).
+        cells: Patches (n, 2, CELL_FIELDS, q); None for ellipsoids.
+        fingers: FINGER (n, 2).
         force_torque: FORCE_TORQUE (n, 2).
         slip_sensors: SLIP_SENSOR (n, 2).
         ground_truth: Output (n, 6), of which the first three are mu_s, mu_c, r, mean of both pads.
     """
+    own = hardware[0]
     for k in range(starts.shape[0]):
-        start = starts[k]
+        start, value = starts[k], values[k]
         i = start.row
         for f in range(2):
-            pad, factor = pads[i, f], start.finger_friction[f]
+            pad, factor = pads[i, f], value.finger_friction[f]
             pad.mu_s, pad.mu_c = factor * start.friction[0], factor * start.friction[1]
-            pad.r = start.finger_radius[f] * start.friction[2]
+            pad.r = value.finger_radius[f] * start.friction[2]
+            pad.cop[0], pad.cop[1] = value.cop_offset[2 * f], value.cop_offset[2 * f + 1]
+            fingers[i, f].lag, fingers[i, f].gain = value.finger_lag[f] * value.lag, value.force_gain[f]
+            if own.randomized:
+                randomize_pad(pad, value)
+                fingers[i, f].dead_ticks = np.int64(np.rint(value.dead_time * own.clock))
+                slip_sensors[i, f].noise = value.noise_scale * own.slip_noise
+                slip_sensors[i, f].least_delay = np.int64(value.slip_latency)
             for a in range(6):
-                scale = spread[a] + start.bias_scale * noise[a]
+                scale = own.spread[a] + value.bias_scale * own.noise[a]
                 force_torque[i, f].bias[a] = scale * start.biases[f, a]
+                if own.randomized:
+                    force_torque[i, f].noise[a] = value.noise_scale * own.noise[a]
         first, second = pads[i, 0], pads[i, 1]
         ground_truth[i, 0] = 0.5 * (first.mu_s + second.mu_s)
         ground_truth[i, 1] = 0.5 * (first.mu_c + second.mu_c)
         ground_truth[i, 2] = 0.5 * (first.r + second.r)
         start_sensors(force_torque[i], slip_sensors[i], start.keys, start.shares)
+    if own.randomized:
+        set_patches(starts, patches, pads, cells)
 
 
 @compiled
-def open_episodes(
-    starts, fresh_states, fresh_estimates, slip_sensors, states, estimates, episodes, commands, terms
-):
+def randomize_pad(pad, value):
+    """Set the sampled parameters of a PAD record but its friction and radius."""
+    pad.stribeck_velocity, pad.sigma_0 = value.stribeck_velocity, value.sigma_0
+    pad.load_exponent, pad.radius_exponent = value.load_exponent, value.radius_exponent
+    pad.cop_lever, pad.compliance = value.cop_lever, value.shear_compliance
+    pad.creep, pad.aging = value.creep, value.aging
+    pad.axes[0], pad.axes[1] = friction_axes(value.anisotropy)
+
+
+@compiled
+def set_patches(starts, patches, pads, cells):
+    """Give pads the patch of their pressure profile, stretched by their axes; see `equip`."""
+    if cells is None:
+        return
+    if cells.ndim == PATCHES_OF_WORLDS:
+        for k in range(starts.shape[0]):
+            for f in range(2):
+                patch = cells[starts[k].row, f]
+                patch[:] = patches[starts[k].pressure]
+                stretch(patch, pads[starts[k].row, f].axes)
+
+
+@unlocked
+def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
+    """`equip` for the arrays of a `BatchState`, and two that are passed apart."""
+    equip(
+        starts, values, hardware, patches, state.pads, cells, state.fingers, force_torque, state.slip_sensors,
+        state.ground_truth,
+    )  # fmt: skip
+
+
+@unlocked
+def open_episodes(starts, fresh, state, terms):
     """Reset measured slip, estimators, commands and reward terms, after grip and sensors have settled.
 
     Args:
         starts: START (m,).
-        fresh_states: Of both fingers' estimators, (2,).
-        fresh_estimates: ESTIMATE (2,).
-        slip_sensors: SLIP_SENSOR (n, 2).
-        states: Of the estimators, (2 n,).
-        estimates: ESTIMATE (2 n,).
-        episodes: EPISODE (n,).
-        commands: (n, 4).
+        fresh: Of both fingers: initial states of the estimators, as bytes (2, q), and ESTIMATE (2,).
+        state: `BatchState` of n environments.
         terms: (n, k).
     """
+    states, estimates = fresh
     for k in range(starts.shape[0]):
         i = starts[k].row
         for f in range(2):
-            slip_sensors[i, f].measured_slip[:] = 0.0
-            states[2 * i + f], estimates[2 * i + f] = fresh_states[f], fresh_estimates[f]
-        commands[i, :] = 0.0
-        terms[i, :] = 0.0
-        episodes[i].command = episodes[i].last_command = starts[k].force
+            for a in range(3):
+                state.slip_sensors[i, f].measured_slip[a] = 0.0
+            for b in range(states.shape[1]):
+                state.estimator_states[2 * i + f, b] = states[f, b]
+            state.estimates[2 * i + f] = estimates[f]
+        for a in range(state.commands.shape[1]):
+            state.commands[i, a] = 0.0
+        for a in range(terms.shape[1]):
+            terms[i, a] = 0.0
+        state.episodes[i].command = state.episodes[i].last_command = starts[k].force

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -37,18 +38,25 @@ class RowOptions:
         if rows is not None:
             if not isinstance(rows, Sequence) or len(rows) != n:
                 raise ValueError(f"options['rows'] must be a list of {n} mappings or None, got {rows!r:.80}")
-            self._rows = [_row(i, row, given or {}, kind) for i, row in enumerate(rows)]
+            self._rows = [
+                self._common if row is None or row == {} else _row(i, row, given or {}, kind)
+                for i, row in enumerate(rows)
+            ]
 
-    def of(self, i: int) -> EpisodeOptions:
-        """Options of environment i."""
-        return self._common if self._rows is None else self._rows[i]
+    def groups(self, rows: np.ndarray) -> Iterator[tuple[EpisodeOptions, np.ndarray]]:
+        """Rows (m,) in their order, those together that follow each other and have the same options."""
+        if self._rows is None:
+            yield self._common, rows
+            return
+        own = self._rows
+        for _, some in groupby(rows.tolist(), lambda i: id(own[i])):
+            together = np.array(list(some))
+            yield own[together[0]], together
 
 
 def _row(i: int, row: Any, common: Mapping[str, Any], kind: type[EpisodeOptions]) -> EpisodeOptions:
     try:
-        return kind.parse(
-            row if row is not None and not isinstance(row, Mapping) else {**common, **(row or {})}
-        )
+        return kind.parse(row if not isinstance(row, Mapping) else {**common, **row})
     except ValueError as error:
         raise ValueError(f"options['rows'][{i}]: {error}") from None
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,11 +14,14 @@ import estimator as estimators
 from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
-from slipgym.envs.episode_sampler import LATENCY, EpisodeSampler, Row
-from slipgym.envs.hardware_randomization import HardwareRandomization
-from slipgym.envs.infos import InfoBuffer, write_infos
+from slipgym.envs.control_step import BatchState
+from slipgym.envs.episode_sampler import EpisodeSampler
+from slipgym.envs.estimator_choice import chosen_estimator, informed
+from slipgym.envs.hardware_randomization import prepare_hardware
+from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
+from slipgym.envs.stages import compiled_stages
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
@@ -66,13 +69,15 @@ class Simulation(ABC):
         task_part: The task's part of the observation, (n, k).
         materials: Name of every episode's material.
         boxes: Every episode's object.
-        drawn: Values that the randomization sampled for every episode, JSON-like; may be empty.
+        drawn: Values that the randomization sampled for every episode.
         ground_truth: True (mu_s, mu_c, r) now and full confidence, (n, 6); columns as `estimated`.
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
         estimated: Estimates of both fingers merged, with their confidence, (n, 6).
         infos: Infos of all environments, including the last step's reward terms.
         estimator_choice: Name and parameters of the estimators; `velocity_delay` only if the user gave it.
         step_time: Length of a control step [s].
+        state: Views of these arrays, for compiled functions.
+        stages: Compiled stages of a control step.
     """
 
     def __init__(
@@ -87,14 +92,9 @@ class Simulation(ABC):
         self.config, self.settings, self.task, self.n = config, settings, task, n
         self.plant = build(config, n)
         randomizer = Randomizer(config, settings, task.key, randomization or Randomization())
-        hardware = HardwareRandomization(config, self.plant, randomizer.pressures, randomizer.soft)
-        hardware.check(randomizer.most)
-        self.estimator_choice = _chosen_estimator(estimator)
-        self.estimator = estimators.make_batch(n=2 * n, **self.estimator_choice)
-        asked = self.estimator.parameters_array.dtype.names or ()
-        sets_latency = LATENCY in asked and LATENCY not in self.estimator_choice
-        if sets_latency and n > 1 and randomizer.draws("slip_latency"):
-            self.estimator.parameters_array = np.repeat(self.estimator.parameters_array, 2 * n)
+        hardware = prepare_hardware(config, self.plant, randomizer)
+        self.estimator_choice = chosen_estimator(estimator)
+        self.estimator = estimators.make_batch(n=2 * n, **informed(self.estimator_choice, config))
         self.episode = np.zeros(n, EPISODE)
         self.commands = np.zeros((n, len(COMMANDS)))
         self.wrenches, self.twists = np.zeros((n, 2, 4)), np.zeros((n, 2, 3))
@@ -102,19 +102,42 @@ class Simulation(ABC):
         self.ground_truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
         self.per_finger = np.zeros((n, 2, 3))
         self.infos = InfoBuffer.zeros(n, len(task.term_names))
-        bodies = self.plant.world, self.plant.pads, self.plant.fingers
-        self._infos_from = *bodies, self.episode, self.ground_truth, self.estimated, self.per_finger
         self.step_time = 1.0 / config.physics.control_rate
-        latency_of = self.estimator.parameters_array if sets_latency else None
-        self._sampler = EpisodeSampler(config, settings, task, randomizer, hardware, self.episode, latency_of)
+        self._sampler = EpisodeSampler(config, settings, task, randomizer, self.episode)
         self.materials, self.boxes = self._sampler.materials, self._sampler.boxes
         self.drawn = self._sampler.drawn
-        plant, learned = self.plant, (self.estimator.states, self.estimator.estimates)
-        self._biases = hardware.biases
-        self._equipped = plant.pads, plant.force_torque, plant.slip_sensors, self.ground_truth
-        # initial states are the same for all environments and do not depend on the latency
-        self._fresh = self.estimator.states[:2].copy(), self.estimator.estimates[:2].copy()
-        self._opened = plant.slip_sensors, *learned, self.episode, self.commands
+        plant, learned = self.plant, self.estimator
+        self.state = BatchState(
+            worlds=plant.world,
+            pads=plant.pads,
+            fingers=plant.fingers,
+            slip_sensors=plant.slip_sensors,
+            parameters=_bytes(learned.parameters_array),
+            estimator_states=_bytes(learned.states),
+            estimates=learned.estimates,
+            episodes=self.episode,
+            commands=self.commands,
+            wrenches=self.wrenches,
+            twists=self.twists,
+            per_finger=self.per_finger,
+            estimated=self.estimated,
+            task_part=self.task_part,
+            ground_truth=self.ground_truth,
+        )
+        self._hardware = hardware
+        self._fresh = self.state.estimator_states[:2].copy(), learned.estimates[:2].copy()
+        self._choose_programs()
+        self._dropped, self._steps, self._length = (
+            self.episode[name] for name in ("dropped", "step", "steps")
+        )
+
+    def _choose_programs(self) -> None:
+        """Find the compiled programs for the kinds of arrays that the plant has."""
+        plant = self.plant
+        cells = 0 if plant.cells is None else plant.cells.ndim
+        update = specification(self.estimator_choice["name"]).update_batch
+        self._kinds = self.task, update, plant.force_torque.dtype, cells
+        self.stages = compiled_stages(*self._kinds)
 
     @property
     def true_friction(self) -> np.ndarray:
@@ -122,9 +145,19 @@ class Simulation(ABC):
         return self.ground_truth[:, :3]
 
     @property
+    def dropped(self) -> bool:
+        """Whether the first environment's object was dropped."""
+        return self._dropped.item(0)
+
+    @property
+    def over(self) -> bool:
+        """Whether the first environment's episode has ended."""
+        return self._dropped.item(0) or self._steps.item(0) >= self._length.item(0)
+
+    @property
     def time(self) -> float:
         """Time since the start of the first environment's episode [s]."""
-        return self.episode["step"].item(0) * self.step_time
+        return self._steps.item(0) * self.step_time
 
     def reset(self, options: EpisodeOptions, material: str, rng: np.random.Generator) -> None:
         """Start an episode of the first environment: sample it, close the grip, let grip and sensors settle.
@@ -138,13 +171,21 @@ class Simulation(ABC):
             ValueError: The options contradict each other or the configuration.
             RuntimeError: The world is closed.
         """
-        self.reset_rows([(0, options, rng)], material)
+        self.reset_rows(_FIRST, [rng], options, material)
 
-    def reset_rows(self, rows: Sequence[Row], material: str) -> None:
+    def reset_rows(
+        self,
+        rows: np.ndarray,
+        generators: Sequence[np.random.Generator],
+        options: EpisodeOptions,
+        material: str,
+    ) -> None:
         """Start episodes of some environments, see `reset`.
 
         Args:
-            rows: Environments, each with its options and its generator.
+            rows: Their indices, (m,).
+            generators: Random generator of each.
+            options: Parameters to fix for all these episodes.
             material: Name of a material, or "random".
 
         Raises:
@@ -152,7 +193,7 @@ class Simulation(ABC):
             RuntimeError: The world is closed.
         """
         self.check_open()
-        self._begin(self._sampler.sample(rows, material))
+        self._begin(*self._sampler.sample(rows, generators, options, material))
 
     @abstractmethod
     def step(
@@ -192,8 +233,11 @@ class Simulation(ABC):
             raise RuntimeError("this environment is closed; make a new one")
 
     @abstractmethod
-    def _begin(self, starts: np.ndarray) -> None:
-        """Begin the episodes of START (m,): grip, settle for `WARM_UP_STEPS`, reset the estimators."""
+    def _begin(self, starts: np.ndarray, values: np.ndarray) -> None:
+        """Begin the episodes of START (m,) and VALUES (m,).
+
+        Set up hardware, grip, settle for `WARM_UP_STEPS`, reset the estimators.
+        """
 
     def get_state(self) -> SimulationState:
         """Copy everything that the next control step depends on.
@@ -225,7 +269,7 @@ class Simulation(ABC):
 
     def _write_infos(self) -> None:
         """Fill in the infos except the reward terms."""
-        write_infos(self.infos.numbers, self.infos.flags, *self._infos_from)
+        self.stages.report(self.state, self.infos.numbers, self.infos.flags, 0, self.n)
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that persist from one control step to the next."""
@@ -244,22 +288,9 @@ class Simulation(ABC):
         }
 
 
-def _chosen_estimator(choice: str | Mapping[str, Any]) -> dict[str, Any]:
-    """Return the estimator's name and parameters.
+_FIRST = np.zeros(1, dtype=np.int64)
 
-    `velocity_delay` is left out unless the user gave it: the simulation then sets it to the slip sensor's
-    latency.
-    """
-    if isinstance(choice, str):
-        choice = {"name": choice}
-    if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
-        raise ValueError(
-            f"estimator = {choice!r} must be a name or a mapping with a name; "
-            f"valid: {', '.join(estimators.names())}"
-        )
-    given = dict(choice)
-    name = given.pop("name")
-    parameters = asdict(specification(name).parameters.create(**given))
-    if LATENCY not in given:
-        parameters.pop(LATENCY, None)
-    return {"name": name, **parameters}
+
+def _bytes(records: np.ndarray) -> np.ndarray:
+    """Records (n,) as bytes, (n, size): a view."""
+    return records.view(np.uint8).reshape(len(records), -1)

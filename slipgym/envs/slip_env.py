@@ -95,12 +95,9 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         if self._renderer is not None:
             self._renderer.begin()
         self._ready = True
-        drawn = self.simulation.drawn[0]
         self._observer.begin(_FIRST)
-        return first(self._observer.read()), {
-            **self._info(),
-            **({"drawn": dict(drawn)} if drawn else {}),
-        }
+        drawn, info = self.simulation.drawn.one(0), self._info()
+        return first(self._observer.read()), {**info, "drawn": drawn} if drawn else info
 
     def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Act for `frame_skip` control steps.
@@ -117,25 +114,28 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         if not self._ready:
             self.simulation.check_open()
             raise RuntimeError("call reset() before step()")
-        simulation, episode, observer = self.simulation, self.simulation.episode, self._observer
-        total = np.zeros(len(self.task.term_names))
-        dropped = finished = self._ready = False
-        # a picture's strip shows every control step
-        at_once = self._frame_skip if self._renderer is None else 1
-        for _ in range(0, self._frame_skip, at_once):
-            simulation.step(actions, self._actions.table, at_once, _ONE, observer.buffers)
-            total += simulation.infos.terms[0]
-            dropped = episode["dropped"].item()
-            finished = episode["step"].item() >= episode["steps"].item()
-            if self._renderer is not None:
-                self._renderer.keep()
-            if dropped or finished:
-                break
-        simulation.infos.terms[0] = total
+        simulation, observer = self.simulation, self._observer
+        self._ready = False
+        if self._renderer is None:
+            simulation.step(actions, self._actions.table, self._frame_skip, _ONE, observer.buffers)
+        else:
+            self._step_in_pictures(actions)
         observer.next(_ONE)
         self._ready = True
-        reward, info = sum(total.tolist()), self._info()
-        return first(observer.read()), reward, dropped, finished and not dropped, info
+        dropped, info = simulation.dropped, self._info()
+        reward = sum(info["reward_terms"].values())
+        return first(observer.read()), reward, dropped, simulation.over and not dropped, info
+
+    def _step_in_pictures(self, actions: np.ndarray) -> None:
+        """`Simulation.step` with every control step in the pictures' strip."""
+        simulation, total = self.simulation, np.zeros(len(self.task.term_names))
+        for _ in range(self._frame_skip):
+            simulation.step(actions, self._actions.table, 1, _ONE, self._observer.buffers)
+            total += simulation.infos.terms[0]
+            self._renderer.keep()
+            if simulation.over:
+                break
+        simulation.infos.terms[0] = total
 
     def render(self) -> np.ndarray | None:
         """Render the environment as the render mode asks; without a render mode, do nothing.

@@ -101,7 +101,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._begin(rows, asked)
         self._observer.again()
         infos = self.simulation.infos.some(rows, self.task.term_names)
-        return self._observer.read(), self._add_drawn(infos, rows)
+        return self._observer.read(), {**infos, **self.simulation.drawn.some(rows)}
 
     def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Act for `frame_skip` control steps in every environment.
@@ -148,7 +148,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         else:
             self._over = over
         infos = simulation.hand_over_infos().every(self.task.term_names)
-        infos = self._add_drawn({**infos, **ended}, rows)
+        infos |= {**ended, **simulation.drawn.some(rows)}
         return self._observer.read(), rewards, terminated, truncated, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:
@@ -187,8 +187,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self._generators.set_state(state.generators)
         self._observer.set_state(state.frames)
         self._ready[:], self._over[:] = state.ready, state.over
-        for i in np.flatnonzero(state.ready).tolist():
-            self._pictures.begin(i)
+        self._pictures.begin(np.flatnonzero(state.ready))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make an independent environment in the same state."""
@@ -200,26 +199,19 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self.simulation.close()
 
     def _begin(self, rows: np.ndarray, asked: RowOptions | None = None) -> None:
-        """Start episodes; environments before one whose options contradict each other have started."""
+        """Start episodes; those whose options contradict each other, and the rows after them, do not."""
         if asked is not None:
-            for i in rows.tolist():
-                self._begin_together(np.array([i]), asked.of(i))
+            for options, some in asked.groups(rows):
+                self._begin_together(some, options)
         elif rows.size:
             self._begin_together(rows, self._options)
 
     def _begin_together(self, rows: np.ndarray, options: EpisodeOptions) -> None:
-        self.simulation.reset_rows([(i, options, self._generators[i]) for i in rows.tolist()], self._material)
+        generators = [self._generators[i] for i in rows.tolist()]
+        self.simulation.reset_rows(rows, generators, options, self._material)
         self._observer.begin(rows)
-        for i in rows.tolist():
-            self._pictures.begin(i)
+        self._pictures.begin(rows)
         self._ready[rows] = True
-
-    def _add_drawn(self, infos: dict[str, Any], rows: np.ndarray) -> dict[str, Any]:
-        """Add the values that the randomization sampled to the infos of episodes that begin."""
-        for i in rows.tolist():
-            if drawn := self.simulation.drawn[i]:
-                infos = self._add_info(infos, {"drawn": drawn}, i)
-        return infos
 
 
 def _without_scalar(arguments: Mapping[str, Any]) -> dict[str, Any]:

@@ -41,9 +41,9 @@ class Pictures:
                 raise ValueError(f"render_rows: {row!r} must be a whole number from 0 to {simulation.n - 1}")
             self._renderers[row] = Renderer(mode, simulation, row)
 
-    def begin(self, i: int) -> None:
-        """Update the renderer of environment i after a reset."""
-        if i in self._renderers:
+    def begin(self, rows: np.ndarray) -> None:
+        """Update the renderers of environments (m,) after a reset."""
+        for i in self._renderers.keys() & set(rows.tolist()) if self._renderers else ():
             self._renderers[i].begin()
             self._begun.add(i)
 

@@ -14,19 +14,20 @@ import numpy as np
 
 from slipgym._numba.compiled import compiled
 from slipgym.contact.records import Pad
+from slipgym.sensors.misalignment import mixed, share
 from slipgym.sensors.noise import standard_normal
 
 HISTORY = 64
 """Loads that a sensor can keep at most, for its latency."""
 
 
-def force_torque(kept: int) -> np.dtype:
+def force_torque(kept: int, misaligned: bool = False) -> np.dtype:
     """FORCE_TORQUE, the record of a sensor that keeps some loads.
 
-    It has room for 4, 8, 16, ... of them, not for `HISTORY`: among thousands of records space costs time, and
-    every other dtype has to be compiled for.
+    It has room for 4, 8, 16, ... of them, not for `HISTORY`, and for `mix` only if it is used: among
+    thousands of records space costs time, and every other dtype has to be compiled for.
     """
-    room = max(4, 1 << (kept - 1).bit_length())
+    room, axes = max(4, 1 << (kept - 1).bit_length()), 6 if misaligned else 1
     return np.dtype(
         [
             ("period", "i8"),  # ticks between samples
@@ -37,6 +38,16 @@ def force_torque(kept: int) -> np.dtype:
             ("bias", "f8", 6),
             ("resolution", "f8", 6),  # one count, 0 = continuous
             ("range", "f8", 6),  # saturation
+            # what an episode samples from, see `slipgym.sensors.misalignment`
+            ("misaligned", "?"),  # whether `mix` is not the identity
+            ("off_centre", "f8"),  # largest distance of the pad's centre from its place along x and y [m]
+            ("tilt", "f8"),  # largest tilt of the frame about x and y [rad]
+            ("crosstalk", "f8"),  # largest part of an axis's load that another axis reads [-]
+            ("least_delay", "i8"),  # in ticks
+            ("delay_spread", "i8"),  # what may be added, in ticks
+            ("dropout", "f8"),  # probability that a reading is the last one again [-]
+            ("mix", "f8", (axes, axes)),  # of the load on all axes
+            ("last", "f8", 6),  # reading
             ("key", "u8"),  # of the noise
             ("drift_key", "u8"),  # of the bias's random walk
             ("read", "i8"),  # readings since reset
@@ -53,7 +64,7 @@ def roomier(sensors: np.ndarray, kept: int) -> np.ndarray:
         sensors: FORCE_TORQUE.
         kept: Loads to keep, at most `HISTORY`.
     """
-    larger = np.zeros(sensors.shape, force_torque(kept))
+    larger = np.zeros(sensors.shape, force_torque(kept, bool(sensors["misaligned"].any())))
     for name in larger.dtype.names or ():
         if name != "history":
             larger[name] = sensors[name]
@@ -100,7 +111,7 @@ def sensed(sensor: Any, number: int, reading: np.ndarray) -> None:
     for a in range(6):
         value = 0.0
         if number >= 1:
-            value = load[a] + sensor.bias[a]
+            value = (mixed(sensor, load, a) if sensor.misaligned else load[a]) + sensor.bias[a]
             if sensor.noise[a] > 0.0:
                 value += sensor.noise[a] * standard_normal(sensor.key, 6 * number + a)
             if sensor.resolution[a] > 0.0:
@@ -111,7 +122,14 @@ def sensed(sensor: Any, number: int, reading: np.ndarray) -> None:
 @compiled
 def read_force_torque(sensor: Any, tick: int, reading: np.ndarray) -> None:
     """Read the newest sample that has arrived by `tick` into `reading` (6,); the bias then drifts on."""
-    sensed(sensor, max((tick - sensor.delay) // sensor.period, 0), reading)
+    if sensor.dropout > 0.0 and sensor.read > 0 and share(sensor.key, sensor.read) < sensor.dropout:
+        for a in range(6):
+            reading[a] = sensor.last[a]
+    else:
+        sensed(sensor, max((tick - sensor.delay) // sensor.period, 0), reading)
+    if sensor.dropout > 0.0:
+        for a in range(6):
+            sensor.last[a] = reading[a]
     for a in range(6):
         if sensor.drift[a] > 0.0:
             sensor.bias[a] += sensor.drift[a] * standard_normal(sensor.drift_key, 6 * sensor.read + a)

@@ -15,6 +15,7 @@ import numpy as np
 
 from slipgym._numba.compiled import compiled
 from slipgym.contact.records import Vector
+from slipgym.sensors.misalignment import share
 from slipgym.sensors.noise import standard_normal
 
 HISTORY = 16
@@ -29,7 +30,17 @@ SLIP_SENSOR = np.dtype(
         ("noise", "f8"),  # standard deviation per axis and sample [m]
         ("range", "f8"),  # largest displacement per axis and sample [m]
         ("window", "i8"),  # samples averaged
+        ("least_delay", "i8"),  # smallest latency of an episode in samples
+        ("delay_spread", "i8"),  # what an episode may add, in samples
+        ("jitter", "f8"),  # probability that a reading is a sample older [-]
+        ("dropout", "f8"),  # probability that a reading is the last one again [-]
+        ("scale_spread", "f8"),  # largest relative error of an episode's counts [-]
+        ("chip_failure", "f8"),  # probability that one chip counts nothing in an episode [-]
         ("delay", "i8"),  # latency in samples
+        ("scale", "f8"),  # counted over true motion [-]
+        ("failed", "i8"),  # chip that counts nothing; -1 for none
+        ("delivered", "i8"),  # newest sample delivered, counting from 0
+        ("last", "f8", 3),  # reading
         ("chips", "i8"),  # how many
         ("at", "f8", (CHIPS_MAX, 2)),  # where, from the pad centre, in the finger's frame [m]
         ("spread", "f8"),  # sum of their squared distances from it [m^2]
@@ -74,14 +85,15 @@ def sample_slip(sensor: Any) -> None:
     Counting truncates towards zero and keeps the remainder, so a surface that vibrates by less
     than one count gives none.
     """
-    x, y, theta = sensor.moved[0], sensor.moved[1], sensor.mirror * sensor.moved[2]
+    scale = sensor.scale
+    x, y, theta = scale * sensor.moved[0], scale * sensor.moved[1], scale * sensor.mirror * sensor.moved[2]
     sensor.moved[:] = 0.0
     for a in range(2 * sensor.chips):
         at = sensor.at[a // 2]
         seen = sensor.carry[a] + (x - theta * at[1] if a % 2 == 0 else y + theta * at[0])
         if sensor.noise > 0.0:
             seen += sensor.noise * standard_normal(sensor.key, AXES * sensor.taken + a)
-        seen = min(max(seen, -sensor.range), sensor.range)
+        seen = min(max(seen, -sensor.range), sensor.range) if a // 2 != sensor.failed else 0.0
         counted = sensor.count * math.trunc(seen / sensor.count) if sensor.count > 0.0 else seen
         sensor.carry[a] = seen - counted
         sensor.counted[a] = counted
@@ -94,22 +106,31 @@ def sample_slip(sensor: Any) -> None:
 def read_slip(sensor: Any, twist: np.ndarray) -> None:
     """Slip twist (v_x, v_y, omega) at the pad centre, in the pad frame, as delivered now.
 
-    Returns the window average that is `delay` samples old and adds the newest delivered
-    sample to the measured slip.
+    Returns the window average that is `delay` samples old, or one more by `jitter`, and adds the samples that
+    are delivered for the first time to the measured slip.
     """
+    if sensor.dropout > 0.0 and share(sensor.key, 2 * sensor.taken) < sensor.dropout:
+        for a in range(3):
+            twist[a] = sensor.last[a]
+        return
     twist[:] = 0.0
     newest = sensor.taken - 1 - sensor.delay
+    if sensor.jitter > 0.0 and share(sensor.key, 2 * sensor.taken + 1) < sensor.jitter:
+        newest -= 1
     for number in range(max(newest - sensor.window + 1, 0), newest + 1):
         x, y, theta = sensor.history[number % HISTORY]
         twist[0] += x
         twist[1] += y
         twist[2] += theta
-        if number == newest:
-            sensor.measured_slip[0] += x
-            sensor.measured_slip[1] += y
-            sensor.measured_slip[2] += theta
+    for number in range(max(sensor.delivered + 1, newest - HISTORY + 1), newest + 1):
+        for a in range(3):
+            sensor.measured_slip[a] += sensor.history[number % HISTORY, a]
+        sensor.delivered = number
     for a in range(3):
         twist[a] /= sensor.window * sensor.sample_time
+    if sensor.dropout > 0.0:
+        for a in range(3):
+            sensor.last[a] = twist[a]
 
 
 @compiled

@@ -5,15 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from slipgym._numba.compiled import compiled
+from slipgym.sensors.misalignment import LATENCY, about, mount, share
 from slipgym.sensors.slip_velocity import AXES
 
 KEYS = 3
 """Keys that the noise of a finger's sensors needs."""
+SCALE, FAILS, WHICH, SLIP_LATENCY = range(1 << 20, (1 << 20) + 4)
+"""Numbers of `share` beyond those of the readings: scale, whether a chip fails, which one, latency."""
 
 
 def draw_sensors(n: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Keys of the noise (KEYS, n), and uniform numbers in [0, 1) for the chips' uncounted rests (n, AXES)."""
     return rng.bit_generator.random_raw(KEYS * n).reshape(KEYS, n), rng.random((n, AXES))
+
+
+@compiled
+def among(key: int, number: int, most: int) -> int:
+    """A whole number from 0 to `most`, each equally likely; see `share`."""
+    return min(int(share(key, number) * (most + 1)), most)
 
 
 @compiled
@@ -35,6 +44,16 @@ def start_sensors(
                 wrench.history[k, a] = 0.0
         wrench.read = 0
         wrench.key, wrench.drift_key, slip.key = keys[0, i], keys[1, i], keys[2, i]
+        # the fingers' sensors share a bus, and with it the latency
+        wrench.delay = wrench.least_delay + among(keys[1, 0], LATENCY, wrench.delay_spread)
+        if wrench.misaligned:
+            mount(wrench)
+        slip.delay = slip.least_delay + among(keys[2, 0], SLIP_LATENCY, slip.delay_spread)
+        slip.scale = 1.0 + about(slip.key, SCALE, slip.scale_spread)
+        slip.failed, slip.delivered = -1, -1
+        if share(slip.key, FAILS) < slip.chip_failure:
+            slip.failed = among(slip.key, WHICH, slip.chips - 1)
+        slip.last[:] = 0.0
         slip.counted[:] = 0.0
         slip.history[:] = 0.0
         slip.moved[:] = 0.0

@@ -62,7 +62,7 @@ def sense(
         trace: The trace.
         m: Records, each with its own noise and its own rests of counts.
         seed: Of the noise, >= 0.
-        sensors: Preset of the sensors, "realistic" or "ideal".
+        sensors: Preset of the sensors, "realistic", "ideal" or "lab".
         config: Overrides of the configuration, such as `{"sensors": {"slip": {"latency_samples": 2}}}`.
 
     Raises:

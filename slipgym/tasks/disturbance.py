@@ -113,7 +113,8 @@ def disturb(episodes, worlds, pads, friction):
         world.external[:] = 0.0
         for k in range(episode.pushes):  # if pushes overlap, the last one in the list acts
             if episode.push_start[k] <= episode.step < episode.push_end[k]:
-                world.external[:] = episode.push_wrench[k]
+                for a in range(3):
+                    world.external[a] = episode.push_wrench[k, a]
         heavier = episode.mass_factor if episode.step >= episode.mass_step else 1.0
         world.mass, world.inertia = heavier * episode.mass, heavier * episode.inertia
         factor = friction_factor(episode, world)

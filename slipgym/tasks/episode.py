@@ -106,6 +106,18 @@ def schedule(settings: TimedSettings, episode: np.void) -> None:
 
 
 @compiled
+def whole_steps(time, dt):
+    """A time in control steps of length dt, the nearest whole number."""
+    return np.int64(np.rint(time / dt))
+
+
+@compiled
+def between(ends, share):
+    """The number that lies a share in [0, 1) of the way between two ends."""
+    return ends[0] + (ends[1] - ends[0]) * share
+
+
+@compiled
 def begin_step(episodes, commands):
     """Take the commands of the coming control step.
 

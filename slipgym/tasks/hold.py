@@ -41,10 +41,11 @@ from typing import Annotated
 
 import numpy as np
 
+from slipgym._numba.compiled import compiled
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval
 from slipgym.config.task import MassRange, TaskConfig, setting
 from slipgym.tasks.disturbance import POKES_MAX
-from slipgym.tasks.episode import slip_distance, track_slip
+from slipgym.tasks.episode import between, slip_distance, track_slip, whole_steps
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
 from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
@@ -80,27 +81,48 @@ class Settings(TaskConfig):
 def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
     """Fill one EPISODE row: sample the shaking and the pokes."""
     episode["tolerance"] = settings.tolerance
-    episode["steps"] = max(1, round(settings.duration / float(episode["step_time"])))
-    amplitude, pitch = settings.shake_amplitude, settings.shake_pitch
-    frequency = rng.uniform(*settings.shake_frequency, size=3)
-    phase = rng.uniform(0.0, 2.0 * math.pi, 3)
-    episode["shakes"][0] = np.column_stack(([amplitude, amplitude, pitch], 2.0 * math.pi * frequency, phase))
-    _draw_pokes(settings, rng, episode)
+    amplitudes = settings.shake_amplitude, settings.shake_amplitude, settings.shake_pitch
+    offsets, times = (
+        (-settings.poke_offset, settings.poke_offset),
+        (settings.duration, settings.poke_duration),
+    )
+    ranges = settings.shake_frequency, settings.poke_interval, settings.poke_impulse, offsets
+    disturb_hold(rng.random(6 + 4 * POKES_MAX), amplitudes, ranges, times, episode)
 
 
-def _draw_pokes(settings: Settings, rng: np.random.Generator, episode: np.void) -> None:
-    dt = float(episode["step_time"])
-    steps = max(1, round(settings.poke_duration / dt))
-    gaps = rng.uniform(*settings.poke_interval, size=POKES_MAX)
-    begin = np.rint(np.cumsum(gaps) / dt).astype(np.int64)
-    heading = rng.uniform(0.0, 2.0 * math.pi, POKES_MAX)
-    size = rng.uniform(*settings.poke_impulse, size=POKES_MAX) / (steps * dt)
-    lever = rng.uniform(-settings.poke_offset, settings.poke_offset, POKES_MAX)
-    wrench = np.column_stack((size * np.cos(heading), size * np.sin(heading), size * lever))
-    n = episode["pushes"] = np.count_nonzero(begin < episode["steps"])
-    episode["push_start"][:n] = begin[:n]
-    episode["push_end"][:n] = begin[:n] + steps
-    episode["push_wrench"][:n] = wrench[:n]
+@compiled
+def disturb_hold(shares, amplitudes, ranges, times, episode):
+    """Write the length of an episode, the wrist's shaking and the pokes that begin within it.
+
+    Args:
+        shares: Uniform random numbers in [0, 1): of three frequencies, three phases, and `POKES_MAX` gaps
+            before pokes, headings, impulses and levers.
+        amplitudes: Of the shaking along x, z and in pitch [m, m, rad].
+        ranges: Ends of the frequencies [Hz], gaps [s], impulses [N s] and levers [m].
+        times: Length of the episode and of a poke [s].
+        episode: EPISODE record.
+    """
+    frequencies, gaps, impulses, levers = ranges
+    dt = episode.step_time
+    episode.steps, steps = max(1, whole_steps(times[0], dt)), max(1, whole_steps(times[1], dt))
+    for axis in range(3):
+        episode.shakes[0, axis, 0] = amplitudes[axis]
+        episode.shakes[0, axis, 1] = 2.0 * math.pi * between(frequencies, shares[axis])
+        episode.shakes[0, axis, 2] = between((0.0, 2.0 * math.pi), shares[3 + axis])
+    pokes = shares[6:].reshape(4, POKES_MAX)
+    time = 0.0
+    for k in range(POKES_MAX):
+        time += between(gaps, pokes[0, k])
+        begin = whole_steps(time, dt)
+        if begin >= episode.steps:
+            break
+        heading = between((0.0, 2.0 * math.pi), pokes[1, k])
+        force = between(impulses, pokes[2, k]) / (steps * dt)
+        episode.push_start[k], episode.push_end[k] = begin, begin + steps
+        episode.push_wrench[k, 0] = force * math.cos(heading)
+        episode.push_wrench[k, 1] = force * math.sin(heading)
+        episode.push_wrench[k, 2] = force * between(levers, pokes[3, k])
+        episode.pushes = k + 1
 
 
 def success(episode, world):

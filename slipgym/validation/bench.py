@@ -47,8 +47,8 @@ class _WatchedWorld(BulletWorld):
 
     mismatch = 0.0
 
-    def _read(self) -> tuple[Any, ...]:
-        reading = super()._read()
+    def _read(self, client: int, body: int, gripper: int) -> tuple[Any, ...]:
+        reading = super()._read(client, body, gripper)
         world = self._plant.world[0]
         if world["tick"] > 0:
             x, _, z = reading[0][0]

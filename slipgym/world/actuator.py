@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from slipgym._numba.compiled import compiled
 from slipgym.contact.decay import decay
+from slipgym.contact.records import Pair
 from slipgym.world.records import QUEUE, Finger, Records
 
 FINGER_DAMPING = 10.0  # [N s/m]; equal forces leave fingers and box free to drift along the grip axis
@@ -47,26 +48,6 @@ def ticks_to_next_command(finger: Finger, tick: int, horizon: int) -> int:
 
 
 @compiled
-def lowest_force(finger: Finger, tick: int) -> float:
-    """Lowest force until a tick [N]: the lag moves the force from its value towards each command in turn."""
-    least = min(finger.force, finger.command)
-    for k in range(finger.served, finger.queued):
-        if finger.queue_tick[k % QUEUE] < tick:
-            least = min(least, finger.queue_force[k % QUEUE])
-    return least
-
-
-@compiled
-def highest_force(finger: Finger, tick: int) -> float:
-    """Highest force until a tick [N]; see `lowest_force`."""
-    most = max(finger.force, finger.command)
-    for k in range(finger.served, finger.queued):
-        if finger.queue_tick[k % QUEUE] < tick:
-            most = max(most, finger.queue_force[k % QUEUE])
-    return most
-
-
-@compiled
 def advance_lag(finger: Finger, h: float) -> float:
     """Advance the first-order lag by h; returns the mean force over h [N]."""
     gap = finger.force - finger.command
@@ -77,20 +58,29 @@ def advance_lag(finger: Finger, h: float) -> float:
     if ratio != finger.relaxed:  # sub-steps take few lengths
         finger.relaxed, finger.decay = ratio, decay(ratio)
         finger.mean_decay = (1.0 - finger.decay) / ratio
+        finger.early_decay = 2.0 * (1.0 - finger.mean_decay) / ratio
     finger.force = finger.command + gap * finger.decay
     return finger.command + gap * finger.mean_decay
 
 
 @compiled
-def advance_lag_through_commands(finger: Finger, tick: int, ticks: int, tick_length: float) -> float:
-    """Advance the lag by some ticks, with the commands that fall due in them; returns the mean force [N]."""
-    total, end = 0.0, tick + ticks
+def advance_lag_through_commands(finger: Finger, tick: int, ticks: int, tick_length: float) -> Pair:
+    """Advance the lag by some ticks, with the commands that fall due in them.
+
+    Returns:
+        The mean force, which changes the momentum, and the mean weighted by the time that is left, which
+        moves the object within these ticks [N].
+    """
+    total, early, end = 0.0, 0.0, tick + ticks
     while tick < end:
         apply_due_commands(finger, tick)
         piece = ticks_to_next_command(finger, tick, end - tick)
-        total += piece * advance_lag(finger, piece * tick_length)
+        gap = finger.force - finger.command if finger.lag > 0.0 else 0.0
+        mean = advance_lag(finger, piece * tick_length)
         tick += piece
-    return total / ticks
+        total += piece * mean
+        early += piece * ((end - tick) * mean + 0.5 * piece * (finger.command + gap * finger.early_decay))
+    return total / ticks, 2.0 * early / (ticks * ticks)
 
 
 @compiled
@@ -112,27 +102,47 @@ def advance_fingers(fingers: Records, h: float) -> float:
 
 
 @compiled
-def advance_fingers_through_commands(fingers: Records, tick: int, ticks: int, tick_length: float) -> float:
-    """`advance_fingers` by some ticks, with the commands that fall due in them."""
-    total = 0.0
+def advance_fingers_through_commands(fingers: Records, tick: int, ticks: int, tick_length: float) -> Pair:
+    """`advance_lag_through_commands` of one finger or two; returns the means over the fingers."""
+    total, early = 0.0, 0.0
     for f in range(len(fingers)):
-        total += advance_lag_through_commands(fingers[f], tick, ticks, tick_length)
-    return total / len(fingers)
+        mean, weighted = advance_lag_through_commands(fingers[f], tick, ticks, tick_length)
+        total, early = total + mean, early + weighted
+    return total / len(fingers), early / len(fingers)
 
 
 @compiled
-def lowest_mean_force(fingers: Records, tick: int) -> float:
-    """Lower bound of the force on either pad until a tick [N]."""
-    total = 0.0
+def force_bounds(fingers: Records, tick: int) -> Pair:
+    """Bounds of the force on either pad until a tick [N]: the lag moves it towards each command in turn."""
+    least, most = 0.0, 0.0
     for f in range(len(fingers)):
-        total += lowest_force(fingers[f], tick)
-    return total / len(fingers)
+        finger = fingers[f]
+        low, high = min(finger.force, finger.command), max(finger.force, finger.command)
+        for k in range(finger.served, finger.queued):
+            if finger.queue_tick[k % QUEUE] < tick:
+                low = min(low, finger.queue_force[k % QUEUE])
+                high = max(high, finger.queue_force[k % QUEUE])
+        least, most = least + low, most + high
+    return least / len(fingers), most / len(fingers)
 
 
 @compiled
-def highest_mean_force(fingers: Records, tick: int) -> float:
-    """Upper bound of the force on either pad until a tick [N]."""
+def lowest_force(fingers: Records, tick: int, ticks: int, tick_length: float) -> float:
+    """Lower bound of the force on either pad over some ticks [N], closer than `force_bounds`.
+
+    Of several fingers the sum of each one's lowest force counts, at whatever time they have it.
+    """
     total = 0.0
     for f in range(len(fingers)):
-        total += highest_force(fingers[f], tick)
+        finger = fingers[f]
+        force, command, low, since = finger.force, finger.command, finger.force, tick
+        for k in range(finger.served, finger.queued + 1):
+            due = finger.queue_tick[k % QUEUE] if k < finger.queued else tick + ticks
+            until = min(due, tick + ticks)
+            left = decay((until - since) * tick_length / finger.lag) if finger.lag > 0.0 else 0.0
+            force, since = command + (force - command) * left, until
+            low = min(low, force)
+            if due < tick + ticks:
+                command = finger.queue_force[k % QUEUE]
+        total += low
     return total / len(fingers)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cached_property
 from typing import Any, NoReturn
 
 import numpy as np
 
 from slipgym.config import Config
 from slipgym.world import bullet_tilt, scene
-from slipgym.world.bullet_rows import loads as _loads
-from slipgym.world.bullet_rows import queue as _queue_command
-from slipgym.world.bullet_rows import read_engine as _read_engine
+from slipgym.world.bullet_rows import BulletRows, read_engine
 from slipgym.world.momentum import normal_forces
 from slipgym.world.placing import place
 from slipgym.world.plant import Plant
@@ -42,6 +41,8 @@ class BulletWorld:
         self._gripper = self._body = self._saved = -1
         self._mass_set: tuple[float, float] | None = None
         self._reading: tuple[Any, ...] = ()
+        self._engine_steps = config.physics.engine_steps
+        self._finger_inertia = config.gripper.finger_mass * config.physics.engine_rate  # [kg/s]
 
     @property
     def client(self) -> int:
@@ -114,12 +115,12 @@ class BulletWorld:
             place_tilt(self._plant, 0, box, force, roll)
         if any(wrist) or self._plant.tilt is not None:
             self._place(wrist)
-        *bodies, speeds = self._read()
+        *bodies, speeds = self._read(client, self._body, self._gripper)
         self._reading = *bodies, tuple(self._plant.fingers["contact_force"][0].tolist()), speeds
 
     def command(self, force: float) -> None:
         """Command a grip force per finger [N]; both fingers get the same."""
-        _queue_command(self._plant.world, self._plant.fingers, force)
+        self.rows.queue(force)
 
     def command_wrist(self, velocity: np.ndarray, duration: float) -> None:
         """Ramp the wrist velocity to a target within `duration`.
@@ -134,9 +135,12 @@ class BulletWorld:
         x, z, pitch = velocity
         ramp_wrist(self._plant.world[0], x, z, pitch, *limits, duration)
 
-    def update_mass(self) -> None:
-        """Set the mass and inertia of the engine's box to those of the planar world, if they have changed."""
-        mass = self._plant.world["mass"].item()
+    def update_mass(self, mass: float) -> None:
+        """Set mass and inertia of the engine's box to those of the planar world, if the mass has changed.
+
+        Args:
+            mass: That of the planar world [kg].
+        """
         if mass != self.box.mass:
             self._box = replace(self.box, mass=mass, inertia=self._plant.world["inertia"].item())
             self._set_mass(mass, self._box.inertia)
@@ -148,34 +152,38 @@ class BulletWorld:
 
     def step(self) -> None:
         """Advance by one control step."""
+        self.move()
+        pose, _, wrist, normals, _ = self._reading
+        read_engine(self._plant.world, self._plant.fingers, pose, wrist, normals)
+
+    def move(self) -> None:
+        """Advance the bodies by one control step; the planar world has yet to take over the `reading`."""
         if self._plant.tilt is None:
             self._step()
         else:
-            bodies, steps = (self.client, self._body, self._gripper), self._config.physics.engine_steps
-            self._reading = bullet_tilt.step(*bodies, self._plant, self._reading, self._read, steps)
+            bodies = self.client, self._body, self._gripper
+            self._reading = bullet_tilt.step(
+                *bodies, self.rows.loads, self._reading, self._read, self._engine_steps
+            )
         self._place_links()
-        plant, reading = self._plant, self._reading
-        _read_engine(plant.world, plant.fingers, reading[0], reading[2], reading[3])
+
+    @cached_property
+    def rows(self) -> BulletRows:
+        """The compiled functions of this world."""
+        return BulletRows(self._plant)
+
+    def bind(self) -> None:
+        """Find the compiled functions anew, after an array of the plant was replaced."""
+        self.rows = BulletRows(self._plant)
 
     def _step(self) -> None:
-        client, body, gripper, plant = self.client, self._body, self._gripper, self._plant
+        client, body, gripper = self.client, self._body, self._gripper
+        loads, read = self.rows.loads, self._read
         push, twist, drive = p.applyExternalForce, p.applyExternalTorque, p.setJointMotorControlArray
-        (first, second), world = FINGER_LINKS, p.WORLD_FRAME
-        inertia = self._config.gripper.finger_mass * self._config.physics.engine_rate
-        for _ in range(self._config.physics.engine_steps):
-            pose, velocity, wrist, normals, before = self._reading
-            (force, torque), at_first, at_second, efforts, speeds = _loads(
-                plant.world,
-                plant.pads,
-                plant.cells,
-                plant.fingers,
-                plant.force_torque,
-                plant.slip_sensors,
-                pose,
-                velocity,
-                wrist,
-                normals,
-            )
+        (first, second), world, inertia = FINGER_LINKS, p.WORLD_FRAME, self._finger_inertia
+        pose, velocity, wrist, normals, before = self._reading
+        for _ in range(self._engine_steps):
+            (force, torque), at_first, at_second, efforts, speeds = loads(pose, velocity, wrist, normals)
             push(body, -1, force, pose[0], world, client)
             twist(body, -1, torque, world, client)
             push(gripper, first, at_first[1], at_first[0], world, client)
@@ -192,9 +200,10 @@ class BulletWorld:
                 physicsClientId=client,
             )
             p.stepSimulation(client)
-            pose, velocity, wrist, after = self._read()
+            pose, velocity, wrist, after = read(client, body, gripper)
             normals = normal_forces(efforts, before, after, inertia)
-            self._reading = pose, velocity, wrist, normals, after
+            before = after
+        self._reading = pose, velocity, wrist, normals, before
 
     def get_state(self) -> EngineState:
         """Everything that the engine's next step depends on, except the plant's arrays.
@@ -239,18 +248,17 @@ class BulletWorld:
             "save get_state()"
         )
 
-    def _read(self) -> tuple[Any, ...]:
-        """Pose and velocity of the box, positions of the wrist's joints, speeds of all."""
-        client, body = self.client, self._body
-        pose = p.getBasePositionAndOrientation(body, client)
-        velocity = p.getBaseVelocity(body, client)
-        x, z, pitch, first, second = p.getJointStates(self._gripper, JOINTS, client)
-        return pose, velocity, (x[0], z[0], pitch[0]), (x[1], z[1], pitch[1], first[1], second[1])
-
     def _set_mass(self, mass: float, inertia: float) -> None:
         if (mass, inertia) != self._mass_set:
             scene.set_mass(self.client, self._body, mass, inertia, self._plant.tilt is not None)
             self._mass_set = mass, inertia
+
+    def _read(self, client: int, body: int, gripper: int) -> tuple[Any, ...]:
+        """Pose and velocity of the box, positions of the wrist's joints, speeds of all."""
+        pose = p.getBasePositionAndOrientation(body, client)
+        velocity = p.getBaseVelocity(body, client)
+        x, z, pitch, first, second = p.getJointStates(gripper, JOINTS, client)
+        return pose, velocity, (x[0], z[0], pitch[0]), (x[1], z[1], pitch[1], first[1], second[1])
 
     def _place_links(self) -> None:
         """Make the engine compute the poses of the gripper's links from its joints.

@@ -5,15 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numba import types
 
+from slipgym._numba.calls import direct_call
 from slipgym._numba.compiled import compiled
 from slipgym._numba.rows import row_of
 from slipgym.contact.records import Vector
 from slipgym.world.actuator import queue_command
 from slipgym.world.bullet_coupling import engine_loads
 from slipgym.world.bullet_coupling import read_engine as coupled_reading
+from slipgym.world.plant import Plant
 from slipgym.world.substep import update_slip
 from slipgym.world.tilt_coupling import tilted_loads as coupled_loads
+
+VECTOR, PAIR = types.UniTuple(types.float64, 3), types.UniTuple(types.float64, 2)
+POSE = types.Tuple([VECTOR, types.UniTuple(types.float64, 4)])
+"""Types of what the engine is read into."""
 
 
 @compiled
@@ -90,3 +97,26 @@ def queue(worlds: np.ndarray, fingers: np.ndarray, force: float) -> None:
     """`queue_command` of both fingers of the first world [N]."""
     for f in range(2):
         queue_command(fingers[0, f], worlds[0].tick, force)
+
+
+class BulletRows:
+    """These functions, compiled for the arrays of one world and called without numba's dispatch.
+
+    Args:
+        plant: The arrays, which must stay the same.
+
+    Attributes:
+        loads: Takes the arguments of `loads` after the arrays; those of `tilted_loads` with `physics.tilt`.
+        queue: Takes the grip force [N].
+    """
+
+    def __init__(self, plant: Plant) -> None:
+        contact = plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
+        function: Any = loads
+        bodies: tuple[Any, ...] = (plant.world,)
+        readings: list[Any] = [POSE, types.UniTuple(VECTOR, 2), VECTOR, PAIR]
+        if plant.tilt is not None:
+            function, bodies = tilted_loads, (plant.world, plant.tilt)
+            readings.pop()
+        self.loads = direct_call(function, (*bodies, *contact), *readings)
+        self.queue = direct_call(queue, (plant.world, plant.fingers), types.float64)

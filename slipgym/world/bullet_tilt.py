@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from slipgym.world.bullet_rows import tilted_loads
-from slipgym.world.plant import Plant
 from slipgym.world.quiet_pybullet import p
 from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE
 
@@ -17,9 +15,9 @@ def step(
     client: int,
     body: int,
     gripper: int,
-    plant: Plant,
+    loads: Callable[..., tuple[Any, ...]],
     reading: tuple[Any, ...],
-    read: Callable[[], tuple[Any, ...]],
+    read: Callable[[int, int, int], tuple[Any, ...]],
     steps: int,
 ) -> tuple[Any, ...]:
     """Advance by some engine steps.
@@ -28,9 +26,10 @@ def step(
         client: PyBullet's client.
         body: The box.
         gripper: The gripper.
-        plant: Arrays of one world, with `tilt`.
+        loads: `slipgym.world.bullet_rows.BulletRows.loads`.
         reading: `BulletWorld.reading`.
-        read: Reads pose and velocity of the box, the wrist's joints, and the speeds of all joints.
+        read: Reads, for client, box and gripper: pose and velocity of the box, the wrist's joints, and the
+            speeds of all joints.
         steps: Number of engine steps.
 
     Returns:
@@ -38,13 +37,9 @@ def step(
     """
     push, twist, drive = p.applyExternalForce, p.applyExternalTorque, p.setJointMotorControlArray
     (first, second), world, motor = FINGER_LINKS, p.WORLD_FRAME, p.VELOCITY_CONTROL
-    assert plant.tilt is not None
-    contacts = plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
     for _ in range(steps):
         pose, velocity, wrist, _, _ = reading
-        (force, torque), at_first, at_second, speeds, normals = tilted_loads(
-            plant.world, plant.tilt, *contacts, pose, velocity, wrist
-        )
+        (force, torque), at_first, at_second, speeds, normals = loads(pose, velocity, wrist)
         push(body, -1, force, pose[0], world, client)
         twist(body, -1, torque, world, client)
         push(gripper, first, at_first[1], at_first[0], world, client)
@@ -53,6 +48,6 @@ def step(
         twist(gripper, second, at_second[2], world, client)
         drive(gripper, JOINTS, motor, targetVelocities=speeds, forces=_FORCES, physicsClientId=client)
         p.stepSimulation(client)
-        pose, velocity, wrist, after = read()
+        pose, velocity, wrist, after = read(client, body, gripper)
         reading = pose, velocity, wrist, normals, after
     return reading

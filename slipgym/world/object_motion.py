@@ -134,6 +134,16 @@ def follow_pads(world: World, v_x: float, v_y: float, rate: float) -> None:
 
 
 @compiled
+def velocity_on_pads(world: World) -> Vector:
+    """Velocity of the centre of mass and rate of turn relative to the pads, in the pad frame."""
+    cos, sin = pad_axes(world)
+    omega = world.wrist_velocity[2]
+    vx = world.velocity[0] - world.wrist_velocity[0] + omega * (world.com[1] - world.wrist[1])
+    vz = world.velocity[1] - world.wrist_velocity[1] - omega * (world.com[0] - world.wrist[0])
+    return cos * vx + sin * vz, cos * vz - sin * vx, world.velocity[2] - omega
+
+
+@compiled
 def motion_without_forces(world: World, h: float) -> Vector:
     """Motion in the pad frame over h at the present velocity, after the wrist has moved."""
     cos, sin = pad_axes(world)
@@ -161,8 +171,20 @@ def free_motion(world: World, drift: Vector, h: float) -> Vector:
 
 
 @compiled
-def slide(world: World, free: Vector, motion: Vector, h: float) -> None:
-    """Advance the object's pose and velocity over h; friction is the difference of `motion` and `free`."""
+def with_last_friction(world: World, pads: Records, free: Vector, h: float) -> Vector:
+    """Motion over h in slip under the friction of the last sub-step."""
+    fx, fy, torque = force_at_start(world, pads)
+    gain = 0.5 * h * h
+    per_mass = gain / world.mass
+    return free[0] + per_mass * fx, free[1] + per_mass * fy, free[2] + gain / world.inertia * torque
+
+
+@compiled
+def slide(world: World, free: Vector, motion: Vector, impulse: float, h: float) -> None:
+    """Advance the object's pose and velocity over h; friction is the difference of `motion` and `free`.
+
+    `impulse` is the friction that changes the momentum over the one that moves the object within h.
+    """
     cos, sin = pad_axes(world)
     ax, az, at = acceleration_by_loads(world)
     per_gain = 2.0 / h
@@ -171,12 +193,11 @@ def slide(world: World, free: Vector, motion: Vector, h: float) -> None:
     # friction turns with the pads: direction in the middle of the sub-step
     back = 0.5 * h * (world.wrist_velocity[2] - 0.5 * h * world.wrist_acceleration[2])
     cos, sin = cos + back * sin, sin - back * cos
-    gained_x = h * ax + cos * braking_x - sin * braking_y
-    gained_z = h * az + sin * braking_x + cos * braking_y
-    gained_t = h * at + (motion[2] - free[2]) * per_gain
-    world.velocity[0] += gained_x
-    world.velocity[1] += gained_z
-    world.velocity[2] += gained_t
-    world.com[0] += h * (world.velocity[0] - 0.5 * gained_x)
-    world.com[1] += h * (world.velocity[1] - 0.5 * gained_z)
-    world.angle += h * (world.velocity[2] - 0.5 * gained_t)
+    braking_x, braking_z = cos * braking_x - sin * braking_y, sin * braking_x + cos * braking_y
+    braking_t = (motion[2] - free[2]) * per_gain
+    world.com[0] += h * (world.velocity[0] + 0.5 * (h * ax + braking_x))
+    world.com[1] += h * (world.velocity[1] + 0.5 * (h * az + braking_z))
+    world.angle += h * (world.velocity[2] + 0.5 * (h * at + braking_t))
+    world.velocity[0] += h * ax + impulse * braking_x
+    world.velocity[1] += h * az + impulse * braking_z
+    world.velocity[2] += h * at + impulse * braking_t

@@ -1,6 +1,7 @@
 """The planar engine: object, wrist and fingers without PyBullet, a control step at a time.
 
-The mean of both actuators' forces is either pad's normal force. Sub-steps are long while the contact is calm.
+The mean of both actuators' forces is either pad's normal force. Sub-steps are as
+long as the contact allows (`slipgym.world.substep_length`).
 """
 
 from __future__ import annotations
@@ -9,16 +10,13 @@ import numpy as np
 
 from slipgym._numba.compiled import compiled
 from slipgym._numba.rows import row_of
-from slipgym.contact.disc_surface import INNER
 from slipgym.contact.kinds import PATCHES, set_normal
-from slipgym.contact.records import DISC, Pad, Vector
-from slipgym.contact.soft_pad import load_pad, static_limit
+from slipgym.contact.records import Pad, Pair, Vector
+from slipgym.contact.soft_pad import load_pad
 from slipgym.sensors.force_torque import next_sample_read, sample_force_torque
 from slipgym.world.actuator import (
     advance_fingers_through_commands,
     apply_due_commands,
-    highest_mean_force,
-    lowest_mean_force,
     mean_force,
     queue_command,
     ticks_to_next_command,
@@ -26,11 +24,7 @@ from slipgym.world.actuator import (
 from slipgym.world.object_motion import acceleration_at_rest, pad_axes
 from slipgym.world.records import Finger, Records, World
 from slipgym.world.substep import HOLDING, advance_object, resolved_ticks, update_slip
-
-FIRM = 0.95  # of the friction limit: below it sub-steps may have `calm_ticks`; the rest is for changing loads
-FAST = 0.7  # of the friction limit: below it a sub-step may last until the next command
-PATCH_FIRM, PATCH_FAST = 0.5, 0.4  # the rim of a uniform disc slips from 0.75 on
-STILL = 1e-3  # of the friction limit; a weaker vibration of what sticks may be damped
+from slipgym.world.substep_length import longest_common_substep
 
 
 @compiled
@@ -136,9 +130,11 @@ def advance_substeps(
         stop = min(end, sample)
         ticks = longest_common_substep(world, pads, cells, fingers, load, stop)
         if ticks < stop - world.tick:  # then a command that falls due ends a sub-step, too
+            until = stop
             for f in range(len(pads)):
                 stop = world.tick + ticks_to_next_command(fingers[f], world.tick, stop - world.tick)
-            ticks = longest_common_substep(world, pads, cells, fingers, load, stop)
+            if stop < until:
+                ticks = longest_common_substep(world, pads, cells, fingers, load, stop)
         calm = ticks > world.substep_ticks
         if calm:
             steps = -(-(stop - world.tick) // ticks)
@@ -146,8 +142,12 @@ def advance_substeps(
         else:
             ticks = resolved_ticks(world, fingers, force_torque)
         h = ticks * world.tick_length
-        set_normal_forces(world, pads, cells, fingers, ticks)
-        advance_object(world, pads, cells, slip_sensors, h)
+        impulse, force = set_normal_forces(world, pads, cells, fingers, ticks)
+        slipped = pads[0].slip_rate != 0.0, pads[-1].slip_rate != 0.0
+        advance_object(world, pads, cells, slip_sensors, h, impulse)
+        for f in range(len(pads)):
+            if slipped[f] and pads[f].slip_rate != 0.0:
+                move_to_end(pads[f], cells, force)
         world.tick += ticks
         done += 1
         if world.tick == sample:
@@ -186,111 +186,28 @@ def normal_force_of(force: float) -> float:
 @compiled
 def set_normal_forces(
     world: World, pads: Records, cells: np.ndarray | None, fingers: Records, ticks: int
-) -> None:
-    """Set the pads' normal forces: the mean over a sub-step in slip, the value at its end in stick.
+) -> Pair:
+    """Set the pads' normal forces for a sub-step: in stick those of its end.
 
-    The value at the end would give the momentum of a slide under a closing grip an error of first order.
+    In slip the mean weighted by the time that is left: it gives the displacement, exactly if friction is in
+    proportion to it. The momentum changes by the plain mean.
+
+    Returns:
+        Plain mean over the weighted, and the normal force at the end [N].
     """
-    mean = advance_fingers_through_commands(fingers, world.tick, ticks, world.tick_length)
-    now = mean_force(fingers)
+    mean, early = advance_fingers_through_commands(fingers, world.tick, ticks, world.tick_length)
+    mean, early, now = normal_force_of(mean), normal_force_of(early), normal_force_of(mean_force(fingers))
     for f in range(len(pads)):
-        fingers[f].contact_force = normal_force_of(mean if pads[f].slip_rate != 0.0 else now)
+        fingers[f].contact_force = early if pads[f].slip_rate != 0.0 else now
         set_normal(pads[f], cells, fingers[f].contact_force)
+    return mean / early if early > 0.0 else 1.0, now
 
 
 @compiled
-def longest_common_substep(
-    world: World, pads: Records, cells: np.ndarray | None, fingers: Records, load: Vector, stop: int
-) -> int:
-    """Ticks of the longest sub-step that resolves the contact of every pad, at most those until `stop`."""
-    asked = ticks = stop - world.tick
-    for f in range(len(pads)):
-        goal = expected_wrench(pads, f, load)
-        ticks = min(ticks, longest_substep(world, pads[f], cells, fingers, goal, asked))
-    return ticks
-
-
-@compiled
-def expected_wrench(pads: Records, f: int, load: Vector) -> Vector:
-    """Wrench that a pad will have at its centre of pressure when all pads carry a load [N, N, N m].
-
-    Args:
-        pads: Two PAD records, or one that stands for both.
-        f: Which of them.
-        load: Wrench that both pads are to carry, see `wrench_at_rest`.
-    """
-    pad = pads[f]
-    if len(pads) == 1:
-        gx, gy = 0.5 * load[0], 0.5 * load[1]
-        return gx, gy, 0.5 * load[2] - pad.pressure_centre[0] * gy + pad.pressure_centre[1] * gx
-    # pads that differ keep what they have; of a change each takes half of the force, at its centre of
-    # pressure, and of the torque a part in proportion to its bristles' stiffness
-    gx, gy, torque, stiffness = load[0], load[1], load[2], 0.0
-    for k in range(len(pads)):
-        fx, fy, tau = pads[k].wrench
-        gx, gy = gx - fx, gy - fy
-        torque -= tau + pads[k].pressure_centre[0] * fy - pads[k].pressure_centre[1] * fx
-        stiffness += pads[k].radius * pads[k].radius
-    gx, gy = 0.5 * gx, 0.5 * gy
-    for k in range(len(pads)):
-        torque -= pads[k].pressure_centre[0] * gy - pads[k].pressure_centre[1] * gx
-    fx, fy, tau = pad.wrench
-    return fx + gx, fy + gy, tau + torque * pad.radius * pad.radius / stiffness
-
-
-@compiled
-def longest_substep(
-    world: World, pad: Pad, cells: np.ndarray | None, fingers: Records, goal: Vector, ticks: int
-) -> int:
-    """Ticks of the longest sub-step that resolves a pad's contact, at most `ticks`, or more.
-
-    Slip, break-away and vibration in stick need short sub-steps. A pad at rest below FIRM of the limit is
-    calm; one at rest below FAST of it, or without contact, needs no sub-steps of its own.
-
-    Args:
-        world: WORLD record.
-        pad: PAD record.
-        cells: Which kind of pad; a patch breaks away in parts.
-        fingers: The FINGER records of all pads.
-        goal: Wrench that the pad is to carry, see `expected_wrench`.
-        ticks: Ticks asked for.
-    """
-    if pad.slip_rate != 0.0:
-        return world.substep_ticks
-    normal = normal_force_of(lowest_mean_force(fingers, world.tick + ticks))
-    if normal <= 0.0:
-        highest = normal_force_of(highest_mean_force(fingers, world.tick + ticks))
-        return ticks if max(fingers[0].contact_force, highest) <= 0.0 else world.substep_ticks
-    fx, fy, torque = pad.wrench
-    gx, gy, turned = goal
-    most = max(squared_norm(pad, fx, fy, torque), squared_norm(pad, gx, gy, turned))
-    weaker = min(pad.axes[0], pad.axes[1])
-    limit = (pad.radius * weaker * static_limit(pad, normal)) ** 2
-    swing = squared_norm(pad, fx - gx, fy - gy, torque - turned) + squared_vibration_force(world, pad, normal)
-    firm, fast = FIRM, FAST
-    if cells is not None:
-        if cells.ndim == PATCHES:
-            firm, fast = PATCH_FIRM, PATCH_FAST
-        elif pad.surface == DISC:
-            firm, fast = INNER * FIRM, INNER * FAST
-    if most > firm * firm * limit or swing > STILL * STILL * limit:
-        return world.substep_ticks
-    return world.calm_ticks if most > fast * fast * limit else ticks
-
-
-@compiled
-def squared_norm(pad: Pad, fx: float, fy: float, torque: float) -> float:
-    """Square of a wrench in the norm of the limit surface, times r [N^2 m^2]."""
-    return pad.radius * pad.radius * (fx * fx + fy * fy) + torque * torque
-
-
-@compiled
-def squared_vibration_force(world: World, pad: Pad, normal: float) -> float:
-    """`squared_norm` of the force with which the bristles will have stopped the motion relative to the pads.
-
-    Their stiffness k turns a kinetic energy E into a force of (2 k E)^0.5; a pad has half of the object.
-    """
-    vx, vy, omega = world.relative_velocity
-    energy = world.mass * (vx * vx + vy * vy) + world.inertia * omega * omega
-    bristles = pad.sigma_0 * normal
-    return 0.5 * pad.radius * pad.radius * bristles / (1.0 + pad.compliance * bristles) * energy
+def move_to_end(pad: Pad, cells: np.ndarray | None, force: float) -> None:
+    """Give a pad that slips the normal force of a sub-step's end [N], and friction in proportion to it."""
+    if cells is None or cells.ndim != PATCHES:
+        share = force / pad.normal if pad.normal > 0.0 else 0.0
+        pad.normal = force
+        for a in range(3):
+            pad.wrench[a] *= share

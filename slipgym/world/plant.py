@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any
 
 import numpy as np
 
+from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.contact.pressure import OUTER_RADII, patch_cells
-from slipgym.contact.records import DISC, ELLIPSOID, X, Y, pads, patch, rest
+from slipgym.contact.records import DISC, ELLIPSOID, Cells, X, Y, pads, patch, rest
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.force_torque import force_torque
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
@@ -86,9 +85,14 @@ def dead_ticks(config: Config, dead_time: float, name: str = "gripper.dead_time"
 
 def check_slip_latency(config: Config, samples: int, name: str = "latency_samples") -> None:
     """Raise ValueError if samples of this age are no longer in the slip sensor's history."""
-    window = config.sensors.slip.window
-    if window + samples >= SLIP_HISTORY:
-        raise ValueError(f"sensors.slip: window + {name} = {window + samples} must be below {SLIP_HISTORY}")
+    sensor = config.sensors.slip
+    samples += sensor.latency_spread + (sensor.jitter > 0.0)
+    if sensor.latency_spread or sensor.jitter > 0.0:
+        name += " + latency_spread + jitter"
+    if sensor.window + samples >= SLIP_HISTORY:
+        raise ValueError(
+            f"sensors.slip: window + {name} = {sensor.window + samples} must be below {SLIP_HISTORY}"
+        )
 
 
 def patch_of(config: Config) -> np.ndarray:
@@ -100,15 +104,21 @@ def patch_of(config: Config) -> np.ndarray:
     return patch(positions / (loads @ np.hypot(*positions.T)), loads)
 
 
-def stretched(cells: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """Cells (..., CELL_FIELDS, m) of an anisotropic pad, positions by its `axes` (..., 2).
+@compiled
+def stretch(cells: Cells, axes: np.ndarray) -> None:
+    """Stretch the cells (CELL_FIELDS, m) of an anisotropic pad by its `axes` (2,).
 
     A scaled displacement along x changes with the position along y, and the other way round.
     """
-    cells = cells.copy()
-    cells[..., X, :] *= axes[..., 1, None]
-    cells[..., Y, :] *= axes[..., 0, None]
-    return cells
+    for i in range(cells.shape[1]):
+        cells[X, i] *= axes[1]
+        cells[Y, i] *= axes[0]
+
+
+@compiled
+def friction_axes(anisotropy: float) -> tuple[float, float]:
+    """Friction along a pad's x and y over its mean [-]."""
+    return 1.0 + anisotropy, 1.0 - anisotropy
 
 
 def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
@@ -134,25 +144,20 @@ def _pads(config: Config, n: int) -> np.ndarray:
     array["cop"] = contact.cop_offset
     array["surface"] = DISC if contact.model == "disc" else ELLIPSOID
     array["radius_max"] = config.gripper.pad_radius / OUTER_RADII[config.contact.pressure]
-    for name, value in pad_parameters(config.contact.pad.model_dump()).items():
-        array[name] = value
+    names = {"shear_compliance": "compliance"}
+    for name, value in contact.pad.model_dump(exclude={"anisotropy"}).items():
+        array[names.get(name, name)] = value
+    array["axes"] = friction_axes(contact.pad.anisotropy)
     rest(array.reshape(-1))
     return array
-
-
-def pad_parameters(pad: Mapping[str, float]) -> dict[str, Any]:
-    """Fields of PAD from those of `slipgym.config.pad.PadConfig`, all or those that change."""
-    same = {name: value for name, value in pad.items() if name not in ("anisotropy", "shear_compliance")}
-    anisotropy = pad["anisotropy"]
-    axes = 1.0 + anisotropy, 1.0 - anisotropy
-    return {**same, "compliance": pad["shear_compliance"], "axes": axes}
 
 
 def _cells(config: Config, n: int) -> np.ndarray | None:
     """The patch of every pad, which an episode scales by its r alone, or what says that there is none."""
     if config.contact.model == "distributed":
-        cells = np.tile(patch_of(config), (n, 2, 1, 1))
-        return stretched(cells, np.full((n, 2, 2), pad_parameters(config.contact.pad.model_dump())["axes"]))
+        cells = patch_of(config)
+        stretch(cells, np.array(friction_axes(config.contact.pad.anisotropy)))
+        return np.tile(cells, (n, 2, 1, 1))
     if config.contact.model == "ellipsoid" and config.contact.pad.hard:
         return None
     return without_cells(n)
@@ -176,20 +181,26 @@ def _fingers(config: Config, n: int) -> np.ndarray:
 
 def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     sensor = config.sensors.force_torque
-    delay = round(sensor.latency * tick_rate)
-    kept = delay * sensor.rate // tick_rate + 2
+    longest = sensor.latency + sensor.latency_spread
+    kept = round(longest * tick_rate) * sensor.rate // tick_rate + 2
     if kept > FORCE_HISTORY:
+        name = "latency + latency_spread" if sensor.latency_spread else "latency"
         raise ValueError(
-            f"sensors.force_torque.latency = {sensor.latency:g} s must be below {FORCE_HISTORY - 1} samples "
+            f"sensors.force_torque.{name} = {longest:g} s must be below {FORCE_HISTORY - 1} samples "
             f"({(FORCE_HISTORY - 1) / sensor.rate:g} s)"
         )
 
     def six(tangential: float, normal: float, torque: float) -> tuple[float, ...]:
         return (tangential, tangential, normal, torque, torque, torque)
 
-    array = np.zeros((n, 2), force_torque(kept))
+    misaligned = sensor.off_centre + sensor.tilt + sensor.crosstalk > 0.0
+    array = np.zeros((n, 2), force_torque(kept, misaligned))
     array["period"] = tick_rate // sensor.rate
-    array["delay"] = delay
+    array["delay"] = array["least_delay"] = round(sensor.latency * tick_rate)
+    array["delay_spread"] = round(sensor.latency_spread * tick_rate)
+    for name in ("off_centre", "tilt", "crosstalk", "dropout"):
+        array[name] = getattr(sensor, name)
+    array["misaligned"] = misaligned
     array["kept"] = kept
     array["mirror"] = MIRROR
     array["noise"] = six(sensor.noise_tangential, sensor.noise_normal, sensor.noise_torque)
@@ -211,7 +222,11 @@ def _slip_sensors(config: Config, n: int) -> np.ndarray:
     slip_sensors["noise"] = sensor.noise * sensor.count
     slip_sensors["range"] = sensor.speed_max / sensor.rate
     slip_sensors["window"] = sensor.window
-    slip_sensors["delay"] = sensor.latency_samples
+    slip_sensors["delay"] = slip_sensors["least_delay"] = sensor.latency_samples
+    slip_sensors["delay_spread"], slip_sensors["scale_spread"] = sensor.latency_spread, sensor.scale_error
+    for name in ("jitter", "dropout", "chip_failure"):
+        slip_sensors[name] = getattr(sensor, name)
+    slip_sensors["scale"], slip_sensors["failed"], slip_sensors["delivered"] = 1.0, -1, -1
     slip_sensors["chips"] = sensor.chips
     slip_sensors["at"] = positions
     slip_sensors["spread"] = np.sum(positions**2)

@@ -31,7 +31,7 @@ WORLD = np.dtype(
         ("pitch", "f8"),  # wrist pitch that `axes` belong to [rad]
         ("axes", "f8", 2),  # its cosine and sine
         ("relative", "f8", 3),  # centre of mass and angle in the pad frame
-        ("relative_velocity", "f8", 3),  # of the centre of mass in the pad frame, last sub-step
+        ("relative_velocity", "f8", 3),  # of the centre of mass in the pad frame; mean of a short sub-step
         ("grasp_point", "f8", 2),  # body point at the pad centre at the grasp, from the com
         ("slip", "f8", 3),  # slip displacement (x, y, theta) [m, m, rad]
         ("slip_twist", "f8", 3),  # at the pad centre [m/s, m/s, rad/s]
@@ -53,6 +53,7 @@ FINGER = np.dtype(
         ("relaxed", "f8"),  # sub-step over lag that `decay` and `mean_decay` belong to [-]
         ("decay", "f8"),  # of the gap to the command over a sub-step [-]
         ("mean_decay", "f8"),  # its mean over the sub-step [-]
+        ("early_decay", "f8"),  # the same weighted by the time that is left [-]
         ("mean_force", "f8"),  # mean force of both actuators, mean over the engine step [N]
         ("contact_mean_force", "f8"),  # the same over the step of `contact_force` [N]
         ("contact_force", "f8"),  # normal force of the engine, mean over its last step [N]

@@ -32,6 +32,8 @@ from slipgym.world.object_motion import (
     motion_without_forces,
     pad_axes,
     slide,
+    velocity_on_pads,
+    with_last_friction,
 )
 from slipgym.world.records import Finger, Records, World
 
@@ -127,7 +129,12 @@ def substep(
 
 @compiled
 def advance_object(
-    world: World, pads: Records, cells: np.ndarray | None, slip_sensors: Records, h: float
+    world: World,
+    pads: Records,
+    cells: np.ndarray | None,
+    slip_sensors: Records,
+    h: float,
+    impulse: float = 1.0,
 ) -> None:
     """Advance wrist, friction and object by h under the pads' normal forces.
 
@@ -137,6 +144,7 @@ def advance_object(
         cells: As in `advance_engine_step`.
         slip_sensors: As many SLIP_SENSOR records, likewise.
         h: Time [s].
+        impulse: In slip, the mean normal force over the one that the pads have.
     """
     # in stick: backward Euler. In slip or without contact: the mean of the velocities at both ends, of second
     # order. Where slip ends within the sub-step that would reverse the velocity: this counts as stick
@@ -159,10 +167,13 @@ def advance_object(
         part, middle = 2.0 * part, (0.5 * drift[0], 0.5 * drift[1])
     # levers at the time at which the accelerations apply
     centre = (world.relative[0] + middle[0], world.relative[1] + middle[1])
-    # only firm stick takes sub-steps this long: the drift without friction would lie far beyond break-away,
-    # from where Newton's iteration may not converge
-    firm = h > 1.001 * world.calm_ticks * world.tick_length
-    guess = (0.0, 0.0, 0.0) if firm else drift
+    guess = drift
+    if held and h > 1.001 * world.calm_ticks * world.tick_length:
+        # firm stick: the drift without friction would lie far beyond break-away, from where Newton's
+        # iteration may not converge
+        guess = (0.0, 0.0, 0.0)
+    elif not held:
+        guess = with_last_friction(world, pads, free, h)
     motion = step_pads(pads, cells, (part * world.mass, part * world.inertia), centre, free, guess, h)
     rate = 1.0 / h  # a product costs less than a quotient
     for a in range(3):
@@ -178,7 +189,10 @@ def advance_object(
             both * motion[2] - start * drift[2],
         )
     else:
-        slide(world, free, motion, h)
+        slide(world, free, motion, impulse, h)
+        if h > 1.001 * world.substep_ticks * world.tick_length:  # the mean would be that of too long ago
+            vx, vy, omega = velocity_on_pads(world)
+            world.relative_velocity[0], world.relative_velocity[1], world.relative_velocity[2] = vx, vy, omega
     slip = (motion[0] + motion[2] * centre[1], motion[1] - motion[2] * centre[0], motion[2])
     for f in range(len(pads)):
         accumulate_slip(slip_sensors[f], slip)

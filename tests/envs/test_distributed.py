@@ -38,8 +38,8 @@ def spin_torque(env, **options) -> float:
     env.reset(seed=0, options={"com_offset": (0.0, 0.0), **options})
     world, plant = env.simulation.world, env.simulation.plant
     world.disturb(np.array([0.0, 0.2 * 9.81, 0.5]))
-    env.simulation._advance(10.0)
-    env.simulation._advance(10.0)
+    env.simulation._settle(10.0)
+    env.simulation._settle(10.0)
     assert abs(plant.world["slip_twist"][0, 2]) > 3.0
     return float(-plant.pads["wrench"][0, :, 2].sum() / (plant.pads["mu_c"] * plant.pads["normal"]).sum())
 

@@ -30,7 +30,7 @@ def test_closed_streams_do_no_harm(closed):
     assert subprocess.run(f"'{sys.executable}' -c '{code}' {closed}", shell=True).returncode == 0
 
 
-def test_the_first_reset_and_the_first_step_explain_why_they_take_long(make, monkeypatch):
+def test_the_first_reset_explains_why_it_takes_long(make, monkeypatch):
     said = []
 
     def patience(what):
@@ -42,6 +42,5 @@ def test_the_first_reset_and_the_first_step_explain_why_they_take_long(make, mon
     env.reset(seed=0)
     assert said == ["the reset of LinearSlip with PyBullet"]
     env.step([0.0])
-    env.step([0.0])
     env.reset()
-    assert said[1:] == ["the step of LinearSlip with PyBullet"]
+    assert said[1:] == []  # the stages of a step were compiled with the environment

@@ -1,15 +1,17 @@
-"""A record for tests: a steady slide and turn on an ellipsoid, forces at 1000 Hz, velocities at 120 Hz."""
+"""Records for tests, from simulations that share nothing with the estimators or the environments."""
 
 import numpy as np
 import pandas as pd
 import pytest
+
+from slipgym.synthetic import Record
 
 MU_C, R = 0.4, 0.012
 
 
 @pytest.fixture
 def table():
-    """One table of 2 s; cells are NaN where their stream has no sample."""
+    """A slide and turn on an ellipsoid of 2 s, forces at 1000 Hz, velocities at 120 Hz; NaN: no sample."""
     rng = np.random.default_rng(0)
     t = np.arange(1, 2001) / 1000
     f_n = 5.0 + 0.5 * np.sin(2 * np.pi * t)
@@ -34,3 +36,97 @@ def save(tmp_path):
         return path
 
     return write
+
+
+WRENCH_NOISE = np.array([0.02, 0.02, 0.04, 5e-4])  # [N, N, N, N m]
+COUNT, CHIP_RADIUS = 7.94e-6, 0.0243  # [m]
+SUBSTEPS = 40
+
+
+def sensed(wrench, motion, fingers, rng, **truth):
+    """A record of several fingers: noise on wrench (n, 4), counts of three chips from motion (n, 3)."""
+    n = len(wrench)
+    angles = np.pi / 2 + 2 * np.pi / 3 * np.arange(3)
+    at = CHIP_RADIUS * np.stack([np.cos(angles), np.sin(angles)])
+    path = np.cumsum(motion, axis=0)
+    axes = np.concatenate([path[:, :1] - path[:, 2:] * at[1], path[:, 1:2] + path[:, 2:] * at[0]], axis=1)
+    rest = rng.random((fingers, 1, 6))
+    counts = np.diff(np.floor(axes / COUNT + rest), axis=1, prepend=np.floor(rest)) * COUNT
+    x, y = counts[..., :3], counts[..., 3:]
+    spin = (at[0] * y - at[1] * x).sum(axis=-1) / (3 * CHIP_RADIUS**2)
+    return Record(
+        t=np.arange(1, n + 1) / 120,
+        wrenches=wrench + WRENCH_NOISE * rng.standard_normal((fingers, n, 4)),
+        twists=120 * np.stack([x.mean(axis=-1), y.mean(axis=-1), spin], axis=-1),
+        **{name: np.full(n, values) for name, values in truth.items()},
+    )
+
+
+@pytest.fixture(scope="session")
+def planar_slip():
+    """Makes records of a planar slip at 20 mm/s: cells of dry and viscous friction, no bristles.
+
+    Args: `turn` [rad/s] of the direction of the slip, `jump` of mu_c after 2 s, `fingers`, `hertz` pressure.
+    """
+
+    def make(turn=1.0, jump=1.0, fingers=8, hertz=False, gamma_t=0.7, sigma_2=0.2, seed=0, r=0.008, f_n=5.0):
+        rng, n = np.random.default_rng(seed), 420
+
+        def twist(t):
+            speed = 0.02 * np.clip((t - 0.25) / 0.25, 0, 1)
+            across = gamma_t * speed
+            omega = np.sqrt(1 - gamma_t**2) * speed / r
+            return np.stack([across * np.cos(turn * t), across * np.sin(turn * t), omega], axis=-1)
+
+        rings = (np.arange(60) + 0.5) / 60
+        weight = rings * (np.sqrt(1 - rings**2) if hertz else 1.0)
+        radius = rings * r * (16 / (3 * np.pi) if hertz else 1.5)
+        angle = 2 * np.pi * (np.arange(48) + 0.5) / 48
+        x, y = (np.outer(radius, trig(angle)).ravel() for trig in (np.cos, np.sin))
+        share = np.repeat(weight / weight.sum() / 48, 48)
+        t = np.arange(1, n + 1) / 120
+        mu_c = 0.4 * np.where(t > 2.0, jump, 1.0)
+        slip = twist(t)
+        v_x, v_y = slip[:, :1] - slip[:, 2:] * y, slip[:, 1:2] + slip[:, 2:] * x
+        speed = np.hypot(v_x, v_y)
+        dry = mu_c[:, None] * (1 + 0.35 * np.exp(-((speed / 1e-3) ** 2))) / np.maximum(speed, 1e-9)
+        per_cell = f_n * share * (dry + sigma_2)
+        parts = ((per_cell * v_x), (per_cell * v_y), np.full((n, 1), f_n), per_cell * (x * v_y - y * v_x))
+        fine = (np.arange(n * SUBSTEPS) + 0.5) / (120 * SUBSTEPS)
+        motion = twist(fine).reshape(n, SUBSTEPS, 3).mean(axis=1) / 120
+        wrench = np.stack([part.sum(axis=1) for part in parts], axis=1)
+        return sensed(wrench, motion, fingers, rng, mu_c=mu_c, mu_s=1.35 * mu_c, r=r, phase="planar")
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def stick_slip():
+    """Makes records of a block that hangs in a grip, which loosens in stick and closes on a slip.
+
+    Integrated in steps of 0.1 ms: m dv/dt = m g - (mu_c + sigma_2 v) f_n in slip, a lag of 12 ms of f_n.
+    """
+
+    def make(mu_c=0.4, mu_s=0.55, fingers=8, seed=0, seconds=5.0, sigma_2=0.2, mass=0.1, gain=60.0):
+        rng, steps = np.random.default_rng(seed), 83
+        n, dt = int(seconds * 120), 1 / (120 * 83)
+        v, f_n, command, f_t, seen = 0.0, 3.5, 3.5, mass * 9.81, [0.0] * 3
+        wrench, motion, slid = np.zeros((n, 4)), np.zeros((n, 3)), np.zeros(n, bool)
+        for k in range(n):
+            command = 0.94 * command + gain * seen[-3] * (1 + 0.2 * rng.random())
+            command = min(max(command, 0.8), 12.0)
+            for _ in range(steps):
+                f_n += (command - f_n) * dt / 0.012
+                if v > 0.0 or mass * 9.81 > mu_s * f_n:
+                    f_t = (mu_c + (mu_s - mu_c) * np.exp(-((v / 1e-3) ** 2)) + sigma_2 * v) * f_n
+                    v = max(v + (9.81 - f_t / mass) * dt, 0.0)
+                if v == 0.0:
+                    f_t = mass * 9.81
+                motion[k, 1] += v * dt
+            seen.append(v)
+            wrench[k] = 0.0, f_t, f_n, 0.0
+            slid[k] = motion[k, 1] > 1e-3 / 120
+        phase = np.where(slid, "slip", "stick")
+        return sensed(wrench, motion, fingers, rng, mu_c=mu_c, mu_s=mu_s, r=0.008, phase=phase)
+
+    return make

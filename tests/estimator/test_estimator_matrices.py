@@ -9,6 +9,7 @@ from slipgym.validation.records import ellipsoid, planar, run
 MU_C, R = 0.4, 0.01
 SHAPES = {"residual": (2,), "gain": (2, 2), "covariance": (2, 2), "innovation_covariance": (2, 2)}
 HAS = {
+    "adaptive": {"covariance"},
     "rls": {"residual", "gain", "covariance"},
     "ukf": set(SHAPES),
     "joint": {"covariance"},

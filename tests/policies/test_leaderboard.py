@@ -9,11 +9,12 @@ import pytest
 import estimator
 from estimator.estimate import ESTIMATE
 from policies.research.leaderboard import run_leaderboard
+from policies.research.leaderboard.groups import GROUPS
 from policies.research.leaderboard.ranking import ranked, winners
 from policies.research.leaderboard.replay import replay
 from policies.research.leaderboard.run import entrants, evaluate
 from policies.research.leaderboard.scenario import FIELDS, Run, Scenario, ends
-from policies.research.leaderboard.scenarios import GROUPS, MU_C, QUICK, R, closed_loop, mixed, patch
+from policies.research.leaderboard.scenarios import MU_C, QUICK, R, closed_loop, mixed, patch
 from policies.research.leaderboard.score import score
 from slipgym.synthetic import Record, sense
 
@@ -115,6 +116,7 @@ def test_a_group_counts_as_much_as_another():
     one = np.sqrt((9 + 16 + 25) / 3)
     assert ranking["mu_c"].tolist() == pytest.approx([np.sqrt(one * 0.1), 4.0])  # 0.1 % is the floor
     assert ranking["score"][1] == pytest.approx((4.0 * 10.0 * 1.0) ** (1 / 3))
+    assert ranking["worst"].tolist() == [10.0, 10.0]
     assert winners(table)["mu_c"].tolist() == ["a (4.1 %)", "a (0.0 %)"]
 
 
@@ -176,6 +178,6 @@ def test_the_command_writes_what_it_names(tmp_path):
     table, ranking = (pd.read_csv(folder / f"{name}.csv") for name in ("scenarios", "ranking"))
     assert set(ranking["estimator"]) == set(entrants())
     assert table.groupby("estimator").size().nunique() == 1
-    assert ranking["score"].is_monotonic_increasing
+    assert ranking["worst"].is_monotonic_increasing
     page = (folder / "leaderboard.md").read_text()
     assert all(f"\n## {field}\n" in page for field in FIELDS)

@@ -7,6 +7,7 @@ import pytest
 
 from slipgym.validation.bench import Bench, Friction
 from slipgym.world.planar_engine import step_world
+from slipgym.world.substep_length import STEADY
 
 ENGINES = ["planar", "bullet"]
 FRICTION = {"contact": {"finger_friction": [0.8, 1.2]}}
@@ -37,8 +38,10 @@ def test_both_engines_agree(overrides, contact):
     planar, bullet = traces
     assert np.linalg.norm(bullet.slip[-1, :2]) > 0.1
     assert abs(bullet.slip[-1, 2]) > 0.15
-    np.testing.assert_allclose(planar.slip[:, :2], bullet.slip[:, :2], atol=1e-6)
-    np.testing.assert_allclose(planar.slip[:, 2], bullet.slip[:, 2], atol=1e-5)
+    # patches take the same sub-steps; those of a pad's steady slip may turn its friction by STEADY
+    far, turned = (1e-6, 1e-5) if contact == "distributed" else STEADY**2 / 24.0 * np.abs(bullet.slip[-1, 1:])
+    np.testing.assert_allclose(planar.slip[:, :2], bullet.slip[:, :2], atol=far)
+    np.testing.assert_allclose(planar.slip[:, 2], bullet.slip[:, 2], atol=turned)
 
 
 @pytest.mark.parametrize("engine", ENGINES)

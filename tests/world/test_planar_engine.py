@@ -1,4 +1,4 @@
-"""The planar world without an engine: how long its sub-steps are, and what they keep exact."""
+"""The planar world without an engine: what its sub-steps keep exact."""
 
 import math
 
@@ -12,99 +12,43 @@ from slipgym.sensors.measure import measure
 from slipgym.validation.bench import Bench, Friction
 from slipgym.validation.planar import slides
 from slipgym.world.placing import place
-from slipgym.world.planar_engine import FAST, FIRM, STILL, longest_common_substep, step_world
+from slipgym.world.planar_engine import step_world
 from slipgym.world.plant import build
 from slipgym.world.scene import Box
-
-PLANT = build(load())
-CALM, SHORT = PLANT.world["calm_ticks"][0], PLANT.world["substep_ticks"][0]
-ASKED = 4 * CALM
-V_S = load().contact.stribeck_velocity
+from slipgym.world.substep_length import STILL
 
 
-@pytest.fixture
-def contact():
-    """Makes a world with an object of 0.2 kg and 1e-4 kg m^2, a pad and the finger behind it, with 5 N."""
+def test_a_slide_under_a_closing_grip_is_exact():
+    """One control step in few sub-steps, against the integrals of the force loop.
 
-    def make(**fields):
-        plant = build(load())
-        world, pad, finger = plant.world[0], plant.pads[0, 0], plant.fingers[0, 0]
-        world["mass"], world["inertia"] = 0.2, 1e-4
-        pad["mu_s"], pad["mu_c"] = 0.6, 0.4
-        finger["force"] = finger["command"] = finger["contact_force"] = 5.0
-        for name, value in fields.items():
-            record = next(row for row in (world, pad, finger) if name in row.dtype.names)
-            record[name] = value
-        return world, pad, finger
-
-    return make
-
-
-LIMIT, R = 3.0, 0.01  # of the fixture's pad [N, m]
-STIFFNESS = 5.0 * load().contact.sigma_0  # of its bristles [N/m]
-
-
-@pytest.mark.parametrize(
-    ("carried", "expected"),
-    [
-        ((0.0, 0.99 * FAST * LIMIT, 0.0), ASKED),
-        ((0.0, 0.99 * FIRM * LIMIT, 0.0), CALM),
-        ((0.0, 1.01 * FIRM * LIMIT, 0.0), SHORT),
-        ((0.0, 0.0, 0.99 * FAST * LIMIT * R), ASKED),
-        ((0.0, 0.0, 0.99 * FIRM * LIMIT * R), CALM),
-        ((0.0, 0.0, 1.01 * FIRM * LIMIT * R), SHORT),
-    ],
-)
-def test_long_sub_steps_are_for_a_firm_grip(contact, carried, expected):
-    world, pad, finger = contact(wrench=carried)
-    load = 2.0 * np.array(carried)  # on both pads
-    assert longest_common_substep(world, (pad,), None, (finger,), tuple(load), ASKED) == expected
-
-
-@pytest.mark.parametrize(
-    ("fields", "expected"),
-    [
-        ({"command": 4.0}, SHORT),  # within the sub-step it falls below the load
-        ({"command": 8.0}, CALM),
-        ({"slip_speed": V_S, "slip_rate": 1.0}, SHORT),
-        ({"slip_speed": 100 * V_S, "slip_rate": 1.0}, SHORT),
-        ({"force": 5.0, "command": 0.0}, SHORT),
-        ({"force": 0.0, "command": 0.0, "contact_force": 0.0}, ASKED),
-    ],
-)
-def test_but_not_for_what_lets_go_or_slips(contact, fields, expected):
-    world, pad, finger = contact(wrench=(0.0, 0.9 * FIRM * LIMIT, 0.0), **fields)
-    assert (
-        longest_common_substep(world, (pad,), None, (finger,), (0.0, 1.8 * FIRM * LIMIT, 0.0), ASKED)
-        == expected
+    Friction 2 mu_c N(t) opposes the fall; N = 6 - 3 exp(-t / lag).
+    """
+    plant = build(load({"contact": {"sigma_2": 0.0}, "gripper": {"dead_time": 0.0}}))
+    world, pads, fingers = plant.world[0], plant.pads[0], plant.fingers[0]
+    start, mass, mu = -0.5, 0.2, 0.4
+    world["mass"], world["inertia"] = mass, 1e-4
+    world["velocity"][1] = start
+    for pad in pads:
+        pad["mu_c"], pad["mu_s"], pad["slip_speed"], pad["slip_rate"] = mu, 0.5, -start, 1.0
+        pad["z"][1] = -mu / pad["sigma_0"]
+        pad["wrench"][1] = 3.0 * mu
+    fingers["force"] = fingers["command"] = fingers["contact_force"] = 3.0
+    lag, t = fingers["lag"][0], (world["control_ticks"] * world["tick_length"]).item()
+    done = step_world(
+        plant.world, plant.pads, None, plant.fingers, plant.force_torque, plant.slip_sensors, 6.0, 0
     )
-
-
-@pytest.mark.parametrize(("share", "expected"), [(0.99, ASKED), (1.01, SHORT)])
-@pytest.mark.parametrize(
-    ("off", "speed"),
-    [
-        ((0.0, 1.0, 0.0), (0.0, 0.0, 0.0)),
-        ((0.0, 0.0, R), (0.0, 0.0, 0.0)),
-        ((0.0, 0.0, 0.0), (1.0 / math.sqrt(STIFFNESS * 0.1), 0.0, 0.0)),
-        ((0.0, 0.0, 0.0), (0.0, 0.0, 1.0 / math.sqrt(STIFFNESS * 0.5e-4))),
-        ((0.0, 0.6, 0.0), (0.8 / math.sqrt(STIFFNESS * 0.1), 0.0, 0.0)),
-    ],
-)
-def test_nor_for_vibration(contact, off, speed, share, expected):
-    """Its amplitude counts, at rest on one side or in motion through the middle: f = v (k m)^0.5."""
-    amplitude = share * STILL * LIMIT
-    world, pad, finger = contact(wrench=(0.0, 1.0, 0.0), relative_velocity=amplitude * np.array(speed))
-    load = 2.0 * (np.array([0.0, 1.0, 0.0]) + amplitude * np.array(off))
-    assert longest_common_substep(world, (pad,), None, (finger,), tuple(load), ASKED) == expected
-
-
-@pytest.mark.parametrize(
-    "load", [(0.0, 2.1 * FIRM * LIMIT, 0.0), (0.0, 0.0, 2.1 * FIRM * LIMIT * R), (0.0, 0.2 * LIMIT, 0.0)]
-)
-def test_nor_for_a_load_that_is_about_to_change(contact, load):
-    world, pad, finger = contact()
-    assert longest_common_substep(world, (pad,), None, (finger,), load, ASKED) == SHORT
+    left = math.exp(-t / lag)
+    impulse = 6.0 * t - 3.0 * lag * (1.0 - left)
+    double = 3.0 * t**2 - 3.0 * lag * (t - lag * (1.0 - left))
+    gravity = world["gravity"].item()
+    assert done <= 8
+    assert world["velocity"][1] == pytest.approx(start - gravity * t + 2 * mu * impulse / mass, abs=1e-9)
+    assert world["com"][1] == pytest.approx(
+        start * t - 0.5 * gravity * t**2 + 2 * mu * double / mass, abs=1e-9
+    )
+    assert world["relative_velocity"][1] == pytest.approx(world["velocity"][1], abs=1e-12)
+    assert pads["normal"] == pytest.approx(6.0 - 3.0 * left, rel=1e-12)
+    assert pads["wrench"][:, 1] == pytest.approx(mu * pads["normal"], rel=1e-9)
 
 
 def test_a_poke_breaks_a_firm_hold_away_as_on_pybullet():

@@ -1,25 +1,34 @@
 """What the object gains the gripper loses."""
 
+from functools import cache
+
 import numpy as np
 import pybullet
 import pytest
 
 from slipgym.validation.agreement import shake
 from slipgym.validation.bench import Bench
-from slipgym.world import bullet_engine as bullet
+from slipgym.world.bullet_engine import BulletWorld
 from slipgym.world.scene import FINGER_LINKS, WRIST_JOINTS
 
 
 def record_loads(monkeypatch) -> list:
-    """Note (load on the object, reaction on finger 1, on finger 2) of every engine step."""
-    loads, original = [], bullet._loads
+    """Note (load on the object, reaction on finger 1, on finger 2) of every engine step of later worlds."""
+    loads, rows = [], BulletWorld.rows.func
 
-    def recorded(*arguments):
-        answer = original(*arguments)
-        loads.append(answer[:3])
-        return answer
+    def watched(world):
+        functions = rows(world)
+        original = functions.loads
 
-    monkeypatch.setattr(bullet, "_loads", recorded)
+        def recorded(*arguments):
+            answer = original(*arguments)
+            loads.append(answer[:3])
+            return answer
+
+        functions.loads = recorded
+        return functions
+
+    monkeypatch.setattr(BulletWorld, "rows", property(cache(watched)))
     return loads
 
 
@@ -130,7 +139,7 @@ def test_a_box_turns_with_its_inertia_from_the_first_step_on(factor):
         world, plant = bench.world, bench.plant
         inertia = factor * bench.box.inertia
         plant.world["mass"], plant.world["inertia"] = factor * bench.box.mass, inertia
-        world.update_mass()
+        world.update_mass(world._plant.world["mass"].item())
         before = np.array(world.reading[1][1])
         pybullet.applyExternalTorque(world.body, -1, (0.0, 0.01, 0.0), pybullet.WORLD_FRAME, world.client)
         pybullet.stepSimulation(world.client)

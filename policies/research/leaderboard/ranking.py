@@ -28,29 +28,32 @@ def by_group(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def ranked(table: pd.DataFrame) -> pd.DataFrame:
-    """One row per estimator, the best first.
+    """One row per estimator, the one with the smallest worst case first.
 
-    The typical error of a quantity is the geometric mean over the groups: a group counts as much as
-    another, and half the error counts the same wherever it is. The score is the geometric mean of the
-    three quantities' typical errors.
+    The worst case is the largest error of mu_c or r in a group. The typical error of a quantity is the
+    geometric mean over the groups: a group counts as much as another, and half the error counts the same
+    wherever it is. The score is the geometric mean of the three quantities' typical errors.
 
     Args:
         table: A row per scenario and estimator.
 
     Returns:
-        `rank`, `estimator`, `score` [%], `mu_c`, `r`, `mu_s`: typical errors [%]; `calibration_...` [%] and
-        `lock_ups` [%]: means over the scenarios that have them; `time_mu_c`: median over scenarios [s].
+        `rank`, `estimator`, `worst` [%], `score` [%], `mu_c`, `r`, `mu_s`: typical errors [%];
+        `calibration_...` [%] and `lock_ups` [%]: means over the scenarios that have them; `time_mu_c`: median
+        over scenarios [s].
     """
     rows = []
     for (name,), errors in groups(by_group(table), ["estimator"]):
         mine = where(table, estimator=name)
         typical = {field: _geometric(values(errors, f"error_{field}")) for field in FIELDS}
-        row = {"estimator": name, "score": _geometric(np.array(list(typical.values()))), **typical}
+        largest = [np.nanmax(values(errors, f"error_{field}"), initial=0.0) for field in ("mu_c", "r")]
+        row = {"estimator": name, "worst": float(max(largest))}
+        row |= {"score": _geometric(np.array(list(typical.values()))), **typical}
         row |= {f"calibration_{field}": 100.0 * _mean(mine, f"calibration_{field}") for field in FIELDS}
         row["time_mu_c"] = float(np.nanmedian(values(mine, "time_mu_c")))
         row["lock_ups"] = 100.0 * _mean(mine, "lock_ups")
         rows.append(row)
-    found = pd.DataFrame(rows).sort_values("score", kind="stable", ignore_index=True)
+    found = pd.DataFrame(rows).sort_values(["worst", "score"], kind="stable", ignore_index=True)
     found.insert(0, "rank", range(1, len(found) + 1))
     return found
 

@@ -14,11 +14,12 @@ import estimator
 from policies.evaluation.folder import stamped
 from policies.evaluation.frames import values
 from policies.evaluation.plots.style import STYLE, styled
+from policies.research.leaderboard.groups import GROUPS
 from policies.research.leaderboard.picture import plot_leaderboard
 from policies.research.leaderboard.ranking import ranked, winners
 from policies.research.leaderboard.replay import replay
 from policies.research.leaderboard.scenario import FIELDS, Scenario
-from policies.research.leaderboard.scenarios import GROUPS, QUICK, Effort
+from policies.research.leaderboard.scenarios import QUICK, Effort
 from policies.research.leaderboard.score import FIGURES, score
 from policies.research.leaderboard.tables import markdown
 from policies.versions import write_versions

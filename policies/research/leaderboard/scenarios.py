@@ -1,8 +1,8 @@
-"""The scenarios, a function for each group; another one is a row of a function or of `GROUPS`."""
+"""The scenarios, a function for each group; another one is a row of a function."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
@@ -107,18 +107,6 @@ def latency(effort: Effort) -> Iterator[Scenario]:
         name = f"{samples}" if assumed == samples else f"{samples}, told {assumed}"
         runs = tuple(late(trace, samples, effort) for trace in closed_loop("wood", effort.trials))
         yield Scenario("latency" if assumed == samples else "wrong latency", name, runs, assumed)
-
-
-GROUPS: tuple[Callable[[Effort], Iterator[Scenario]], ...] = (
-    profiles,
-    stick_slip,
-    planar,
-    start_values,
-    spin_first,
-    noise,
-    pressure,
-    latency,
-)
 
 
 def rest(**values: float) -> Course:

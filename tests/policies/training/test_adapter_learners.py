@@ -7,6 +7,7 @@ pytest.importorskip("stable_baselines3")
 contrib = pytest.importorskip("sb3_contrib")
 import stable_baselines3 as sb3  # noqa: E402
 import torch  # noqa: E402
+from stable_baselines3.common.utils import obs_as_tensor  # noqa: E402
 
 import policies  # noqa: E402
 
@@ -71,4 +72,23 @@ def test_a_replay_buffer_knows_cut_episodes_from_dropped_boxes():
     assert done.any()
     assert not (cut & ~done).any()
     assert np.array_equal(buffer.next_observations[:79][~done[:79]], buffer.observations[1:80][~done[:79]])
+    envs.close()
+
+
+@pytest.mark.parametrize("history", [0, 1])
+def test_torch_takes_observations_without_a_copy(history):
+    envs = policies.make_vec_env("slipgym/LinearSlip-v0", 4, seed=0, history=history, **SHORT)
+    observations = envs.reset()
+    for take in (
+        obs_as_tensor,
+        lambda array, _: torch.from_numpy(array),
+        lambda array, _: torch.from_dlpack(array),
+    ):
+        tensor = take(observations, "cpu")
+        assert tensor.dtype is torch.float32
+        assert tensor.data_ptr() == observations.ctypes.data
+        before = tensor.clone()
+        observations = envs.step(np.zeros((4, 1), np.float32))[0]
+        assert torch.equal(tensor, before)  # the next step writes elsewhere
+        assert not np.array_equal(observations, before)
     envs.close()

@@ -86,3 +86,35 @@ def test_it_learns_with_the_shaping_and_is_evaluated_without(small):
     assert rewards[1] < -100.0 < rewards[0]
     with pytest.raises(ValueError, match="toleranse"):
         small(shaping={"tasks": {"linear_slip": {"toleranse": 1.0}}})
+
+
+@pytest.mark.parametrize("vary", [{}, VARY])
+def test_environments_spread_over_their_episodes(small, vary):
+    config = small(vary=vary, spread=True, engine_threads=1)
+    envs = vector.make(config, 3, 60, shaped=True)
+    first = envs.reset()
+    batch = envs.venv.env
+    episode = batch.simulation.episode
+    shares = np.sort(episode["step"] / episode["steps"])
+    evenly = (np.arange(60) + 0.5) / 60
+    # a whole step of 12 to 15, and the discrepancy of so many golden multiples: below 3 / 60
+    assert np.abs(shares - evenly).max() < 1 / 12 + 3 / 60
+    at = [column.name for column in envs.get_attr("columns")[0]].index("time_left")
+    left = (episode["steps"] - episode["step"]) * batch.simulation.step_time
+    assert first[:, at] == pytest.approx(left, abs=1e-6)
+    assert np.array_equal(first, vector_reset(config, 60))
+    assert np.ptp(vector.make(config, 3, 60).reset()[:, at]) <= 0.1 + 1e-6  # evaluations begin at the start
+    envs.close()
+
+
+def vector_reset(config, count):
+    """First observations of new environments."""
+    envs = vector.make(config, 3, count, shaped=True)
+    found = envs.reset()
+    envs.close()
+    return found
+
+
+def test_only_the_batch_spreads(small):
+    with pytest.raises(ValueError, match="spread needs engine 'planar'"):
+        small(spread=True, engine="bullet")

@@ -5,11 +5,12 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from time import process_time
 
 import pytest
 
 pytest.importorskip("stable_baselines3")
-from policies.training import benchmark
+from policies.training import benchmark, sample_cost
 
 ROOT = Path(__file__).resolve().parents[3]
 LINEAR = "slipgym/LinearSlip-v0"
@@ -29,6 +30,30 @@ def test_ppo_in_both():
     assert min(figures.values()) > 0.0
 
 
+def test_parts_of_a_sample(monkeypatch, small):
+    config = small(
+        num_envs=4,
+        residual={"controller": "linear_slip", "reach": 0.2},
+        bonus=1.0,
+        vary={"distance": [0.02, 0.03]},
+    )
+    monkeypatch.setattr(sample_cost.files, "load", lambda name, changes: config)
+    start = process_time()
+    figures = {figure.name: figure.value for figure in sample_cost.sample_cost("test", 3)}
+    available = 1e6 * (process_time() - start) / (3 * 16 * 4)
+    total = figures.pop("test, sum")
+    parts = {name.removeprefix("test, ") for name in figures}
+    assert {"environments", "adapter", "monitor", "controller", "bonus", "normalisation"} <= parts
+    assert {"policy in rollouts", "forward pass", "backward pass", "optimiser", "evaluation"} <= parts
+    assert total == pytest.approx(sum(figures.values()))
+    assert 0.0 < total < available
+
+
+@pytest.mark.parametrize(("env_id", "name"), [(LINEAR, "linear_slip_plain"), ("slipgym/Hold-v0", "hold")])
+def test_the_configuration_of_a_task(env_id, name):
+    assert sample_cost.configuration(env_id) == name
+
+
 @pytest.mark.slow
 def test_the_script_runs(tmp_path):
     path = tmp_path / "figures.json"
@@ -39,7 +64,7 @@ def test_the_script_runs(tmp_path):
     assert done.returncode == 0, done.stderr
     found = json.loads(path.read_text())
     names = [figure["name"] for figure in found["figures"]]
-    assert len(names) == len(set(names)) == 14
+    assert len(names) == len(set(names)) == 28
     assert all(name in done.stdout for name in names)
     assert "torch" in found["machine"]
 
@@ -48,5 +73,5 @@ def test_the_page_explains_what_is_printed():
     page = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
     printed = page.partition("## Learning")[2].partition("```text\n")[2].partition("```")[0].splitlines()[3:]
     names = [line.partition("  ")[0] for line in printed]
-    assert len(names) == 14
+    assert len(names) == 28
     assert all(f"**{name}" in page for name in names if "quartile" not in name and "4096" not in name)

@@ -49,7 +49,12 @@ def differing(one, other, at=""):
 )
 @pytest.mark.parametrize("residual", [None, {"controller": "linear_slip", "reach": 0.2}])
 def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algorithm, residual):
-    config = small(algorithm=algorithm, residual=residual, bonus=0.0 if residual is None else 20.0)
+    config = small(
+        algorithm=algorithm,
+        residual=residual,
+        bonus=0.0 if residual is None else 20.0,
+        spread=residual is None,
+    )
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     folder.begin(whole, config, 3)
     run.train(whole, progress=False)
@@ -74,6 +79,7 @@ def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algori
     ends = [checkpoints.last(path) for path in (whole, broken)]
     for end in ends:
         assert end["record"].pop("seconds") > 0
+        assert end["record"].pop("cpu_seconds") > 0
     assert differing(*ends) == []
     assert differing(*(checkpoint_io.read(checkpoints.best(path)) for path in (whole, broken))) == []
 
@@ -206,5 +212,27 @@ def test_ten_kills_at_random_moments_lose_nothing_but_an_interval(small, tmp_pat
     ends = [checkpoints.last(path) for path in (whole, killed)]
     for end in ends:
         assert end["record"].pop("seconds") > 0
+        assert end["record"].pop("cpu_seconds") > 0
     assert differing(*ends) == []
     assert differing(*(checkpoint_io.read(checkpoints.best(path)) for path in (whole, killed))) == []
+
+
+def test_a_run_that_another_version_began_goes_on(small, tmp_path):
+    """Its optimiser was not the fused one, and its record has no CPU time."""
+    path = tmp_path / "run"
+    folder.begin(path, small(budget=64), 0)
+    config, seed = folder.order(path)
+    run.train(path, progress=False)
+    state = checkpoints.last(path)
+    state["record"].pop("cpu_seconds")
+    state["record"]["ended"] = ""
+    for group in state["learner"]["parameters"]["policy.optimizer"]["param_groups"]:
+        assert group["fused"]
+        group["fused"] = None
+    other = tmp_path / "other"
+    folder.begin(other, changed(config, {"budget": 96}), seed)
+    checkpoint_io.write(checkpoints.best(other), checkpoint_io.read(checkpoints.best(path)))
+    checkpoints.save(other, 64, state, keep=2)
+    assert run.train(other, progress=False)["steps"] == 96
+    groups = checkpoints.last(other)["learner"]["parameters"]["policy.optimizer"]["param_groups"]
+    assert [group["fused"] for group in groups] == [None]

@@ -1,0 +1,64 @@
+"""Parameters of the "adaptive" estimator."""
+
+from dataclasses import dataclass
+
+from estimator.augmented.timing import EARLIEST, LATEST
+from estimator.parameters import parameter
+from estimator.sliding import NoiseParameters
+
+
+@dataclass(frozen=True)
+class AdaptiveParameters(NoiseParameters):
+    """Those of sensors and pad, and its own: spreads are what a data sheet or a careful user would say.
+
+    Raises:
+        ValueError: A value has the wrong type, is NaN, lies outside its interval or contradicts another one.
+    """
+
+    mu_c0: float = parameter(0.7, "Start value of mu_c: the middle of what pads show.", "(0, inf)")
+    mu_s0: float = parameter(0.9, "Start value of mu_s.", "(0, inf)")
+    nominal_delay: int = parameter(
+        1, "Delay of the velocity in samples that is assumed until one is found.", f"[{EARLIEST}, {LATEST}]"
+    )
+    sd_log_mu_c0: float = parameter(0.7, "Standard deviation of ln mu_c at the start.", "(0, 3]")
+    sd_log_r0: float = parameter(0.7, "Standard deviation of ln r at the start.", "(0, 3]")
+    viscosity0: float = parameter(0.2, "Expected viscous friction sigma_2.", "[0, inf)", "s/m")
+    sd_viscosity: float = parameter(
+        0.1, "Spread of the viscous friction before it is seen.", "(0, inf)", "s/m"
+    )
+    sd_zero: float = parameter(0.13, "Spread of the zero error of each force.", "(0, inf)", "N")
+    sd_tilt: float = parameter(
+        0.02, "Spread of the tilt of the force sensor about each axis.", "(0, inf)", "rad"
+    )
+    sd_cop: float = parameter(
+        1.1, "Spread of the error of the centre of pressure, each way.", "(0, inf)", "mm"
+    )
+    sd_shape: float = parameter(
+        0.1, "Spread of the limit surface's shape: 0 is a uniform disc's, 1 the ellipsoid.", "(0, inf)"
+    )
+    sd_gain: float = parameter(
+        0.02, "Relative errors that no motion shows: gain and cross-talk of the forces.", "[0, inf)"
+    )
+    caution: float = parameter(
+        0.1,
+        "Fraction of these spreads that the filter assumes, so that an error must be evident.",
+        "(0, 1]",
+    )
+    drift: float = parameter(
+        2e-3, "Relative random walk of mu_c and of r per sample of sliding, standard deviation.", "(0, 1)"
+    )
+    drift_at_rest: float = parameter(5e-4, "The same of mu_c per sample in contact.", "[0, 1)")
+    error_drift: float = parameter(
+        0.003,
+        "Random walk of each error of the sensors per sample of sliding, as a fraction of the error.",
+        "[0, 1)",
+    )
+    drift_mu_s: float = parameter(0.01, "Relative random walk of mu_s per event.", "[0, 1)")
+    outlier: float = parameter(16.0, "Squared normalised innovation from which noise is added.", "(3, inf)")
+    jump_slack: float = parameter(0.75, "Jump test: deviations that an innovation may have.", "(0, inf)")
+    jump_limit: float = parameter(
+        6.0, "Jump test: sum of the excess that marks a change of mu_c.", "(0, inf)"
+    )
+    sd_jump: float = parameter(0.3, "Standard deviation of a jump of ln mu_c.", "(0, 3]")
+    timing_memory: float = parameter(0.999, "Fading of the correlations per sample.", "(0, 1)")
+    timing_gate: float = parameter(0.15, "Correlation from which the delay is believed.", "(0, 1)")

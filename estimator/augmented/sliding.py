@@ -1,0 +1,132 @@
+"""What "adaptive" learns from a slide: keeps the samples, finds the instants, tests for jumps."""
+
+import math
+
+from estimator._numba.caching import njit
+from estimator.augmented.filtering import learn
+from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
+from estimator.augmented.state import restart
+from estimator.augmented.timing import LAST, correlate
+from estimator.sample import norm
+
+MARGIN = 4
+"""Velocities in a row that must have moved: two about the instant and one on either side."""
+SURE = 0.6
+"""Correlation of a known delay, without jitter, from which the one before them may have been still, ..."""
+WHOLE = 0.15
+"""... if the delay is a whole number of samples but for this."""
+
+SMOOTHING = 0.03
+"""Weight of a sample in the mean twist and normal force at which the derivatives are taken."""
+CHANGED = 8.0
+"""Deviations from it beyond which a sample is rather a change, which the mean follows."""
+
+LOAD_MAX, TWIST_MAX = 1e4, 1e3
+"""No gripper sees so large a wrench [N, N m] or twist [m/s, rad/s]: nothing is learned from it."""
+
+ALIKE = 10.0
+"""Samples that share an error which is taken for noise."""
+
+
+@njit(error_model="numpy")
+def store(state, p, wrench, twist, moves, elapsed):
+    """Keeps the newest sample; finds the direction in which power flows, and the delay."""
+    if state.samples >= 2 and elapsed > 1.5 * state.elapsed:  # a sample was lost
+        state.in_a_row, state.moved = 0, 0
+    k = state.samples
+    for j in range(4):
+        state.wrenches[k & LAST, j] = wrench[j]
+    for j in range(3):
+        state.twists[k & LAST, j] = twist[j]
+    state.in_a_row += 1
+    state.moved = state.moved + 1 if moves else 0
+    if moves:
+        f_x, f_y, v_x, v_y = wrench[0], wrench[1], twist[0], twist[1]
+        turn = wrench[3] * twist[2]
+        whole = norm(f_x, f_y) * norm(v_x, v_y) + abs(turn)
+        part = (f_x * v_x + f_y * v_y + turn) / whole
+        if math.isfinite(part):
+            state.power = 0.99 * state.power + part
+        if state.power * state.sign < 0.0:
+            state.sign = -state.sign
+            state.products[:] = 0.0
+    delay = state.delay
+    correlate(state, p)
+    if abs(state.delay - delay) > 1:
+        restart(state, p)
+
+
+@njit(error_model="numpy")
+def _jumps(state, p, score):
+    """Cumulative sums of the innovations (Page, Biometrika 41, 1954); a jump widens the variance of mu_c."""
+    z = min(max(score, -3.0), 3.0)
+    state.rise = max(state.rise + z - p.jump_slack, 0.0)
+    state.fall = max(state.fall - z - p.jump_slack, 0.0)
+    if state.rise > p.jump_limit or state.fall > p.jump_limit:
+        state.rise, state.fall = 0.0, 0.0
+        state.covariance[MU, MU] += p.sd_jump * p.sd_jump
+
+
+@njit(error_model="numpy")
+def _follow(state, p, twist, f_n, begins):
+    """Moves the mean twist and normal force to the newest at the start of a slide and at a change.
+
+    The derivatives are taken there: with those at the noisy sample itself, whose noise is also in the
+    innovation, each sample would pull along the combinations of states that the motion does not show.
+    """
+    noise = p.sd_speed, p.sd_speed, p.sd_spin, p.sd_normal
+    newest = twist[0], twist[1], twist[2], f_n
+    for j in range(4):
+        change = newest[j] - state.smooth[j]
+        square = change * change
+        beyond = square / (square + (CHANGED * noise[j]) ** 2)
+        if begins:
+            state.smooth[j] = newest[j]
+        elif math.isfinite(square):
+            state.smooth[j] += beyond * beyond * change
+
+
+@njit(error_model="numpy")
+def slide(state, scratch, p):
+    """Learns from the newest instant around which the contact slid; whether it did."""
+    k = state.samples
+    i = k - 2 - state.delay
+    needed = MARGIN - 1 if state.timing > SURE and abs(state.offset) < WHOLE else MARGIN
+    if state.moved < needed or state.in_a_row < state.delay + 3:
+        return False
+    wrench, before, after = (
+        state.wrenches[i & LAST],
+        state.twists[(k - 2) & LAST],
+        state.twists[(k - 1) & LAST],
+    )
+    twist = 0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1]), 0.5 * (before[2] + after[2])
+    d_x, d_y, d_omega = after[0] - before[0], after[1] - before[1], after[2] - before[2]
+    largest = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2]), abs(wrench[3]))
+    if not (largest < LOAD_MAX and abs(twist[0]) + abs(twist[1]) + abs(twist[2]) < TWIST_MAX):
+        return False
+    of_speed = 0.5 * p.sd_speed * p.sd_speed + (d_x * d_x + d_y * d_y) / 12.0
+    of_spin = 0.5 * p.sd_spin * p.sd_spin + d_omega * d_omega / 12.0
+    _follow(state, p, twist, wrench[2], state.moved == needed)
+    # close to the pivot an error of the CoP turns the direction of the slip: not linear, so taken for noise
+    lever = (MILLIMETRE * p.sd_cop * twist[2]) ** 2 + p.sd_speed * p.sd_speed
+    square = twist[0] * twist[0] + twist[1] * twist[1]
+    if math.isfinite(lever + square):
+        state.leverage += 0.05 * (lever / (lever + square) - state.leverage)
+    unknown = 0.5 * (state.covariance[COP, COP] + state.covariance[COP + 1, COP + 1])
+    unknown *= (MILLIMETRE * twist[2] / p.caution) ** 2
+    of_speed += ALIKE * unknown * min(unknown / (square + p.sd_speed * p.sd_speed), 1.0) ** 2
+    walk = p.drift * p.drift
+    state.covariance[MU, MU] = min(state.covariance[MU, MU] + walk, p.sd_log_mu_c0**2)
+    state.covariance[R, R] = min(state.covariance[R, R] + walk, p.sd_log_r0**2)
+    for j in range(ZERO, SHAPE):
+        state.covariance[j, j] += (p.error_drift * state.x[j]) ** 2
+    learned, squared, score = learn(state, scratch, p, state.sign, wrench, twist, of_speed, of_spin)
+    for j in range(3):
+        state.smooth[j] += SMOOTHING * (twist[j] - state.smooth[j])
+    state.smooth[3] += SMOOTHING * (wrench[2] - state.smooth[3])
+    if not learned:
+        return False
+    state.misfit += 0.05 * (min(squared, p.outlier) / 3.0 - state.misfit)
+    if state.updates_mu_c > 10:
+        _jumps(state, p, score)
+    return True

@@ -1,0 +1,99 @@
+"""State of the "adaptive" estimator, and its start."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator._numba.caching import njit
+from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R
+from estimator.augmented.timing import CANDIDATES, RING
+from estimator.stick_slip import EVENT_STATE, STICK_SLIP_STATE, start
+
+STATE = np.dtype(
+    [
+        *STICK_SLIP_STATE,
+        ("elapsed", np.float64),
+        ("in_a_row", np.int64),
+        ("moved", np.int64),
+        ("delay", np.int64),
+        ("sign", np.float64),
+        ("power", np.float64),
+        ("unloaded", np.bool_),
+        ("timing", np.float64),
+        ("offset", np.float64),
+        ("misfit", np.float64),
+        ("variance_mu_s", np.float64),
+        ("common_mu_s", np.float64),
+        ("above", np.int64),
+        ("leverage", np.float64),
+        ("rise", np.float64),
+        ("fall", np.float64),
+        ("smooth", np.float64, (4,)),
+        ("x", np.float64, (STATES,)),
+        ("covariance", np.float64, (STATES, STATES)),
+        ("limits", np.float64, (4,)),
+        ("products", np.float64, (CANDIDATES,)),
+        ("energies", np.float64, (2,)),
+        ("wrenches", np.float64, (RING, 4)),
+        ("twists", np.float64, (RING, 3)),
+        ("forces", np.float64, (RING, 3)),
+        *EVENT_STATE,
+    ],
+    align=True,
+)
+"""`x`, `covariance`: the filter; `limits`: of ln mu_c and ln r; `delay`: of the velocity [samples];
+`timing`: its correlation; `offset`: its fraction of a sample; `sign`: 1 if the wrench is that on the
+finger; `unloaded`: whether the sensor was seen without load; `moved`: velocities in a row that moved;
+`misfit`: mean squared normalised innovation; `rise`, `fall`: sums of the jump test."""
+
+
+_SPREADS = {MU: "log_mu_c0", R: "log_r0", SIGMA: "viscosity", ZERO: "zero", ZERO + 1: "zero"}
+_SPREADS |= {TILT: "tilt", TILT + 1: "tilt", COP: "cop", COP + 1: "cop", SHAPE: "shape"}
+"""State -> parameter `sd_...` that is its spread."""
+
+
+def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
+    """States before the first sample.
+
+    Args:
+        parameters: Structured array (m,).
+
+    Returns:
+        Structured array (m,) of dtype STATE.
+    """
+    states = start(parameters, STATE)
+    states["x"][:, MU], states["x"][:, R] = np.log(parameters["mu_c0"]), np.log(parameters["r0"])
+    states["x"][:, SIGMA] = parameters["viscosity0"]
+    for at, name in _SPREADS.items():
+        assumed = parameters["caution"] if at > SIGMA else 1.0
+        states["covariance"][:, at, at] = (assumed * parameters[f"sd_{name}"]) ** 2
+    for at, name in enumerate(("mu_min", "mu_max", "r_min", "r_max")):
+        states["limits"][:, at] = np.log(parameters[name])
+    states["delay"] = parameters["nominal_delay"]
+    states["sign"] = states["misfit"] = 1.0
+    return states
+
+
+@njit
+def restart(state, p):
+    """Forgets the errors of the sensors and how sure mu_c and r were; their values stay until a slip."""
+    x, covariance = state.x, state.covariance
+    for j in range(STATES):
+        kept = state.unloaded and ZERO <= j < TILT  # the zero error as the unloaded sensor showed it
+        variance = covariance[j, j]
+        for k in range(STATES):
+            covariance[j, k] = 0.0
+        if j >= SIGMA and not kept:
+            x[j] = p.viscosity0 if j == SIGMA else 0.0
+        spread = _spread(p, j)
+        covariance[j, j] = variance if kept else (spread if j <= SIGMA else p.caution * spread) ** 2
+    state.misfit, state.rise, state.fall = 1.0, 0.0, 0.0
+
+
+@njit
+def _spread(p, j):
+    """Standard deviation of a state at the start."""
+    if j < ZERO:
+        return p.sd_log_mu_c0 if j == MU else p.sd_log_r0 if j == R else p.sd_viscosity
+    if j < COP:
+        return p.sd_zero if j < TILT else p.sd_tilt
+    return p.sd_cop if j < SHAPE else p.sd_shape

@@ -1,0 +1,98 @@
+"""Static friction from break-aways and from stick, with its deviation; the rule mu_s >= mu_c.
+
+The largest load over f_n in a stick that ends in a slip is a measurement of mu_s whose variance is known:
+noise of the forces, the uncertain radius under torque and the ramp between two samples. A scalar filter
+averages such events; an event that contradicts the average beyond its deviation, and a stick that carries
+clearly more than mu_s f_n, start it afresh. Errors that are common to all events (zero, tilt) are added to
+the stated deviation.
+"""
+
+import math
+
+from estimator._numba.caching import njit
+from estimator.augmented.slip_law import TILT, ZERO, R
+from estimator.limit_surface.inverse import load_size
+from estimator.sample import direction_cosines
+from estimator.stick_slip import append, clear_buffer, take_event, transition
+
+SAMPLING = 0.03
+"""Relative deviation of an event: the load rises between samples, and the largest of noisy values counts."""
+HELD = 5
+"""Samples in a row that must carry more than the static limit to refute it."""
+
+
+@njit(error_model="numpy")
+def _event(state, p, value, f_n, torque_share):
+    """Takes one measured mu_s into the average.
+
+    Args:
+        state: Changed in place.
+        p: Parameters.
+        value: Largest load over f_n of a stick.
+        f_n: Normal force there [N].
+        torque_share: Fraction of the squared load that is torque.
+    """
+    noise = (p.sd_normal / f_n) ** 2 + (p.sd_force / (value * f_n)) ** 2 + SAMPLING * SAMPLING
+    noise += torque_share * torque_share * state.covariance[R, R]
+    change = math.log(value / state.mu_s)
+    prior = state.variance_mu_s + p.drift_mu_s * p.drift_mu_s
+    if state.events_mu_s == 0 or abs(change) > max(p.jump_mu_s, 3.0 * math.sqrt(prior + noise)):
+        gain = 1.0
+        state.variance_mu_s = noise
+    else:
+        gain = prior / (prior + noise)
+        state.variance_mu_s = (1.0 - gain) * prior
+    state.mu_s = min(max(state.mu_s * math.exp(gain * change), p.mu_min), p.mu_max)
+    zero, tilt = state.covariance[ZERO, ZERO], state.covariance[TILT, TILT]
+    known = 1.0 / (p.caution * state.mu_s) ** 2
+    state.common_mu_s = known * (zero / (f_n * f_n) + tilt) + (p.sd_zero / f_n) ** 2 + p.sd_gain * p.sd_gain
+    state.events_mu_s += 1
+
+
+@njit(error_model="numpy")
+def learn_static_friction(state, p, f_t, f_n, tau, still, moves, halted):
+    """Advances the stick-slip state machine by one sample and learns mu_s at a break-away.
+
+    Args:
+        state: Changed in place.
+        p: Parameters.
+        f_t: Tangential force without the errors that are known [N].
+        f_n: Normal force [N].
+        tau: As f_t, size of the torque [N m].
+        still: Whether the velocity is zero.
+        moves: Whether it is that of a slip.
+        halted: Whether nothing is learned.
+    """
+    rim = tau / state.r
+    if not state.slipping and not halted:
+        ratio = load_size(True, f_t, rim) / f_n
+        if direction_cosines(f_t, rim)[0] > p.eps_t:
+            append(state, p, ratio)
+        else:
+            clear_buffer(state)
+        limit = state.mu_s * (1.0 + 3.0 * math.sqrt(state.variance_mu_s + state.common_mu_s) + 3.0 * SAMPLING)
+        above = still and state.events_mu_s > 0 and ratio > limit
+        state.above = state.above + 1 if above else 0
+        if state.above >= HELD:
+            _event(state, p, min(ratio, p.mu_max), f_n, direction_cosines(f_t, rim)[1] ** 2)
+            state.above = 0
+    starts, stops = transition(state, p, still, moves)
+    if starts and not halted and state.buffer_size >= p.n_a:
+        _event(state, p, take_event(state, p), f_n, direction_cosines(f_t, rim)[1] ** 2)
+    if starts or stops:
+        clear_buffer(state)
+
+
+@njit(error_model="numpy")
+def order(state):
+    """Moves mu_s and mu_c, if both are measured and in the wrong order, to their weighted mean."""
+    if state.events_mu_s == 0 or state.updates_mu_c == 0 or state.mu_c <= state.mu_s:
+        return
+    of_mu_c, of_mu_s = state.sd_mu_c * state.sd_mu_c, state.sd_mu_s * state.sd_mu_s
+    gap = state.mu_c - state.mu_s
+    if gap * gap > 4.0 * (of_mu_c + of_mu_s):  # a contradiction: neither is as sure as it says
+        state.confidence_mu_c *= 0.5
+        state.confidence_mu_s *= 0.5
+    weight = of_mu_s / max(of_mu_c + of_mu_s, 1e-300)
+    mean = weight * state.mu_c + (1.0 - weight) * state.mu_s
+    state.mu_c, state.mu_s = mean, mean

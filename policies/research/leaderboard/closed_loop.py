@@ -1,0 +1,133 @@
+"""Estimators in the loop: the task's controller acts on the estimate, which the episode then judges.
+
+Every episode is one row of a batch. Friction, sensors and pads are sampled; the truth is that of each finger
+at its present load and age.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pandas as pd
+from tqdm import tqdm
+
+import policies
+from slipgym.registration import TASK_MODULES
+from slipgym.tasks import find
+
+VALUES = "mu_s", "mu_c", "r"
+SURE = 0.5
+"""Confidence from which an estimate at an episode's end counts."""
+
+
+def closed_loop(
+    estimators: Sequence[str],
+    episodes: int = 200,
+    sensors: Sequence[str] = ("realistic", "lab"),
+    seed: int = 0,
+    tasks: Sequence[str] = tuple(TASK_MODULES),
+    **arguments: Any,
+) -> pd.DataFrame:
+    """Plays episodes of every task with every estimator and sensor preset.
+
+    Args:
+        estimators: Names.
+        episodes: Of each combination; the same initial conditions in all.
+        sensors: Sensor presets.
+        seed: Of the first episode.
+        tasks: Ids of environments.
+        **arguments: Of the environments, for example `randomization="lab"`.
+
+    Returns:
+        A row for each combination: see `played`.
+    """
+    rows = []
+    cells = [(task, name, preset) for task in tasks for name in estimators for preset in sensors]
+    for task, name, preset in tqdm(cells, desc="closed loop"):
+        found = played(task, episodes, seed, estimator=name, sensors=preset, **arguments)
+        rows.append({"task": find(task).name, "estimator": name, "sensors": preset, **found})
+    return pd.DataFrame(rows)
+
+
+def played(task: str, episodes: int, seed: int, **arguments: Any) -> dict[str, float]:
+    """Plays one episode in each row of a batch, with the task's controller.
+
+    Args:
+        task: Id of the environment.
+        episodes: Rows.
+        seed: Of the first row.
+        **arguments: Of the environments.
+
+    Returns:
+        `solved` and `dropped` [%]; for each of mu_s, mu_c, r the median of the error's size at the end where
+        the confidence is above SURE [%], and the share of instants, from the first update on, within one and
+        within two stated deviations [%]; `reversed`: instants with a published mu_c above mu_s [%].
+    """
+    policy = policies.make(find(task).key)
+    env: Any = gym.make_vec(task, num_envs=episodes, **policies.modes(policy), **arguments).unwrapped
+    observations, _ = env.reset(seed=seed)
+    begun, state = np.ones(episodes, bool), None
+    alive, tally = np.ones(episodes, bool), _Tally(episodes)
+    while alive.any():
+        actions, state = policy.predict(observations, state, begun)
+        observations, _, terminated, truncated, infos = env.step(actions)
+        begun = np.zeros(episodes, bool)
+        tally.add(env.simulation, alive)
+        over = alive & (terminated | truncated)
+        if over.any():
+            tally.end(env.simulation, over, infos, terminated)
+            alive = alive & ~over
+    env.close()
+    return tally.result()
+
+
+class _Tally:
+    """Counts instants and ends of episodes."""
+
+    def __init__(self, episodes: int) -> None:
+        self._instants = {name: np.zeros(3) for name in VALUES}  # seen, within one, within two
+        self._errors: dict[str, list[float]] = {name: [] for name in VALUES}
+        self._all, self._reversed, self._solved, self._dropped, self._episodes = 0, 0, 0, 0, episodes
+
+    def add(self, simulation: Any, alive: np.ndarray) -> None:
+        """The instant after a control step."""
+        estimates = simulation.estimator.estimates.reshape(-1, 2)[alive]
+        truth = {name: value[alive] for name, value in present(simulation.plant.pads).items()}
+        self._all += estimates.size
+        self._reversed += np.count_nonzero(estimates["mu_c"] > estimates["mu_s"])
+        for name in VALUES:
+            known = estimates[f"confidence_{name}"] > 0.0
+            off = np.abs(estimates[name] - truth[name])[known] / estimates[f"sd_{name}"][known]
+            self._instants[name] += off.size, np.count_nonzero(off <= 1.0), np.count_nonzero(off <= 2.0)
+
+    def end(self, simulation: Any, over: np.ndarray, infos: Mapping[str, Any], dropped: np.ndarray) -> None:
+        """The ends of episodes."""
+        estimates = simulation.estimator.estimates.reshape(-1, 2)[over]
+        for name, value in present(simulation.plant.pads).items():
+            sure = estimates[f"confidence_{name}"] > SURE
+            self._errors[name] += (100.0 * np.abs(estimates[name] / value[over] - 1.0))[sure].tolist()
+        self._solved += np.count_nonzero(infos["is_success"][over])
+        self._dropped += np.count_nonzero(dropped[over])
+
+    def result(self) -> dict[str, float]:
+        """See `played`."""
+        row = {
+            "solved": 100.0 * self._solved / self._episodes,
+            "dropped": 100.0 * self._dropped / self._episodes,
+        }
+        for name in VALUES:
+            seen, one, two = self._instants[name]
+            row[f"{name} error"] = float(np.median(self._errors[name])) if self._errors[name] else np.nan
+            row[f"{name} in 1 sd"] = 100.0 * one / seen if seen else np.nan
+            row[f"{name} in 2 sd"] = 100.0 * two / seen if seen else np.nan
+        return {**row, "reversed": 100.0 * self._reversed / self._all}
+
+
+def present(pads: np.ndarray) -> dict[str, np.ndarray]:
+    """mu_s, mu_c [-] and r [m] of pads at their present load and age, each (n, 2)."""
+    mu_c = pads["friction_scale"] * pads["mu_c"]
+    growth = pads["friction_scale"] * pads["static_gain"] * (pads["mu_s"] - pads["mu_c"])
+    return {"mu_s": mu_c + growth, "mu_c": mu_c, "r": pads["radius"].copy()}

@@ -1,0 +1,33 @@
+"""The groups of scenarios; another one is one more function."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from policies.research.leaderboard.imperfect import jumps, sensor_errors, unknown_delay
+from policies.research.leaderboard.scenario import Scenario
+from policies.research.leaderboard.scenarios import (
+    Effort,
+    latency,
+    noise,
+    planar,
+    pressure,
+    profiles,
+    spin_first,
+    start_values,
+    stick_slip,
+)
+
+GROUPS: tuple[Callable[[Effort], Iterator[Scenario]], ...] = (
+    profiles,
+    stick_slip,
+    planar,
+    start_values,
+    spin_first,
+    noise,
+    pressure,
+    latency,
+    unknown_delay,
+    sensor_errors,
+    jumps,
+)

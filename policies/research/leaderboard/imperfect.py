@@ -1,0 +1,71 @@
+"""Scenarios of a real gripper, whose errors nobody knows, and of friction that jumps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from policies.research.leaderboard.imperfections import Imperfections, impaired
+from policies.research.leaderboard.scenario import Run, Scenario, after
+from policies.research.leaderboard.scenarios import MU_C, MU_S, SPEED, Effort, R, closed_loop, patch, rest
+from slipgym.synthetic import Course, sense
+
+AT_ONCE = {"sensors": {"slip": {"latency_samples": 0}}}
+DELAYS = ((0, 0.0), (1, 0.3), (2, 0.0), (2, 0.3))
+"""Age of the velocities [samples] and fraction of them that are one older still."""
+ERRORS = {
+    "zero 0.1 N": Imperfections(velocity_delay=1, zero=0.1),
+    "zero 0.2 N": Imperfections(velocity_delay=1, zero=0.2),
+    "tilt 1°": Imperfections(velocity_delay=1, tilt=math.radians(1.0)),
+    "tilt 2°": Imperfections(velocity_delay=1, tilt=math.radians(2.0)),
+    "CoP 1 mm": Imperfections(velocity_delay=1, cop=0.001),
+    "CoP 2 mm": Imperfections(velocity_delay=1, cop=0.002),
+    "all": Imperfections(velocity_delay=1, zero=0.2, tilt=math.radians(2.0), cop=0.002),
+}
+
+
+def unknown_delay(effort: Effort) -> Iterator[Scenario]:
+    """Stick-slip in wood with velocities of an age that no estimator is given; one sample is nominal."""
+    for delay, jitter in DELAYS:
+        runs = []
+        for k, trace in enumerate(closed_loop("wood", effort.trials)):
+            exact = sense(trace, effort.seeds, effort.seed, config=AT_ONCE)
+            record = impaired(exact, Imperfections(velocity_delay=delay, jitter=jitter), effort.seed + k)
+            moving = (record.phase == "slip") & after(record, 1.0)
+            runs.append(Run(record, {"mu_c": moving, "mu_s": moving}))
+        yield Scenario("unknown delay", f"{delay}, jitter {100 * jitter:.0f} %", tuple(runs))
+
+
+def sensor_errors(effort: Effort) -> Iterator[Scenario]:
+    """3 s of planar slip whose direction turns by 1 rad/s, seen by sensors with constant errors."""
+    exact = sense(patch(turning(3.0), effort.cells), effort.seeds, effort.seed, config=AT_ONCE)
+    late = after(exact, exact.t[-1] - 0.25)
+    for name, imperfections in ERRORS.items():
+        record = impaired(exact, imperfections, effort.seed)
+        yield Scenario("sensor errors", name, (Run(record, {"mu_c": late, "r": late}),))
+
+
+def jumps(effort: Effort) -> Iterator[Scenario]:
+    """Steady planar slip in which mu_c jumps; evaluated from 0.3 s later to the end."""
+    for factor in (0.7, 1.35):
+        course = turning(2.0, 0.0).to("planar", 1e-3, mu_c=factor * MU_C, mu_s=factor * MU_S)
+        trace = patch(course.to("planar", 1.0), effort.cells)
+        record = sense(trace, effort.seeds, effort.seed)
+        late = after(record, course.times[-1] + 0.3)
+        yield Scenario("jump", f"× {factor:g}", (Run(record, {"mu_c": late, "r": late}),))
+
+
+def turning(duration: float, rate: float = 1.0, gamma_t: float = 0.7) -> Course:
+    """Planar slip of a constant scaled speed whose direction turns, in chords of 0.1 s.
+
+    Args:
+        duration: Of the slip at full speed [s].
+        rate: Of the turn [rad/s].
+        gamma_t: Fraction of translation [-].
+    """
+    course, omega = rest(), math.sqrt(1.0 - gamma_t**2) * SPEED / R
+    for k in range(round(10 * duration) + 1):
+        angle = 0.1 * rate * k
+        v_x, v_y = gamma_t * SPEED * math.cos(angle), gamma_t * SPEED * math.sin(angle)
+        course = course.to("planar", 0.25 if k == 0 else 0.1, v_x=v_x, v_y=v_y, omega=omega)
+    return course

@@ -1,0 +1,191 @@
+"""Compiles the stages of a control step, for both engines: types, programs, pointers to them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import from_dtype, types
+
+from estimator.estimate import ESTIMATE
+from slipgym._numba.calls import entry_point
+from slipgym._numba.compiled import patience
+from slipgym._numba.pointers import Known, Pointer
+from slipgym.contact.records import PAD
+from slipgym.envs import control_step
+from slipgym.envs.actions import COMPONENT
+from slipgym.envs.control_step import BatchState
+from slipgym.envs.infos import InfoBuffer
+from slipgym.envs.nan_guard import note
+from slipgym.envs.observation import ObservationBuffers
+from slipgym.envs.reset_kernels import HARDWARE, START, equip_rows, open_episodes
+from slipgym.envs.values import VALUES
+from slipgym.sensors.slip_velocity import SLIP_SENSOR
+from slipgym.tasks.episode import EPISODE
+from slipgym.world.records import FINGER, WORLD
+
+
+def array(dtype: Any, ndim: int = 1, layout: str = "C") -> Any:
+    """Type of an array of numbers or records."""
+    return types.Array(from_dtype(dtype) if isinstance(dtype, np.dtype) else dtype, ndim, layout)
+
+
+WHOLE, WHOLES, FLAGS, BYTES = types.int64, array(types.int64), array(types.boolean), array(types.uint8, 2)
+F1, F2, F3 = (array(types.float64, ndim) for ndim in (1, 2, 3))
+_SINGLE = array(types.float32)
+_TYPES: Any = BatchState(
+    worlds=array(WORLD),
+    pads=array(PAD, 2),
+    fingers=array(FINGER, 2),
+    slip_sensors=array(SLIP_SENSOR, 2),
+    parameters=BYTES,
+    estimator_states=BYTES,
+    estimates=array(ESTIMATE),
+    episodes=array(EPISODE),
+    commands=F2,
+    wrenches=F3,
+    twists=F3,
+    per_finger=F3,
+    estimated=F2,
+    task_part=F2,
+    ground_truth=F2,
+)
+STATE = types.NamedTuple([*_TYPES], BatchState)
+"""Type of a `BatchState`."""
+ACTION = types.Tuple([F2, array(COMPONENT), FLAGS])
+"""Type of actions, their meaning, and which rows are active."""
+_LOOK = [WHOLES, F2, _SINGLE, _SINGLE, array(types.float32, 2)]
+BUFFERS = types.NamedTuple(_LOOK, ObservationBuffers)
+"""Type of `ObservationBuffers`."""
+INFOS = types.NamedTuple([F2, array(types.boolean, 2), F2], InfoBuffer)
+"""Type of an `InfoBuffer`."""
+VALUES_TYPE = array(VALUES)
+"""Type of VALUES (m,)."""
+FRESH = types.Tuple([BYTES, _TYPES.estimates])
+"""Type of initial states of the estimators, as bytes, and estimates."""
+_HEADS = array(types.uint8, 1, "A")
+SCRIPT_WRIST = types.void(_TYPES.episodes, _TYPES.worlds)
+EVALUATE_STEP = types.void(_TYPES.episodes, _TYPES.worlds, _TYPES.fingers, F2)
+UPDATE = types.void(_HEADS, _HEADS, types.float64, F2, F2, _TYPES.estimates)
+"""Signature of an estimator's update, the same for all: its records are given by their first bytes."""
+
+
+class Program:
+    """A function compiled for one signature.
+
+    Args:
+        function: The function.
+        signature: Its signature.
+
+    Attributes:
+        known: Type of the pointer.
+        pointer: For other programs.
+        call: For Python.
+    """
+
+    def __init__(self, function: Any, signature: Any) -> None:
+        function.compile(signature)
+        self.known, self.pointer = Known(signature), Pointer(function, signature)
+        self.call: Callable[..., Any] = entry_point(function, signature.args)
+
+
+def cells_type(ndim: int) -> Any:
+    """Type of `slipgym.world.plant.Plant.cells` with so many dimensions, 0 for None."""
+    return array(types.float64, ndim) if ndim else types.none
+
+
+class Linked(NamedTuple):
+    """Pointers to the functions that a program of an engine calls, or their types."""
+
+    script_wrist: Any
+    """Function of the task."""
+    evaluate_step: Any
+    """Function of the task."""
+    update: Any
+    """Function of the estimator."""
+    begin: Any
+    """Function of `slipgym.envs.control_step`, like the next five."""
+    measure: Any
+    estimate: Any
+    evaluate: Any
+    look: Any
+    report: Any
+    note: Any
+    """`slipgym.envs.nan_guard.note`."""
+    equip: Any
+    """`slipgym.envs.reset_kernels.equip_rows`."""
+    open: Any
+    """`slipgym.envs.reset_kernels.open_episodes`."""
+
+
+class Stages:
+    """The stages that both engines have in common, compiled for a task, an estimator, sensors and contacts.
+
+    Args:
+        task: The task.
+        update: The estimator's compiled `update_batch`.
+        force_torque: Dtype of the force/torque sensors.
+        cells: Dimensions of `slipgym.world.plant.Plant.cells`, 0 for None.
+
+    Attributes:
+        linked: Pointers to them, for programs.
+        kind: Type of `linked`.
+        evaluate: From Python: `slipgym.envs.control_step.evaluate` without its first argument.
+        look_at: Likewise `look_at`.
+        report: `slipgym.envs.control_step.report`.
+        note: `slipgym.envs.nan_guard.note`.
+        equip: `slipgym.envs.reset_kernels.equip_rows`.
+        open: `slipgym.envs.reset_kernels.open_episodes`.
+    """
+
+    def __init__(self, task: Any, update: Any, force_torque: np.dtype, cells: int) -> None:
+        wrist, judge, learn = Known(SCRIPT_WRIST), Known(EVALUATE_STEP), Known(UPDATE)
+        sensors, flags, rows = array(force_torque, 2), array(types.boolean, 2), (WHOLE, WHOLE)
+        arguments = array(START), VALUES_TYPE, array(HARDWARE), F3, STATE, cells_type(cells), sensors
+        void = types.void
+        signatures = {
+            "begin": (control_step.begin, void(wrist, STATE, ACTION, *rows)),
+            "measure": (control_step.measure_rows, void(STATE, sensors, *rows)),
+            "estimate": (control_step.estimate, void(learn, STATE, *rows)),
+            "evaluate": (control_step.evaluate, void(judge, STATE, *rows)),
+            "look": (control_step.look, void(STATE, BUFFERS, *rows)),
+            "report": (control_step.report, void(STATE, F2, flags, *rows)),
+            "note": (note, WHOLE(F2, WHOLE, STATE, WHOLE)),
+            "equip": (equip_rows, void(*arguments)),
+            "open": (open_episodes, void(array(START), FRESH, STATE, F2)),
+        }
+        with patience(f"the control step of {task.name}"):
+            programs = {name: Program(*each) for name, each in signatures.items()}
+            task.script_wrist.compile(SCRIPT_WRIST)
+            task.evaluate_step.compile(EVALUATE_STEP)
+            self.linked = Linked(
+                Pointer(task.script_wrist, SCRIPT_WRIST),
+                Pointer(task.evaluate_step, EVALUATE_STEP),
+                Pointer(update, update.nopython_signatures[0]),
+                **{name: program.pointer for name, program in programs.items()},
+            )
+            known = {name: program.known for name, program in programs.items()}
+            self.kind = types.NamedTuple([*Linked(wrist, judge, learn, **known)], Linked)
+            look_at = Program(control_step.look_at, void(known["look"], WHOLES, STATE, BUFFERS))
+        self.evaluate = partial(programs["evaluate"].call, self.linked.evaluate_step)
+        self.look_at = partial(look_at.call, self.linked.look)
+        self.report, self.note = programs["report"].call, programs["note"].call
+        self.equip, self.open = programs["equip"].call, programs["open"].call
+
+    def program(self, function: Any, returned: Any, *arguments: Any) -> Callable[..., Any]:
+        """Compile a function that takes `Linked` first; returns a function of its other arguments.
+
+        Args:
+            function: The function.
+            returned: Type of its result.
+            *arguments: Types of its other arguments.
+        """
+        return partial(Program(function, returned(self.kind, *arguments)).call, self.linked)
+
+
+@cache
+def compiled_stages(task: Any, update: Any, force_torque: np.dtype, cells: int) -> Stages:
+    """`Stages`, the same for the same arguments."""
+    return Stages(task, update, force_torque, cells)

@@ -1,0 +1,91 @@
+"""The numbers that a randomization samples for an episode, and how they are called."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from slipgym.config import Config
+from slipgym.config.pad import EFFECTS
+from slipgym.envs.finger_differences import DIFFERENCES, nominal_differences
+
+FRICTION = ("mu_c", "mu_s", "friction_ratio")
+"""Fields without a value of their own in the configuration: NaN unless they are sampled, then at scale 1."""
+NAMES = ("materials", "pressure")
+"""Fields that are names: their place among the materials, or -1, and among `Randomizer.pressures`."""
+_NUMBERS = (
+    "friction_drift",
+    "stribeck_velocity",
+    "sigma_0",
+    "radius_scale",
+    "mass_scale",
+    "size_scale",
+    "com_x",
+    "com_z",
+    "lag",
+    "dead_time",
+    "noise_scale",
+    "bias_scale",
+    "slip_latency",
+    *EFFECTS,
+)
+VALUES = np.dtype(
+    [
+        *((name, "f8") for name in (*_NUMBERS, *FRICTION, *NAMES)),
+        *((name, "f8", len(own.parts)) for name, own in DIFFERENCES.items()),
+    ]
+)
+"""Fields of `slipgym.config.Ranges` but `disturbances`, sampled or not."""
+SIZE = VALUES.itemsize // 8
+"""Numbers in `VALUES`."""
+_ENDS = np.cumsum([VALUES[name].itemsize // 8 for name in VALUES.names or ()]).tolist()
+_PLACES = dict(zip(VALUES.names or (), map(slice, [0, *_ENDS], _ENDS), strict=True))
+FIXED_BY = {
+    "mass_scale": "object_mass",
+    "size_scale": "object_size",
+    "com_x": "com_offset",
+    "com_z": "com_offset",
+    "radius_scale": "r",
+    **{name: name for name in DIFFERENCES},
+}
+"""Field -> reset option that fixes it."""
+
+
+def nominal_values(config: Config) -> np.ndarray:
+    """VALUES (1,) without randomization."""
+    contact, gripper = config.contact, config.gripper
+    values = np.zeros(1, VALUES)
+    own = {
+        "stribeck_velocity": contact.stribeck_velocity,
+        "sigma_0": contact.sigma_0,
+        "radius_scale": 1.0,
+        "mass_scale": 1.0,
+        "size_scale": 1.0,
+        "lag": gripper.lag,
+        "dead_time": gripper.dead_time,
+        "noise_scale": 1.0,
+        "slip_latency": config.sensors.slip.latency_samples,
+        "materials": -1.0,
+        **{name: getattr(contact.pad, name) for name in EFFECTS},
+        **dict.fromkeys(FRICTION, np.nan),
+        **nominal_differences(config),
+    }
+    for name, value in own.items():
+        values[name] = value
+    return values
+
+
+def flat(values: np.ndarray) -> np.ndarray:
+    """VALUES (m,) as plain numbers (m, SIZE), in the same memory."""
+    return values.view(np.float64).reshape(len(values), SIZE)
+
+
+def places(name: str) -> slice:
+    """Where the numbers of a field stand in `flat`."""
+    return _PLACES[name]
+
+
+def labels(name: str) -> list[str]:
+    """Names of the numbers of a field, as infos have them."""
+    if name not in DIFFERENCES:
+        return [name]
+    return [f"{name}_{part}" for part in DIFFERENCES[name].parts]

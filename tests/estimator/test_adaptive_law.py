@@ -1,0 +1,94 @@
+"""The measurement model of "adaptive": against the limit surfaces, its own differences, and rigid shifts."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict, surface
+from estimator.limit_surface import slip_friction
+
+states = st.tuples(
+    st.floats(-1.6, 0.5),
+    st.floats(-5.8, -4.2),
+    st.floats(0.0, 0.3),
+    *[st.floats(-0.3, 0.3)] * 2,
+    *[st.floats(-0.05, 0.05)] * 2,
+    *[st.floats(-3.0, 3.0)] * 2,
+    st.floats(-0.3, 1.0),
+)
+twists = st.tuples(st.floats(0.004, 0.05), st.floats(-0.05, 0.05), st.floats(-3.0, 3.0))
+
+
+def predicted(x, twist, f_n=5.0, sign=1.0):
+    by_state, by_twist = np.zeros((3, STATES)), np.zeros((3, 3))
+    wrench = predict(np.array(x, float), sign, f_n, *twist, by_state, by_twist)
+    return np.array(wrench), by_state, by_twist
+
+
+def ideal(mu_c=0.4, r=0.008, sigma_2=0.0, shape=0.0):
+    x = np.zeros(STATES)
+    x[MU], x[R], x[SIGMA], x[SHAPE] = np.log(mu_c), np.log(r), sigma_2, shape
+    return x
+
+
+@pytest.mark.parametrize("disc", [True, False])
+@pytest.mark.parametrize("gamma_t", [0.05, 0.3, 0.6, 0.7, 0.9, 0.999])
+def test_it_is_the_limit_surface(disc, gamma_t):
+    """The table's knots are 1 / 512 apart: linear interpolation is off by up to 1e-4."""
+    v_t, omega, r = 0.02 * gamma_t, 0.02 * np.sqrt(1 - gamma_t**2) / 0.008, 0.008
+    force, torque = slip_friction(disc, v_t, r * omega)
+    (f_x, f_y, tau), _, _ = predicted(ideal(shape=0.0 if disc else 1.0), (0.0, v_t, omega))
+    assert f_x == 0.0
+    assert f_y == pytest.approx(0.4 * 5.0 * force, rel=3e-4)
+    assert tau == pytest.approx(0.4 * 5.0 * r * torque, rel=3e-4)
+
+
+def test_viscosity_adds_speed_and_the_mean_squared_radius():
+    dry, _, _ = predicted(ideal(), (0.01, 0.02, 1.5))
+    wet, _, _ = predicted(ideal(sigma_2=0.2), (0.01, 0.02, 1.5))
+    np.testing.assert_allclose(wet - dry, 5.0 * 0.2 * np.array([0.01, 0.02, 0.5 * 0.012**2 * 1.5]), rtol=1e-9)
+
+
+def test_zero_error_tilt_and_sign():
+    x = ideal()
+    plain, _, _ = predicted(x, (0.02, 0.0, 1.0))
+    x[ZERO], x[TILT + 1] = 0.1, 0.02
+    shifted, _, _ = predicted(x, (0.02, 0.0, 1.0))
+    np.testing.assert_allclose(shifted - plain, (0.1, 5.0 * 0.02, 0.0), atol=1e-15)
+    np.testing.assert_allclose(predicted(ideal(), (0.02, 0.0, 1.0), sign=-1.0)[0], -plain)
+
+
+def test_an_offset_of_the_centre_of_pressure_is_a_shift_of_the_frame():
+    """A slip seen from 2 mm beside the centre of pressure, and the torque about that point."""
+    at, twist = np.array([0.002, -0.001]), np.array([0.01, 0.005, 1.5])
+    true, _, _ = predicted(ideal(), twist)
+    seen = twist + np.array([twist[2] * at[1], -twist[2] * at[0], 0.0])
+    x = ideal()
+    x[COP : COP + 2] = 1e3 * at
+    found, _, _ = predicted(x, seen)
+    np.testing.assert_allclose(found[:2], true[:2], rtol=1e-12)
+    assert found[2] == pytest.approx(true[2] + at[0] * true[1] - at[1] * true[0], rel=1e-12)
+
+
+@settings(deadline=None, max_examples=60)
+@given(states, twists)
+def test_derivatives(x, twist):
+    """Central differences across knots of the table, whose slope is piecewise linear: 2 % of the largest."""
+    _, by_state, by_twist = predicted(x, twist)
+    scale = np.array([1.0, 1.0, 0.01]) * 5.0 * np.exp(x[MU])
+    for j in range(STATES):
+        step = np.zeros(STATES)
+        step[j] = 1e-2 if j in (MU, R, SHAPE) else 1e-3
+        slope = (predicted(x + step, twist)[0] - predicted(x - step, twist)[0]) / (2 * step[j])
+        assert np.abs((slope - by_state[:, j]) / scale).max() < 0.02 * max(1.0, np.abs(slope / scale).max())
+    for j, size in enumerate((1e-4, 1e-4, 1e-2)):
+        step = np.zeros(3)
+        step[j] = size
+        change = (predicted(x, twist + step)[0] - predicted(x, twist - step)[0]) / 2
+        assert np.abs((change - by_twist[:, j] * size) / scale).max() < 2e-3
+
+
+def test_the_shape_interpolates_between_disc_and_ellipsoid():
+    phi, _, psi, _, to_phi, to_psi = surface(0.4, 0.0)
+    assert (phi + to_phi, psi + to_psi) == (1.0, 1.0)

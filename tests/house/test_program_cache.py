@@ -1,0 +1,185 @@
+"""A stored program is used as long as what is compiled stays the same, and no longer."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from numba.core import config
+
+from estimator._numba import folders
+from estimator._numba.caching import VARIANTS
+from estimator._numba.folders import program_folder
+from estimator._numba.locking import only_one
+from slipgym._numba.compiled import compiled
+
+MAIN = """
+import numpy as np
+import table
+from law import friction, kind_of
+from slipgym._numba.compiled import compiled
+
+RATE = 2.0
+LEVELS = np.array([0.25, 0.5])
+
+@compiled
+def work(x):
+    return RATE * friction(x) + table.OFFSET + LEVELS[1] + kind_of(x)
+
+print(work(1.0), sum(work.stats.cache_hits.values()))
+"""
+LAW = '''
+from numba.extending import overload
+from slipgym._numba.compiled import compiled
+
+@compiled
+def helper(x):
+    return 0.0 * x
+
+@compiled
+def friction(x, exponent=1.0):
+    """Docstring."""
+    return 0.5 * x**exponent  # comment
+
+def kind_of(x):
+    """Docstring."""
+
+@overload(kind_of)
+def _kind_of(x):
+    """Docstring."""
+    return lambda x: 16.0 + helper(x)
+'''
+FILES = {"main.py": MAIN, "law.py": LAW, "table.py": "OFFSET = 4.0\n"}
+BEFORE = "21.5"
+
+
+def run(folder: Path, **variables: str) -> list[str]:
+    command = [sys.executable, str(folder / "main.py")]
+    inherited = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    done = subprocess.run(command, env=inherited | variables, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    """A small program, compiled once."""
+    folder = tmp_path_factory.mktemp("program")
+    for name, text in FILES.items():
+        (folder / name).write_text(text)
+    assert run(folder) == [BEFORE, "0"]
+    return folder
+
+
+def edited(folder: Path, file: str, old: str, new: str) -> list[str]:
+    text = FILES[file]
+    assert old in text
+    try:
+        (folder / file).write_text(text.replace(old, new))
+        return run(folder)
+    finally:
+        (folder / file).write_text(text)
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("law.py", '"""Docstring."""', '"""Another docstring,\n\n    of three lines."""'),
+        ("law.py", "# comment", "# another comment"),
+        ("law.py", "friction(x, exponent=1.0)", "friction(x: float, exponent: float = 1.0) -> float"),
+        ("main.py", "\n\n@compiled", "\n\n\n# lower in the file\n\n@compiled"),
+        ("table.py", "OFFSET", "UNUSED = 5.0\nOFFSET"),
+    ],
+)
+def test_text_that_is_not_compiled_may_change(folder, file, old, new):
+    assert edited(folder, file, old, new) == [BEFORE, "1"]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "value"),
+    [
+        ("law.py", "0.5 * x**", "1.5 * x**", "23.5"),
+        ("law.py", "exponent=1.0", "exponent=1.0, more=1.0", BEFORE),
+        ("law.py", "0.0 * x", "1.0 + x", "23.5"),
+        ("law.py", "16.0 +", "32.0 +", "37.5"),
+        ("main.py", "RATE = 2.0", "RATE = 4.0", "22.5"),
+        ("main.py", "0.25, 0.5", "0.25, 1.5", "22.5"),
+        ("table.py", "4.0", "5.0", "22.5"),
+    ],
+)
+def test_what_is_compiled_may_not_change(folder, file, old, new, value):
+    assert edited(folder, file, old, new) == [value, "0"]
+    assert run(folder) == [BEFORE, "1"]
+
+
+def test_options_and_switches_tell_programs_apart(folder):
+    options = "from slipgym._numba.compiled import unlocked as compiled"
+    assert edited(folder, "law.py", "from slipgym._numba.compiled import compiled", options)[1] == "0"
+    assert run(folder, SLIPGYM_NUMBA_DISABLE="prefetch") == [BEFORE, "0"]
+    assert run(folder, SLIPGYM_NUMBA_DISABLE="prefetch") == [BEFORE, "1"]
+
+
+def test_a_damaged_file_is_compiled_again(folder):
+    stored = list((folder / "__pycache__").glob("main.work-*.nbc"))
+    assert stored
+    contents = [path.read_bytes() for path in stored]
+    for path, content in zip(stored, contents, strict=True):
+        path.write_bytes(content[: len(content) // 2])
+    assert run(folder) == [BEFORE, "0"]
+    assert run(folder) == [BEFORE, "1"]
+
+
+def test_only_the_newest_programs_are_kept(tmp_path, monkeypatch):
+    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))
+
+    @compiled
+    def first(values):
+        return values[0]
+
+    for length in range(1, VARIANTS + 3):
+        first((1.0,) * length)
+    assert len(list(tmp_path.rglob("*.nbc"))) == VARIANTS
+    first.recompile()
+    assert sum(first.stats.cache_hits.values()) == 0
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="the temporary folder is the user's already")
+def test_without_a_writable_folder_programs_are_kept_among_temporary_files(tmp_path, monkeypatch):
+    blocked = tmp_path / "a file"
+    blocked.touch()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(config, "CACHE_DIR", str(blocked))
+    found = program_folder(__file__)
+    assert found is not None
+    assert found.is_relative_to(tmp_path)
+    assert found.parent.stat().st_mode & 0o077 == 0
+    found.parent.chmod(0o777)  # others could store a program there
+    folders._program_folder.cache_clear()
+    with pytest.warns(UserWarning, match="NUMBA_CACHE_DIR"):
+        assert program_folder(__file__) is None
+    folders._program_folder.cache_clear()
+
+
+def test_processes_that_start_together_compile_once(tmp_path):
+    (tmp_path / "law.py").write_text(LAW)
+    (tmp_path / "table.py").write_text("OFFSET = 4.0")
+    (tmp_path / "main.py").write_text(MAIN)
+    with ThreadPoolExecutor(3) as pool:
+        done = list(pool.map(run, [tmp_path] * 3))
+    assert sorted(done) == [[BEFORE, "0"], [BEFORE, "1"], [BEFORE, "1"]]
+    assert not list(tmp_path.rglob("*.lock"))
+
+
+def test_a_process_that_waits_too_long_goes_on(tmp_path):
+    path = tmp_path / "a.lock"
+    with only_one(path):
+        with only_one(path, patience=0.1):
+            assert path.exists()
+        assert path.exists()
+    assert not path.exists()
+    path.touch()  # left by a process that was killed
+    with only_one(path, patience=60.0):
+        pass
