@@ -66,7 +66,7 @@ def njit(function: Any = None, **options: Any) -> Any:
     return decorate if function is None else decorate(function)
 
 
-FORMAT = "2"
+FORMAT = "3"
 """Of the stored programs: another one makes none of the old ones valid."""
 
 

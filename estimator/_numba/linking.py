@@ -10,7 +10,6 @@ from __future__ import annotations
 import gc
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from functools import cache
 from typing import Any
 
 from llvmlite import binding
@@ -20,7 +19,8 @@ from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.target_extension import cpu_target, jit_registry
-from numba.core.targetconfig import TargetConfig
+
+from estimator._numba.quicker import quick_compiler
 
 
 def _shared(module: Any) -> Any:
@@ -82,6 +82,11 @@ class _ProgramLibrary(JITCodeLibrary):
         self._optimize_final_module()
         self._final_module.verify()
         self._finalize_final_module()
+
+    def _optimize_final_module(self) -> None:
+        """Optimises once: numba first inlines with a pass of its own, for which nothing is left here."""
+        passes, builder = self._codegen._module_pass_manager(opt=2)
+        passes.run(self._final_module, builder)
 
 
 def _is_ours(name: str) -> bool:
@@ -165,14 +170,11 @@ def _compiling() -> Iterator[None]:
 
         return part
 
-    with global_compiler_lock, resting():
+    with global_compiler_lock, resting(), quick_compiler():
         dict.__setitem__(jit_registry, cpu_target, decorator)
-        compare, TargetConfig.__eq__ = TargetConfig.__eq__, _same_options  # type: ignore[method-assign]
-        options_hash, TargetConfig.__hash__ = TargetConfig.__hash__, _options_hash  # type: ignore[method-assign]
         try:
             yield
         finally:
-            TargetConfig.__eq__, TargetConfig.__hash__ = compare, options_hash  # type: ignore[method-assign]
             dict.__setitem__(jit_registry, cpu_target, before)
 
 
@@ -186,24 +188,6 @@ def resting() -> Iterator[None]:
     finally:
         if collecting:
             gc.enable()
-
-
-_compare = TargetConfig.__eq__
-
-
-def _same_options(own: TargetConfig, other: object) -> bool:
-    """`TargetConfig.__eq__`, quick if the same options are set: numba compares them at every call."""
-    return own is other or own._values == getattr(other, "_values", None) or _compare(own, other)
-
-
-def _options_hash(own: TargetConfig) -> int:
-    """`TargetConfig.__hash__`, which depends on the names of all options alone."""
-    return _options_hash_of(type(own))
-
-
-@cache
-def _options_hash_of(kind: type[TargetConfig]) -> int:
-    return hash(tuple(sorted(kind.options)))
 
 
 class _Key:

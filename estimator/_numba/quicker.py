@@ -1,0 +1,72 @@
+"""Shortcuts of numba's compiler: each computes what the original does.
+
+They apply while a program is compiled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from typing import Any
+
+from numba.core.targetconfig import TargetConfig
+from numba.core.types import Boolean, Function, Number, UniTuple
+from numba.core.types.functions import BaseFunction
+
+_compare = TargetConfig.__eq__
+_resolve = BaseFunction.get_call_type
+_resolved: dict[Any, Any] = {}
+
+
+@contextmanager
+def quick_compiler() -> Iterator[None]:
+    """Numba's compiler with the shortcuts of this file."""
+    shortcuts = (
+        (TargetConfig, "__eq__", _same_options),
+        (TargetConfig, "__hash__", _options_hash),
+        (BaseFunction, "get_call_type", _call_type),
+    )
+    before = [getattr(owner, name) for owner, name, _ in shortcuts]
+    for owner, name, shortcut in shortcuts:
+        setattr(owner, name, shortcut)
+    try:
+        yield
+    finally:
+        for (owner, name, _), original in zip(shortcuts, before, strict=True):
+            setattr(owner, name, original)
+
+
+def _same_options(own: TargetConfig, other: object) -> bool:
+    """`TargetConfig.__eq__`, which numba calls at every call of a function that it compiles."""
+    if own is other:
+        return True
+    mine, others = own._values, getattr(other, "_values", None)
+    if mine == others:
+        return True
+    if others is not None and type(own) is type(other) and mine.keys() == others.keys():
+        return False
+    return _compare(own, other)
+
+
+def _options_hash(own: TargetConfig) -> int:
+    """`TargetConfig.__hash__`, which depends on the names of all options alone."""
+    return _options_hash_of(type(own))
+
+
+@cache
+def _options_hash_of(kind: type[TargetConfig]) -> int:
+    return hash(tuple(sorted(kind.options)))
+
+
+def _call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
+    """`BaseFunction.get_call_type`, which tries all that numba knows of an operator at each of its uses."""
+    if kws or type(function) is not Function or not all(isinstance(kind, _SIMPLE) for kind in args):
+        return _resolve(function, context, args, kws)
+    key = function, args
+    if key not in _resolved:
+        _resolved[key] = _resolve(function, context, args, kws)
+    return _resolved[key]
+
+
+_SIMPLE = Number, Boolean, UniTuple
