@@ -20,6 +20,7 @@ print(held["wrench"][0, 0])
 """
 
 
+@pytest.mark.slow  # it compiles the contact three times
 def test_an_edited_kernel_is_compiled_again(tmp_path):
     root, copy = Path(slipgym.__file__).parents[1], tmp_path / "slipgym"
     shutil.copytree(root / "slipgym", copy, ignore=shutil.ignore_patterns("__pycache__"))

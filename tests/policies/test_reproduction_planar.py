@@ -73,6 +73,7 @@ def test_the_grip_rises_too_slowly_for_the_heuristic(record):
     assert np.median(mechanism.rises(record)) < 150.0
 
 
+@pytest.mark.slow
 def test_a_run_does_not_depend_on_the_number_of_processes(tmp_path, monkeypatch):
     monkeypatch.setattr("policies.research.reproduction.planar.TABLES", {"planar": ["plastic"]})
     one, two = (

@@ -24,8 +24,8 @@ def test_help_teaches(tmp_path):
     assert "study.py full --jobs 2" in done.stdout
 
 
-def test_an_unknown_study_is_refused_by_name(tmp_path):
-    done = call(tmp_path, "quik")
-    assert done.returncode == 2
+def test_an_unknown_study_is_refused_by_name(tmp_path, invoke):
+    done = invoke("study", "quik")
+    assert done.exit_code == 2
     assert "quick" in done.stderr
     assert list(tmp_path.iterdir()) == []

@@ -1,35 +1,25 @@
 """Every command line takes every spelling of a task's name, and its help shows the canonical one."""
 
-import importlib.util
-from pathlib import Path
-
 import pytest
-from typer.testing import CliRunner
 
 from policies import command
 from policies.evaluation import load_experiment
 
-ROOT = Path(__file__).resolve().parents[2]
 SPELLINGS = ["hold", "Hold", "slipgym/Hold-v0", "slipgym.tasks.hold:TASK"]
 spelled = pytest.mark.parametrize("name", SPELLINGS)
 SHORT = ["--option", "duration=0.2"]
 
 
-def script(name):
-    """A script as a module."""
-    spec = importlib.util.spec_from_file_location(f"script_{name}", ROOT / "scripts" / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def called(name, *arguments):
+@pytest.fixture
+def called(invoke):
     """What a script prints."""
-    done = CliRunner().invoke(script(name).app, [*map(str, arguments)], catch_exceptions=False)
-    assert done.exit_code == 0, done.output
-    return done.output
+
+    def call(name, *arguments):
+        done = invoke(name, *arguments)
+        assert done.exit_code == 0, done.output
+        return done.output
+
+    return call
 
 
 @spelled
@@ -67,7 +57,7 @@ def test_compare_learned(name, monkeypatch):
 
 
 @spelled
-def test_play_and_record(name, tmp_path):
+def test_play_and_record(name, tmp_path, called):
     assert "held" not in called("play", name, "--video", tmp_path / "a.gif", *SHORT)
     assert (tmp_path / "a.gif").exists()
     assert "a.csv" in called("record", name, tmp_path / "a.csv", *SHORT)
@@ -93,7 +83,7 @@ def test_settings_of_the_environment_add_up(capsys):
 @pytest.mark.parametrize(
     "name", ["train", "evaluate", "play", "record", "study", "compare_learned", "compare_engines"]
 )
-def test_help_shows_the_canonical_name(name):
+def test_help_shows_the_canonical_name(name, called):
     text = " ".join(called(name, "--help").split())
     assert "linear_slip" in text
     assert "LinearSlip" in text

@@ -21,6 +21,7 @@ def test_a_wrist_that_accelerates_breaks_the_object_away_at_the_static_limit(nam
     assert 100.0 * abs(load - 1.0) < BOUND
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["planar", "bullet"])
 def test_patches_break_away_at_the_same_limit(engine):
     load = break_away(DIRECTIONS["+x"], engine=engine, contact="distributed")

@@ -4,7 +4,7 @@ import pytest
 
 from slipgym.validation import EXPERIMENTS, Figure
 
-SLOW = {"accelerated", "disc", "distributed", "patch_steps", "slides", "soft"}
+SLOW = {"accelerated", "creep", "disc", "distributed", "patch_steps", "slides", "soft"}
 CASES = [
     pytest.param(experiment, id=experiment.__name__, marks=[pytest.mark.slow] * (experiment.__name__ in SLOW))
     for experiment in EXPERIMENTS

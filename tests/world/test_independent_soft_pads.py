@@ -42,7 +42,7 @@ def test_friction_falls_with_the_load(force, contact, engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("force", [1.0, 5.0, 12.0])
+@pytest.mark.parametrize("force", [pytest.param(1.0, marks=pytest.mark.slow), 5.0, 12.0])
 def test_the_contact_grows_with_the_load(force, engine):
     """A spin in the hand has the torque of the radius at the load, and the pad's radius is the largest."""
     with bench({"radius_exponent": 1.0 / 3.0}, engine, force=force, inertia=1e-4) as held:

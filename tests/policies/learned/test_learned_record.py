@@ -34,6 +34,7 @@ def test_every_sample_within_its_steps_is_kept(policy_folder, tmp_path):
     )
 
 
+@pytest.mark.slow  # it compiles for a sensor with more samples
 def test_more_samples_than_a_sensor_keeps_are_refused():
     config = {"sensors": {"force_torque": {"rate": 7560}}}  # 63 in a control step
     with pytest.raises(ValueError, match=r"rate = 7560 Hz: 65 samples.* at most 64"):
