@@ -82,14 +82,14 @@ def _players(env_id: str, size: int) -> Iterator[tuple[str, Act, dict[str, Any]]
 
 
 def _random(env_id: str, forces: tuple[float, float], size: int) -> Act:
-    """Random forces within bounds [N]; the wrist, where it can be moved, at random as well."""
+    """Random forces within bounds [N]; the wrist, where an action can move it, stays."""
     env: Any = gym.make(env_id, engine="planar").unwrapped
     width, bounds = env.action_space.shape[0], action_bounds(env.config.gripper, forces)
     env.close()
     rng = np.random.default_rng(0)
 
     def act(_: np.ndarray, __: np.ndarray) -> np.ndarray:
-        actions = rng.uniform(-1.0, 1.0, (size, width))
+        actions = np.zeros((size, width))
         actions[:, 0] = rng.uniform(*bounds, size)
         return actions.astype(np.float32)
 
