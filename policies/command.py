@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import policies
 from estimator.records import parse_settings
@@ -52,21 +53,57 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if given.episodes < 1 or given.first < 0:
         parser.error("--episodes must be a whole number >= 1 and --first one >= 0")
     try:
-        changes = parse_settings(given.set)
-        found = []
-        for outcome in episodes(given.policy, given.episodes, given.first, given.task, changes):
-            found.append(outcome)
-            if sys.stderr.isatty():
-                print(f"\repisode {len(found)} of {given.episodes}", end="", file=sys.stderr)
+        print(
+            outcome_of(
+                given.policy, given.episodes, given.first, given.task, environment_arguments(given.set)
+            )
+        )
     except (FileNotFoundError, TypeError, ValueError) as error:
         parser.error(str(error))
+
+
+def environment_arguments(texts: Sequence[str]) -> dict[str, Any]:
+    """Reads `name=value` pairs; `friction_source=true` is a name, which YAML takes for a truth value.
+
+    Args:
+        texts: Such as ["friction_source=true", "engine=planar"].
+
+    Raises:
+        ValueError: One has no "=", or its value is no YAML.
+    """
+    values = parse_settings(texts)
+    if values.get("friction_source") is True:
+        values["friction_source"] = "true"
+    return values
+
+
+def outcome_of(policy: str, count: int, first: int, task: str | None, changes: Mapping[str, Any]) -> str:
+    """Runs episodes of a policy in its environment; returns a line with its success and means.
+
+    Args:
+        policy: Folder of a learned policy, module:class, or a name.
+        count: Number of episodes.
+        first: Number of the first held-out seed.
+        task: For a controller that serves every task.
+        changes: Arguments of the environment instead of those of the training.
+
+    Raises:
+        FileNotFoundError: There is no such policy.
+        TypeError: An argument of the environment is of the wrong type.
+        ValueError: A name or value is wrong.
+    """
+    found = []
+    for outcome in episodes(policy, count, first, task, changes):
+        found.append(outcome)
+        if sys.stderr.isatty():
+            print(f"\repisode {len(found)} of {count}", end="", file=sys.stderr)
     if sys.stderr.isatty():
         print(file=sys.stderr)
     n = len(found)
     solved, dropped = sum(one.success for one in found), sum(one.dropped for one in found)
     reward, time = (sum(getattr(one, name) for one in found) / n for name in ("reward", "time"))
     means = f"means: reward {reward:.2f}, time {time:.2f} s"
-    print(f"{given.policy}: solved {solved} of {n}, dropped {dropped}; {means}")
+    return f"{policy}: solved {solved} of {n}, dropped {dropped}; {means}"
 
 
 if __name__ == "__main__":

@@ -1,44 +1,6 @@
-"""Compares the pretrained policies with the controllers and with the best constant grip."""
+"""The command `slipgym compare-learned`."""
 
-from typing import Annotated
-
-import typer
-
-from slipgym.registration import TASK_MODULES
-
-TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
-app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-
-
-@app.command()
-def main(
-    tasks: Annotated[
-        list[str] | None,
-        typer.Argument(
-            help=f"Of {', '.join(TASKS)} (also LinearSlip or ids); all if none.", show_default=False
-        ),
-    ] = None,
-    trials: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
-    engine: Annotated[str, typer.Option(help="What moves the bodies: bullet or planar.")] = "bullet",
-    randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "train",
-    jobs: Annotated[int, typer.Option(help="Processes; -1: one per core.")] = 1,
-) -> None:
-    """Prints what each policy achieves in the same episodes, what learning adds, what friction adds."""
-    from policies.research import compare_learned
-    from policies.research.leaderboard.tables import markdown
-
-    try:
-        for task in tasks or TASKS:
-            found = compare_learned.trials_of(task, trials, engine, randomization, jobs)
-            tables = (
-                compare_learned.outcomes(found),
-                compare_learned.gains(found),
-                compare_learned.benefit(found),
-            )
-            typer.echo("\n".join([f"\n{task}\n", *map(markdown, tables)]))
-    except (ValueError, FileNotFoundError) as error:
-        raise typer.BadParameter(str(error)) from error
-
+from policies.commands.compare_learned import app
 
 if __name__ == "__main__":
     app()

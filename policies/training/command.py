@@ -1,4 +1,4 @@
-"""Turns the arguments of `scripts/train.py` into what is to be done."""
+"""Turns the arguments of `slipgym train` into what is to be done."""
 
 from __future__ import annotations
 
@@ -10,21 +10,6 @@ from typing import Any
 from policies.training import files, folder
 from policies.training.config import Training
 from slipgym.tasks import find
-
-MANY = ("--seeds", "--friction-source", "--set")
-"""Options that take several values, as in --seeds 0 1 2."""
-
-
-def expanded(arguments: Sequence[str]) -> list[str]:
-    """The arguments with the name of such an option before each of its values."""
-    found, option = [], ""
-    for argument in arguments:
-        if argument.startswith("--"):
-            option = argument if argument in MANY else ""
-            found.append(argument)
-        else:
-            found += [option, argument] if option and found[-1] != option else [argument]
-    return found
 
 
 def chosen(name: str | None, options: Mapping[str, Any], texts: Sequence[str]) -> Training:

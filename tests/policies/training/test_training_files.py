@@ -74,16 +74,6 @@ def test_assignments_win_over_options_and_both_over_the_file():
     assert chosen.ppo.n_steps == files.load("linear_slip").ppo.n_steps
 
 
-def test_options_take_several_values():
-    line = ["linear_slip", "--seeds", "0", "1", "2", "--budget", "5", "--set", "a=1", "b=2", "--sweep", "3"]
-    assert command.expanded(line) == [
-        *["linear_slip", "--seeds", "0", "--seeds", "1", "--seeds", "2", "--budget", "5"],
-        *["--set", "a=1", "--set", "b=2", "--sweep", "3"],
-    ]
-    repeated = ["--seeds", "0", "--seeds", "1"]
-    assert command.expanded(repeated) == repeated
-
-
 def test_no_training_seed_is_held_out():
     last = seeds.training(seeds.RUNS - 1) + seeds.ROWS - 1
     assert last == seeds.held_out(0) - 1

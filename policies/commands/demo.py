@@ -1,0 +1,19 @@
+"""Runs a short evaluation with figures."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from policies.commands import evaluate
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command()
+def main(
+    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
+    jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
+) -> None:
+    """Compare a controller with estimated, true and nominal friction; prints a table and writes figures."""
+    evaluate.main(demo=True, output=output, jobs=jobs)

@@ -1,0 +1,67 @@
+"""Runs a friction estimator on a record of forces and slip velocities."""
+
+from pathlib import Path
+from typing import Annotated
+
+try:
+    import typer
+
+    from estimator import DEFAULT
+except ModuleNotFoundError as error:
+    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym estimate examples/linear_slip_wood.csv.gz
+  slipgym estimate log.csv --columns examples/columns.yaml
+  slipgym estimate forces.parquet --velocity velocities.parquet --allow-gaps
+  slipgym estimate log.csv --estimator rls --set heuristic=false --output /tmp/runs
+\n
+A record holds one finger: the time t [s], the wrench f_x, f_y, f_n, tau [N, N, N, N m] and the slip
+twist v_x, v_y, omega [m/s, m/s, rad/s]; cells are empty where a stream has no sample. Other names,
+units and signs: --columns. docs/records.md describes the format and the files of a run.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG)
+def main(
+    log: Annotated[Path, typer.Argument(help="csv, csv.gz or parquet.", show_default=False)],
+    columns: Annotated[
+        Path | None, typer.Option(help="YAML: which column is what, its unit and sign.", show_default=False)
+    ] = None,
+    velocity: Annotated[
+        Path | None, typer.Option(help="A file of its own for the velocities.", show_default=False)
+    ] = None,
+    estimator: Annotated[str, typer.Option(help="Name of the estimator.")] = DEFAULT,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Its parameters; repeatable.")
+    ] = None,
+    allow_gaps: Annotated[
+        bool, typer.Option("--allow-gaps", help="Go on after a gap, with the estimator reset.")
+    ] = False,
+    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
+) -> None:
+    """Run a friction estimator on a record of one finger.
+
+    Each velocity sample is paired with the newest force at or before it. Writes a folder with the estimates,
+    a summary and a figure. Prints the final values, warnings about implausible ones, and what was not
+    observable.
+    """
+    try:
+        from estimator import records
+        from slipgym.atomic_io import new_folder
+
+        record = records.load(log, records.load_columns(columns), velocity)
+        result = records.estimate(record, estimator, allow_gaps, **records.parse_settings(set_ or ()))
+        path = output.expanduser().resolve() / records.run_name(log)
+        with new_folder(path) as folder:
+            records.write(result, folder)
+    except ModuleNotFoundError as error:
+        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+    except (ValueError, OSError) as error:
+        raise typer.BadParameter(str(error)) from error
+    typer.echo(f"{records.report(result)}\n\nLook at:")
+    for name in ("estimates.png", "summary.md", "estimates.csv"):
+        typer.echo(f"  {path / name}")

@@ -1,0 +1,92 @@
+"""Compares policies by what they know about friction."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from policies.commands.several import taking_several
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym evaluate --demo
+  slipgym evaluate linear_slip hold --jobs 2
+  slipgym evaluate hold --trials 20 --friction-source estimated --friction-source true
+  slipgym evaluate --policy hold --trials 20 --set friction_source=true engine=planar
+  slipgym evaluate my_experiment.yaml --seed 1 --output /tmp/runs
+\n
+An experiment is a YAML file; configs/experiments/ holds those that come with slipgym (linear_slip,
+rotational_slip, hinge, planar_slip, hold, demo), and docs/evaluation.md says what their keys mean and what
+a run writes.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG, cls=taking_several("--set"))
+def main(
+    experiments: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Names of experiments (a task's: linear_slip, also LinearSlip), or paths of YAML files.",
+            show_default=False,
+        ),
+    ] = None,
+    demo: Annotated[bool, typer.Option("--demo", help="Run the experiment 'demo': under a minute.")] = False,
+    trials: Annotated[int | None, typer.Option(help="Trials per cell instead of the experiment's.")] = None,
+    jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
+    friction_source: Annotated[
+        list[str] | None, typer.Option(help="Keep only this source or label of the experiment; repeatable.")
+    ] = None,
+    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
+    seed: Annotated[int | None, typer.Option(help="Seed instead of the experiment's.")] = None,
+    policy: Annotated[
+        str | None,
+        typer.Option(
+            help="Instead: one policy in its environment, a name, module:class or folder of a learned one.",
+            show_default=False,
+        ),
+    ] = None,
+    task: Annotated[
+        str | None, typer.Option(help="With --policy: for a controller of every task.", show_default=False)
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="With --policy: arguments of its environment."),
+    ] = None,
+) -> None:
+    """Run experiments: policies x friction information x materials.
+
+    Each writes one folder with the table of trials, a summary with confidence intervals and figures, and
+    prints where to look.
+    """
+    if policy is not None:
+        if demo or experiments:
+            raise typer.BadParameter("give experiments or --policy")
+        typer.echo(_outcome(policy, trials or 100, seed, task, set_ or []))
+        return
+    from policies import evaluation
+
+    if demo == bool(experiments):
+        known = ", ".join(evaluation.experiment_names())
+        raise typer.BadParameter(f"give experiments ({known}, or YAML files) or --demo")
+    try:
+        chosen = [
+            evaluation.narrowed(evaluation.load_experiment(name), trials, seed, friction_source or ())
+            for name in experiments or ["demo"]
+        ]
+    except (ValueError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error)) from error
+    for experiment in chosen:
+        typer.echo("\n" + evaluation.report(evaluation.evaluate(experiment, output, jobs)))
+
+
+def _outcome(policy: str, episodes: int, first: int | None, task: str | None, texts: list[str]) -> str:
+    from policies.command import environment_arguments, outcome_of
+    from policies.episodes import FRESH
+
+    try:
+        changes = environment_arguments(texts)
+        return outcome_of(policy, episodes, FRESH if first is None else first, task, changes)
+    except (FileNotFoundError, TypeError, ValueError) as error:
+        raise typer.BadParameter(str(error)) from error

@@ -1,0 +1,30 @@
+"""Writes a learned policy in the form that a controller on a robot can run."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym export-policy runs/ppo/policy --onnx policy.onnx
+\n
+docs/policy_files.md says what the graph's inputs and outputs are.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG)
+def main(
+    policy: Annotated[str, typer.Argument(help="Name of a learned policy, or its folder.")],
+    onnx: Annotated[Path, typer.Option(help="File to write, as an ONNX graph.")],
+) -> None:
+    """Write a learned policy as an ONNX graph, normalisation and clipping inside (extra `onnx`)."""
+    from policies.learned.onnx_graph import write_onnx
+
+    try:
+        write_onnx(policy, onnx)
+    except (ValueError, OSError) as error:
+        raise typer.BadParameter(str(error)) from error
+    typer.echo(f"graph: {onnx}")

@@ -1,0 +1,72 @@
+"""Watches a policy: in a window, or as a video where there is none."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym play linear_slip
+  slipgym play linear_slip --policy keyboard --material wood --speed 0.5
+  slipgym play linear_slip --policy linear_slip --video slide.mp4 --option distance=0.02
+  slipgym play hold --policy constant_force --video hold.gif --episodes 2 --speed 2
+\n
+In a window, --policy keyboard leaves the grip force to you: up grips harder, down more loosely; Escape ends.
+A window needs pygame (pip install 'slipgym[window]'). docs/rendering.md explains the picture.
+"""
+TASK = (
+    "Task: linear_slip, rotational_slip, hinge, planar_slip or hold; "
+    "LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
+)
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG)
+def main(
+    task: Annotated[str, typer.Argument(help=TASK, show_default=False)],
+    policy: Annotated[
+        str | None,
+        typer.Option(
+            help="Name or path of a policy, or keyboard; the task's own by default.", show_default=False
+        ),
+    ] = None,
+    video: Annotated[
+        Path | None, typer.Option(help="MP4 or GIF to write instead of a window.", show_default=False)
+    ] = None,
+    episodes: Annotated[int, typer.Option(help="How many.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed of the first episode.")] = 0,
+    speed: Annotated[float, typer.Option(help="Seconds of simulation per second of watching.")] = 1.0,
+    material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
+    friction_source: Annotated[str, typer.Option(help="estimated, true, nominal or none.")] = "estimated",
+    estimator: Annotated[str, typer.Option(help="A name of estimator.names().")] = "disc",
+    sensors: Annotated[str, typer.Option(help="realistic or ideal.")] = "realistic",
+    option: Annotated[
+        list[str] | None, typer.Option(metavar="NAME=VALUE", help="Option of the episode; repeatable.")
+    ] = None,
+) -> None:
+    """Play a task and show it; prints how each episode went."""
+    from estimator.records import parse_settings
+    from policies.play import watch
+
+    try:
+        outcomes = watch(
+            task,
+            policy,
+            video,
+            episodes,
+            seed,
+            speed,
+            parse_settings(option or (), "--option"),
+            material=material,
+            friction_source=friction_source,
+            estimator=estimator,
+            sensors=sensors,
+        )
+    except (ValueError, OSError, RuntimeError) as error:
+        raise typer.BadParameter(str(error)) from error
+    for outcome in outcomes:
+        typer.echo(outcome.words())
+    if video is not None:
+        typer.echo(f"video: {video}")

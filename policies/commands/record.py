@@ -1,0 +1,68 @@
+"""Records the sensors of one finger in a simulated episode, for `slipgym estimate`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym record linear_slip slide.csv.gz --material wood --option duration=3
+  slipgym record linear_slip forces.parquet --velocity velocities.parquet --finger 2
+  slipgym record hold hold.csv --policy constant_force
+\n
+Forces come at 1000 Hz and velocities at 120 Hz, at the pad centre, with the true friction beside them;
+cells are empty where a sensor has no sample. docs/records.md describes the format.
+"""
+TASK = (
+    "Task: linear_slip, rotational_slip, hinge, planar_slip or hold; "
+    "LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
+)
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG)
+def main(
+    task: Annotated[str, typer.Argument(help=TASK, show_default=False)],
+    files: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="[POLICY] RECORD",
+            help="csv, csv.gz or parquet to write; a policy before it is the same as --policy.",
+            show_default=False,
+        ),
+    ],
+    policy: Annotated[
+        str | None,
+        typer.Option(help="Name of a policy, or its folder; the task's own by default.", show_default=False),
+    ] = None,
+    velocity: Annotated[
+        Path | None, typer.Option(help="A file of its own for the velocities.", show_default=False)
+    ] = None,
+    finger: Annotated[int, typer.Option(help="1 or 2.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed of the environment.")] = 0,
+    material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
+    sensors: Annotated[str, typer.Option(help="realistic or ideal.")] = "realistic",
+    option: Annotated[
+        list[str] | None, typer.Option(metavar="NAME=VALUE", help="Option of the episode; repeatable.")
+    ] = None,
+) -> None:
+    """Run an episode and write what one finger's sensors said, with its truth."""
+    from estimator.records import parse_settings
+    from policies.evaluation.record_files import save_record
+    from policies.evaluation.sensor_record import record_sensors
+    from policies.play import own_policy
+
+    *before, last = files
+    if len(before) > (policy is None):
+        raise typer.BadParameter(f"one RECORD, and at most one POLICY before it, got {' '.join(files)}")
+    record = Path(last)
+    try:
+        policy = policy or (before[0] if before else own_policy(task))
+        options = parse_settings(option or (), "--option")
+        frame = record_sensors(task, policy, finger, seed, options, material=material, sensors=sensors)
+        save_record(frame, record, velocity)
+    except (ValueError, OSError) as error:
+        raise typer.BadParameter(str(error)) from error
+    typer.echo(f"{len(frame)} rows, {frame['t'].iloc[-1]:.2f} s: {record}")

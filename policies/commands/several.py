@@ -1,0 +1,35 @@
+"""Options of a command line that take several values, as in `--seeds 0 1 2`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import typer
+from typer.core import TyperCommand
+
+
+def expanded(arguments: Sequence[str], several: Sequence[str]) -> list[str]:
+    """The arguments with the name of such an option before each of its values.
+
+    Args:
+        arguments: Of a command line.
+        several: Names of the options, with their dashes.
+    """
+    found, option = [], ""
+    for argument in arguments:
+        if argument.startswith("--"):
+            option = argument if argument in several else ""
+            found.append(argument)
+        else:
+            found += [option, argument] if option and found[-1] != option else [argument]
+    return found
+
+
+def taking_several(*names: str) -> type[TyperCommand]:
+    """A class of commands whose options of these names take several values."""
+
+    class Command(TyperCommand):
+        def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
+            return super().parse_args(ctx, expanded(args, names))
+
+    return Command

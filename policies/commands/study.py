@@ -1,0 +1,50 @@
+"""Studies the benefit of friction information: controllers and learned policies with and without it."""
+
+import shlex
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym study quick
+  slipgym study full --jobs 2
+  slipgym study full --episodes 20 --task linear_slip --task hold
+  slipgym study my_study.yaml --learned runs/policies
+\n
+A study is a YAML file; configs/studies/ holds quick, short and full, and docs/study.md says what their keys
+mean. A study that was broken off goes on where it stopped; one that has changed runs only what is new.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG)
+def main(
+    study: Annotated[str, typer.Argument(help="Name of a study, or the path of a YAML file.")] = "quick",
+    episodes: Annotated[
+        int | None, typer.Option(min=1, help="Episodes per block instead of the study's.")
+    ] = None,
+    task: Annotated[
+        list[str] | None,
+        typer.Option(help="Keep only this task: linear_slip, also LinearSlip or its id; repeatable."),
+    ] = None,
+    kind: Annotated[list[str] | None, typer.Option(help="Only classic, or only learned; repeatable.")] = None,
+    learned: Annotated[str, typer.Option(help="Folder of learned policies instead of those shipped.")] = "",
+    jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
+    output: Annotated[Path, typer.Option(help="Folder for the study's own folder.")] = Path("runs"),
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the study's.")] = None,
+) -> None:
+    """Run a study and write its tables and one self-contained report, report.html."""
+    from policies.research import study as studies
+
+    try:
+        chosen = studies.narrowed(
+            studies.load_study(study), episodes=episodes, tasks=task, kinds=kind, learned=learned, seed=seed
+        )
+    except (ValueError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error)) from error
+    folder = studies.run_study(chosen, output, jobs, shlex.join(["python", *sys.argv]))
+    typer.echo("\n" + studies.words(chosen, folder))

@@ -1,0 +1,80 @@
+"""Trains slip-control policies."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from policies.commands.several import taking_several
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym train linear_slip
+  slipgym train --task linear_slip --algorithm sac --budget 300000
+  slipgym train linear_slip --seeds 0 1 2 --friction-source estimated true none --jobs 2
+  slipgym train linear_slip --set ppo.gamma=0.98 num_envs=16
+  slipgym train --resume runs/linear_slip__ppo__20260101-120000-000
+  slipgym train linear_slip --sweep 20 --ray local
+\n
+A configuration is a YAML file; configs/training/ holds those that come with slipgym, and docs/training.md
+says what their keys mean and what a run writes.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG, cls=taking_several("--seeds", "--friction-source", "--set"))
+def main(
+    configuration: Annotated[
+        str | None,
+        typer.Argument(
+            help="Name of a configuration (a task's: linear_slip, also LinearSlip), or path of a YAML file.",
+            show_default=False,
+        ),
+    ] = None,
+    task: Annotated[
+        str | None,
+        typer.Option(help="Task, instead of the configuration's: linear_slip, also LinearSlip or its id."),
+    ] = None,
+    algorithm: Annotated[str | None, typer.Option(help="ppo, recurrent_ppo, sac or tqc.")] = None,
+    friction_source: Annotated[list[str] | None, typer.Option(help="One or several: runs with each.")] = None,
+    randomization: Annotated[str | None, typer.Option(help="A preset or a YAML file.")] = None,
+    seeds: Annotated[
+        list[int] | None, typer.Option(help="One or several: a run for each.  [default: 0]")
+    ] = None,
+    budget: Annotated[int | None, typer.Option(help="Steps of all environments together.")] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="key=value, dotted; one or several.")
+    ] = None,
+    jobs: Annotated[int, typer.Option(help="Runs at once; -1: one per core.")] = 1,
+    ray: Annotated[str, typer.Option(help="Run on Ray: local, or a cluster's address.")] = "",
+    sweep: Annotated[int, typer.Option(min=0, help="Search hyperparameters with as many runs.")] = 0,
+    resume: Annotated[Path | None, typer.Option(help="Folder of a run or study to go on with.")] = None,
+    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
+) -> None:
+    """Train policies, one run for each seed and friction source; each keeps checkpoints and its curve."""
+    from policies.training import command
+
+    options = {
+        "task": task,
+        "algorithm": algorithm,
+        "environment.randomization": randomization,
+        "budget": budget,
+    }
+    sources, sets = friction_source or [], set_ or []
+    try:
+        if resume is not None:
+            others = {"a configuration": configuration, "--seeds": seeds, "--friction-source": sources}
+            others |= {
+                "--set": sets,
+                "--sweep": sweep,
+                **{f"--{name.rpartition('.')[2]}": value for name, value in options.items()},
+            }
+            work = command.resumed(resume, others, jobs, ray)
+        else:
+            config = command.chosen(configuration, options, sets)
+            path, work = command.begun(config, seeds or [], sources, sweep, output, jobs, ray)
+            typer.echo(f"If it is interrupted: slipgym train --resume {path}")
+    except (ValueError, FileNotFoundError, ModuleNotFoundError) as error:
+        raise typer.BadParameter(str(error)) from error
+    typer.echo(work())

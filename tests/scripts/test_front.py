@@ -1,0 +1,92 @@
+"""The command `slipgym`: its help, its sub-commands, names that are misspelt."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import gymnasium as gym
+import pytest
+from typer.testing import CliRunner
+
+import slipgym
+from policies.commands import front
+from policies.commands.several import expanded
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def slip(*arguments):
+    return CliRunner().invoke(front.app, [*map(str, arguments)], prog_name="slipgym", catch_exceptions=False)
+
+
+def test_help_names_every_command():
+    done = slip("--help")
+    assert done.exit_code == 0
+    lines = {line.split()[0] for line in done.output.splitlines() if line.startswith("  ") and line.strip()}
+    assert lines >= set(front.COMMANDS)
+    assert "..." not in done.output.partition("Commands")[2]  # no line is cut
+
+
+@pytest.mark.parametrize("name", front.COMMANDS)
+def test_every_command_explains_itself(name):
+    done = slip(name, "--help")
+    assert done.exit_code == 0
+    assert f"Usage: slipgym {name}" in done.output
+
+
+def test_every_command_is_a_script_of_the_same_name():
+    commands = {path.stem.replace("_", "-") for path in (ROOT / "scripts").glob("*.py")}
+    assert {*front.COMMANDS} - commands == {"demo", "warmup"}
+
+
+def test_misspelt_names_get_suggestions():
+    done = slip("evaluat")
+    assert done.exit_code == 2
+    assert "Did you mean 'evaluate'" in done.output
+    done = slip("validate", "--only", "brekaway")
+    assert done.exit_code == 2
+    assert "unknown name 'brekaway'" in done.output
+
+
+def test_one_policy_is_evaluated_where_experiments_are():
+    settings = "engine=planar", "friction_source=true"
+    done = slip("evaluate", "--policy", "hold", "--trials", 2, "--set", *settings)
+    assert done.exit_code == 0
+    assert "hold: solved 2 of 2" in done.output
+    done = slip("evaluate", "hold", "--policy", "hold")
+    assert done.exit_code == 2
+    assert "give experiments or --policy" in done.output
+
+
+def test_warmup_compiles_what_is_asked_for(monkeypatch):
+    made, make = [], gym.make
+
+    def noted(name, **options):
+        made.append((name, options))
+        return make(name, **options)
+
+    monkeypatch.setattr(gym, "make", noted)
+    done = slip("warmup", "--task", "hold", "--engine", "planar")
+    assert done.exit_code == 0
+    assert [(name, options["engine"]) for name, options in made] == [("slipgym/Hold-v0", "planar")]
+    done = slip("warmup", "--task", "hopd")
+    assert done.exit_code == 2
+    assert "did you mean" in " ".join(done.output.split())
+
+
+def test_the_package_is_the_command():
+    done = subprocess.run(
+        [sys.executable, "-m", "slipgym", "--version"], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == f"slipgym {slipgym.__version__}"
+
+
+def test_options_take_several_values():
+    several = ("--seeds", "--set")
+    line = ["linear_slip", "--seeds", "0", "1", "2", "--budget", "5", "--set", "a=1", "b=2", "--sweep", "3"]
+    assert expanded(line, several) == [
+        *["linear_slip", "--seeds", "0", "--seeds", "1", "--seeds", "2", "--budget", "5"],
+        *["--set", "a=1", "--set", "b=2", "--sweep", "3"],
+    ]
+    repeated = ["--seeds", "0", "--seeds", "1"]
+    assert expanded(repeated, several) == repeated
