@@ -1,6 +1,6 @@
 """Compiles the environments ahead of their first use."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -38,7 +38,7 @@ def main(
         ids = [find(name).id for name in task] if task else [*TASK_MODULES]
         wanted = [(env_id, kind) for kind in engine or ("bullet", "planar") for env_id in ids]
         for env_id, kind in tqdm(wanted, disable=None, leave=False):
-            options = {"engine": kind, "randomization": randomization, "sensors": sensors}
+            options: dict[str, Any] = {"engine": kind, "randomization": randomization, "sensors": sensors}
             env = gym.make(env_id, **options)
             env.reset(seed=0)
             env.step(env.action_space.sample())
