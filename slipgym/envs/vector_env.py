@@ -126,15 +126,22 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         if not (active | begins).all():
             waiting = np.flatnonzero(~(active | begins)).tolist()
             raise RuntimeError(f"call reset() before step(): environments {waiting[:8]} have no episode")
-        simulation, rows = self.simulation, np.flatnonzero(begins)
+        rows = np.flatnonzero(begins)
         self._ready, self._over = np.zeros((2, self.num_envs), dtype=bool)
-        table, buffers, meanwhile = self._actions.table, self._observer.buffers, partial(self._begin, rows)
         try:
-            simulation.step(chosen, table, self._frame_skip, active, buffers, meanwhile)
+            returned = self._advance(chosen, active, rows)
         except BaseException:
             self._ready.fill(False)  # those that began, too
             raise
         self._ready.fill(True)
+        return returned
+
+    def _advance(
+        self, chosen: np.ndarray, active: np.ndarray, rows: np.ndarray
+    ) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        """Step the active environments, begin episodes of some rows, and return what `step` returns."""
+        simulation, table, buffers = self.simulation, self._actions.table, self._observer.buffers
+        simulation.step(chosen, table, self._frame_skip, active, buffers, partial(self._begin, rows))
         self._observer.next(active)
         rewards, terminated, truncated = simulation.rewards, simulation.terminated, simulation.truncated
         self._pictures.keep(active)
