@@ -55,13 +55,15 @@ class Threads:
 
         others: list[Future[None]] = []
         try:
-            others += (self._threads().submit(work, left) for _ in range(self.count - 1))
+            for _ in range(self.count - 1):
+                others.append(self._threads().submit(work, left))
             work(islice(left, 1))  # it needs no lock: the others get it, and begin
             if meanwhile is not None:
                 meanwhile()
             work(left)
         finally:
-            _finish(others)
+            if others:
+                _finish(others)
         return results
 
     def close(self) -> None:
