@@ -12,7 +12,7 @@ from slipgym.envs.arguments import ScalarArguments, complete, documented
 from slipgym.envs.observer import first
 from slipgym.envs.setup import MakeSimulation, Setup
 from slipgym.envs.simulation import Simulation
-from slipgym.envs.state import EnvState, checked, restored_generator
+from slipgym.envs.state import EnvState, checked, restored_generator, restored_seed
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
 
@@ -192,19 +192,23 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
 
         Raises:
             TypeError: `state` is not a state.
-            ValueError: The state belongs to an environment with other arguments.
+            ValueError: The state belongs to an environment with other arguments, or no environment wrote it.
+                The environment is as before, or needs a reset if PyBullet refuses its part.
             RuntimeError: This environment is closed.
         """
         checked(state, EnvState).check({"task": self.task.name, **self._arguments})
         self.simulation.check_open()
-        generator = restored_generator(state.generator)
+        generator, seed = restored_generator(state.generator), restored_seed(state.seed)
+        if state.simulation is not None:
+            self.simulation.check_state(state.simulation, _ONE)
+            self._observer.check_state(state.frames, _ONE)
         self._ready = False
         if state.simulation is not None:
-            self.simulation.set_state(state.simulation)
+            self.simulation.set_state(state.simulation, _ONE)
             if self._renderer is not None:
                 self._renderer.begin()
-        self._observer.set_state(state.frames)
-        self._np_random, self._np_random_seed = generator, state.seed
+            self._observer.set_state(state.frames, _ONE)
+        self._np_random, self._np_random_seed = generator, seed
         self._ready = state.simulation is not None
 
     def _info(self) -> dict[str, Any]:
