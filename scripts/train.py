@@ -86,7 +86,11 @@ def main(
             typer.echo(f"If it is interrupted: python scripts/train.py --resume {path}")
     except (ValueError, FileNotFoundError, ModuleNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
-    typer.echo(work())
+    try:
+        typer.echo(work())
+    except (ValueError, OSError) as error:
+        typer.echo(f"error: {error}; what was trained so far is in the run's last checkpoint", err=True)
+        raise typer.Exit(1) from error
 
 
 if __name__ == "__main__":

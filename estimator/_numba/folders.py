@@ -35,17 +35,23 @@ def _program_folder(source: Path, chosen: str) -> Path | None:
         home = Path(AppDirs(appname="numba", appauthor=False).user_cache_dir)  # type: ignore[no-untyped-call]
         folders = [source / "__pycache__", home / name]
     for folder in folders:
-        if _is_writable(folder):
+        if folder.is_absolute() and _is_writable(folder):  # without a home it is "~"
             return folder
     own = _own_temporary_folder()
     if own is not None and _is_writable(own / name):
         return own / name
+    _warn()
+    return None
+
+
+@cache
+def _warn() -> None:
+    """Warn once in a process that nothing can be kept."""
     warnings.warn(
-        f"compiled functions of {source} cannot be kept: every process compiles them again. "
+        "compiled functions cannot be kept: every process compiles them again. "
         "Set NUMBA_CACHE_DIR to a folder that can be written",
         stacklevel=2,
     )
-    return None
 
 
 def _is_writable(folder: Path) -> bool:
@@ -59,10 +65,14 @@ def _is_writable(folder: Path) -> bool:
 
 def _own_temporary_folder() -> Path | None:
     """A folder that nobody but the user can write: loading a program from it runs code."""
+    try:
+        temporary = Path(tempfile.gettempdir())
+    except FileNotFoundError:  # none can be written
+        return None
     if not hasattr(os, "getuid"):
-        return Path(tempfile.gettempdir()) / "numba_programs"  # Windows: a folder of the user already
+        return temporary / "numba_programs"  # Windows: a folder of the user already
     user = os.getuid()
-    folder = Path(tempfile.gettempdir()) / f"numba_programs_{user}"
+    folder = temporary / f"numba_programs_{user}"
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
         state = folder.lstat()
