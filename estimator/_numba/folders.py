@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import tempfile
 import warnings
 from functools import cache
@@ -11,6 +10,8 @@ from pathlib import Path
 
 from numba.core import config
 from numba.misc.appdirs import AppDirs
+
+from estimator.own_folder import own_temporary_folder
 
 
 def program_folder(file: str) -> Path | None:
@@ -37,7 +38,8 @@ def _program_folder(source: Path, chosen: str) -> Path | None:
     for folder in folders:
         if folder.is_absolute() and _is_writable(folder):  # without a home it is "~"
             return folder
-    own = _own_temporary_folder()
+    own = own_temporary_folder("numba_programs")
+    # loading a program runs code: nobody else may write there
     if own is not None and _is_writable(own / name):
         return own / name
     _warn()
@@ -61,21 +63,3 @@ def _is_writable(folder: Path) -> bool:
             return True
     except OSError:
         return False
-
-
-def _own_temporary_folder() -> Path | None:
-    """A folder that nobody but the user can write: loading a program from it runs code."""
-    try:
-        temporary = Path(tempfile.gettempdir())
-    except FileNotFoundError:  # none can be written
-        return None
-    if not hasattr(os, "getuid"):
-        return temporary / "numba_programs"  # Windows: a folder of the user already
-    user = os.getuid()
-    folder = temporary / f"numba_programs_{user}"
-    try:
-        folder.mkdir(mode=0o700, exist_ok=True)
-        state = folder.lstat()
-    except OSError:
-        return None
-    return folder if folder.is_dir() and state.st_uid == user and not state.st_mode & 0o077 else None
