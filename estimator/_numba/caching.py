@@ -32,6 +32,12 @@ from estimator._numba.folders import program_folder
 from estimator._numba.linking import Kernel
 from estimator._numba.locking import only_one
 
+if numba.config.DISABLE_JIT:
+    raise ImportError(
+        "slipgym and its estimators need numba's compiler: unset NUMBA_DISABLE_JIT. To debug one compiled "
+        "function, call its `py_func`"
+    )
+
 VARIANTS = 16
 """Programs of one function that are kept, the newest: for other arguments, processors or earlier sources."""
 _UNREADABLE = (OSError, EOFError, ValueError, TypeError, LookupError, AttributeError, ImportError)

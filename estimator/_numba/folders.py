@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import tempfile
 import warnings
 from functools import cache
@@ -11,6 +10,8 @@ from pathlib import Path
 
 from numba.core import config
 from numba.misc.appdirs import AppDirs
+
+from estimator.own_folder import own_temporary_folder
 
 
 def program_folder(file: str) -> Path | None:
@@ -35,17 +36,24 @@ def _program_folder(source: Path, chosen: str) -> Path | None:
         home = Path(AppDirs(appname="numba", appauthor=False).user_cache_dir)  # type: ignore[no-untyped-call]
         folders = [source / "__pycache__", home / name]
     for folder in folders:
-        if _is_writable(folder):
+        if folder.is_absolute() and _is_writable(folder):  # without a home it is "~"
             return folder
-    own = _own_temporary_folder()
+    own = own_temporary_folder("numba_programs")
+    # loading a program runs code: nobody else may write there
     if own is not None and _is_writable(own / name):
         return own / name
+    _warn()
+    return None
+
+
+@cache
+def _warn() -> None:
+    """Warn once in a process that nothing can be kept."""
     warnings.warn(
-        f"compiled functions of {source} cannot be kept: every process compiles them again. "
+        "compiled functions cannot be kept: every process compiles them again. "
         "Set NUMBA_CACHE_DIR to a folder that can be written",
         stacklevel=2,
     )
-    return None
 
 
 def _is_writable(folder: Path) -> bool:
@@ -55,17 +63,3 @@ def _is_writable(folder: Path) -> bool:
             return True
     except OSError:
         return False
-
-
-def _own_temporary_folder() -> Path | None:
-    """A folder that nobody but the user can write: loading a program from it runs code."""
-    if not hasattr(os, "getuid"):
-        return Path(tempfile.gettempdir()) / "numba_programs"  # Windows: a folder of the user already
-    user = os.getuid()
-    folder = Path(tempfile.gettempdir()) / f"numba_programs_{user}"
-    try:
-        folder.mkdir(mode=0o700, exist_ok=True)
-        state = folder.lstat()
-    except OSError:
-        return None
-    return folder if folder.is_dir() and state.st_uid == user and not state.st_mode & 0o077 else None

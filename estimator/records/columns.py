@@ -57,11 +57,8 @@ def load_columns(path: str | os.PathLike[str] | None) -> Columns:
     """
     if path is None:
         return Columns()
-    path, yaml = Path(path), extra("yaml")
-    try:
-        values = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path.name}: {error}") from error
+    path, files = Path(path), extra("estimator.plain_files")
+    values = files.parse(files.content(path), path.name)
     if not isinstance(values, dict):
         raise ValueError(f"{path.name}: must be a mapping of names to columns, such as `f_n: Fz`")
     return Columns({key: _column(path.name, key, value) for key, value in values.items()})

@@ -31,10 +31,9 @@ def parse_settings(settings: Sequence[str], flag: str = "--set") -> dict[str, An
 
 
 def _value(source: str, text: str) -> Any:
-    yaml = extra("yaml")
     try:
-        value = yaml.safe_load(text)
-    except yaml.YAMLError as error:
+        value = extra("estimator.plain_files").parse(text, source)
+    except ValueError as error:
         raise ValueError(f"{source}: the value cannot be read") from error
     if isinstance(value, str):
         try:

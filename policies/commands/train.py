@@ -77,4 +77,8 @@ def main(
             typer.echo(f"If it is interrupted: slipgym train --resume {path}")
     except (ValueError, FileNotFoundError, ModuleNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
-    typer.echo(work())
+    try:
+        typer.echo(work())
+    except (ValueError, OSError) as error:
+        typer.echo(f"error: {error}; what was trained so far is in the run's last checkpoint", err=True)
+        raise typer.Exit(1) from error

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import stat
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from estimator.plain_files import content
 from policies.learned import tensors
 from policies.learned.description import FORMAT, TRAINING, WEIGHTS, Description
 from slipgym.atomic_io import new_folder
@@ -117,13 +117,7 @@ def _content(folder: Path, name: str) -> bytes:
     file, limit = folder / name, _LIMITS[name]
     if not file.exists():
         raise ValueError(f"{folder} is no policy: it lacks {name}")
-    if not stat.S_ISREG(file.stat().st_mode):
-        raise ValueError(f"{file}: is no regular file")
-    with file.open("rb") as stream:
-        data = stream.read(limit + 1)
-    if len(data) > limit:
-        raise ValueError(f"{file}: is larger than the {limit} bytes allowed")
-    return data
+    return content(file, limit)
 
 
 def _sha256(data: bytes) -> str:

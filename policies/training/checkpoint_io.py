@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import struct
 import zipfile
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -17,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from estimator.plain_files import check_regular
 from slipgym import atomic_io
 from slipgym.envs.simulation import SimulationState
 from slipgym.envs.state import EnvState, VectorState
@@ -29,8 +31,9 @@ _RECORDS = {
 }
 
 _FAULTS = (
-    *(zipfile.BadZipFile, EOFError, RuntimeError),  # no zip, or an encrypted one
-    *(KeyError, ValueError, TypeError, AttributeError, MemoryError),  # not a tree as `write` writes it
+    *(zipfile.BadZipFile, EOFError, RuntimeError, struct.error),  # no zip, or an encrypted one
+    # not a tree as `write` writes it
+    *(KeyError, ValueError, TypeError, AttributeError, MemoryError, OverflowError, SyntaxError),
 )
 
 
@@ -68,8 +71,11 @@ def read(path: Path) -> Any:
         FileNotFoundError: There is no such file.
         ValueError: It is damaged or no such file.
     """
+    check_regular(path)
     try:
         with zipfile.ZipFile(path) as archive:
+            if sum(entry.file_size for entry in archive.infolist()) > path.stat().st_size:
+                raise ValueError("its parts overlap")
             packed = [entry.filename for entry in archive.infolist() if entry.compress_type]
             if packed:  # what is stored as it is cannot be larger than the file
                 raise ValueError(f"{packed[0]!r} is compressed")

@@ -16,6 +16,7 @@ from torch import nn
 
 from policies.training import vector
 from policies.training.config import Training
+from policies.training.state_checks import check_array, check_counters, check_twister, fits
 
 _CLASSES: dict[str, Any] = {"ppo": PPO, "recurrent_ppo": RecurrentPPO, "sac": SAC, "tqc": TQC}
 _ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "elu": nn.ELU}
@@ -106,10 +107,38 @@ def set_state(model: Any, state: dict[str, Any]) -> None:
     Raises:
         ValueError: It is of a learner with another configuration.
     """
+    with fits("the checkpoint"):
+        _check(model, state)
+        _set_state(model, state)
+
+
+def _check(model: Any, state: dict[str, Any]) -> None:
+    """Raise ValueError if a state has other shapes than this learner, or positions beyond its arrays."""
+    n, observed = model.n_envs, model.observation_space.shape
+    check_counters(state["counters"], _COUNTERS)
+    for name, shape, kinds in zip(_LAST, ((n, *observed), (n,), (n, *observed)), "fbf", strict=True):
+        if state["last"][name] is not None:
+            check_array(name, state["last"][name], shape, kinds)
+    check_twister(state["generators"]["numpy"])
+    if "replay" in state:
+        saved, buffer = state["replay"], model.replay_buffer
+        size = buffer.buffer_size if saved["full"] else saved["pos"]
+        if type(saved["full"]) is not bool or type(saved["pos"]) is not int:
+            raise ValueError("replay.full must be true or false, replay.pos a whole number")
+        if not 0 <= saved["pos"] <= buffer.buffer_size:
+            raise ValueError(f"replay.pos = {saved['pos']} must be from 0 to {buffer.buffer_size}")
+        for name in _REPLAY:
+            own = getattr(buffer, name)
+            check_array(f"replay.{name}", saved[name], (size, *own.shape[1:]), own.dtype.kind)
+
+
+def _set_state(model: Any, state: dict[str, Any]) -> None:
     envs = model.get_vec_normalize_env()
     set_parameters(model, state)
-    for name, value in {**state["counters"], **state["last"]}.items():
-        setattr(model, name, _copied(value))
+    for name in _COUNTERS:
+        setattr(model, name, state["counters"][name])
+    for name in _LAST:
+        setattr(model, name, _copied(state["last"][name]))
     if state["lstm"] is not None:
         pi, vf = _tensors(state["lstm"])
         model._last_lstm_states = RNNStates(pi, vf)
@@ -150,6 +179,10 @@ def normalisation(envs: VecNormalize) -> dict[str, Any]:
 def set_normalisation(envs: VecNormalize, state: dict[str, Any]) -> None:
     """Go on from statistics."""
     moments = {"returns": envs.ret_rms, **({"observations": envs.obs_rms} if envs.norm_obs else {})}
+    for name, rms in moments.items():
+        for key in ("mean", "var"):
+            check_array(f"normalisation.{name}.{key}", np.asarray(state[name][key]), np.shape(rms.mean))
+    check_array("normalisation.running", state["running"], (envs.num_envs,))
     for name, rms in moments.items():
         rms.mean, rms.var, rms.count = (state[name][key] for key in ("mean", "var", "count"))
     envs.returns = state["running"].copy()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,8 @@ from policies.training import checkpoint_io, checkpoints, curve, export, folder,
 from policies.training import model as learners
 from policies.training.callback import TrainingCallback
 from policies.training.config import Training
+from policies.training.locking import only_process
+from policies.training.state_checks import fits
 from policies.training.tensorboard_writer import TensorboardWriter
 
 _COMMAND = "python scripts/train.py --resume {}"
@@ -32,13 +36,15 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
 
     Raises:
         FileNotFoundError: The folder holds no run.
-        ValueError: Its checkpoints are damaged.
+        ValueError: Its checkpoints are damaged, or another process trains it.
         OSError: It cannot be written.
     """
     config, seed = folder.order(path)
-    done = folder.result(path)
-    if done is not None:
-        return done
+    with only_process(path):
+        return folder.result(path) or _train(path, config, seed, progress, position)
+
+
+def _train(path: Path, config: Training, seed: int, progress: bool, position: int) -> dict[str, Any]:
     first = seeds.training(seed)
     episodes = min(config.num_envs, config.evaluation.episodes)
     training = vector.make(config, first, shaped=True)
@@ -46,7 +52,10 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
     try:
         model = learners.make(config, learners.normalised(config, training), first)
         state = checkpoints.last(path)
-        steps = state["learner"]["counters"]["num_timesteps"] if state else 0
+        if state:
+            with fits(f"{path}: the last checkpoint"):
+                learners.set_state(model, state["learner"])
+        steps = model.num_timesteps
         writer = TensorboardWriter(path / "tensorboard", steps)
         model.set_logger(Logger(None, [writer]))
         with tqdm(
@@ -54,8 +63,8 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
         ) as bar:
             callback = TrainingCallback(config, path, held_out, bar)
             if state:
-                learners.set_state(model, state["learner"])
-                callback.set_state(state["record"])
+                with fits(f"{path}: the last checkpoint"):
+                    callback.set_state(state["record"])
             if not callback.ended:
                 model.learn(config.budget - steps, callback, reset_num_timesteps=state is None)
         writer.close()
@@ -65,12 +74,25 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
         held_out.close()
 
 
+def _best(path: Path, callback: TrainingCallback) -> dict[str, Any]:
+    """The best checkpoint of a run, or the last one if the best is damaged and another is whole."""
+    try:
+        return checkpoint_io.read(checkpoints.best(path))
+    except (ValueError, FileNotFoundError) as error:
+        last = checkpoints.last(path)
+        if last is None:
+            raise
+        warnings.warn(f"{error}; the policy is that of the last checkpoint", stacklevel=2)
+        return {"row": asdict(callback.curve[-1]), "learner": last["learner"]}
+
+
 def _finish(
     path: Path, config: Training, seed: int, model: Any, callback: TrainingCallback
 ) -> dict[str, Any]:
     """Writes what a run leaves behind; the result last."""
-    best = checkpoint_io.read(checkpoints.best(path))
-    learners.set_parameters(model, best["learner"])
+    best = _best(path, callback)
+    with fits(f"{checkpoints.best(path)}: the checkpoint"):
+        learners.set_parameters(model, best["learner"])
     export.write(model, best["learner"]["normalisation"], config, path, seed, _COMMAND.format(path.name))
     with styled():
         curve.plot({path.name: [callback.curve]}).savefig(path / "curve.png", dpi=STYLE.dpi)

@@ -13,6 +13,7 @@ from policies.learned.residual import Underlying
 from policies.training.adapter import SlipVecEnv, make_vec_env
 from policies.training.config import Training
 from policies.training.residual import ResidualVecEnv
+from policies.training.state_checks import check_array
 from policies.training.success_bonus import BonusVecEnv
 from slipgym.tasks import find
 
@@ -118,6 +119,10 @@ def set_state(envs: Any, state: dict[str, Any]) -> None:
             envs.set_state(state["residual"])
         set_state(envs.venv, state)
         return
+    check_array("environments.returns", state["returns"], (envs.num_envs,))
+    check_array("environments.lengths", state["lengths"], (envs.num_envs,), "i")
+    if len(state["envs"]) != (1 if _is_batch(envs) else envs.num_envs):
+        raise ValueError(f"environments.envs holds {len(state['envs'])} states")
     for index, one in enumerate(state["envs"]):
         envs.env_method("set_state", one, indices=None if _is_batch(envs) else index)
     envs.episode_returns, envs.episode_lengths = state["returns"].copy(), state["lengths"].copy()

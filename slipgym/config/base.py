@@ -23,6 +23,17 @@ def ordered(pair: tuple[float, float]) -> tuple[float, float]:
     return pair
 
 
+def ends_within(low: float, high: float) -> AfterValidator:
+    """Validator of a pair whose values must lie within bounds."""
+
+    def check(pair: tuple[float, float] | None) -> tuple[float, float] | None:
+        if pair is not None and not (low <= pair[0] and pair[1] <= high):
+            raise ValueError(f"must lie within {low:g} to {high:g}, got {pair[0]:g} to {pair[1]:g}")
+        return pair
+
+    return AfterValidator(check)
+
+
 Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]
 Count = Annotated[int, Field(ge=1)]
@@ -33,6 +44,7 @@ Point = Annotated[tuple[float, float], _LIST]
 Points = Annotated[tuple[Point, Point], _LIST]
 _Factor = Annotated[float, Field(ge=0.1, le=10.0)]
 Factors = Annotated[tuple[_Factor, _Factor], _LIST]
-Size = Annotated[tuple[Positive, Positive, Positive], _LIST]
+_Extent = Annotated[float, Field(ge=1e-3, le=10.0)]
+Size = Annotated[tuple[_Extent, _Extent, _Extent], _LIST]
 Interval = Annotated[tuple[NonNegative, NonNegative], _LIST, AfterValidator(ordered)]
 PositiveInterval = Annotated[tuple[Positive, Positive], _LIST, AfterValidator(ordered)]

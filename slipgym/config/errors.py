@@ -17,6 +17,8 @@ SourceOf = Callable[[tuple[int | str, ...]], str]
 NEEDS_TILT = 'needs config={"physics": {"tilt": True}} and engine="bullet"'
 """End of the messages about motions out of the contact plane."""
 
+_LINES = 10
+"""Faults that one error describes."""
 _BOUNDS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
 _KINDS = {
     "number": "a finite number",
@@ -31,10 +33,10 @@ _KINDS = {
 
 def unknown(what: str, name: object, valid: Iterable[str]) -> str:
     """Message for an unknown name, with the most similar valid one as a suggestion."""
-    valid = sorted(valid)
-    close = difflib.get_close_matches(str(name), valid, n=1)
+    valid, shown = sorted(valid), f"{name!r:.100}"
+    close = difflib.get_close_matches(str(name)[:100], valid, n=1)
     guess = f"did you mean {close[0]!r}? " if close else ""
-    return f"unknown {what} {name!r}; {guess}valid: {', '.join(valid)}"
+    return f"unknown {what} {shown}; {guess}valid: {', '.join(valid)}"
 
 
 def explain(
@@ -49,12 +51,15 @@ def explain(
         prefix: Location of the model in the whole configuration.
     """
     faults = error.errors()
-    return ValueError("\n".join(f"{source_of(e['loc'])}: {_describe(e, model, prefix)}" for e in faults))
+    lines = [f"{source_of(e['loc'])}: {_describe(e, model, prefix)}" for e in faults[:_LINES]]
+    if len(faults) > _LINES:
+        lines.append(f"... and {len(faults) - _LINES} more")
+    return ValueError("\n".join(lines))
 
 
 def _describe(error: ErrorDetails, model: type[BaseModel], prefix: tuple[str, ...]) -> str:
     location = error["loc"]
-    dotted = ".".join(str(part) for part in (*prefix, *location))
+    dotted = ".".join(f"{part!s:.80}" for part in (*prefix, *location))
     if location and location[-1] == "[key]":
         return f"{'.'.join(map(str, (*prefix, *location[:-2])))}: names must be text, got {error['input']!r}"
     if error["type"] in ("extra_forbidden", "invalid_key"):
@@ -74,7 +79,10 @@ def _describe(error: ErrorDetails, model: type[BaseModel], prefix: tuple[str, ..
 
 
 def _shorten(value: object) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # a whole number of thousands of digits, or very deep nesting
+        text = f"a very large {type(value).__name__}"
     return text if len(text) <= 80 else f"{text[:77]}..."
 
 

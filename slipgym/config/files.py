@@ -1,14 +1,15 @@
 """Finds and reads YAML files."""
 
-import re
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-import yaml
+from estimator.plain_files import DEPTH, NODES, content, parse
+
+__all__ = ["check_size", "folder", "parse", "read"]
 
 _PACKAGE = Path(__file__).resolve().parents[1]
-_YAML_1_2_FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?$")
 
 
 @cache
@@ -29,9 +30,9 @@ def read(path: Path) -> dict[str, Any]:
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: It is not YAML, holds a key twice, or is not a mapping.
+        ValueError: It is no regular file, too large, not YAML, holds a key twice, or is not a mapping.
     """
-    data = parse(path.read_bytes(), str(path))
+    data = parse(content(path), str(path))
     if data is None:
         return {}
     if not isinstance(data, dict):
@@ -39,38 +40,26 @@ def read(path: Path) -> dict[str, Any]:
     return data
 
 
-def parse(text: str | bytes, source: str) -> Any:
-    """Reads a YAML text, safely.
+def check_size(values: Mapping[Any, Any], source: str) -> None:
+    """Raise ValueError if a mapping is nested too deep, or in itself, or holds too many values.
 
     Args:
-        text: The text.
-        source: Origin of the text, for error messages.
-
-    Raises:
-        ValueError: It is not YAML, or holds a key twice.
+        values: The mapping, of mappings, lists and plain values.
+        source: Its origin, for the message.
     """
-    try:
-        loader = _Loader(text)
-        loader.name = Path(source).name
-        return loader.get_single_data()
-    except yaml.YAMLError as error:
-        raise ValueError(f"{source}: {error}") from error
-
-
-class _Loader(yaml.SafeLoader):
-    """PyYAML's safe loader that refuses a key given twice and reads 1e-3 as the number it is in YAML 1.2."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        seen = set()
-        for key, _ in node.value:
-            if not isinstance(key, yaml.ScalarNode):
-                continue
-            if key.value in seen:
-                raise yaml.MarkedYAMLError(
-                    problem=f"duplicate key {key.value!r}", problem_mark=key.start_mark
-                )
-            seen.add(key.value)
-        return super().construct_mapping(node, deep)
-
-
-_Loader.add_implicit_resolver("tag:yaml.org,2002:float", _YAML_1_2_FLOAT, list("-+.0123456789"))
+    level: list[Any] = [values]
+    count = 0
+    for _ in range(DEPTH):
+        count += len(level)
+        if count > NODES:
+            raise ValueError(f"{source}: holds more than {NODES} values")
+        inner: list[Any] = []
+        for value in level:
+            if isinstance(value, Mapping):
+                inner.extend(value.values())
+            elif isinstance(value, list | tuple):
+                inner.extend(value)
+        if not inner:
+            return
+        level = inner
+    raise ValueError(f"{source}: is nested deeper than {DEPTH} levels")

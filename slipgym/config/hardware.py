@@ -1,10 +1,10 @@
 """Configuration models of the gripper and the object in its grip."""
 
-from typing import Self
+from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from slipgym.config.base import Factors, Frozen, NonNegative, Point, Positive, Size
+from slipgym.config.base import Factors, Frozen, Point, Size
 
 
 def box_inertia(mass: float, a: float, b: float) -> float:
@@ -15,24 +15,42 @@ def box_inertia(mass: float, a: float, b: float) -> float:
 class GripperConfig(Frozen):
     """A parallel gripper with a force loop per finger, on a wrist that moves in the contact plane."""
 
-    pad_radius: Positive = Field(description="Radius of each disc-shaped pad [m]")
-    force_min: Positive = Field(description="Lower end of the force action, per finger [N]")
-    force_max: Positive = Field(description="Upper end of the force action, per finger [N]")
-    force_limit: Positive = Field(description="Hard limit of the force of one finger [N]")
-    open_below: NonNegative = Field(
-        description="Commands below this open the force loop: no force applied [N]"
+    pad_radius: float = Field(
+        ge=0.001, le=0.2, description="Radius of each disc-shaped pad; 1 mm to 20 cm [m]"
     )
-    lag: NonNegative = Field(description="Time constant of the closed force loop, first order [s]")
+    force_min: float = Field(ge=0.001, le=1000.0, description="Lower end of the force action, per finger [N]")
+    force_max: float = Field(
+        ge=0.001,
+        le=1000.0,
+        description="Upper end of the force action, per finger; 1 kN crushes what a gripper holds [N]",
+    )
+    force_limit: float = Field(
+        ge=0.001, le=1000.0, description="Hard limit of the force of one finger; at most 1 kN [N]"
+    )
+    open_below: float = Field(
+        ge=0.0, le=1000.0, description="Commands below this open the force loop: no force applied [N]"
+    )
+    lag: float = Field(
+        ge=0.0,
+        le=1.0,
+        description="Time constant of the closed force loop, first order; at most 1 s [s]",
+    )
     finger_lag: Factors = Field(description="Time constant of each finger's force loop over lag [-]")
-    dead_time: NonNegative = Field(description="Dead time of the force loop, before its lag [s]")
+    dead_time: float = Field(ge=0.0, le=1.0, description="Dead time of the force loop, before its lag [s]")
     force_gain: Factors = Field(description="Force of each finger's actuator over the commanded [-]")
-    force_step: Positive = Field(
-        description="Largest change of the commanded force per control step in mode force_increment [N]"
+    force_step: float = Field(
+        ge=1e-6,
+        le=1000.0,
+        description="Largest change of the commanded force per control step in mode force_increment [N]",
     )
-    finger_mass: Positive = Field(description="Mass of one finger with its pad [kg]")
-    wrist_speed_max: Positive = Field(description="Largest speed of the wrist in the contact plane [m/s]")
-    wrist_pitch_rate_max: Positive = Field(
-        description="Largest pitch rate of the wrist, about the grip axis [rad/s]"
+    finger_mass: float = Field(
+        ge=0.001, le=10.0, description="Mass of one finger with its pad; 1 g to 10 kg [kg]"
+    )
+    wrist_speed_max: float = Field(
+        ge=1e-4, le=1000.0, description="Largest speed of the wrist in the contact plane [m/s]"
+    )
+    wrist_pitch_rate_max: float = Field(
+        ge=1e-4, le=1000.0, description="Largest pitch rate of the wrist, about the grip axis [rad/s]"
     )
 
     @model_validator(mode="after")
@@ -48,10 +66,10 @@ class GripperConfig(Frozen):
 class ObjectConfig(Frozen):
     """A box held by two opposite faces; x and z span the contact plane, y is the grip axis."""
 
-    mass: Positive = Field(description="Mass [kg]")
+    mass: float = Field(ge=0.001, le=1000.0, description="Mass; 1 g to 1 t [kg]")
     size: Size = Field(description="Extent along x, the grip axis and z [m]")
     com_offset: Point = Field(description="Centre of mass (x, z) from the geometric centre [m]")
-    inertia: Positive | None = Field(
+    inertia: Annotated[float, Field(ge=1e-9, le=1000.0)] | None = Field(
         description="Inertia about the grip axis through the centre of mass; null: uniform box [kg m^2]"
     )
     grasp_offset: Point = Field(description="Pad centre at reset (x, z), from the geometric centre [m]")

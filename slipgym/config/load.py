@@ -57,6 +57,7 @@ def read_overrides(overrides: Overrides) -> tuple[str, Mapping[str, Any]]:
         ValueError: They are neither a mapping nor a path.
     """
     if isinstance(overrides, Mapping):
+        files.check_size(overrides, "config argument")
         return "config argument", overrides
     if isinstance(overrides, str | os.PathLike):
         return os.fspath(overrides), files.read(Path(overrides))

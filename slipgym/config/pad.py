@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from slipgym.config.base import Frozen, Positive
+from slipgym.config.base import Frozen
 
 EFFECTS = (
     "load_exponent",
@@ -24,7 +24,7 @@ class PadConfig(Frozen):
     The defaults switch each of them off: the pad is rigid, and its friction is Coulomb's.
     """
 
-    reference_force: Positive = Field(
+    reference_force: Annotated[float, Field(ge=0.01, le=1000.0)] = Field(
         description="Normal force at which the friction coefficients and the radius r hold [N]"
     )
     load_exponent: Annotated[float, Field(ge=0.0, le=0.5)] = Field(
@@ -51,7 +51,9 @@ class PadConfig(Frozen):
     aging: Annotated[float, Field(ge=0.0, le=0.5)] = Field(
         description="Growth of mu_s - mu_c with the logarithm of the dwell time [-]"
     )
-    aging_time: Positive = Field(description="Dwell time at which that growth begins [s]")
+    aging_time: Annotated[float, Field(ge=1e-6, le=1e6)] = Field(
+        description="Dwell time at which that growth begins [s]"
+    )
     aging_distance: Annotated[float, Field(ge=1e-6, le=1e-2)] = Field(
         description="Slip after which it is lost [m]"
     )

@@ -1,10 +1,10 @@
 """Configuration models of friction, gravity and the simulation's rates."""
 
-from typing import Literal, Self, TypeAlias
+from typing import Annotated, Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
-from slipgym.config.base import Count, Factors, Frozen, NonNegative, Points, Positive
+from slipgym.config.base import Factors, Frozen, Points
 from slipgym.config.pad import PadConfig
 from slipgym.contact.pressure import PressureName
 
@@ -15,8 +15,12 @@ ContactModel: TypeAlias = Literal["ellipsoid", "disc", "distributed"]
 class Material(Frozen):
     """Friction coefficients of a material against the pads."""
 
-    mu_c: Positive = Field(description="Coulomb friction coefficient [-]")
-    mu_s: Positive = Field(description="Static friction coefficient, at least mu_c [-]")
+    mu_c: float = Field(
+        ge=0.001,
+        le=10.0,
+        description="Coulomb friction coefficient; from 0.001 to 10, as rubber on anything [-]",
+    )
+    mu_s: float = Field(ge=0.001, le=10.0, description="Static friction coefficient, at least mu_c [-]")
 
     @model_validator(mode="after")
     def _static_is_larger(self) -> Self:
@@ -28,7 +32,11 @@ class Material(Frozen):
 class NominalConfig(Material):
     """Contact properties that a controller assumes when it has no other friction information."""
 
-    r: Positive = Field(description="Radius of the equivalent rim contact [m]")
+    r: float = Field(
+        ge=1e-4,
+        le=0.2,
+        description="Radius of the equivalent rim contact; at most that of the largest pad [m]",
+    )
 
 
 class ContactConfig(Frozen):
@@ -51,13 +59,25 @@ class ContactConfig(Frozen):
         description="Cells along each side of a distributed patch; 11 are four times as fast [-]",
     )
     sigma_0: float = Field(
-        ge=1e5, description="Bristle stiffness; soft bristles appear as slip in stick [1/m]"
+        ge=1e5,
+        le=1e8,
+        description="Bristle stiffness; soft ones appear as slip in stick [1/m]",
     )
-    sigma_1: NonNegative = Field(description="Bristle damping [s/m]")
-    sigma_2: NonNegative = Field(description="Viscous friction [s/m]")
-    stribeck_velocity: Positive = Field(description="Slip speed v_s at which mu_s has decayed to mu_c [m/s]")
-    stribeck_exponent: Positive = Field(description="Exponent of that decay [-]")
-    radius: Positive | None = Field(
+    sigma_1: float = Field(
+        ge=0.0, le=1e5, description="Bristle damping; more than 1e5 is overdamped beyond any use [s/m]"
+    )
+    sigma_2: float = Field(
+        ge=0.0, le=1000.0, description="Viscous friction; at 1e3 friction grows by 1 for each mm/s [s/m]"
+    )
+    stribeck_velocity: float = Field(
+        ge=1e-5,
+        le=0.1,
+        description="Slip speed v_s at which mu_s has decayed to mu_c; as of a randomization [m/s]",
+    )
+    stribeck_exponent: float = Field(
+        ge=0.1, le=10.0, description="Exponent of that decay; published ones are 0.5 to 2 [-]"
+    )
+    radius: Annotated[float, Field(ge=1e-4, le=0.2)] | None = Field(
         description="Radius r of the equivalent rim contact; null: that of the pressure on the whole pad [m]"
     )
     finger_friction: Factors = Field(description="Friction of each finger over the material's [-]")
@@ -75,17 +95,35 @@ class ContactConfig(Frozen):
 class PhysicsConfig(Frozen):
     """Gravity and the three nested rates: control step, engine step, friction sub-step."""
 
-    gravity: NonNegative = Field(description="Gravitational acceleration [m/s^2]")
-    control_rate: Count = Field(description="Environment steps per second [Hz]")
-    engine_steps: Count = Field(description="Rigid-body engine steps per control step [-]")
-    substep_max: Positive = Field(description="Longest friction sub-step [s]")
-    patch_substep_max: Positive = Field(
-        description="Longest friction sub-step of a distributed contact, which turns in parts [s]"
+    gravity: float = Field(
+        ge=0.0, le=100.0, description="Gravitational acceleration; Jupiter's is 25 [m/s^2]"
     )
-    planar_substep_max: Positive = Field(
-        description="Longest friction sub-step without an engine near the friction limit [s]"
+    control_rate: int = Field(
+        ge=10,
+        le=2000,
+        description="Environment steps per second; slower ones miss slips [Hz]",
     )
-    solver_iterations: Count = Field(description="Iterations of the engine's contact solver per step [-]")
+    engine_steps: int = Field(
+        ge=1, le=100, description="Rigid-body engine steps per control step; 4 suffice [-]"
+    )
+    substep_max: float = Field(
+        ge=1e-5,
+        le=0.01,
+        description="Longest friction sub-step; longer ones miss a break-away [s]",
+    )
+    patch_substep_max: float = Field(
+        ge=1e-5,
+        le=0.01,
+        description="Longest friction sub-step of a distributed contact, which turns in parts [s]",
+    )
+    planar_substep_max: float = Field(
+        ge=1e-5,
+        le=0.01,
+        description="Longest friction sub-step without an engine near the friction limit [s]",
+    )
+    solver_iterations: int = Field(
+        ge=1, le=1000, description="Iterations of the engine's contact solver per step; 25 suffice [-]"
+    )
 
     tilt: bool = Field(
         description="Whether the object may tilt and move along the grip axis, with PyBullet alone"

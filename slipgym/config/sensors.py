@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from slipgym.config.base import Count, Frozen, NonNegative, Positive
+from slipgym.config.base import Frozen
 
 Probability = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
@@ -12,27 +12,45 @@ Probability = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 class ForceTorqueConfig(Frozen):
     """Six-axis force/torque sensor of one finger; the in-plane problem uses four of its axes."""
 
-    rate: Count = Field(description="Samples per second [Hz]")
-    noise_tangential: NonNegative = Field(description="White noise of each tangential force, sd [N]")
-    noise_normal: NonNegative = Field(description="White noise of the normal force, sd [N]")
-    noise_torque: NonNegative = Field(description="White noise of the torque about the normal, sd [N m]")
-    bias_tangential: NonNegative = Field(
-        description="Bias of each tangential force, constant per episode, sd [N]"
+    rate: int = Field(ge=1, le=100_000, description="Samples per second; no sensor is faster [Hz]")
+    noise_tangential: float = Field(
+        ge=0.0, le=1000.0, description="White noise of each tangential force, sd [N]"
     )
-    bias_normal: NonNegative = Field(description="Bias of the normal force, constant per episode, sd [N]")
-    bias_torque: NonNegative = Field(description="Bias of the torque, constant per episode, sd [N m]")
-    drift_tangential: NonNegative = Field(description="Random walk of each tangential force, sd [N/sqrt(s)]")
-    drift_normal: NonNegative = Field(description="Random walk of the normal force, sd [N/sqrt(s)]")
-    drift_torque: NonNegative = Field(description="Random walk of the torque, sd [N m/sqrt(s)]")
-    resolution_force: NonNegative = Field(description="Quantisation of the force readings; 0: continuous [N]")
-    resolution_torque: NonNegative = Field(
-        description="Quantisation of the torque readings; 0: continuous [N m]"
+    noise_normal: float = Field(ge=0.0, le=1000.0, description="White noise of the normal force, sd [N]")
+    noise_torque: float = Field(
+        ge=0.0, le=1000.0, description="White noise of the torque about the normal, sd [N m]"
     )
-    force_range: Positive = Field(description="Saturation of the tangential forces, either sign [N]")
-    normal_range: Positive = Field(description="Saturation of the normal force [N]")
-    torque_range: Positive = Field(description="Saturation of the torque, either sign [N m]")
-    latency: NonNegative = Field(description="Smallest latency of a reading [s]")
-    latency_spread: NonNegative = Field(description="Largest latency on top of that, sampled per episode [s]")
+    bias_tangential: float = Field(
+        ge=0.0, le=1000.0, description="Bias of each tangential force, constant per episode, sd [N]"
+    )
+    bias_normal: float = Field(
+        ge=0.0, le=1000.0, description="Bias of the normal force, constant per episode, sd [N]"
+    )
+    bias_torque: float = Field(
+        ge=0.0, le=1000.0, description="Bias of the torque, constant per episode, sd [N m]"
+    )
+    drift_tangential: float = Field(
+        ge=0.0, le=1000.0, description="Random walk of each tangential force, sd [N/sqrt(s)]"
+    )
+    drift_normal: float = Field(
+        ge=0.0, le=1000.0, description="Random walk of the normal force, sd [N/sqrt(s)]"
+    )
+    drift_torque: float = Field(ge=0.0, le=1000.0, description="Random walk of the torque, sd [N m/sqrt(s)]")
+    resolution_force: float = Field(
+        ge=0.0, le=1000.0, description="Quantisation of the force readings; 0: continuous [N]"
+    )
+    resolution_torque: float = Field(
+        ge=0.0, le=1000.0, description="Quantisation of the torque readings; 0: continuous [N m]"
+    )
+    force_range: float = Field(
+        ge=1e-6, le=1e6, description="Saturation of the tangential forces, either sign [N]"
+    )
+    normal_range: float = Field(ge=1e-6, le=1e6, description="Saturation of the normal force [N]")
+    torque_range: float = Field(ge=1e-6, le=1e6, description="Saturation of the torque, either sign [N m]")
+    latency: float = Field(ge=0.0, le=10.0, description="Smallest latency of a reading [s]")
+    latency_spread: float = Field(
+        ge=0.0, le=10.0, description="Largest latency on top of that, sampled per episode [s]"
+    )
     dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
     tilt: float = Field(
         ge=0.0, le=0.5, description="Largest tilt of the frame about x and y, per episode [rad]"
@@ -52,15 +70,17 @@ class ForceTorqueConfig(Frozen):
 class SlipConfig(Frozen):
     """Slip-velocity sensor of one finger: optical mouse chips on a circle, solved by least squares."""
 
-    rate: Count = Field(description="Samples per second; one per control step [Hz]")
+    rate: int = Field(ge=10, le=2000, description="Samples per second; one per control step [Hz]")
     counts: bool = Field(
         description="Whether the chips report whole counts; if not, exact motion: true or false"
     )
-    count: Positive = Field(description="Motion per count [m]")
-    chip_radius: Positive = Field(description="Distance of the chips from the pad's centre [m]")
+    count: float = Field(ge=1e-9, le=0.01, description="Motion per count; 1 nm to 1 cm [m]")
+    chip_radius: float = Field(ge=1e-4, le=1.0, description="Distance of the chips from the pad's centre [m]")
     chips: int = Field(ge=2, le=4, description="Number of chips, evenly spaced on their circle [-]")
-    noise: NonNegative = Field(description="White noise per chip axis and sample, sd [counts]")
-    window: Count = Field(description="Length of the moving average [samples]")
+    noise: float = Field(ge=0.0, le=1e6, description="White noise per chip axis and sample, sd [counts]")
+    window: int = Field(
+        ge=1, le=15, description="Length of the moving average; the history holds 16 samples [samples]"
+    )
     latency_samples: int = Field(ge=0, description="Smallest latency of a reading [samples]")
     latency_spread: int = Field(
         ge=0, description="Largest latency on top of that, sampled per episode [samples]"
@@ -71,7 +91,9 @@ class SlipConfig(Frozen):
         ge=0.0, le=0.5, description="Largest relative error of the counts, per episode [-]"
     )
     chip_failure: Probability = Field(description="Probability that one chip counts nothing, per episode [-]")
-    speed_max: Positive = Field(description="Saturation of each chip axis, either sign [m/s]")
+    speed_max: float = Field(
+        ge=1e-6, le=1000.0, description="Saturation of each chip axis, either sign [m/s]"
+    )
 
 
 class SensorsConfig(Frozen):

@@ -8,7 +8,7 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import ConfigDict, Field
 
-from slipgym.config.base import Frozen, Positive, PositiveInterval
+from slipgym.config.base import Frozen, Positive, PositiveInterval, ends_within
 from slipgym.config.hardware import ObjectConfig
 from slipgym.config.root import Config
 
@@ -53,10 +53,12 @@ def setting(meaning: str, unit: str = "", *, reset: bool | Option = False, **bou
     return Field(description=f"{meaning} [{unit}]" if unit else meaning, json_schema_extra=extra, **bounds)
 
 
+Scale = Annotated[float, Field(ge=-1e6, le=1e6)]
 InitialForce = Annotated[Positive, setting("Grip force per finger at reset", "N", reset=True, le=40.0)]
 TaskObject = Annotated[ObjectConfig | None, setting("The object of this task; null: the common one")]
 MassRange = Annotated[
     PositiveInterval | None,
+    ends_within(1e-3, 1e3),
     setting("The object's mass is sampled from this range; null: the object's own", "kg"),
 ]
 TaskRadius = Annotated[
@@ -78,7 +80,7 @@ class TaskConfig(Frozen):
     object: TaskObject = None
     mass_range: MassRange = None
     radius: TaskRadius = None
-    reward: Annotated[Mapping[str, float], setting("Scales of the reward terms, by their names")] = {}
+    reward: Annotated[Mapping[str, Scale], setting("Scales of the reward terms, by their names")] = {}
 
     def check(self, config: Config, name: str) -> None:
         """Check the settings against gripper and pads.

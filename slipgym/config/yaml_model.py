@@ -40,6 +40,7 @@ def read_model(
             the valid values.
     """
     if isinstance(choice, Mapping):
+        files.check_size(choice, f"{kind} argument")
         return validate(choice, model, f"{kind} argument", context)
     if not isinstance(choice, str | os.PathLike):
         known = ", ".join(names(folder))

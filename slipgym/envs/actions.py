@@ -84,10 +84,7 @@ class Actions:
             ValueError: It is not numeric, has the wrong shape or is not finite; the message names the
                 component.
         """
-        try:
-            array = np.asarray(action, dtype=np.float64)
-        except (TypeError, ValueError) as error:
-            raise ValueError(f"action = {action!r} must be an array of numbers, within [-1, 1]") from error
+        array = numbers(action, "action")
         if array.shape != self._shape:
             meaning = ", ".join(column.name for column in self.columns)
             raise ValueError(
@@ -108,10 +105,7 @@ class Actions:
             ValueError: They are not numeric, have the wrong shape or are not finite; the message names the
                 first.
         """
-        try:
-            array = np.ascontiguousarray(actions, dtype=np.float64)
-        except (TypeError, ValueError) as error:
-            raise ValueError("actions must be an array of numbers, within [-1, 1]") from error
+        array = np.ascontiguousarray(numbers(actions, "actions"))
         if array.shape != (n, *self._shape):
             meaning = ", ".join(column.name for column in self.columns)
             raise ValueError(
@@ -123,6 +117,31 @@ class Actions:
             name, value = self.columns[k].name, array[i, k]
             raise ValueError(f"actions[{i}, {k}] ({name}) = {value} must be finite, within [-1, 1]")
         return array
+
+
+def numbers(given: Any, name: str) -> np.ndarray:
+    """Real numbers as an array of float64.
+
+    Args:
+        given: An array, a number or nested sequences of numbers.
+        name: Its name, for messages.
+
+    Raises:
+        ValueError: It is something else: complex, text, a time, masked, an integer beyond 64 bits.
+    """
+    array = given
+    if type(given) is not np.ndarray:
+        try:
+            array = np.asarray(given)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise ValueError(f"{name} must be an array of numbers, within [-1, 1]") from error
+        if isinstance(given, np.ma.MaskedArray):
+            raise ValueError(f"{name} must be an array without a mask; fill the masked values in")
+    if array.dtype.kind not in "fiub":
+        raise ValueError(
+            f"{name} = {given!r:.80} must be an array of numbers, within [-1, 1], not of {array.dtype}"
+        )
+    return array.astype(np.float64, copy=False)
 
 
 @compiled

@@ -52,6 +52,8 @@ class Argument:
     """Its meaning, in Markdown."""
     least: int | None = None
     """Smallest value, of an argument that is a whole number."""
+    most: int | None = None
+    """Largest value of it."""
 
 
 class CommonArguments(TypedDict, total=False):
@@ -79,7 +81,9 @@ class CommonArguments(TypedDict, total=False):
     observation_mode: Annotated[
         ObservationMode, Argument("flat", "layout of an observation (see docs/modes.md)")
     ]
-    history: Annotated[int, Argument(0, "number of earlier observations in each observation", least=0)]
+    history: Annotated[
+        int, Argument(0, "number of earlier observations in each observation", least=0, most=1000)
+    ]
     randomization: Annotated[
         str | os.PathLike[str] | Mapping[str, Any],
         Argument(
@@ -90,7 +94,9 @@ class CommonArguments(TypedDict, total=False):
     ]
     frame_skip: Annotated[
         int,
-        Argument(1, "control steps per step; the action is repeated, the rewards are summed", least=1),
+        Argument(
+            1, "control steps per step; the action is repeated, the rewards are summed", least=1, most=10_000
+        ),
     ]
     config: Annotated[
         str | os.PathLike[str] | Mapping[str, Any] | None,
@@ -113,7 +119,7 @@ class ScalarArguments(CommonArguments, total=False):
 class VectorArguments(CommonArguments, total=False):
     """Keyword arguments of a `SlipVectorEnv`."""
 
-    num_envs: Annotated[int, Argument(1, "number of environments", least=1)]
+    num_envs: Annotated[int, Argument(1, "number of environments", least=1, most=2**20)]
     autoreset_mode: Annotated[
         Literal["NextStep", "SameStep", "Disabled"] | AutoresetMode,
         Argument(
@@ -156,6 +162,8 @@ class Field:
     """Whether it may be None."""
     least: int | None
     """Smallest value, of an argument that is a whole number."""
+    most: int | None
+    """Largest value of it."""
 
     @property
     def text(self) -> str:
@@ -170,7 +178,7 @@ class Field:
         if self.choices and not (isinstance(value, AutoresetMode) and value.value in self.choices):
             one_of(self.name, value, self.choices)
         if self.least is not None:
-            whole(self.name, value, self.least)
+            whole(self.name, value, self.least, self.most)
 
 
 @cache
@@ -185,7 +193,14 @@ def fields(kind: type) -> dict[str, Field]:
         ]
         optional = NoneType in members
         found[name] = Field(
-            name, annotation, argument.default, argument.doc, tuple(choices), optional, argument.least
+            name,
+            annotation,
+            argument.default,
+            argument.doc,
+            tuple(choices),
+            optional,
+            argument.least,
+            argument.most,
         )
     return found
 
@@ -251,8 +266,10 @@ def refuse_unknown(given: Iterable[str], known: Iterable[str]) -> None:
             raise TypeError(unknown("keyword argument", name, known))
 
 
-def whole(name: str, value: object, least: int) -> int:
-    """Return `value` if it is a whole number of at least `least`, or raise ValueError."""
+def whole(name: str, value: object, least: int, most: int | None = None) -> int:
+    """Return `value` if it is a whole number from `least` to `most`, or raise ValueError."""
     if isinstance(value, bool) or not isinstance(value, int) or value < least:
-        raise ValueError(f"{name} = {value!r} must be a whole number >= {least}")
+        raise ValueError(f"{name} = {value!r:.80} must be a whole number >= {least}")
+    if most is not None and value > most:
+        raise ValueError(f"{name} = {value!r:.80} must be a whole number from {least} to {most}")
     return value

@@ -17,6 +17,7 @@ from slipgym.envs.nan_guard import Guard
 from slipgym.envs.observation import SENSORS, ObservationBuffers
 from slipgym.envs.reset_kernels import WARM_UP_STEPS
 from slipgym.envs.simulation import Simulation, SimulationState
+from slipgym.envs.state_checks import check_engine
 from slipgym.sensors.force_torque import roomier
 from slipgym.tasks import Task
 from slipgym.tasks.disturbance import shake_tilt
@@ -98,13 +99,21 @@ class BulletSimulation(Simulation):
         """See `Simulation.get_state`."""
         return replace(super().get_state(), engine=self.world.get_state())
 
-    def set_state(self, state: SimulationState) -> None:
-        """See `Simulation.set_state`."""
+    def check_state(self, state: SimulationState, ready: np.ndarray) -> None:
+        """See `Simulation.check_state`."""
+        super().check_state(state, ready)
+        check_engine(state.engine, state.boxes[0])
+
+    def set_state(self, state: SimulationState, ready: np.ndarray) -> None:
+        """See `Simulation.set_state`.
+
+        Raises:
+            ValueError: PyBullet does not accept its part of the state.
+        """
         self.check_open()
-        if state.engine is None:
-            raise ValueError("the state is of a loop without PyBullet")
+        assert state.engine is not None
         self.world.set_state(state.engine)
-        super().set_state(state)
+        super().set_state(state, ready)
 
     @property
     def closed(self) -> bool:

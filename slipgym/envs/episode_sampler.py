@@ -54,6 +54,7 @@ class EpisodeSampler:
         materials: Name of every episode's material.
         boxes: Every episode's object; None before the first reset.
         drawn: Values that the randomization sampled for every episode.
+        blank: The values that all episodes begin with, EPISODE (1,).
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class EpisodeSampler:
         n = len(episode)
         self._config, self._task, self._randomizer = config, task, randomizer
         self._episode, self._settings = episode, settings
-        self._blank = _blank_episode(config, settings, task)
+        self.blank = _blank_episode(config, settings, task)
         self._names = sorted(config.materials)
         friction = [(config.materials[name].mu_s, config.materials[name].mu_c) for name in self._names]
         self._friction = np.array(friction)
@@ -115,7 +116,7 @@ class EpisodeSampler:
         starts["row"] = rows
         for name, numbers in chosen.fixed.items():
             values[name] = numbers
-        tables = self._friction, chosen.radii, values, starts, self._episode, self._blank
+        tables = self._friction, chosen.radii, values, starts, self._episode, self.blank
         valid = compose(picked, mass_shares, chosen.given, *tables)
         if not valid or any(getattr(options, name) is not None for name in _CHECKED):
             for start, value in zip(starts, values, strict=True):

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import io
 import math
-import tempfile
-import uuid
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from slipgym import atomic_io
 from slipgym._numba.compiled import unlocked
+from slipgym.envs.dumps import write_dump
 from slipgym.envs.readings import finite_check, row_writer
 
 KEPT = 120
@@ -170,9 +167,6 @@ class Guard:
         table = self.rows[order]
         text = io.StringIO()
         np.savetxt(text, table, delimiter=",", header="time," + ",".join(_NAMES), comments="")
-        csv = Path(tempfile.gettempdir(), f"slipgym-{uuid.uuid4().hex}.csv")
-        atomic_io.write(csv, text.getvalue().encode())
-        raise FloatingPointError(
-            f"{name} is {value} at t = {time:g} s; the last {kept} samples are in {csv}; "
-            "reset() starts afresh"
-        )
+        csv = write_dump(text.getvalue().encode())
+        samples = f"the last {kept} samples " + (f"are in {csv}" if csv else "could not be written")
+        raise FloatingPointError(f"{name} is {value} at t = {time:g} s; {samples}; reset() starts afresh")

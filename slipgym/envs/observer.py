@@ -9,6 +9,7 @@ import numpy as np
 
 from slipgym.envs import privileged
 from slipgym.envs.observation import ObservationBuffers, columns, wrist_part
+from slipgym.envs.record_checks import check_array, check_finite
 from slipgym.envs.simulation import Simulation
 from slipgym.tasks.task import Column
 
@@ -105,10 +106,20 @@ class Observer:
         self.again()
         return self.buffers.out[:, np.newaxis].copy()
 
-    def set_state(self, frames: np.ndarray) -> None:
-        """Restore the history; without one, the simulation's state suffices."""
+    def check_state(self, frames: np.ndarray, rows: np.ndarray) -> None:
+        """Raise ValueError unless these are the last observations of environments like these.
+
+        Args:
+            frames: (n, history + 1, m).
+            rows: Environments that have an episode, (n,) bool.
+        """
+        shape = len(rows), self._history + 1, len(self.columns)
+        check_finite("frames", check_array("frames", frames, np.float32, shape)[rows])
+
+    def set_state(self, frames: np.ndarray, rows: np.ndarray) -> None:
+        """Restore the history of some rows (n,) bool; without one, the simulation's state suffices."""
         if self._history:
-            self._frames[:] = frames
+            self._frames[rows] = frames[rows]
 
     def _look(self, rows: np.ndarray) -> None:
         self._simulation.stages.look_at(rows, self._simulation.state, self.buffers)

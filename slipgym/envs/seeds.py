@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from gymnasium.utils import seeding
 
+from slipgym.envs.record_checks import damaged
 from slipgym.envs.state import restored_generator
 
 
@@ -54,9 +55,17 @@ class Generators:
         """States of all generators."""
         return [self[i].bit_generator.state for i in range(self._n)]
 
-    def set_state(self, states: Sequence[Mapping[str, Any]]) -> None:
-        """Restore the states of all generators."""
-        self._generators[:] = map(restored_generator, states)
+    def restored(self, states: Sequence[Mapping[str, Any]]) -> Generators:
+        """Generators with these states.
+
+        Raises:
+            ValueError: There are not as many, or one is no state of a generator.
+        """
+        if not isinstance(states, list | tuple) or len(states) != self._n:
+            raise damaged(f"generators must be a list of {self._n}")
+        made = Generators(self._n)
+        made._generators[:] = map(restored_generator, states)
+        return made
 
     def __getitem__(self, i: int) -> np.random.Generator:
         """The generator of environment i; the operating system seeds one that was never seeded."""

@@ -10,6 +10,7 @@ from slipgym.envs.actions import Actions
 from slipgym.envs.arguments import CommonArguments, fields, one_of
 from slipgym.envs.observer import Observer
 from slipgym.envs.simulation import Simulation
+from slipgym.envs.workload import warn_if_slow
 from slipgym.tasks import TASKS, Task, configure
 from slipgym.tasks.configure import recorded
 
@@ -41,6 +42,7 @@ class Setup:
     def __init__(self, task: Task, arguments: Mapping[str, Any], make_simulation: MakeSimulation) -> None:
         values = {name: arguments[name] for name in fields(CommonArguments)}
         self.config, self.settings = configure(task, values["config"], values["sensors"], values["contact"])
+        warn_if_slow(self.config, values["frame_skip"])
         keys = [each.key for each in TASKS.values()]
         self.randomization = load_randomization(values["randomization"], keys)
         self.material = one_of("material", values["material"], ("random", *self.config.materials))

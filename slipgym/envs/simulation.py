@@ -21,7 +21,9 @@ from slipgym.envs.hardware_randomization import prepare_hardware
 from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
+from slipgym.envs.record_checks import damaged
 from slipgym.envs.stages import compiled_stages
+from slipgym.envs.state_checks import check_arrays, check_objects, check_plant
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
@@ -249,17 +251,41 @@ class Simulation(ABC):
         arrays = {name: array.copy() for name, array in self._arrays().items()}
         return SimulationState(None, deepcopy(self.plant), arrays, list(self.materials), list(self.boxes))
 
-    def set_state(self, state: SimulationState) -> None:
-        """Restore a state.
+    def check_state(self, state: SimulationState, ready: np.ndarray) -> None:
+        """Check a state before anything of it is restored: compiled code checks no index.
+
+        Args:
+            state: The state.
+            ready: Environments that have an episode in it, (n,) bool.
+
+        Raises:
+            ValueError: An environment like this cannot have written it.
+        """
+        if type(state) is not SimulationState:
+            raise damaged(f"simulation must be a SimulationState, got {type(state).__name__}")
+        check_plant(state.plant, self.plant, ready)
+        blank, estimator = self._sampler.blank, self.estimator.name
+        check_arrays(state.arrays, self._arrays(), blank, estimator, ready)
+        check_objects(state.materials, state.boxes, self.config.materials, ready)
+
+    def set_state(self, state: SimulationState, ready: np.ndarray) -> None:
+        """Restore a state that `check_state` has accepted.
+
+        Args:
+            state: The state.
+            ready: Environments that have an episode in it, (n,) bool; the others stay as they are.
 
         Raises:
             RuntimeError: The world is closed.
         """
         self.check_open()
-        self.plant.restore(state.plant)
+        self.plant.restore(state.plant, ready)
         for name, array in self._arrays().items():
-            array[:] = state.arrays[name]
-        self.materials[:], self.boxes[:] = state.materials, state.boxes
+            if name != "estimator_parameters":
+                rows = np.repeat(ready, len(array) // self.n)
+                array[rows] = state.arrays[name][rows]
+        for i in np.flatnonzero(ready).tolist():
+            self.materials[i], self.boxes[i] = state.materials[i], state.boxes[i]
         self._write_infos()
 
     def hand_over_infos(self) -> InfoBuffer:

@@ -12,7 +12,7 @@ from slipgym.envs.arguments import ScalarArguments, complete, documented
 from slipgym.envs.observer import first
 from slipgym.envs.setup import MakeSimulation, Setup
 from slipgym.envs.simulation import Simulation
-from slipgym.envs.state import EnvState, checked, restored_generator
+from slipgym.envs.state import EnvState, checked, restored_generator, restored_seed
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
 
@@ -81,6 +81,9 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
     ) -> tuple[Any, dict[str, Any]]:
         """Start an episode.
 
+        A reset that raises leaves the generator as it was. After an unknown option or a value that is not
+        allowed the episode under way goes on; after any other exception the environment needs a reset.
+
         Args:
             seed: Seed of the environment's generator.
             options: Episode parameters to fix; the task's `Options` lists them.
@@ -89,15 +92,26 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             ValueError: An option is unknown or its value is not allowed.
             RuntimeError: The environment is closed.
         """
-        super().reset(seed=seed)
-        self._ready = False
-        self.simulation.reset(self.task.options.parse(options), self.material, self.np_random)
-        if self._renderer is not None:
-            self._renderer.begin()
+        asked = self.task.options.parse(options)
+        self.simulation.check_open()
+        generator, its_seed = self._np_random, self._np_random_seed
+        state = {} if generator is None else generator.bit_generator.state
+        try:
+            super().reset(seed=seed)
+            self._ready = False
+            self.simulation.reset(asked, self.material, self.np_random)
+            if self._renderer is not None:
+                self._renderer.begin()
+            self._observer.begin(_FIRST)
+            drawn, info = self.simulation.drawn.one(0), self._info()
+            observation = first(self._observer.read())
+        except BaseException:
+            if generator is not None:
+                generator.bit_generator.state = state
+            self._np_random, self._np_random_seed = generator, its_seed
+            raise
         self._ready = True
-        self._observer.begin(_FIRST)
-        drawn, info = self.simulation.drawn.one(0), self._info()
-        return first(self._observer.read()), {**info, "drawn": drawn} if drawn else info
+        return observation, {**info, "drawn": drawn} if drawn else info
 
     def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Act for `frame_skip` control steps.
@@ -121,10 +135,11 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         else:
             self._step_in_pictures(actions)
         observer.next(_ONE)
-        self._ready = True
         dropped, info = simulation.dropped, self._info()
-        reward = sum(info["reward_terms"].values())
-        return first(observer.read()), reward, dropped, simulation.over and not dropped, info
+        reward, truncated = sum(info["reward_terms"].values()), simulation.over and not dropped
+        observation = first(observer.read())
+        self._ready = True
+        return observation, reward, dropped, truncated, info
 
     def _step_in_pictures(self, actions: np.ndarray) -> None:
         """`Simulation.step` with every control step in the pictures' strip."""
@@ -177,18 +192,23 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
 
         Raises:
             TypeError: `state` is not a state.
-            ValueError: The state belongs to an environment with other arguments.
+            ValueError: The state belongs to an environment with other arguments, or no environment wrote it.
+                The environment is as before, or needs a reset if PyBullet refuses its part.
             RuntimeError: This environment is closed.
         """
         checked(state, EnvState).check({"task": self.task.name, **self._arguments})
         self.simulation.check_open()
-        self._np_random = restored_generator(state.generator)
-        self._np_random_seed = state.seed
+        generator, seed = restored_generator(state.generator), restored_seed(state.seed)
         if state.simulation is not None:
-            self.simulation.set_state(state.simulation)
+            self.simulation.check_state(state.simulation, _ONE)
+            self._observer.check_state(state.frames, _ONE)
+        self._ready = False
+        if state.simulation is not None:
+            self.simulation.set_state(state.simulation, _ONE)
             if self._renderer is not None:
                 self._renderer.begin()
-        self._observer.set_state(state.frames)
+            self._observer.set_state(state.frames, _ONE)
+        self._np_random, self._np_random_seed = generator, seed
         self._ready = state.simulation is not None
 
     def _info(self) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from slipgym.config.errors import unknown
+from slipgym.envs.record_checks import damaged
 from slipgym.envs.simulation import SimulationState
 
 
@@ -28,6 +29,8 @@ class State:
         Raises:
             ValueError: Task, configuration or arguments differ; the message names the first.
         """
+        if not isinstance(self.made_of, Mapping) or not made_of.keys() <= self.made_of.keys():
+            raise damaged(f"made_of must be a mapping with the keys {', '.join(made_of)}")
         for name, value in made_of.items():
             if self.made_of[name] != value:
                 difference = _difference(self.made_of[name], value)
@@ -85,14 +88,24 @@ def restored_generator(state: Mapping[str, Any]) -> np.random.Generator:
     """Return a generator with a given state of its bit generator.
 
     Raises:
-        ValueError: The kind of bit generator is unknown.
+        ValueError: It is no such state, or the kind of bit generator is unknown.
     """
-    name = state["bit_generator"]
+    name = state.get("bit_generator") if isinstance(state, Mapping) else None
     if name != "PCG64":
         raise ValueError(unknown("bit generator", name, ["PCG64"]))
     bits: Any = np.random.PCG64(0)
-    bits.state = dict(state)
+    try:
+        bits.state = dict(state)
+    except (TypeError, ValueError, KeyError, OverflowError) as error:
+        raise damaged(f"generator is no state of a PCG64: {error}") from error
     return np.random.Generator(bits)
+
+
+def restored_seed(seed: Any) -> int | None:
+    """Return the last seed of a generator, or raise ValueError if it is none."""
+    if seed is not None and type(seed) is not int:
+        raise damaged(f"seed = {seed!r:.80} must be None or a whole number")
+    return seed
 
 
 def _difference(saved: Any, here: Any, path: str = "") -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from itertools import islice, pairwise
 
 LEAST = 32
@@ -53,15 +53,17 @@ class Threads:
             for k, part in parts:
                 results[k] = function(*part)
 
-        others = [self._threads().submit(work, left) for _ in range(self.count - 1)]
+        others: list[Future[None]] = []
         try:
+            for _ in range(self.count - 1):
+                others.append(self._threads().submit(work, left))
             work(islice(left, 1))  # it needs no lock: the others get it, and begin
             if meanwhile is not None:
                 meanwhile()
             work(left)
         finally:
-            for other in others:
-                other.result()
+            if others:
+                _finish(others)
         return results
 
     def close(self) -> None:
@@ -74,6 +76,21 @@ class Threads:
         if self._pool is None or self._process != os.getpid():
             self._pool, self._process = ThreadPoolExecutor(self.count - 1, "slipgym"), os.getpid()
         return self._pool
+
+
+def _finish(others: list[Future[None]]) -> None:
+    """Wait for all threads, whatever interrupts it: none may still write when the caller goes on."""
+    interrupt: BaseException | None = None
+    while True:
+        try:
+            wait(others)
+            break
+        except BaseException as error:
+            interrupt = error
+    if interrupt is not None:
+        raise interrupt
+    for other in others:
+        other.result()
 
 
 def _ends(n: int, threads: int) -> list[int]:

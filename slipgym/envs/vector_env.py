@@ -16,6 +16,7 @@ from gymnasium.vector.utils import batch_space
 from slipgym.envs.arguments import VectorArguments, complete, documented, one_of
 from slipgym.envs.infos import final
 from slipgym.envs.planar_simulation import PlanarSimulation
+from slipgym.envs.record_checks import check_flags
 from slipgym.envs.reset_options import RowOptions
 from slipgym.envs.seeds import Generators
 from slipgym.envs.setup import Setup
@@ -126,15 +127,22 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         if not (active | begins).all():
             waiting = np.flatnonzero(~(active | begins)).tolist()
             raise RuntimeError(f"call reset() before step(): environments {waiting[:8]} have no episode")
-        simulation, rows = self.simulation, np.flatnonzero(begins)
+        rows = np.flatnonzero(begins)
         self._ready, self._over = np.zeros((2, self.num_envs), dtype=bool)
-        table, buffers, meanwhile = self._actions.table, self._observer.buffers, partial(self._begin, rows)
         try:
-            simulation.step(chosen, table, self._frame_skip, active, buffers, meanwhile)
+            returned = self._advance(chosen, active, rows)
         except BaseException:
             self._ready.fill(False)  # those that began, too
             raise
         self._ready.fill(True)
+        return returned
+
+    def _advance(
+        self, chosen: np.ndarray, active: np.ndarray, rows: np.ndarray
+    ) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+        """Step the active environments, begin episodes of some rows, and return what `step` returns."""
+        simulation, table, buffers = self.simulation, self._actions.table, self._observer.buffers
+        simulation.step(chosen, table, self._frame_skip, active, buffers, partial(self._begin, rows))
         self._observer.next(active)
         rewards, terminated, truncated = simulation.rewards, simulation.terminated, simulation.truncated
         self._pictures.keep(active)
@@ -179,15 +187,23 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
 
         Raises:
             TypeError: `state` is not a state.
-            ValueError: The state belongs to an environment with other arguments.
+            ValueError: The state belongs to an environment with other arguments, or no environment wrote it;
+                nothing changes.
             RuntimeError: This environment is closed.
         """
         checked(state, VectorState).check(self._made_of)
-        self.simulation.set_state(state.simulation)
-        self._generators.set_state(state.generators)
-        self._observer.set_state(state.frames)
-        self._ready[:], self._over[:] = state.ready, state.over
-        self._pictures.begin(np.flatnonzero(state.ready))
+        self.simulation.check_open()
+        generators = self._generators.restored(state.generators)
+        ready, over = (check_flags(name, getattr(state, name), self.num_envs) for name in ("ready", "over"))
+        self.simulation.check_state(state.simulation, ready)
+        self._observer.check_state(state.frames, ready)
+        self._ready = np.zeros(self.num_envs, dtype=bool)
+        self.simulation.set_state(state.simulation, ready)
+        self._generators = generators
+        self._observer.set_state(state.frames, ready)
+        self._pictures.begin(np.flatnonzero(ready))
+        self._over = over
+        self._ready = ready
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make an independent environment in the same state."""

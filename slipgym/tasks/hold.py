@@ -42,7 +42,7 @@ from typing import Annotated
 import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval
+from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval, ends_within
 from slipgym.config.task import MassRange, TaskConfig, setting
 from slipgym.tasks.disturbance import POKES_MAX
 from slipgym.tasks.episode import between, slip_distance, track_slip, whole_steps
@@ -64,18 +64,24 @@ class Settings(TaskConfig):
         NonNegative, setting("Amplitude of the wrist's shaking in pitch", "rad", reset=True, le=0.5)
     ] = 0.03
     shake_frequency: Annotated[
-        PositiveInterval, setting("The shaking's frequency is sampled from this range", "Hz", reset=True)
+        PositiveInterval,
+        ends_within(1e-3, 50.0),
+        setting("The shaking's frequency is sampled from this range", "Hz", reset=True),
     ] = (1.0, 3.0)
     poke_impulse: Annotated[
-        Interval, setting("The impulse of a poke is sampled from this range", "N s", reset=True)
+        Interval,
+        ends_within(0.0, 100.0),
+        setting("The impulse of a poke is sampled from this range", "N s", reset=True),
     ] = (0.01, 0.05)
-    poke_offset: Annotated[NonNegative, setting("Largest lever of a poke about the centre of mass", "m")] = (
-        0.02
-    )
+    poke_offset: Annotated[
+        NonNegative, setting("Largest lever of a poke about the centre of mass", "m", le=1.0)
+    ] = 0.02
     poke_interval: Annotated[
-        PositiveInterval, setting("The time between pokes is sampled from this range", "s", reset=True)
+        PositiveInterval,
+        ends_within(1e-3, 1e4),
+        setting("The time between pokes is sampled from this range", "s", reset=True),
     ] = (0.8, 1.6)
-    poke_duration: Annotated[Positive, setting("Length of a poke", "s")] = 0.02
+    poke_duration: Annotated[Positive, setting("Length of a poke", "s", le=10.0)] = 0.02
 
 
 def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:

@@ -10,13 +10,13 @@ from typing import Any, NoReturn
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.world import bullet_tilt, scene
+from slipgym.world import bullet_tilt, bullet_upright, scene
+from slipgym.world.bullet_client import Client
 from slipgym.world.bullet_rows import BulletRows, read_engine
-from slipgym.world.momentum import normal_forces
 from slipgym.world.placing import place
 from slipgym.world.plant import Plant
 from slipgym.world.quiet_pybullet import p
-from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
+from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_JOINTS, Box
 from slipgym.world.snapshot import EngineState, load_engine, save_engine
 from slipgym.world.tilt_placing import place_tilt
 from slipgym.world.wrist import ramp_wrist
@@ -26,7 +26,8 @@ class BulletWorld:
     """One gripper and one box in a physics client of their own.
 
     The scene is built once; an episode starts from a saved state of it, in which the pads
-    touch the box. Only another geometry builds another box.
+    touch the box. Only another geometry builds another box. An exception during a call leaves a world without
+    a box, for which the next reset builds everything again.
 
     Args:
         config: Configuration; gripper, physics and the rates are read.
@@ -36,7 +37,7 @@ class BulletWorld:
     def __init__(self, config: Config, plant: Plant) -> None:
         self._config = config
         self._plant = plant
-        self._client: int | None = scene.connect()
+        self._client = Client()
         self._box: Box | None = None
         self._gripper = self._body = self._saved = -1
         self._mass_set: tuple[float, float] | None = None
@@ -51,21 +52,19 @@ class BulletWorld:
         Raises:
             RuntimeError: The world is closed.
         """
-        if self._client is None:
-            raise RuntimeError("this environment is closed; make a new one")
-        return self._client
+        return self._client.number
 
     @property
     def closed(self) -> bool:
         """Whether the world was closed."""
-        return self._client is None
+        return self._client.closed
 
     @property
     def box(self) -> Box:
         """The box of this episode.
 
         Raises:
-            RuntimeError: There was no reset yet.
+            RuntimeError: There was no reset yet, or the last call was interrupted.
         """
         if self._box is None:
             raise RuntimeError("call reset() first: there is no object yet")
@@ -104,12 +103,8 @@ class BulletWorld:
             wrist: Pad centre (x, z) and pitch [m, m, rad].
             roll: Of the wrist, with `physics.tilt` [rad].
         """
-        client = self.client
-        if self._box is None or _geometry(box) != _geometry(self._box):
-            self._build(box)
-        self._set_mass(box.mass, box.inertia)
+        client = self._rebuilt(box)
         p.restoreState(stateId=self._saved, physicsClientId=client)
-        self._box = box
         place(self._plant, 0, box, force, wrist)
         if self._plant.tilt is not None:
             place_tilt(self._plant, 0, box, force, roll)
@@ -117,6 +112,7 @@ class BulletWorld:
             self._place(wrist)
         *bodies, speeds = self._read(client, self._body, self._gripper)
         self._reading = *bodies, tuple(self._plant.fingers["contact_force"][0].tolist()), speeds
+        self._box = box
 
     def command(self, force: float) -> None:
         """Command a grip force per finger [N]; both fingers get the same."""
@@ -141,10 +137,13 @@ class BulletWorld:
         Args:
             mass: That of the planar world [kg].
         """
-        if mass != self.box.mass:
-            self._box = replace(self.box, mass=mass, inertia=self._plant.world["inertia"].item())
-            self._set_mass(mass, self._box.inertia)
+        box = self.box
+        if mass != box.mass:
+            self._box = None
+            box = replace(box, mass=mass, inertia=self._plant.world["inertia"].item())
+            self._set_mass(mass, box.inertia)
             self._place_links()
+            self._box = box
 
     def disturb(self, wrench: np.ndarray) -> None:
         """Apply a load (f_x, f_z, torque) to the object's centre of mass until the next call."""
@@ -157,15 +156,20 @@ class BulletWorld:
         read_engine(self._plant.world, self._plant.fingers, pose, wrist, normals)
 
     def move(self) -> None:
-        """Advance the bodies by one control step; the planar world has yet to take over the `reading`."""
+        """Advance the bodies by one control step; the planar world has yet to take over the `reading`.
+
+        Raises:
+            RuntimeError: The world is closed, needs a reset, or its physics client is gone.
+        """
+        bodies = self._client.checked(), self._body, self._gripper
+        box, self._box = self.box, None
+        moving = self.rows.loads, self._reading, self._read, self._engine_steps
         if self._plant.tilt is None:
-            self._step()
+            self._reading = bullet_upright.step(*bodies, *moving, self._finger_inertia)
         else:
-            bodies = self.client, self._body, self._gripper
-            self._reading = bullet_tilt.step(
-                *bodies, self.rows.loads, self._reading, self._read, self._engine_steps
-            )
+            self._reading = bullet_tilt.step(*bodies, *moving)
         self._place_links()
+        self._box = box
 
     @cached_property
     def rows(self) -> BulletRows:
@@ -176,42 +180,13 @@ class BulletWorld:
         """Find the compiled functions anew, after an array of the plant was replaced."""
         self.rows = BulletRows(self._plant)
 
-    def _step(self) -> None:
-        client, body, gripper = self.client, self._body, self._gripper
-        loads, read = self.rows.loads, self._read
-        push, twist, drive = p.applyExternalForce, p.applyExternalTorque, p.setJointMotorControlArray
-        (first, second), world, inertia = FINGER_LINKS, p.WORLD_FRAME, self._finger_inertia
-        pose, velocity, wrist, normals, before = self._reading
-        for _ in range(self._engine_steps):
-            (force, torque), at_first, at_second, efforts, speeds = loads(pose, velocity, wrist, normals)
-            push(body, -1, force, pose[0], world, client)
-            twist(body, -1, torque, world, client)
-            push(gripper, first, at_first[1], at_first[0], world, client)
-            twist(gripper, first, at_first[2], world, client)
-            push(gripper, second, at_second[1], at_second[0], world, client)
-            twist(gripper, second, at_second[2], world, client)
-            drive(gripper, FINGER_LINKS, p.TORQUE_CONTROL, forces=efforts, physicsClientId=client)
-            drive(
-                gripper,
-                WRIST_JOINTS,
-                p.VELOCITY_CONTROL,
-                targetVelocities=speeds,
-                forces=WRIST_FORCE,
-                physicsClientId=client,
-            )
-            p.stepSimulation(client)
-            pose, velocity, wrist, after = read(client, body, gripper)
-            normals = normal_forces(efforts, before, after, inertia)
-            before = after
-        self._reading = pose, velocity, wrist, normals, before
-
     def get_state(self) -> EngineState:
         """Everything that the engine's next step depends on, except the plant's arrays.
 
         Raises:
             RuntimeError: The world is closed, or there was no reset yet.
         """
-        box, client = self.box, self.client
+        client, box = self._client.checked(), self.box
         return EngineState(save_engine(client), box, self._reading)
 
     def set_state(self, state: EngineState) -> None:
@@ -220,13 +195,10 @@ class BulletWorld:
         Raises:
             RuntimeError: The world is closed.
         """
-        client = self.client
-        if self._box is None or _geometry(state.box) != _geometry(self._box):
-            self._build(state.box)
-        self._set_mass(state.box.mass, state.box.inertia)
-        load_engine(client, state.engine)
-        self._box, self._reading = state.box, state.reading
+        load_engine(self._rebuilt(state.box), state.engine)
+        self._reading = state.reading
         self._place_links()
+        self._box = state.box
 
     def discard(self) -> None:
         """Drop the bodies: the next reset builds them again."""
@@ -234,9 +206,7 @@ class BulletWorld:
 
     def close(self) -> None:
         """Disconnect the client; the world cannot be used again. Closing twice is harmless."""
-        if self._client is not None:
-            p.disconnect(physicsClientId=self._client)
-            self._client = None
+        self._client.close()
 
     def __del__(self) -> None:
         if getattr(self, "_client", None) is not None and p is not None:
@@ -247,6 +217,19 @@ class BulletWorld:
             "a BulletWorld cannot be copied or pickled: two copies would share one physics client; "
             "save get_state()"
         )
+
+    def _rebuilt(self, box: Box) -> int:
+        """Bring this box into the world, which has none until the caller has finished.
+
+        Returns:
+            PyBullet's id of the physics client.
+        """
+        client, built = self._client.checked(), self._box
+        self._box = None
+        if built is None or _geometry(box) != _geometry(built):
+            self._build(box)
+        self._set_mass(box.mass, box.inertia)
+        return client
 
     def _set_mass(self, mass: float, inertia: float) -> None:
         if (mass, inertia) != self._mass_set:
@@ -272,9 +255,11 @@ class BulletWorld:
 
     def _build(self, box: Box) -> None:
         client = self.client
-        scene.clear(client, self._config)
         self._mass_set = None
+        self._client.unmark()
+        scene.clear(client, self._config)
         self._gripper = scene.add_gripper(client, self._config, box.size[1])
+        self._client.mark(self._gripper)
         self._body = scene.add_box(client, box)
         if self._plant.tilt is None:
             self._saved = scene.settle(client, self._config, self._gripper)

@@ -43,12 +43,12 @@ class Plant:
     tilt: np.ndarray | None = None
     """TILT (n,); None without `physics.tilt`."""
 
-    def restore(self, other: Plant) -> None:
-        """Copy every array of another plant of the same size into this one."""
+    def restore(self, other: Plant, rows: np.ndarray) -> None:
+        """Copy rows (n,) bool of every array of another plant of the same size into this one."""
         for field in fields(self):
             array = getattr(self, field.name)
             if array is not None:
-                array[:] = getattr(other, field.name)
+                array[rows] = getattr(other, field.name)[rows]
 
 
 def build(config: Config, n: int = 1) -> Plant:

@@ -1,10 +1,12 @@
 """Memory of an environment of a batch, and very many of them."""
 
+from pathlib import Path
+
 import gymnasium as gym
 import numpy as np
 import pytest
 
-from slipgym.benchmarking.memory import bytes_per_environment
+from slipgym.benchmarking.memory import bytes_per_environment, bytes_with_pybullet
 from slipgym.contact.records import CELL_FIELDS
 
 ID = "slipgym/Hold-v0"
@@ -52,3 +54,8 @@ def test_a_hundred_thousand_environments_at_once():
     assert np.isfinite(rewards).all()
     env.close()
     one.close()
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="Linux alone says so")
+def test_an_environment_with_pybullet_takes_tens_of_megabytes():
+    assert 10.0 < bytes_with_pybullet(count=5) / 2**20 < 60.0

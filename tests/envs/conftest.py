@@ -36,6 +36,21 @@ def make() -> Iterator[Callable[..., gym.Env]]:
 
 
 @pytest.fixture
+def make_vec() -> Iterator[Callable[..., gym.vector.VectorEnv]]:
+    """Makes batches, acted on by the grip force alone, and closes them after the test."""
+    made = []
+
+    def factory(env_id: str = IDS[0], **arguments: Any) -> gym.vector.VectorEnv:
+        env = gym.make_vec(env_id, **{"action_mode": "grip_force", **arguments})
+        made.append(env)
+        return env
+
+    yield factory
+    for env in made:
+        env.close()
+
+
+@pytest.fixture
 def python() -> Callable[..., str]:
     """Runs a fresh interpreter in the repository, warnings as errors, and returns what it printed."""
 

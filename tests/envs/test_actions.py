@@ -161,3 +161,49 @@ def test_a_wrong_component_is_named_and_moves_nothing(make, mode, action, messag
         env.step(action)
     fine = np.full(env.action_space.shape, 0.1)
     assert repr(env.step(fine)) == repr(twin.step(fine))
+
+
+NO_NUMBERS = {
+    "complex": np.array([0.5 + 1j]),
+    "complex without imaginary part": np.array([0.5 + 0j]),
+    "text": ["0.5"],
+    "bytes": np.array([b"1"]),
+    "date": np.array(["2020-01-01"], "M8[D]"),
+    "duration": np.array([1], "m8[s]"),
+    "masked": np.ma.array([0.5], mask=[True]),
+    "with a mask": np.ma.array([0.5], mask=[False]),
+    "large": [10**400],
+    "large object": np.array([10**30], dtype=object),
+    "none": [None],
+    "record": np.array([(0.5,)], dtype=[("a", "f8")]),
+}
+
+
+@pytest.mark.parametrize("action", NO_NUMBERS.values(), ids=NO_NUMBERS)
+def test_values_that_are_no_real_numbers_are_named(make, make_vec, action):
+    env, batch = make(engine="planar"), make_vec(num_envs=1)
+    env.reset(seed=0)
+    batch.reset(seed=0)
+    with pytest.raises(ValueError, match=r"action (.*)?must be an array"):
+        env.step(action)
+    together = action.reshape(1, -1) if isinstance(action, np.ndarray) else [action]
+    with pytest.raises(ValueError, match=r"actions (.*)?must be an array"):
+        batch.step(together)
+
+
+@pytest.mark.parametrize(
+    "action", [[True], np.array([1], np.uint64), np.float16([0.5]), np.longdouble([0.5])]
+)
+def test_all_kinds_of_real_numbers_are_taken(make, action):
+    env = make(engine="planar")
+    env.reset(seed=0)
+    env.step(action)
+
+
+def test_the_force_of_another_task_does_not_limit_this_one(make, env_id):
+    """RotationalSlip begins with 25 N; a gripper of 20 N still serves the other tasks."""
+    key = make(env_id, engine="planar").task.key
+    config = {"gripper": {"force_max": 20.0}, "tasks": {key: {"initial_force": 20.0}}}
+    env = make(env_id, engine="planar", config=config)
+    env.reset(seed=0)
+    env.reset(seed=0, options={"initial_force": 18.0})

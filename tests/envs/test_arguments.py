@@ -32,7 +32,7 @@ KEYWORDS = [
     ({"render_mode": "ascii"}, "unknown render_mode 'ascii'", "rgb_array"),
     ({"config": {"objekt": {}}}, "unknown key 'objekt'", "did you mean 'object'"),
     ({"config": {"object": {"mas": 1.0}}}, "object.mas: unknown key 'mas'", "did you mean 'mass'"),
-    ({"config": {"object": {"mass": -1.0}}}, "object.mass = -1.0", "> 0"),
+    ({"config": {"object": {"mass": -1.0}}}, "object.mass = -1.0", ">= 0.001"),
     ({"config": 3}, "config argument", "mapping or a path, got 3"),
 ]
 
@@ -93,7 +93,7 @@ ACTIONS = [
     ([0.0, 0.0], "shape (1,)"),
     ([[0.0]], "shape (1,)"),
     ([], "shape (1,)"),
-    (None, "shape (1,)"),
+    (None, "array of numbers"),
     (["strong"], "strong"),
     ([1j], "1j"),
     ({"force": 1}, "force"),

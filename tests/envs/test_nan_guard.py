@@ -2,10 +2,13 @@
 
 import csv
 import re
+import tempfile
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from slipgym.envs import dumps
 from slipgym.envs.nan_guard import KEPT, QUANTITIES
 
 NAMES = [quantity.name for quantity in QUANTITIES]
@@ -45,6 +48,35 @@ def test_keeps_the_last_second_only(make):
     for _ in range(6):
         env.step(np.zeros(1, np.float32))
     assert f"the last {KEPT} samples" in stopped(env)
+
+
+def test_a_folder_keeps_the_newest_files(make, tmp_path, monkeypatch):
+    monkeypatch.setenv(dumps.VARIABLE, str(tmp_path / "dumps"))
+    env = make(engine="planar")
+    messages = []
+    for _ in range(dumps.KEPT + 3):
+        env.reset(seed=0)
+        messages.append(stopped(env))
+    left = {str(path) for path in (tmp_path / "dumps").iterdir()}
+    assert left == {re.search(r"in (\S+\.csv);", message)[1] for message in messages[-dumps.KEPT :]}
+
+
+def test_a_folder_of_the_user_alone_is_the_default(make, tmp_path, monkeypatch):
+    monkeypatch.delenv(dumps.VARIABLE, raising=False)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    env = make(engine="planar")
+    env.reset(seed=0)
+    path = Path(re.search(r"in (\S+\.csv);", stopped(env))[1])
+    assert path.parent.parent == tmp_path
+    assert path.parent.stat().st_mode & 0o077 == 0
+
+
+def test_a_folder_that_cannot_be_written_hides_nothing(make, tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv(dumps.VARIABLE, str(tmp_path / "file"))
+    env = make(engine="planar")
+    env.reset(seed=0)
+    assert "object_x is nan" in stopped(env)
 
 
 def test_starts_afresh(make, play):

@@ -1,11 +1,13 @@
 """A stored program is used as long as what is compiled stays the same, and no longer."""
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from numba.core import config
@@ -16,6 +18,7 @@ from estimator._numba.folders import program_folder
 from estimator._numba.locking import only_one
 from slipgym._numba.compiled import compiled
 
+ROOT = Path(__file__).resolve().parents[2]
 MAIN = """
 import numpy as np
 import table
@@ -157,9 +160,11 @@ def test_without_a_writable_folder_programs_are_kept_among_temporary_files(tmp_p
     assert found.is_relative_to(tmp_path)
     assert found.parent.stat().st_mode & 0o077 == 0
     found.parent.chmod(0o777)  # others could store a program there
-    folders._program_folder.cache_clear()
+    for cached in (folders._program_folder, folders._warn):
+        cached.cache_clear()
     with pytest.warns(UserWarning, match="NUMBA_CACHE_DIR"):
         assert program_folder(__file__) is None
+    assert program_folder(folders.__file__) is None  # another warning would be an error here
     folders._program_folder.cache_clear()
 
 
@@ -183,3 +188,70 @@ def test_a_process_that_waits_too_long_goes_on(tmp_path):
     path.touch()  # left by a process that was killed
     with only_one(path, patience=60.0):
         pass
+
+
+def test_without_a_home_nothing_is_written_to_the_working_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(folders, "AppDirs", lambda **_: SimpleNamespace(user_cache_dir="~/.cache/numba"))
+    monkeypatch.setattr(folders.tempfile, "gettempdir", lambda: str(tmp_path / "gone"))
+    writable = folders._is_writable
+    monkeypatch.setattr(
+        folders, "_is_writable", lambda folder: folder.name != "__pycache__" and writable(folder)
+    )
+    for cached in (folders._program_folder, folders._warn):
+        cached.cache_clear()
+    with pytest.warns(UserWarning, match="NUMBA_CACHE_DIR"):
+        assert program_folder(__file__) is None
+    folders._program_folder.cache_clear()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_the_compiler_the_import_says_what_to_do():
+    done = subprocess.run(
+        [sys.executable, "-c", "import estimator; estimator.make('disc')"],
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert done.stderr.strip().splitlines()[-1].startswith("ImportError: slipgym and its estimators need")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    shutil.which("setpriv") is None or os.geteuid() != 0, reason="only root becomes another user"
+)
+def test_another_user_on_a_read_only_installation(tmp_path):
+    """Without a home and without programs beside the sources: a container's usual state."""
+    for name in ("slipgym", "estimator", "policies", "configs"):
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / name, tmp_path / "installed" / name, ignore=ignored)
+    for folder in (tmp_path, *tmp_path.parents[:2]):
+        folder.chmod(0o755)
+    code = (
+        "import gymnasium as gym, slipgym, tempfile, estimator\n"
+        "estimator.make('disc').update(0.0, (0.1, 0.0, 5.0, 0.0), (0.0, 0.0, 0.0))\n"
+        "env = gym.make('slipgym/LinearSlip-v0', engine='planar')\n"
+        "env.reset(seed=0); env.step(env.action_space.sample()); print('fine')"
+    )
+    # reads what root can, since the interpreter may be root's, and writes what anybody can
+    caps = "-all,+dac_read_search"
+    nobody = [
+        "--reuid=65534",
+        "--regid=65534",
+        "--clear-groups",
+        f"--inh-caps={caps}",
+        f"--ambient-caps={caps}",
+    ]
+    done = subprocess.run(
+        ["setpriv", *nobody, sys.executable, "-W", "error::UserWarning:estimator", "-c", code],
+        env={"PYTHONPATH": str(tmp_path / "installed"), "PATH": os.environ["PATH"], "OMP_NUM_THREADS": "1"},
+        cwd="/",
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout.strip() == "fine", done.stderr
+    assert not list((tmp_path / "installed").rglob("__pycache__"))

@@ -1,7 +1,7 @@
 import pytest
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def small():
     """Makes configurations of runs of seconds: short episodes without randomization."""
     pytest.importorskip("stable_baselines3")

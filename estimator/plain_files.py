@@ -1,0 +1,144 @@
+"""Reads files of unknown origin: regular files of bearable size, and YAML of bearable complexity."""
+
+from __future__ import annotations
+
+import re
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+BYTES = 2**20
+"""Largest YAML file."""
+NODES = 20_000
+"""Most values of a YAML file, each alias counted with all that it stands for."""
+DEPTH = 64
+"""Deepest nesting of a YAML file, aliases included."""
+DIGITS = 100
+"""Most characters of a number or date."""
+_NUMBERS = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("int", "float", "timestamp"))
+_YAML_1_2_FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?$")
+
+
+def check_regular(path: Path) -> None:
+    """Raise ValueError if something is at a path that is no regular file: a folder, a pipe, a device.
+
+    Raises:
+        FileNotFoundError: Nothing is there.
+    """
+    if not stat.S_ISREG(path.stat().st_mode):
+        raise ValueError(f"{path}: is no regular file")
+
+
+def content(path: Path, limit: int = BYTES) -> bytes:
+    """All of a regular file.
+
+    Args:
+        path: The file.
+        limit: Most bytes that it may have.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        ValueError: It is no regular file, or larger.
+    """
+    check_regular(path)
+    with path.open("rb") as stream:
+        data = stream.read(limit + 1)
+    if len(data) > limit:
+        raise ValueError(f"{path}: is larger than the {limit} bytes allowed")
+    return data
+
+
+def parse(text: str | bytes, source: str) -> Any:
+    """Reads a YAML text: numbers, texts, dates, lists and mappings alone.
+
+    Args:
+        text: The text.
+        source: Origin of the text, for error messages.
+
+    Raises:
+        ValueError: It is not YAML, holds a key twice, or is too large, too deep or refers to itself.
+    """
+    try:
+        loader = _Loader(text)
+        loader.name = Path(source).name
+        return loader.get_single_data()
+    except yaml.YAMLError as error:
+        raise ValueError(f"{source}: {error}") from error
+
+
+class _Loader(yaml.SafeLoader):
+    """PyYAML's safe loader with limits; it refuses a key given twice and reads 1e-3 as YAML 1.2 does."""
+
+    def __init__(self, stream: str | bytes) -> None:
+        super().__init__(stream)
+        self._nodes = self._depth = 0
+        self._sizes: dict[int, tuple[int, int]] = {}
+
+    def get_single_node(self) -> Any:
+        node = super().get_single_node()
+        if node is not None:
+            self._measure(node, 1, set())
+        return node
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        self._nodes, self._depth = self._nodes + 1, self._depth + 1
+        if self._nodes > NODES or self._depth > DEPTH:
+            _refuse_size(self._depth > DEPTH, self.peek_event().start_mark)
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        return node
+
+    def construct_object(self, node: Any, deep: bool = False) -> Any:
+        if node.tag in _NUMBERS and len(node.value) > DIGITS:
+            problem = f"a number has at most {DIGITS} characters"
+            raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
+        try:
+            return super().construct_object(node, deep)
+        except (ValueError, KeyError, AttributeError, TypeError, OverflowError) as error:
+            problem = f"{node.value!s:.40}: {error}"
+            raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark) from error
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        seen = set()
+        for key, _ in node.value:
+            if not isinstance(key, yaml.ScalarNode):
+                continue
+            if key.value in seen:
+                raise yaml.MarkedYAMLError(
+                    problem=f"duplicate key {key.value!r}", problem_mark=key.start_mark
+                )
+            seen.add(key.value)
+        return super().construct_mapping(node, deep)
+
+    def _measure(self, node: Any, depth: int, above: set[int]) -> tuple[int, int]:
+        """Number of values and height of a node, each alias counted with all that it stands for."""
+        if id(node) in above:
+            raise yaml.MarkedYAMLError(problem="it refers to itself", problem_mark=node.start_mark)
+        size, height = self._sizes.get(id(node), (1, 1))
+        if id(node) not in self._sizes:
+            for child in _children(node):
+                inner, deeper = self._measure(child, depth + 1, above | {id(node)})
+                size, height = size + inner, max(height, 1 + deeper)
+            self._sizes[id(node)] = size, height
+        if size > NODES or depth + height - 1 > DEPTH:
+            _refuse_size(size <= NODES, node.start_mark)
+        return size, height
+
+
+def _children(node: Any) -> Iterator[Any]:
+    if isinstance(node, yaml.MappingNode):
+        for pair in node.value:
+            yield from pair
+    elif isinstance(node, yaml.SequenceNode):
+        yield from node.value
+
+
+def _refuse_size(deep: bool, mark: Any) -> None:
+    problem = f"nested deeper than {DEPTH} levels" if deep else f"more than {NODES} values, aliases included"
+    raise yaml.MarkedYAMLError(problem=problem, problem_mark=mark)
+
+
+_Loader.add_implicit_resolver("tag:yaml.org,2002:float", _YAML_1_2_FLOAT, list("-+.0123456789"))

@@ -1,0 +1,1 @@
+"""Attacks on the public interface: interrupts, crafted files, inconsistent states, values without limit."""
