@@ -51,9 +51,9 @@ $(RUN):
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/.eval: pyproject.toml constraints.txt | $(RUN)
-	$(PIP) --editable '.[eval]'
+	$(PIP) --editable '.[bullet,eval]'
 	@touch $@
 
 $(VENV)/.dev: pyproject.toml constraints.txt | $(RUN)
-	$(PIP) --editable '.[dev,train]'
+	$(PIP) --editable '.[bullet,dev,train]'
 	@touch $(VENV)/.eval $@

@@ -1,4 +1,4 @@
-"""Imports PyBullet without its banner ("pybullet build time: ...").
+"""Imports PyBullet without its banner ("pybullet build time: ..."), or stands in for it where it is missing.
 
 from slipgym.world.quiet_pybullet import p
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any, NoReturn
 
 STREAMS = 1, 2
 """File descriptors of standard output and standard error; which one has the banner depends on the version."""
@@ -37,7 +38,25 @@ def _is_open(stream: int) -> bool:
     return True
 
 
-with _silent():
-    import pybullet as p
+MISSING = (
+    "engine='bullet' needs PyBullet, which is not installed: pip install 'slipgym[bullet]' (compiled for "
+    "about 20 minutes on Python 3.12 and newer, where it has no wheel), or choose engine='planar'"
+)
+
+
+class _Missing:
+    """Raises what to do at the first use of PyBullet."""
+
+    def __getattr__(self, name: str) -> NoReturn:
+        raise ModuleNotFoundError(MISSING, name="pybullet")
+
+
+try:
+    with _silent():
+        import pybullet as p
+except ModuleNotFoundError as error:
+    if error.name != "pybullet":
+        raise
+    p: Any = _Missing()
 
 __all__ = ["p"]
