@@ -17,12 +17,13 @@ from numpy.typing import NDArray
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
 from estimator.augmented.deviation import deviate
-from estimator.augmented.filtering import learn_zero, working_arrays
+from estimator.augmented.filtering import working_arrays
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.sliding import slide, store
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, TILT, ZERO
 from estimator.augmented.state import STATE, initial_states
 from estimator.augmented.static_friction import learn_static_friction
+from estimator.augmented.unloaded import drift_zero, learn_zero, without_load
 from estimator.limit_surface import DISC_RADIUS
 from estimator.registry import FilterMatrices, Specification
 from estimator.sample import norm, publish, readable
@@ -39,9 +40,10 @@ def filter_matrices(states: NDArray[np.void]) -> FilterMatrices:
 
 
 @njit(error_model="numpy")
-def _update(state, scratch, p, t, wrench, twist, estimate):
-    """One finger, one sample."""
-    x, f_n = state.x, wrench[2]
+def _update(state, scratch, p, t, read, twist, estimate):
+    """One finger, one sample, with the wrench as it is read."""
+    x, f_n = state.x, read[2] - state.zero_normal
+    wrench = read[0], read[1], f_n, read[3] - state.zero_torque
     c_x, c_y = MILLIMETRE * x[COP], MILLIMETRE * x[COP + 1]
     f_x, f_y = wrench[0] - x[ZERO] - f_n * x[TILT], wrench[1] - x[ZERO + 1] - f_n * x[TILT + 1]
     f_t, tau = norm(f_x, f_y), abs(wrench[3] - c_x * f_y + c_y * f_x)
@@ -51,12 +53,13 @@ def _update(state, scratch, p, t, wrench, twist, estimate):
     if not readable(state, t, f_t, f_n, tau, speed_2):
         return
     halted, saw_mu_c, saw_r, gamma_t, gamma_tau = False, False, False, 0.0, 0.0
-    elapsed = t - state.t
-    if f_n < p.eps_fn:
+    elapsed = t - state.t if state.samples > 0 else p.sample_time
+    unloaded = without_load(state, p, read[2])
+    if unloaded or f_n < p.eps_fn:
         lose_contact(state)
         state.in_a_row, state.moved = 0, 0
-        if abs(f_n) < p.noise_gate * p.sd_normal:
-            learn_zero(state, p, wrench)
+        if unloaded:
+            learn_zero(state, p, read)
     else:
         halted = halts(state, p, f_n, elapsed)
         moves = speed_2 > p.eps_v * p.eps_v
@@ -76,6 +79,7 @@ def _update(state, scratch, p, t, wrench, twist, estimate):
         size = norm(across, rim)
         if 0.0 < size < math.inf:
             gamma_t, gamma_tau = across / size, rim / size
+    drift_zero(state, p, elapsed)
     deviate(state, p)
     state.elapsed = elapsed
     publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate)

@@ -34,11 +34,12 @@ def deviate(state, p):
         state.mu_c = clamped(math.exp(state.x[MU]), p.mu_min, p.mu_max)
         state.r = clamped(math.exp(state.x[R]), p.r_min, p.r_max)
         square = excess * covariance[MU, MU] + _unseen(covariance, p, MU) + hidden
-        square += (p.sd_zero / state.smooth[3]) ** 2  # of the normal force
+        square += state.variance_normal / (state.smooth[3] * state.smooth[3])
         state.sd_mu_c = state.mu_c * math.sqrt(square)
         state.confidence_mu_c = 1.0 / (1.0 + 100.0 * square)
     if state.updates_r > 0:
         square = excess * covariance[R, R] + _unseen(covariance, p, R) + hidden
+        square += state.variance_torque / (state.mu_c * state.r * state.smooth[3]) ** 2
         state.sd_r = state.r * math.sqrt(square)
         state.confidence_r = 1.0 / (1.0 + 100.0 * square)
     if state.events_mu_s > 0:

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from estimator._numba.caching import njit
-from estimator.augmented.slip_law import MU, STATES, ZERO, R, predict
+from estimator.augmented.slip_law import MU, STATES, R, predict
 
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
@@ -179,34 +179,3 @@ def learn(state, scratch, p, sign, wrench, twist, of_speed, of_spin):
             covariance[k, j] = value
         x[j] = proposed[j]
     return True, squared, score
-
-
-@njit(error_model="numpy")
-def learn_zero(state, p, wrench):
-    """Takes the tangential force of a sensor without load as a measurement of its zero error.
-
-    Args:
-        state: Record with `x`, `covariance` and `unloaded`; changed in place.
-        p: Parameters.
-        wrench: f_x, f_y, f_n, tau [N, N, N, N m].
-    """
-    x, covariance = state.x, state.covariance
-    for axis in range(2):
-        at = ZERO + axis
-        variance = covariance[at, at]
-        gain = 1.0 / (variance + (2.0 * p.caution * p.sd_force) ** 2)
-        innovation = wrench[axis] - x[at]
-        if not abs(innovation) < 10.0 * p.sd_zero:
-            continue
-        state.unloaded = True
-        for j in range(STATES):
-            x[j] += covariance[j, at] * gain * innovation
-        _limit(x, state.limits)
-        for j in range(STATES):
-            for k in range(STATES):
-                if j != at and k != at:
-                    covariance[j, k] -= covariance[j, at] * covariance[at, k] * gain
-        left = 1.0 - variance * gain
-        for j in range(STATES):
-            covariance[j, at] *= left
-            covariance[at, j] = covariance[j, at]

@@ -18,6 +18,11 @@ STATE = np.dtype(
         ("sign", np.float64),
         ("power", np.float64),
         ("unloaded", np.bool_),
+        ("touched", np.bool_),
+        ("zero_normal", np.float64),
+        ("variance_normal", np.float64),
+        ("zero_torque", np.float64),
+        ("variance_torque", np.float64),
         ("timing", np.float64),
         ("offset", np.float64),
         ("misfit", np.float64),
@@ -42,8 +47,9 @@ STATE = np.dtype(
 )
 """`x`, `covariance`: the filter; `limits`: of ln mu_c and ln r; `delay`: of the velocity [samples];
 `timing`: its correlation; `offset`: its fraction of a sample; `sign`: 1 if the wrench is that on the
-finger; `unloaded`: whether the sensor was seen without load; `moved`: velocities in a row that moved;
-`misfit`: mean squared normalised innovation; `rise`, `fall`: sums of the jump test."""
+finger; `unloaded`: whether the sensor was seen without load; `touched`: whether there was contact;
+`zero_normal`, `zero_torque`: zero errors of f_n and tau [N, N m], with their variances; `moved`: velocities
+in a row that moved; `misfit`: mean squared normalised innovation; `rise`, `fall`: sums of the jump test."""
 
 
 _SPREADS = {MU: "log_mu_c0", R: "log_r0", SIGMA: "viscosity", ZERO: "zero", ZERO + 1: "zero"}
@@ -68,6 +74,8 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
         states["covariance"][:, at, at] = (assumed * parameters[f"sd_{name}"]) ** 2
     for at, name in enumerate(("mu_min", "mu_max", "r_min", "r_max")):
         states["limits"][:, at] = np.log(parameters[name])
+    states["variance_normal"] = parameters["sd_zero"] ** 2
+    states["variance_torque"] = parameters["sd_zero_torque"] ** 2
     states["delay"] = parameters["nominal_delay"]
     states["sign"] = states["misfit"] = 1.0
     return states
