@@ -19,7 +19,8 @@ from estimator._numba.entry_point import entry_point
 from estimator.augmented.deviation import deviate
 from estimator.augmented.filtering import working_arrays
 from estimator.augmented.parameters import AdaptiveParameters
-from estimator.augmented.sliding import slide, store
+from estimator.augmented.short_slips import learn_short_slip
+from estimator.augmented.sliding import slide, store, test_for_jump
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, TILT, ZERO
 from estimator.augmented.state import STATE, initial_states
 from estimator.augmented.static_friction import learn_static_friction
@@ -57,7 +58,7 @@ def _update(state, scratch, p, t, read, twist, estimate):
     unloaded = without_load(state, p, read[2])
     if unloaded or f_n < p.eps_fn:
         lose_contact(state)
-        state.in_a_row, state.moved = 0, 0
+        state.in_a_row, state.moved, state.beyond, state.first = 0, 0, 0, -1
         if unloaded:
             learn_zero(state, p, read)
     else:
@@ -72,7 +73,14 @@ def _update(state, scratch, p, t, read, twist, estimate):
             saw_r = omega > p.noise_gate * p.sd_spin and v_t < 3.0 * p.r_max * omega
             if saw_r:
                 state.updates_r += 1
+        elif not halted:
+            score = learn_short_slip(state, scratch, p, moves)
+            if math.isfinite(score):
+                saw_mu_c = True
+                state.updates_mu_c += 1
+                test_for_jump(state, p, score)
         still = speed_2 <= p.stick_band * p.stick_band
+        moves = state.beyond > 0
         learn_static_friction(state, p, f_t, f_n, tau, still, moves, halted)
         rim = state.r * omega if moves else tau / state.r
         across = v_t if moves else f_t

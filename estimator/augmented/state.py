@@ -14,6 +14,16 @@ STATE = np.dtype(
         ("elapsed", np.float64),
         ("in_a_row", np.int64),
         ("moved", np.int64),
+        ("repeated", np.int64),
+        ("beyond", np.int64),
+        ("first", np.int64),
+        ("quiet", np.int64),
+        ("fallen", np.int64),
+        ("slides", np.int64),
+        ("slid", np.int64),
+        ("moved_by", np.float64, (3,)),
+        ("lowest", np.float64, (3,)),
+        ("highest", np.float64, (3,)),
         ("delay", np.int64),
         ("sign", np.float64),
         ("power", np.float64),
@@ -49,7 +59,12 @@ STATE = np.dtype(
 `timing`: its correlation; `offset`: its fraction of a sample; `sign`: 1 if the wrench is that on the
 finger; `unloaded`: whether the sensor was seen without load; `touched`: whether there was contact;
 `zero_normal`, `zero_torque`: zero errors of f_n and tau [N, N m], with their variances; `moved`: velocities
-in a row that moved; `misfit`: mean squared normalised innovation; `rise`, `fall`: sums of the jump test."""
+in a row that moved; `repeated`: 1 if two were the same; `moved_by`: how far [m, m, rad]; `lowest`, `highest`:
+f_x, f_y, tau meanwhile; `beyond`: samples in a row that they were further than the pad can spring; `slid`:
+number of the newest sample of sliding; `first`: number of the first sample of a short slip, -1 for none;
+`quiet`: samples since it moved; `fallen`: number of the sample after its break-away; `slides`: instants of
+sliding learned from since the delay is as it is; `misfit`: mean squared normalised innovation; `rise`,
+`fall`: sums of the jump test."""
 
 
 _SPREADS = {MU: "log_mu_c0", R: "log_r0", SIGMA: "viscosity", ZERO: "zero", ZERO + 1: "zero"}
@@ -77,6 +92,7 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
     states["variance_normal"] = parameters["sd_zero"] ** 2
     states["variance_torque"] = parameters["sd_zero_torque"] ** 2
     states["delay"] = parameters["nominal_delay"]
+    states["fallen"] = states["first"] = states["slid"] = -1
     states["sign"] = states["misfit"] = 1.0
     return states
 
@@ -94,7 +110,7 @@ def restart(state, p):
             x[j] = p.viscosity0 if j == SIGMA else 0.0
         spread = _spread(p, j)
         covariance[j, j] = variance if kept else (spread if j <= SIGMA else p.caution * spread) ** 2
-    state.misfit, state.rise, state.fall = 1.0, 0.0, 0.0
+    state.misfit, state.rise, state.fall, state.slides = 1.0, 0.0, 0.0, 0
 
 
 @njit
