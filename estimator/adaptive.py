@@ -91,6 +91,7 @@ def _update(state, scratch, p, t, read, twist, estimate):
     deviate(state, p)
     state.elapsed = elapsed
     publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate)
+    estimate.sd_lever = state.sd_lever
 
 
 @entry_point(STATE, AdaptiveParameters.dtype())

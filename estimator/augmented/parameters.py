@@ -53,11 +53,12 @@ class AdaptiveParameters(NoiseParameters):
         0.02, "Relative errors that no motion shows: gain and cross-talk of the forces.", "[0, inf)"
     )
     compliance: float = parameter(
-        2.5e-4,
-        "Largest shear compliance of a pad: motion beyond it times the change of the force is slip.",
+        5e-5,
+        "Shear compliance of the pad that is assumed until it springs back further.",
         "[0, inf)",
         "m/N",
     )
+    compliance_max: float = parameter(2.5e-4, "Largest shear compliance of a pad.", "[0, inf)", "m/N")
     caution: float = parameter(
         0.1,
         "Fraction of these spreads that the filter assumes, so that an error must be evident.",

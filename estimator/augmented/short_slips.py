@@ -11,6 +11,7 @@ import math
 
 from estimator._numba.caching import njit
 from estimator.augmented.filtering import MOST
+from estimator.augmented.sliding import settle
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, STATES, TILT, ZERO, R
 from estimator.augmented.timing import EARLIEST, LAST, LATEST
 from estimator.limit_surface.inverse import load_size
@@ -25,7 +26,11 @@ AT_LEAST = 0.5
 WAIT = 4
 """Samples without motion until a slip has ended and the pad has come to rest."""
 SHARP = 0.03
-"""Relative deviation of mu_c from one sample: friction may still be falling, or rise with the speed."""
+"""Relative deviation of mu_c from one sample."""
+EXCESS = 0.35
+"""What a slow slip still has of static friction, over mu_c: of 0.35 exp(-(v / SLOW)^2) nothing is known."""
+SLOW = 3e-3
+"""Speed [m/s]; twice the usual Stribeck velocity."""
 BEYOND = 9.0
 """Squared normalised innovation from which noise is added."""
 
@@ -60,8 +65,15 @@ def _break_away(state, p):
 
 
 @njit(error_model="numpy")
-def _take(state, scratch, p, i):
+def _take(state, scratch, p, i, speed):
     """Takes the ratio of forces at sample i as a measurement of mu_c, and of r where there is a torque.
+
+    Args:
+        state: Changed in place.
+        scratch: Working arrays.
+        p: Parameters.
+        i: Number of the sample.
+        speed: Largest scaled speed of the slip [m/s].
 
     Returns:
         The normalised innovation; NaN if nothing was learned.
@@ -75,7 +87,7 @@ def _take(state, scratch, p, i):
         h[j] = 0.0
     h[MU], h[R] = 1.0, share
     noise = (p.sd_normal / f_n) ** 2 + SHARP * SHARP + (share * p.sd_torque / (state.r * size)) ** 2
-    noise += (p.sd_force / size) ** 2
+    noise += (p.sd_force / size) ** 2 + (EXCESS * math.exp(-((speed / SLOW) ** 2))) ** 2
     if f_t > 0.0:
         for axis, part in enumerate((f_x, f_y)):
             h[ZERO + axis] = (1.0 - share) * part / (f_t * f_t)
@@ -120,7 +132,7 @@ def _stays(state, p, i):
         square += (scale * motion) ** 2
         spring += (0.5 * change / scale) ** 2
     least = NOISES * p.sd_speed * p.sample_time * math.sqrt(k + 1.0 - state.first)
-    least += p.compliance * math.sqrt(spring)
+    least += state.spring * math.sqrt(spring)
     return power * state.sign > 0.0 and square > least * least
 
 
@@ -143,11 +155,17 @@ def learn_short_slip(state, scratch, p, moves):
             state.first = state.samples
         return math.nan
     state.quiet += 1
+    if state.quiet == WAIT:
+        settle(state, p)
     if state.first < 0 or state.quiet < WAIT:
         return math.nan
     i = _break_away(state, p) if state.in_a_row > LAST else -1
     if i < 0 or not _stays(state, p, i):
         state.first = -1
         return math.nan
+    speed = 0.0
+    for k in range(state.first, state.samples):
+        twist = state.twists[k & LAST]
+        speed = max(speed, norm(norm(twist[0], twist[1]), state.r * twist[2]))
     state.first, state.fallen = -1, i
-    return _take(state, scratch, p, i)
+    return _take(state, scratch, p, i, speed)

@@ -7,7 +7,6 @@ from estimator.augmented.filtering import learn
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
 from estimator.augmented.timing import LAST, correlate
-from estimator.sample import norm
 
 MARGIN = 4
 """Velocities in a row that moved: two about an instant, one on either side; one more if repeated."""
@@ -27,6 +26,12 @@ LOAD_MAX, TWIST_MAX = 1e4, 1e3
 BEFORE = 8
 """Samples before a motion whose forces count: the velocity is late."""
 
+SAFETY = 1.5
+"""Compliance that is assumed, over that with which the pad sprang back."""
+
+RANGE = 3.0
+"""Range of some samples of noise, over its standard deviation."""
+
 ALIKE = 10.0
 """Samples that share an error which is taken for noise."""
 
@@ -36,7 +41,8 @@ def _shear(state, p, moves, elapsed):
     """Compares how far the object has moved with how far the pad can have sprung.
 
     The pad's spring moves the object by its compliance times the change of the force, and no further: less
-    than that times the range of the forces since shortly before the motion.
+    than that times the range of the forces since shortly before the motion. How soft it is, it shows when it
+    springs back: friction never moves an object against itself.
     """
     k = state.samples
     state.moved = state.moved + 1 if moves else 0
@@ -49,11 +55,12 @@ def _shear(state, p, moves, elapsed):
         for j in range(3):
             state.moved_by[j] = 0.0
             state.lowest[j], state.highest[j] = math.inf, -math.inf
+            state.before[j] = state.wrenches[oldest & LAST, j if j < 2 else 3]
         state.repeated = 0
     twist, last = state.twists[k & LAST], state.twists[(k - 1) & LAST]
     if state.moved > 1 and twist[0] == last[0] and twist[1] == last[1] and twist[2] == last[2]:
         state.repeated = 1
-    r, square, spring = max(state.r, 0.5 * p.r_max), 0.0, 0.0
+    r, square, spring, power = max(state.r, 0.5 * p.r_max), 0.0, 0.0, 0.0
     for j in range(3):
         state.moved_by[j] += twist[j] * elapsed
         axis = j if j < 2 else 3
@@ -63,9 +70,45 @@ def _shear(state, p, moves, elapsed):
             state.highest[j] = max(state.highest[j], value)
         scale = 1.0 if j < 2 else r
         square += (state.moved_by[j] * scale) ** 2
-        spring += ((state.highest[j] - state.lowest[j]) / scale) ** 2
-    slips = square > p.compliance * p.compliance * spring and state.in_a_row >= MARGIN
-    state.beyond = state.beyond + 1 if slips else 0
+        power += state.moved_by[j] * (state.lowest[j] + state.highest[j])
+        noise = p.sd_force if j < 2 else p.sd_torque
+        change = max(state.highest[j] - state.lowest[j] - RANGE * noise, 0.0)
+        spring += (change / scale) ** 2
+    beyond = square > state.spring * state.spring * spring and state.in_a_row >= MARGIN
+    if beyond and (power * state.sign < 0.0 or not state.signed):
+        if square > p.compliance_max * p.compliance_max * spring:  # no pad springs so far
+            _direct(state, p, power)
+        else:  # against the force: it springs back
+            state.spring = min(SAFETY * math.sqrt(square / max(spring, 1e-9)), p.compliance_max)
+            beyond = False
+    state.beyond = state.beyond + 1 if beyond else 0
+
+
+@njit(error_model="numpy")
+def _direct(state, p, power):
+    """Takes the sign of the power of a slip as that of the wrench."""
+    sign = 1.0 if power > 0.0 else -1.0
+    if sign != state.sign:
+        state.products[:] = 0.0
+    if sign != state.sign or not state.signed:
+        state.spring = p.compliance
+    state.sign, state.signed = sign, True
+
+
+@njit(error_model="numpy")
+def settle(state, p):
+    """After a motion: what it has left, and the change of the load does not explain, was a slip."""
+    k, r, power, square, spring = state.samples, max(state.r, 0.5 * p.r_max), 0.0, 0.0, 0.0
+    for j in range(3):
+        scale, axis = (1.0, j) if j < 2 else (r, 3)
+        now = 0.5 * (state.wrenches[k & LAST, axis] + state.wrenches[(k - 1) & LAST, axis])
+        square += (state.moved_by[j] * scale) ** 2
+        power += state.moved_by[j] * (now + state.before[j])
+        noise = RANGE * (p.sd_force if j < 2 else p.sd_torque)
+        spring += (max(abs(now - state.before[j]) - noise, 0.0) / scale) ** 2
+    least = p.compliance_max * math.sqrt(spring) + RANGE * p.sd_speed * p.sample_time
+    if square > least * least and state.in_a_row > LAST:
+        _direct(state, p, power)
 
 
 @njit(error_model="numpy")
@@ -81,16 +124,6 @@ def store(state, p, wrench, twist, moves, elapsed):
         state.twists[k & LAST, j] = twist[j]
     state.in_a_row += 1
     _shear(state, p, moves, elapsed)
-    if state.beyond > 0:
-        f_x, f_y, v_x, v_y = wrench[0], wrench[1], twist[0], twist[1]
-        turn = wrench[3] * twist[2]
-        whole = norm(f_x, f_y) * norm(v_x, v_y) + abs(turn)
-        part = (f_x * v_x + f_y * v_y + turn) / whole
-        if math.isfinite(part):
-            state.power = 0.99 * state.power + part
-        if state.power * state.sign < 0.0:
-            state.sign = -state.sign
-            state.products[:] = 0.0
     delay = state.delay
     correlate(state, p)
     if abs(state.delay - delay) > 1 and state.slides > 0:

@@ -18,6 +18,9 @@ STATE = np.dtype(
         ("beyond", np.int64),
         ("first", np.int64),
         ("quiet", np.int64),
+        ("spring", np.float64),
+        ("signed", np.bool_),
+        ("before", np.float64, (3,)),
         ("fallen", np.int64),
         ("slides", np.int64),
         ("slid", np.int64),
@@ -26,7 +29,6 @@ STATE = np.dtype(
         ("highest", np.float64, (3,)),
         ("delay", np.int64),
         ("sign", np.float64),
-        ("power", np.float64),
         ("unloaded", np.bool_),
         ("touched", np.bool_),
         ("zero_normal", np.float64),
@@ -36,6 +38,7 @@ STATE = np.dtype(
         ("timing", np.float64),
         ("offset", np.float64),
         ("misfit", np.float64),
+        ("sd_lever", np.float64),
         ("variance_mu_s", np.float64),
         ("common_mu_s", np.float64),
         ("above", np.int64),
@@ -57,14 +60,15 @@ STATE = np.dtype(
 )
 """`x`, `covariance`: the filter; `limits`: of ln mu_c and ln r; `delay`: of the velocity [samples];
 `timing`: its correlation; `offset`: its fraction of a sample; `sign`: 1 if the wrench is that on the
-finger; `unloaded`: whether the sensor was seen without load; `touched`: whether there was contact;
-`zero_normal`, `zero_torque`: zero errors of f_n and tau [N, N m], with their variances; `moved`: velocities
-in a row that moved; `repeated`: 1 if two were the same; `moved_by`: how far [m, m, rad]; `lowest`, `highest`:
-f_x, f_y, tau meanwhile; `beyond`: samples in a row that they were further than the pad can spring; `slid`:
-number of the newest sample of sliding; `first`: number of the first sample of a short slip, -1 for none;
-`quiet`: samples since it moved; `fallen`: number of the sample after its break-away; `slides`: instants of
-sliding learned from since the delay is as it is; `misfit`: mean squared normalised innovation; `rise`,
-`fall`: sums of the jump test."""
+finger, once `signed`; `unloaded`: whether the sensor was seen without load; `touched`: whether there was
+contact; `zero_normal`, `zero_torque`: zero errors of f_n and tau [N, N m], with their variances; `moved`:
+velocities in a row that moved; `repeated`: 1 if two were the same; `moved_by`: how far [m, m, rad];
+`lowest`, `highest`: f_x, f_y, tau meanwhile; `before`: the same before it; `spring`: compliance of the pad
+[m/N]; `beyond`: samples in a row that the motion was longer than the pad can spring; `slid`: number of the
+newest sample of sliding; `first`: number of the first sample of a short slip, -1 for none; `quiet`: samples
+since it moved; `fallen`: number of the sample after its break-away; `slides`: instants of sliding learned
+from since the delay is as it is; `misfit`: mean squared normalised innovation; `rise`, `fall`: sums of the
+jump test."""
 
 
 _SPREADS = {MU: "log_mu_c0", R: "log_r0", SIGMA: "viscosity", ZERO: "zero", ZERO + 1: "zero"}
@@ -91,9 +95,10 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
         states["limits"][:, at] = np.log(parameters[name])
     states["variance_normal"] = parameters["sd_zero"] ** 2
     states["variance_torque"] = parameters["sd_zero_torque"] ** 2
-    states["delay"] = parameters["nominal_delay"]
+    states["delay"], states["spring"] = parameters["nominal_delay"], parameters["compliance_max"]
     states["fallen"] = states["first"] = states["slid"] = -1
     states["sign"] = states["misfit"] = 1.0
+    states["sd_lever"] = states["mu_c"] * states["r"]
     return states
 
 

@@ -85,7 +85,7 @@ def equip(starts, values, hardware, patches, pads, cells, fingers, force_torque,
         fingers: FINGER (n, 2).
         force_torque: FORCE_TORQUE (n, 2).
         slip_sensors: SLIP_SENSOR (n, 2).
-        ground_truth: Output (n, 6), of which the first three are mu_s, mu_c, r, mean of both pads.
+        ground_truth: Output (n, 11), of which the first three are mu_s, mu_c, r, mean of both pads.
     """
     own = hardware[0]
     for k in range(starts.shape[0]):
