@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
-from estimator.augmented.deviation import deviate
+from estimator.augmented.deviation import EVERY, deviate
 from estimator.augmented.filtering import working_arrays
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.short_slips import learn_short_slip
@@ -54,6 +54,7 @@ def _update(state, scratch, p, t, read, twist, estimate):
     if not readable(state, t, f_t, f_n, tau, speed_2):
         return
     halted, saw_mu_c, saw_r, gamma_t, gamma_tau = False, False, False, 0.0, 0.0
+    events = state.events_mu_s
     elapsed = t - state.t if state.samples > 0 else p.sample_time
     unloaded = without_load(state, p, read[2])
     if unloaded or f_n < p.eps_fn:
@@ -65,8 +66,9 @@ def _update(state, scratch, p, t, read, twist, estimate):
         halted = halts(state, p, f_n, elapsed)
         moves = speed_2 > p.eps_v * p.eps_v
         store(state, p, wrench, twist, moves, elapsed)
-        rest = p.drift_at_rest * p.drift_at_rest
-        state.covariance[MU, MU] = min(state.covariance[MU, MU] + rest, p.sd_log_mu_c0**2)
+        if state.samples % EVERY == 0:
+            rest = EVERY * p.drift_at_rest * p.drift_at_rest
+            state.covariance[MU, MU] = min(state.covariance[MU, MU] + rest, p.sd_log_mu_c0**2)
         if not halted and slide(state, scratch, p):
             saw_mu_c = True
             state.updates_mu_c += 1
@@ -74,9 +76,10 @@ def _update(state, scratch, p, t, read, twist, estimate):
             if saw_r:
                 state.updates_r += 1
         elif not halted:
+            updates_r = state.updates_r
             score = learn_short_slip(state, scratch, p, moves)
             if math.isfinite(score):
-                saw_mu_c = True
+                saw_mu_c, saw_r = True, state.updates_r > updates_r
                 state.updates_mu_c += 1
                 test_for_jump(state, p, score)
         still = speed_2 <= p.stick_band * p.stick_band
@@ -87,8 +90,9 @@ def _update(state, scratch, p, t, read, twist, estimate):
         size = norm(across, rim)
         if 0.0 < size < math.inf:
             gamma_t, gamma_tau = across / size, rim / size
-    drift_zero(state, p, elapsed)
-    deviate(state, p)
+    if state.samples % EVERY == 0:
+        drift_zero(state, p, EVERY * elapsed)
+    deviate(state, p, saw_mu_c or state.events_mu_s != events)
     state.elapsed = elapsed
     publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate)
     estimate.sd_lever = state.sd_lever

@@ -41,7 +41,7 @@ class AdaptiveParameters(NoiseParameters):
         "N",
     )
     sd_tilt: float = parameter(
-        0.02, "Spread of the tilt of the force sensor about each axis.", "(0, inf)", "rad"
+        0.03, "Spread of the tilt of the force sensor about each axis.", "(0, inf)", "rad"
     )
     sd_cop: float = parameter(
         1.1, "Spread of the error of the centre of pressure, each way.", "(0, inf)", "mm"

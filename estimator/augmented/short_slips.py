@@ -31,6 +31,8 @@ EXCESS = 0.35
 """What a slow slip still has of static friction, over mu_c: of 0.35 exp(-(v / SLOW)^2) nothing is known."""
 SLOW = 3e-3
 """Speed [m/s]; twice the usual Stribeck velocity."""
+TURNS = 0.1
+"""Share of the torque in the squared load from which r is seen, too."""
 BEYOND = 9.0
 """Squared normalised innovation from which noise is added."""
 
@@ -113,6 +115,8 @@ def _take(state, scratch, p, i, speed):
     x[R] = min(max(x[R], state.limits[2]), state.limits[3])
     if state.updates_mu_c == 0:
         state.smooth[3] = f_n
+    if share > TURNS:
+        state.updates_r += 1
     return innovation / math.sqrt(variance + noise)
 
 

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from estimator._numba.caching import njit
 from estimator.augmented.filtering import learn
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
@@ -175,11 +177,8 @@ def slide(state, scratch, p):
     needed = margin(state)
     if state.moved < needed or state.beyond < 2 or state.in_a_row < state.delay + 3:
         return False
-    wrench, before, after = (
-        state.wrenches[i & LAST],
-        state.twists[(k - 2) & LAST],
-        state.twists[(k - 1) & LAST],
-    )
+    row, before, after = state.wrenches[i & LAST], state.twists[(k - 2) & LAST], state.twists[(k - 1) & LAST]
+    wrench = np.float64(row[0]), np.float64(row[1]), np.float64(row[2]), np.float64(row[3])
     twist = 0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1]), 0.5 * (before[2] + after[2])
     d_x, d_y, d_omega = after[0] - before[0], after[1] - before[1], after[2] - before[2]
     largest = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2]), abs(wrench[3]))

@@ -20,13 +20,9 @@ STATE = np.dtype(
         ("quiet", np.int64),
         ("spring", np.float64),
         ("signed", np.bool_),
-        ("before", np.float64, (3,)),
         ("fallen", np.int64),
         ("slides", np.int64),
         ("slid", np.int64),
-        ("moved_by", np.float64, (3,)),
-        ("lowest", np.float64, (3,)),
-        ("highest", np.float64, (3,)),
         ("delay", np.int64),
         ("sign", np.float64),
         ("unloaded", np.bool_),
@@ -45,15 +41,19 @@ STATE = np.dtype(
         ("leverage", np.float64),
         ("rise", np.float64),
         ("fall", np.float64),
-        ("smooth", np.float64, (4,)),
-        ("x", np.float64, (STATES,)),
-        ("covariance", np.float64, (STATES, STATES)),
-        ("limits", np.float64, (4,)),
         ("products", np.float64, (CANDIDATES,)),
         ("energies", np.float64, (2,)),
-        ("wrenches", np.float64, (RING, 4)),
-        ("twists", np.float64, (RING, 3)),
-        ("forces", np.float64, (RING, 3)),
+        ("smooth", np.float64, (4,)),
+        ("x", np.float64, (STATES,)),
+        ("limits", np.float64, (4,)),
+        ("forces", np.float32, (RING, 3)),
+        ("wrenches", np.float32, (RING, 4)),
+        ("twists", np.float32, (RING, 3)),
+        ("covariance", np.float64, (STATES, STATES)),
+        ("moved_by", np.float64, (3,)),
+        ("lowest", np.float64, (3,)),
+        ("highest", np.float64, (3,)),
+        ("before", np.float64, (3,)),
         *EVENT_STATE,
     ],
     align=True,
@@ -98,7 +98,7 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
     states["delay"], states["spring"] = parameters["nominal_delay"], parameters["compliance_max"]
     states["fallen"] = states["first"] = states["slid"] = -1
     states["sign"] = states["misfit"] = 1.0
-    states["sd_lever"] = states["mu_c"] * states["r"]
+    states["sd_lever"] = 2**0.5 * states["mu_c"] * states["r"]
     return states
 
 
