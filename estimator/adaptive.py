@@ -16,13 +16,15 @@ from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
-from estimator.augmented.deviation import deviate
-from estimator.augmented.filtering import learn_zero, working_arrays
+from estimator.augmented.deviation import EVERY, deviate
+from estimator.augmented.filtering import working_arrays
 from estimator.augmented.parameters import AdaptiveParameters
-from estimator.augmented.sliding import slide, store
+from estimator.augmented.short_slips import learn_short_slip
+from estimator.augmented.sliding import slide, store, test_for_jump
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, TILT, ZERO
 from estimator.augmented.state import STATE, initial_states
 from estimator.augmented.static_friction import learn_static_friction
+from estimator.augmented.unloaded import drift_zero, learn_zero, without_load
 from estimator.limit_surface import DISC_RADIUS
 from estimator.registry import FilterMatrices, Specification
 from estimator.sample import norm, publish, readable
@@ -39,9 +41,10 @@ def filter_matrices(states: NDArray[np.void]) -> FilterMatrices:
 
 
 @njit(error_model="numpy")
-def _update(state, scratch, p, t, wrench, twist, estimate):
-    """One finger, one sample."""
-    x, f_n = state.x, wrench[2]
+def _update(state, scratch, p, t, read, twist, estimate):
+    """One finger, one sample, with the wrench as it is read."""
+    x, f_n = state.x, read[2] - state.zero_normal
+    wrench = read[0], read[1], f_n, read[3] - state.zero_torque
     c_x, c_y = MILLIMETRE * x[COP], MILLIMETRE * x[COP + 1]
     f_x, f_y = wrench[0] - x[ZERO] - f_n * x[TILT], wrench[1] - x[ZERO + 1] - f_n * x[TILT + 1]
     f_t, tau = norm(f_x, f_y), abs(wrench[3] - c_x * f_y + c_y * f_x)
@@ -51,34 +54,48 @@ def _update(state, scratch, p, t, wrench, twist, estimate):
     if not readable(state, t, f_t, f_n, tau, speed_2):
         return
     halted, saw_mu_c, saw_r, gamma_t, gamma_tau = False, False, False, 0.0, 0.0
-    elapsed = t - state.t
-    if f_n < p.eps_fn:
+    events = state.events_mu_s
+    elapsed = t - state.t if state.samples > 0 else p.sample_time
+    unloaded = without_load(state, p, read[2])
+    if unloaded or f_n < p.eps_fn:
         lose_contact(state)
-        state.in_a_row, state.moved = 0, 0
-        if abs(f_n) < p.noise_gate * p.sd_normal:
-            learn_zero(state, p, wrench)
+        state.in_a_row, state.moved, state.beyond, state.first = 0, 0, 0, -1
+        if unloaded:
+            learn_zero(state, p, read)
     else:
         halted = halts(state, p, f_n, elapsed)
         moves = speed_2 > p.eps_v * p.eps_v
         store(state, p, wrench, twist, moves, elapsed)
-        rest = p.drift_at_rest * p.drift_at_rest
-        state.covariance[MU, MU] = min(state.covariance[MU, MU] + rest, p.sd_log_mu_c0**2)
+        if state.samples % EVERY == 0:
+            rest = EVERY * p.drift_at_rest * p.drift_at_rest
+            state.covariance[MU, MU] = min(state.covariance[MU, MU] + rest, p.sd_log_mu_c0**2)
         if not halted and slide(state, scratch, p):
             saw_mu_c = True
             state.updates_mu_c += 1
             saw_r = omega > p.noise_gate * p.sd_spin and v_t < 3.0 * p.r_max * omega
             if saw_r:
                 state.updates_r += 1
+        elif not halted:
+            updates_r = state.updates_r
+            score = learn_short_slip(state, scratch, p, moves)
+            if math.isfinite(score):
+                saw_mu_c, saw_r = True, state.updates_r > updates_r
+                state.updates_mu_c += 1
+                test_for_jump(state, p, score)
         still = speed_2 <= p.stick_band * p.stick_band
+        moves = state.beyond > 0
         learn_static_friction(state, p, f_t, f_n, tau, still, moves, halted)
         rim = state.r * omega if moves else tau / state.r
         across = v_t if moves else f_t
         size = norm(across, rim)
         if 0.0 < size < math.inf:
             gamma_t, gamma_tau = across / size, rim / size
-    deviate(state, p)
+    if state.samples % EVERY == 0:
+        drift_zero(state, p, EVERY * elapsed)
+    deviate(state, p, saw_mu_c or state.events_mu_s != events)
     state.elapsed = elapsed
     publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate)
+    estimate.sd_lever = state.sd_lever
 
 
 @entry_point(STATE, AdaptiveParameters.dtype())

@@ -66,6 +66,7 @@ class BatchEstimator:
         for name in ("mu_s", "mu_c", "r"):
             self.estimates[name][rows] = self.states[name][rows]
             self.estimates[f"sd_{name}"][rows] = self.states[name][rows]
+        self.estimates["sd_lever"][rows] = 2**0.5 * self.states["mu_c"][rows] * self.states["r"][rows]
         self.estimates["mu_s"][rows] = np.maximum(self.states["mu_s"][rows], self.states["mu_c"][rows])
 
     @property

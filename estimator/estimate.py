@@ -50,6 +50,9 @@ class Estimate(NamedTuple):
     """Standard deviation of mu_c [-], due to noise alone but in "adaptive"; first the value itself."""
     sd_r: float
     """Standard deviation of r [m], due to noise alone but in "adaptive"; first the value itself."""
+    sd_lever: float
+    """Standard deviation of mu_c r [m], the torque per normal force of a spin: in a spin it is known before
+    either factor is. "adaptive"; the others take both errors for independent."""
     observable_mu_c: bool
     """Whether this sample updated mu_c."""
     observable_r: bool

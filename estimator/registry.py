@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from estimator.parameters import Parameters
 from estimator.reference import is_reference, referenced
 
-DEFAULT = "disc"
+DEFAULT = "adaptive"
 """Name of the default estimator, also of the environments (docs/leaderboard.md compares them)."""
 
 _MODULES = {name: f"estimator.{name}" for name in ("adaptive", "disc", "joint", "rls", "ukf")}

@@ -78,5 +78,6 @@ def publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate
     estimate.sd_mu_s = state.sd_mu_s
     estimate.sd_mu_c = state.sd_mu_c
     estimate.sd_r = state.sd_r
+    estimate.sd_lever = norm(state.mu_c * state.sd_r, state.r * state.sd_mu_c)
     estimate.observable_mu_c = saw_mu_c
     estimate.observable_r = saw_r

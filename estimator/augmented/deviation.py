@@ -3,44 +3,74 @@
 import math
 
 from estimator._numba.caching import njit
-from estimator.augmented.slip_law import COP, MU, SHAPE, TILT, ZERO, R
+from estimator.augmented.slip_law import MU, SHAPE, ZERO, R
 from estimator.augmented.static_friction import order
 from estimator.sample import clamped
 
+EVERY = 8
+"""Samples after which drifts and deviations are brought up to date while nothing is learned."""
+
 
 @njit(error_model="numpy")
-def _unseen(covariance, p, of):
-    """Variance of ln mu_c or ln r from errors larger than the filter assumes.
+def _squared(state, weights, hidden, mu, r):
+    """Variance of mu ln mu_c + r ln r: of the filter, and from errors larger than it assumes.
 
     The error that a linear filter makes for a unit error of the prior mean of another state is the covariance
     with that state over its prior variance.
+
+    Args:
+        state: Record with `covariance` and `misfit`.
+        weights: Of the squared covariances with zero error, tilt, CoP and shape.
+        hidden: What is added.
+        mu: Factor of ln mu_c.
+        r: Factor of ln r.
     """
-    row = covariance[of]
-    total = (row[ZERO] * row[ZERO] + row[ZERO + 1] * row[ZERO + 1]) / (p.sd_zero * p.sd_zero)
-    total += (row[TILT] * row[TILT] + row[TILT + 1] * row[TILT + 1]) / (p.sd_tilt * p.sd_tilt)
-    total += (row[COP] * row[COP] + row[COP + 1] * row[COP + 1]) / (p.sd_cop * p.sd_cop)
-    total += row[SHAPE] * row[SHAPE] / (p.sd_shape * p.sd_shape)
-    assumed = p.caution * p.caution
-    return total * (1.0 - assumed) / (assumed * assumed)
+    first, second = state.covariance[MU], state.covariance[R]
+    filtered = mu * mu * first[MU] + 2.0 * mu * r * first[R] + r * r * second[R]
+    square = hidden + max(state.misfit, 1.0) * max(filtered, 0.0)
+    for group in range(3):
+        at = ZERO + 2 * group
+        a, b = mu * first[at] + r * second[at], mu * first[at + 1] + r * second[at + 1]
+        square += weights[group] * (a * a + b * b)
+    a = mu * first[SHAPE] + r * second[SHAPE]
+    return square + weights[3] * a * a
 
 
 @njit(error_model="numpy")
-def deviate(state, p):
-    """Standard deviations and confidence; the order of mu_s and mu_c."""
-    excess = max(state.misfit, 1.0)
-    covariance = state.covariance
-    hidden = (0.5 * state.leverage) ** 2 + p.sd_gain * p.sd_gain
+def deviate(state, p, learned):
+    """Standard deviations and confidence; the order of mu_s and mu_c.
+
+    Args:
+        state: Changed in place.
+        p: Parameters.
+        learned: Whether the states changed at this sample.
+    """
+    if not learned and state.samples % EVERY != 0:
+        return
     if state.updates_mu_c > 0:
         state.mu_c = clamped(math.exp(state.x[MU]), p.mu_min, p.mu_max)
-        state.r = clamped(math.exp(state.x[R]), p.r_min, p.r_max)
-        square = excess * covariance[MU, MU] + _unseen(covariance, p, MU) + hidden
-        square += (p.sd_zero / state.smooth[3]) ** 2  # of the normal force
+        if state.updates_r > 0:
+            state.r = clamped(math.exp(state.x[R]), p.r_min, p.r_max)
+        assumed = p.caution * p.caution
+        factor, normal = (1.0 - assumed) / (assumed * assumed), 1.0 / state.smooth[3]
+        weights = (
+            factor / (p.sd_zero * p.sd_zero),
+            factor / (p.sd_tilt * p.sd_tilt),
+            factor / (p.sd_cop * p.sd_cop),
+            factor / (p.sd_shape * p.sd_shape),
+        )
+        hidden = (0.5 * state.leverage) ** 2 + p.sd_gain * p.sd_gain
+        of_normal = state.variance_normal * normal * normal
+        of_torque = state.variance_torque * (normal / (state.mu_c * state.r)) ** 2
+        square = _squared(state, weights, hidden + of_normal, 1.0, 0.0)
         state.sd_mu_c = state.mu_c * math.sqrt(square)
         state.confidence_mu_c = 1.0 / (1.0 + 100.0 * square)
-    if state.updates_r > 0:
-        square = excess * covariance[R, R] + _unseen(covariance, p, R) + hidden
-        state.sd_r = state.r * math.sqrt(square)
-        state.confidence_r = 1.0 / (1.0 + 100.0 * square)
+        square = _squared(state, weights, hidden + of_normal + of_torque, 1.0, 1.0)
+        state.sd_lever = state.mu_c * state.r * math.sqrt(square)
+        if state.updates_r > 0:
+            square = _squared(state, weights, hidden + of_torque, 0.0, 1.0)
+            state.sd_r = state.r * math.sqrt(square)
+            state.confidence_r = 1.0 / (1.0 + 100.0 * square)
     if state.events_mu_s > 0:
         square = state.variance_mu_s + state.common_mu_s
         state.sd_mu_s = state.mu_s * math.sqrt(square)

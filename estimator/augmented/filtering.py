@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from estimator._numba.caching import njit
-from estimator.augmented.slip_law import MU, STATES, ZERO, R, predict
+from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict_at
 
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
@@ -117,21 +117,29 @@ def learn(state, scratch, p, sign, wrench, twist, of_speed, of_spin):
     squared, score = 0.0, 0.0
     smooth = state.smooth
     for iteration in range(ITERATIONS if uncertain else 1):
-        f_x, f_y, tau = predict(proposed, sign, f_n, twist[0], twist[1], twist[2], h, by_twist)
+        mu, r = math.exp(proposed[MU]), math.exp(proposed[R])
+        f_x, f_y, tau = predict_at(
+            proposed, mu, r, sign, f_n, twist[0], twist[1], twist[2], False, h, by_twist
+        )
         n_11, n_12, n_13, n_22, n_23, n_33 = measurement_noise(
             p, by_twist, h[0, MU], h[1, MU], h[2, MU], f_n, of_speed, of_spin
         )
         y_1, y_2, y_3 = wrench[0] - f_x, wrench[1] - f_y, wrench[3] - tau
-        predict(proposed, sign, smooth[3], smooth[0], smooth[1], smooth[2], h, by_twist)
+        predict_at(proposed, mu, r, sign, smooth[3], smooth[0], smooth[1], smooth[2], True, h, by_twist)
         s_11, s_12, s_13, s_22, s_23, s_33 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for j in range(STATES):
             back = x[j] - proposed[j]
             y_1, y_2, y_3 = y_1 - h[0, j] * back, y_2 - h[1, j] * back, y_3 - h[2, j] * back
-            a, b, c = 0.0, 0.0, 0.0
-            for k in range(STATES):
-                a += covariance[j, k] * h[0, k]
-                b += covariance[j, k] * h[1, k]
-                c += covariance[j, k] * h[2, k]
+            row = covariance[j]
+            a, b, c = row[ZERO] + smooth[3] * row[TILT], row[ZERO + 1] + smooth[3] * row[TILT + 1], 0.0
+            for k in range(SIGMA + 1):
+                a += row[k] * h[0, k]
+                b += row[k] * h[1, k]
+                c += row[k] * h[2, k]
+            for k in range(COP, SHAPE + 1):
+                a += row[k] * h[0, k]
+                b += row[k] * h[1, k]
+                c += row[k] * h[2, k]
             crossed[0, j], crossed[1, j], crossed[2, j] = a, b, c
             s_11, s_12, s_13 = s_11 + h[0, j] * a, s_12 + h[0, j] * b, s_13 + h[0, j] * c
             s_22, s_23, s_33 = s_22 + h[1, j] * b, s_23 + h[1, j] * c, s_33 + h[2, j] * c
@@ -179,34 +187,3 @@ def learn(state, scratch, p, sign, wrench, twist, of_speed, of_spin):
             covariance[k, j] = value
         x[j] = proposed[j]
     return True, squared, score
-
-
-@njit(error_model="numpy")
-def learn_zero(state, p, wrench):
-    """Takes the tangential force of a sensor without load as a measurement of its zero error.
-
-    Args:
-        state: Record with `x`, `covariance` and `unloaded`; changed in place.
-        p: Parameters.
-        wrench: f_x, f_y, f_n, tau [N, N, N, N m].
-    """
-    x, covariance = state.x, state.covariance
-    for axis in range(2):
-        at = ZERO + axis
-        variance = covariance[at, at]
-        gain = 1.0 / (variance + (2.0 * p.caution * p.sd_force) ** 2)
-        innovation = wrench[axis] - x[at]
-        if not abs(innovation) < 10.0 * p.sd_zero:
-            continue
-        state.unloaded = True
-        for j in range(STATES):
-            x[j] += covariance[j, at] * gain * innovation
-        _limit(x, state.limits)
-        for j in range(STATES):
-            for k in range(STATES):
-                if j != at and k != at:
-                    covariance[j, k] -= covariance[j, at] * covariance[at, k] * gain
-        left = 1.0 - variance * gain
-        for j in range(STATES):
-            covariance[j, at] *= left
-            covariance[at, j] = covariance[j, at]

@@ -27,8 +27,21 @@ class AdaptiveParameters(NoiseParameters):
         0.1, "Spread of the viscous friction before it is seen.", "(0, inf)", "s/m"
     )
     sd_zero: float = parameter(0.13, "Spread of the zero error of each force.", "(0, inf)", "N")
+    sd_zero_torque: float = parameter(1e-3, "Spread of the zero error of the torque.", "(0, inf)", "N m")
+    walk_force: float = parameter(
+        0.01, "Random walk of the zero error of each force in a second.", "[0, inf)", "N/sqrt(s)"
+    )
+    walk_torque: float = parameter(
+        1e-4, "Random walk of the zero error of the torque in a second.", "[0, inf)", "N m/sqrt(s)"
+    )
+    eps_open: float = parameter(
+        0.6,
+        "Normal force up to which a sensor may be unloaded before the first contact.",
+        "[0, inf)",
+        "N",
+    )
     sd_tilt: float = parameter(
-        0.02, "Spread of the tilt of the force sensor about each axis.", "(0, inf)", "rad"
+        0.03, "Spread of the tilt of the force sensor about each axis.", "(0, inf)", "rad"
     )
     sd_cop: float = parameter(
         1.1, "Spread of the error of the centre of pressure, each way.", "(0, inf)", "mm"
@@ -39,6 +52,13 @@ class AdaptiveParameters(NoiseParameters):
     sd_gain: float = parameter(
         0.02, "Relative errors that no motion shows: gain and cross-talk of the forces.", "[0, inf)"
     )
+    compliance: float = parameter(
+        5e-5,
+        "Shear compliance of the pad that is assumed until it springs back further.",
+        "[0, inf)",
+        "m/N",
+    )
+    compliance_max: float = parameter(2.5e-4, "Largest shear compliance of a pad.", "[0, inf)", "m/N")
     caution: float = parameter(
         0.1,
         "Fraction of these spreads that the filter assumes, so that an error must be evident.",

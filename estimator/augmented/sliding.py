@@ -2,15 +2,16 @@
 
 import math
 
+import numpy as np
+
 from estimator._numba.caching import njit
 from estimator.augmented.filtering import learn
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
 from estimator.augmented.timing import LAST, correlate
-from estimator.sample import norm
 
 MARGIN = 4
-"""Velocities in a row that must have moved: two about the instant and one on either side."""
+"""Velocities in a row that moved: two about an instant, one on either side; one more if repeated."""
 SURE = 0.6
 """Correlation of a known delay, without jitter, from which the one before them may have been still, ..."""
 WHOLE = 0.15
@@ -24,40 +25,115 @@ CHANGED = 8.0
 LOAD_MAX, TWIST_MAX = 1e4, 1e3
 """No gripper sees so large a wrench [N, N m] or twist [m/s, rad/s]: nothing is learned from it."""
 
+BEFORE = 8
+"""Samples before a motion whose forces count: the velocity is late."""
+
+SAFETY = 1.5
+"""Compliance that is assumed, over that with which the pad sprang back."""
+
+RANGE = 3.0
+"""Range of some samples of noise, over its standard deviation."""
+
 ALIKE = 10.0
 """Samples that share an error which is taken for noise."""
+
+
+@njit(error_model="numpy")
+def _shear(state, p, moves, elapsed):
+    """Compares how far the object has moved with how far the pad can have sprung.
+
+    The pad's spring moves the object by its compliance times the change of the force, and no further: less
+    than that times the range of the forces since shortly before the motion. How soft it is, it shows when it
+    springs back: friction never moves an object against itself.
+    """
+    k = state.samples
+    state.moved = state.moved + 1 if moves else 0
+    if not moves:
+        state.beyond = 0
+        return
+    oldest = k
+    if state.moved == 1:
+        oldest = k - min(state.in_a_row - 1, BEFORE)
+        for j in range(3):
+            state.moved_by[j] = 0.0
+            state.lowest[j], state.highest[j] = math.inf, -math.inf
+            state.before[j] = state.wrenches[oldest & LAST, j if j < 2 else 3]
+        state.repeated = 0
+    twist, last = state.twists[k & LAST], state.twists[(k - 1) & LAST]
+    if state.moved > 1 and twist[0] == last[0] and twist[1] == last[1] and twist[2] == last[2]:
+        state.repeated = 1
+    r, square, spring, power = max(state.r, 0.5 * p.r_max), 0.0, 0.0, 0.0
+    for j in range(3):
+        state.moved_by[j] += twist[j] * elapsed
+        axis = j if j < 2 else 3
+        for i in range(oldest, k + 1):
+            value = state.wrenches[i & LAST, axis]
+            state.lowest[j] = min(state.lowest[j], value)
+            state.highest[j] = max(state.highest[j], value)
+        scale = 1.0 if j < 2 else r
+        square += (state.moved_by[j] * scale) ** 2
+        power += state.moved_by[j] * (state.lowest[j] + state.highest[j])
+        noise = p.sd_force if j < 2 else p.sd_torque
+        change = max(state.highest[j] - state.lowest[j] - RANGE * noise, 0.0)
+        spring += (change / scale) ** 2
+    beyond = square > state.spring * state.spring * spring and state.in_a_row >= MARGIN
+    if beyond and (power * state.sign < 0.0 or not state.signed):
+        if square > p.compliance_max * p.compliance_max * spring:  # no pad springs so far
+            _direct(state, p, power)
+        else:  # against the force: it springs back
+            state.spring = min(SAFETY * math.sqrt(square / max(spring, 1e-9)), p.compliance_max)
+            beyond = False
+    state.beyond = state.beyond + 1 if beyond else 0
+
+
+@njit(error_model="numpy")
+def _direct(state, p, power):
+    """Takes the sign of the power of a slip as that of the wrench."""
+    sign = 1.0 if power > 0.0 else -1.0
+    if sign != state.sign:
+        state.products[:] = 0.0
+    if sign != state.sign or not state.signed:
+        state.spring = p.compliance
+    state.sign, state.signed = sign, True
+
+
+@njit(error_model="numpy")
+def settle(state, p):
+    """After a motion: what it has left, and the change of the load does not explain, was a slip."""
+    k, r, power, square, spring = state.samples, max(state.r, 0.5 * p.r_max), 0.0, 0.0, 0.0
+    for j in range(3):
+        scale, axis = (1.0, j) if j < 2 else (r, 3)
+        now = 0.5 * (state.wrenches[k & LAST, axis] + state.wrenches[(k - 1) & LAST, axis])
+        square += (state.moved_by[j] * scale) ** 2
+        power += state.moved_by[j] * (now + state.before[j])
+        noise = RANGE * (p.sd_force if j < 2 else p.sd_torque)
+        spring += (max(abs(now - state.before[j]) - noise, 0.0) / scale) ** 2
+    least = p.compliance_max * math.sqrt(spring) + RANGE * p.sd_speed * p.sample_time
+    if square > least * least and state.in_a_row > LAST:
+        _direct(state, p, power)
 
 
 @njit(error_model="numpy")
 def store(state, p, wrench, twist, moves, elapsed):
     """Keeps the newest sample; finds the direction in which power flows, and the delay."""
     if state.samples >= 2 and elapsed > 1.5 * state.elapsed:  # a sample was lost
-        state.in_a_row, state.moved = 0, 0
+        state.in_a_row, state.moved, state.first = 0, 0, -1
+        elapsed = state.elapsed
     k = state.samples
     for j in range(4):
         state.wrenches[k & LAST, j] = wrench[j]
     for j in range(3):
         state.twists[k & LAST, j] = twist[j]
     state.in_a_row += 1
-    state.moved = state.moved + 1 if moves else 0
-    if moves:
-        f_x, f_y, v_x, v_y = wrench[0], wrench[1], twist[0], twist[1]
-        turn = wrench[3] * twist[2]
-        whole = norm(f_x, f_y) * norm(v_x, v_y) + abs(turn)
-        part = (f_x * v_x + f_y * v_y + turn) / whole
-        if math.isfinite(part):
-            state.power = 0.99 * state.power + part
-        if state.power * state.sign < 0.0:
-            state.sign = -state.sign
-            state.products[:] = 0.0
+    _shear(state, p, moves, elapsed)
     delay = state.delay
     correlate(state, p)
-    if abs(state.delay - delay) > 1:
+    if abs(state.delay - delay) > 1 and state.slides > 0:
         restart(state, p)
 
 
 @njit(error_model="numpy")
-def _jumps(state, p, score):
+def test_for_jump(state, p, score):
     """Cumulative sums of the innovations (Page, Biometrika 41, 1954); a jump widens the variance of mu_c."""
     z = min(max(score, -3.0), 3.0)
     state.rise = max(state.rise + z - p.jump_slack, 0.0)
@@ -65,6 +141,13 @@ def _jumps(state, p, score):
     if state.rise > p.jump_limit or state.fall > p.jump_limit:
         state.rise, state.fall = 0.0, 0.0
         state.covariance[MU, MU] += p.sd_jump * p.sd_jump
+
+
+@njit(error_model="numpy")
+def margin(state):
+    """Velocities in a row that must have moved."""
+    certain = state.timing > SURE and abs(state.offset) < WHOLE
+    return MARGIN + state.repeated - (1 if certain else 0)
 
 
 @njit(error_model="numpy")
@@ -91,14 +174,11 @@ def slide(state, scratch, p):
     """Learns from the newest instant around which the contact slid; whether it did."""
     k = state.samples
     i = k - 2 - state.delay
-    needed = MARGIN - 1 if state.timing > SURE and abs(state.offset) < WHOLE else MARGIN
-    if state.moved < needed or state.in_a_row < state.delay + 3:
+    needed = margin(state)
+    if state.moved < needed or state.beyond < 2 or state.in_a_row < state.delay + 3:
         return False
-    wrench, before, after = (
-        state.wrenches[i & LAST],
-        state.twists[(k - 2) & LAST],
-        state.twists[(k - 1) & LAST],
-    )
+    row, before, after = state.wrenches[i & LAST], state.twists[(k - 2) & LAST], state.twists[(k - 1) & LAST]
+    wrench = np.float64(row[0]), np.float64(row[1]), np.float64(row[2]), np.float64(row[3])
     twist = 0.5 * (before[0] + after[0]), 0.5 * (before[1] + after[1]), 0.5 * (before[2] + after[2])
     d_x, d_y, d_omega = after[0] - before[0], after[1] - before[1], after[2] - before[2]
     largest = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2]), abs(wrench[3]))
@@ -106,7 +186,8 @@ def slide(state, scratch, p):
         return False
     of_speed = 0.5 * p.sd_speed * p.sd_speed + (d_x * d_x + d_y * d_y) / 12.0
     of_spin = 0.5 * p.sd_spin * p.sd_spin + d_omega * d_omega / 12.0
-    _follow(state, p, twist, wrench[2], state.moved == needed)
+    _follow(state, p, twist, wrench[2], state.slid != k - 1)
+    state.slid = k
     # close to the pivot an error of the CoP turns the direction of the slip: not linear, so taken for noise
     lever = (MILLIMETRE * p.sd_cop * twist[2]) ** 2 + p.sd_speed * p.sd_speed
     square = twist[0] * twist[0] + twist[1] * twist[1]
@@ -126,7 +207,9 @@ def slide(state, scratch, p):
     state.smooth[3] += SMOOTHING * (wrench[2] - state.smooth[3])
     if not learned:
         return False
+    state.slides += 1
+    state.first = -1
     state.misfit += 0.05 * (min(squared, p.outlier) / 3.0 - state.misfit)
     if state.updates_mu_c > 10:
-        _jumps(state, p, score)
+        test_for_jump(state, p, score)
     return True

@@ -62,15 +62,26 @@ def surface(s, shape):
 
 @njit(error_model="numpy")
 def predict(x, sign, f_n, v_x, v_y, omega, by_state, by_twist):
+    """`predict_at` with mu_c and r from the states, and all derivatives."""
+    return predict_at(
+        x, math.exp(x[MU]), math.exp(x[R]), sign, f_n, v_x, v_y, omega, True, by_state, by_twist
+    )
+
+
+@njit(error_model="numpy")
+def predict_at(x, mu, r, sign, f_n, v_x, v_y, omega, complete, by_state, by_twist):
     """Measured (f_x, f_y, tau) [N, N, N m] that the states explain.
 
     Args:
         x: (10,) states.
+        mu: mu_c of the states.
+        r: r of the states [m].
         sign: 1 if the wrench is that on the finger, -1 if on the object.
         f_n: Normal force [N].
         v_x: Slip velocity at the assumed centre of pressure [m/s].
         v_y: As v_x.
         omega: Slip rate [rad/s].
+        complete: Whether all of `by_state` is wanted, or the derivative by ln mu_c alone.
         by_state: Output (3, 10), derivatives by x.
         by_twist: Output (3, 3), derivatives by v_x, v_y, omega.
 
@@ -79,13 +90,12 @@ def predict(x, sign, f_n, v_x, v_y, omega, by_state, by_twist):
     """
     c_x, c_y = MILLIMETRE * x[COP], MILLIMETRE * x[COP + 1]
     u_x, u_y = v_x - omega * c_y, v_y + omega * c_x
-    r = math.exp(x[R])
     rim = r * omega
     square = u_x * u_x + u_y * u_y + rim * rim
     w = math.sqrt(square)
     s = (u_x * u_x + u_y * u_y) / square
     phi, d_phi, psi, d_psi, phi_shape, psi_shape = surface(s, x[SHAPE])
-    dry, viscous = sign * math.exp(x[MU]) * f_n / w, sign * x[SIGMA] * f_n
+    dry, viscous = sign * mu * f_n / w, sign * x[SIGMA] * f_n
     r_2 = r * r
     g, k = dry * phi, dry * psi * r_2  # f = (g + viscous) u, tau = (k + viscous 9/8 r^2) omega
     force, turn = g + viscous, k + viscous * MEAN_SQUARE_RADIUS * r_2
@@ -104,24 +114,26 @@ def predict(x, sign, f_n, v_x, v_y, omega, by_state, by_twist):
     by_twist[2, 2] = turn - k * b * spin * omega
     for i in range(3):
         by_twist[i, 2] += c_x * by_twist[i, 1] - c_y * by_twist[i, 0]
-    by_state[0, MU], by_state[1, MU], by_state[2, MU] = g * u_x, g * u_y, k * omega
-    by_state[0, R], by_state[1, R], by_state[2, R] = g_r * u_x, g_r * u_y, k_r * omega
-    load = sign * f_n
-    by_state[0, SIGMA], by_state[1, SIGMA] = load * u_x, load * u_y
-    by_state[2, SIGMA] = load * MEAN_SQUARE_RADIUS * r_2 * omega
-    for i in range(3):
-        by_state[i, COP] = MILLIMETRE * omega * by_twist[i, 1]
-        by_state[i, COP + 1] = -MILLIMETRE * omega * by_twist[i, 0]
-    by_state[0, SHAPE], by_state[1, SHAPE] = dry * phi_shape * u_x, dry * phi_shape * u_y
-    by_state[2, SHAPE] = dry * psi_shape * r_2 * omega
-    # the torque is measured about the assumed centre of pressure
-    for j in (MU, R, SIGMA, COP, COP + 1, SHAPE):
-        by_state[2, j] += c_x * by_state[1, j] - c_y * by_state[0, j]
+    by_state[0, MU], by_state[1, MU] = g * u_x, g * u_y
+    by_state[2, MU] = k * omega + c_x * by_state[1, MU] - c_y * by_state[0, MU]
+    if complete:
+        load = sign * f_n
+        by_state[0, R], by_state[1, R], by_state[2, R] = g_r * u_x, g_r * u_y, k_r * omega
+        by_state[0, SIGMA], by_state[1, SIGMA] = load * u_x, load * u_y
+        by_state[2, SIGMA] = load * MEAN_SQUARE_RADIUS * r_2 * omega
+        for i in range(3):
+            by_state[i, COP] = MILLIMETRE * omega * by_twist[i, 1]
+            by_state[i, COP + 1] = -MILLIMETRE * omega * by_twist[i, 0]
+        by_state[0, SHAPE], by_state[1, SHAPE] = dry * phi_shape * u_x, dry * phi_shape * u_y
+        by_state[2, SHAPE] = dry * psi_shape * r_2 * omega
+        # the torque is measured about the assumed centre of pressure
+        for j in (R, SIGMA, COP, COP + 1, SHAPE):
+            by_state[2, j] += c_x * by_state[1, j] - c_y * by_state[0, j]
+        by_state[2, COP] += MILLIMETRE * f_y
+        by_state[2, COP + 1] -= MILLIMETRE * f_x
+        by_state[0, ZERO], by_state[1, ZERO + 1] = 1.0, 1.0
+        by_state[0, TILT], by_state[1, TILT + 1] = f_n, f_n
     for j in range(3):
         by_twist[2, j] += c_x * by_twist[1, j] - c_y * by_twist[0, j]
-    by_state[2, COP] += MILLIMETRE * f_y
-    by_state[2, COP + 1] -= MILLIMETRE * f_x
-    by_state[0, ZERO], by_state[1, ZERO + 1] = 1.0, 1.0
-    by_state[0, TILT], by_state[1, TILT + 1] = f_n, f_n
     zero_x, zero_y = x[ZERO] + f_n * x[TILT], x[ZERO + 1] + f_n * x[TILT + 1]
     return f_x + zero_x, f_y + zero_y, tau + c_x * f_y - c_y * f_x

@@ -14,36 +14,61 @@ STATE = np.dtype(
         ("elapsed", np.float64),
         ("in_a_row", np.int64),
         ("moved", np.int64),
+        ("repeated", np.int64),
+        ("beyond", np.int64),
+        ("first", np.int64),
+        ("quiet", np.int64),
+        ("spring", np.float64),
+        ("signed", np.bool_),
+        ("fallen", np.int64),
+        ("slides", np.int64),
+        ("slid", np.int64),
         ("delay", np.int64),
         ("sign", np.float64),
-        ("power", np.float64),
         ("unloaded", np.bool_),
+        ("touched", np.bool_),
+        ("zero_normal", np.float64),
+        ("variance_normal", np.float64),
+        ("zero_torque", np.float64),
+        ("variance_torque", np.float64),
         ("timing", np.float64),
         ("offset", np.float64),
         ("misfit", np.float64),
+        ("sd_lever", np.float64),
         ("variance_mu_s", np.float64),
         ("common_mu_s", np.float64),
         ("above", np.int64),
         ("leverage", np.float64),
         ("rise", np.float64),
         ("fall", np.float64),
-        ("smooth", np.float64, (4,)),
-        ("x", np.float64, (STATES,)),
-        ("covariance", np.float64, (STATES, STATES)),
-        ("limits", np.float64, (4,)),
         ("products", np.float64, (CANDIDATES,)),
         ("energies", np.float64, (2,)),
-        ("wrenches", np.float64, (RING, 4)),
-        ("twists", np.float64, (RING, 3)),
-        ("forces", np.float64, (RING, 3)),
+        ("smooth", np.float64, (4,)),
+        ("x", np.float64, (STATES,)),
+        ("limits", np.float64, (4,)),
+        ("forces", np.float32, (RING, 3)),
+        ("wrenches", np.float32, (RING, 4)),
+        ("twists", np.float32, (RING, 3)),
+        ("covariance", np.float64, (STATES, STATES)),
+        ("moved_by", np.float64, (3,)),
+        ("lowest", np.float64, (3,)),
+        ("highest", np.float64, (3,)),
+        ("before", np.float64, (3,)),
         *EVENT_STATE,
     ],
     align=True,
 )
 """`x`, `covariance`: the filter; `limits`: of ln mu_c and ln r; `delay`: of the velocity [samples];
 `timing`: its correlation; `offset`: its fraction of a sample; `sign`: 1 if the wrench is that on the
-finger; `unloaded`: whether the sensor was seen without load; `moved`: velocities in a row that moved;
-`misfit`: mean squared normalised innovation; `rise`, `fall`: sums of the jump test."""
+finger, once `signed`; `unloaded`: whether the sensor was seen without load; `touched`: whether there was
+contact; `zero_normal`, `zero_torque`: zero errors of f_n and tau [N, N m], with their variances; `moved`:
+velocities in a row that moved; `repeated`: 1 if two were the same; `moved_by`: how far [m, m, rad];
+`lowest`, `highest`: f_x, f_y, tau meanwhile; `before`: the same before it; `spring`: compliance of the pad
+[m/N]; `beyond`: samples in a row that the motion was longer than the pad can spring; `slid`: number of the
+newest sample of sliding; `first`: number of the first sample of a short slip, -1 for none; `quiet`: samples
+since it moved; `fallen`: number of the sample after its break-away; `slides`: instants of sliding learned
+from since the delay is as it is; `misfit`: mean squared normalised innovation; `rise`, `fall`: sums of the
+jump test."""
 
 
 _SPREADS = {MU: "log_mu_c0", R: "log_r0", SIGMA: "viscosity", ZERO: "zero", ZERO + 1: "zero"}
@@ -68,8 +93,12 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
         states["covariance"][:, at, at] = (assumed * parameters[f"sd_{name}"]) ** 2
     for at, name in enumerate(("mu_min", "mu_max", "r_min", "r_max")):
         states["limits"][:, at] = np.log(parameters[name])
-    states["delay"] = parameters["nominal_delay"]
+    states["variance_normal"] = parameters["sd_zero"] ** 2
+    states["variance_torque"] = parameters["sd_zero_torque"] ** 2
+    states["delay"], states["spring"] = parameters["nominal_delay"], parameters["compliance_max"]
+    states["fallen"] = states["first"] = states["slid"] = -1
     states["sign"] = states["misfit"] = 1.0
+    states["sd_lever"] = 2**0.5 * states["mu_c"] * states["r"]
     return states
 
 
@@ -86,7 +115,7 @@ def restart(state, p):
             x[j] = p.viscosity0 if j == SIGMA else 0.0
         spread = _spread(p, j)
         covariance[j, j] = variance if kept else (spread if j <= SIGMA else p.caution * spread) ** 2
-    state.misfit, state.rise, state.fall = 1.0, 0.0, 0.0
+    state.misfit, state.rise, state.fall, state.slides = 1.0, 0.0, 0.0, 0
 
 
 @njit

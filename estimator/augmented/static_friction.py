@@ -45,7 +45,8 @@ def _event(state, p, value, f_n, torque_share):
     state.mu_s = min(max(state.mu_s * math.exp(gain * change), p.mu_min), p.mu_max)
     zero, tilt = state.covariance[ZERO, ZERO], state.covariance[TILT, TILT]
     known = 1.0 / (p.caution * state.mu_s) ** 2
-    state.common_mu_s = known * (zero / (f_n * f_n) + tilt) + (p.sd_zero / f_n) ** 2 + p.sd_gain * p.sd_gain
+    state.common_mu_s = known * (zero / (f_n * f_n) + tilt) + state.variance_normal / (f_n * f_n)
+    state.common_mu_s += p.sd_gain * p.sd_gain
     state.events_mu_s += 1
 
 

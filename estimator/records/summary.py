@@ -14,6 +14,8 @@ from estimator.records.run import Result
 _NAMES = ("mu_s", "mu_c", "r")
 _COUNTS = {"mu_s": "events_mu_s", "mu_c": "updates_mu_c", "r": "updates_r"}
 _LITTLE = 0.5
+_DOUBT = 0.1
+"""Standard deviation over the value from which it is named as the reason."""
 _SPARSE = {
     "mu_s": "it needs slips that start or stop in contact",
     "mu_c": "it needs slip with translation in it",
@@ -91,9 +93,12 @@ def not_observable(result: Result) -> list[str]:
         count, confidence = int(last[_COUNTS[name]]), float(last[f"confidence_{name}"])
         if confidence >= _LITTLE:
             continue
-        seen = (
-            "not observed: this is the start value" if count == 0 else f"little data ({count}): be cautious"
-        )
+        doubt = float(last[f"sd_{name}"] / last[name])
+        seen = f"little data ({count}): be cautious"
+        if count == 0:
+            seen = "not observed: this is the start value"
+        elif doubt > _DOUBT:
+            seen = f"one standard deviation is {100.0 * doubt:.0f} %: be cautious"
         lines.append(f"{name}: {seen}; {_SPARSE[name]}.")
     if result.samples.segment[-1] > 0:
         lines.append(

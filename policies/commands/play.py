@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from estimator import DEFAULT
+
 EPILOG = """
 Examples:\n
 \b
@@ -40,7 +42,7 @@ def main(
     speed: Annotated[float, typer.Option(help="Seconds of simulation per second of watching.")] = 1.0,
     material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
     friction_source: Annotated[str, typer.Option(help="estimated, true, nominal or none.")] = "estimated",
-    estimator: Annotated[str, typer.Option(help="A name of estimator.names().")] = "disc",
+    estimator: Annotated[str, typer.Option(help="A name of estimator.names().")] = DEFAULT,
     sensors: Annotated[str, typer.Option(help="realistic or ideal.")] = "realistic",
     option: Annotated[
         list[str] | None, typer.Option(metavar="NAME=VALUE", help="Option of the episode; repeatable.")

@@ -36,7 +36,7 @@ class ObservationIndex:
             columns = layout.sensor_columns(config)
         else:
             self.action_mode = action_mode or find(task_name).action_mode
-            columns = layout.columns(config, find(task_name), "true", self.action_mode)
+            columns = layout.columns(config, find(task_name), "true", self.action_mode, "deviations")
         self._at = {column.name: k for k, column in enumerate(columns)}
 
     def __getitem__(self, name: str) -> int:
@@ -57,14 +57,15 @@ class ObservationIndex:
         Raises:
             ValueError: No observation of the task has this length.
         """
-        full = len(self._at)
-        if self.task_name is None and width < full:
-            raise ValueError(f"observation has {width} columns; every task has at least {full}")
+        longest = len(self._at)
+        if self.task_name is None and width < longest:
+            raise ValueError(f"observation has {width} columns; every task has at least {longest}")
+        full = longest - len(layout.DEVIATION_COLUMNS)
         bare = full - len(layout.FRICTION_COLUMNS)
-        if self.task_name is not None and width not in (full, bare):
+        if self.task_name is not None and width not in (longest, full, bare):
             raise ValueError(
-                f"observation has {width} columns; {self.task_name} has {full}, or {bare} without friction, "
-                f"with action_mode={self.action_mode!r} and history=0"
+                f"observation has {width} columns; {self.task_name} has {full}, {bare} without friction, or "
+                f"{longest} with deviations, with action_mode={self.action_mode!r} and history=0"
             )
 
 
@@ -100,6 +101,10 @@ class Columns:
                 "choose friction_source 'estimated', 'true' or 'nominal' and observation_mode 'flat'"
             )
         return self._observations[:, at].astype(np.float64)
+
+    def has(self, name: str) -> bool:
+        """Whether the environment shows a column of the task."""
+        return self._index[name] < self._observations.shape[1]
 
 
 class ForcePolicy(ABC):

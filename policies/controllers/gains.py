@@ -53,6 +53,11 @@ class GainPolicy(ForcePolicy, Generic[G]):
         self.gains: G = validate({**values, **parameters}, self.Gains, type(self).__name__)  # type: ignore[assignment]
         self.prior = prior or self.prior_default
 
+    @property
+    def modes(self) -> dict[str, Any]:
+        """Keyword arguments of its environments: it reads the deviations of the estimates."""
+        return {"action_mode": self.action_mode, "observation_mode": "deviations"}
+
     @classmethod
     def parameters(cls) -> list[str]:
         """Names of the gains, for `policies.make`."""

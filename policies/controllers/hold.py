@@ -83,7 +83,7 @@ class HoldPolicy(GainPolicy[HoldGains]):
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
         g = self.gains
-        mu_c, r = self.prior.blend(columns, "mu_c"), self.prior.blend(columns, "r")
+        mu_c, r = self.prior.hold(columns, "mu_c"), self.prior.hold(columns, "r")
         load, speed = scaled_load(columns, r), scaled_speed(columns, r)
         level, *rest = np.asarray(state).T
         force = g.margin * (load + g.reserve) / mu_c + g.k_v * speed

@@ -72,7 +72,8 @@ class LinearSlipPolicy(GainPolicy[LinearSlipGains]):
         error, f_slip = np.asarray(state).T
         x, v = -columns["measured_slip_y"], -both(columns, "v_y")
         acceleration = columns["reference_acceleration"]
-        balance = tangential(columns) / self.prior.blend(columns, "mu_c")
+        load = tangential(columns)
+        balance = load / self.prior.blend(columns, "mu_c")
         kept = np.where(acceleration < 0.1, g.smoothing, 1.0)
         f_slip = np.where(f_slip < 0.0, balance, kept * f_slip + (1.0 - kept) * balance)
         v_cmd = columns["reference_velocity"] + g.k_x * (columns["reference_position"] - x)
@@ -80,5 +81,6 @@ class LinearSlipPolicy(GainPolicy[LinearSlipGains]):
         arrived = (columns["reference_position"] >= distance) & (x >= distance - g.stop_band)
         error = np.where(arrived, error, error + (v_cmd - v) * self._dt)
         force = f_slip * (1.0 + g.k_a * acceleration + g.k_v * (v - v_cmd)) - g.k_e * error
-        force = np.where(arrived, np.maximum(force, g.hold_margin * balance), force)
+        firm = g.hold_margin * load / self.prior.hold(columns, "mu_c")
+        force = np.where(arrived, np.maximum(force, firm), force)
         return force, np.column_stack((error, f_slip))

@@ -162,7 +162,8 @@ class PlanarSlipPolicy(GainPolicy[PlanarSlipGains]):
         load = scaled_load(columns, r) / mu_c
         motion, share = self._let_slip(past, turning, distance, speed, slipping)
         lever = np.hypot(*place) + self.gains.short
-        firm = self.gains.hold_margin * past.weight * np.hypot(1.0, lever / r) / mu_c
+        need = np.hypot(1.0, lever / self.prior.hold(columns, "r")) / self.prior.hold(columns, "mu_c")
+        firm = self.gains.hold_margin * past.weight * need
         loose = np.minimum(load * share, firm)
         force = np.where(slipping, loose, firm)
         rate, still = self._pitch(off, columns["wrist_pitch_rate"]), np.zeros(len(columns))

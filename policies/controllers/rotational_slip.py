@@ -86,7 +86,8 @@ class RotationalSlipPolicy(GainPolicy[RotationalSlipGains]):
             np.abs(both(columns, "tau")),
         )
         torque = np.where(torque < 0.0, tau, g.smoothing * torque + (1.0 - g.smoothing) * tau)
-        f_slip = torque / self.prior.blend_lever(columns)
+        lever = self.prior.blend_lever(columns)
+        f_slip = torque / lever
         reference, goal = columns["reference_position"], columns["angle"]
         ahead = columns["reference_velocity"] + g.k_x * (reference - angle) - omega
         turning = omega > g.moving
@@ -95,5 +96,7 @@ class RotationalSlipPolicy(GainPolicy[RotationalSlipGains]):
         error = np.where(turning & (turned == 0.0), 0.0, error)
         error = np.where(still, 0.0, error + np.where(turning, g.k_m, 1.0) * ahead * self._dt)
         share = 1.0 - g.k_e * error - np.where(turning, g.k_v * ahead, 0.0)
-        share = np.where(still, np.maximum(share, g.hold_margin), share)
+        share = np.where(
+            still, np.maximum(share, g.hold_margin * lever / self.prior.hold_lever(columns)), share
+        )
         return f_slip * share, np.column_stack((error, torque, turning))

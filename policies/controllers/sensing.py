@@ -37,8 +37,13 @@ def scaled_speed(columns: Columns, r: np.ndarray) -> np.ndarray:
 class ConservativePrior:
     """Friction that a controller assumes while the estimate has no confidence.
 
-    The estimator's start values are optimistic (mu_c 1.3): a controller that acts on them drops the object.
-    Without confidence the prior replaces the estimate; in between the two are blended.
+    The estimators' start values are optimistic: a controller that acts on them drops the object. Without
+    confidence the prior replaces the estimate; in between the two are blended.
+
+    A grip that has to hold needs more than the estimate that is as often too high as too low. It takes the
+    value that friction is below with a small probability, the lower quartile: the estimate less 0.67 of its
+    standard deviations, on the logarithm. It is never more cautious than the prior. An environment without
+    deviations (`observation_mode="flat"`) gives the estimate itself.
 
     Raises:
         ValueError: A value is out of range.
@@ -50,6 +55,8 @@ class ConservativePrior:
     """Contact radius without confidence [m]."""
     confidence: float = 0.1
     """Confidence from which an estimate is taken as it is, in (0, 1]; one update gives 0.02."""
+    deviations: float = 0.67
+    """Standard deviations below the estimate that a grip which has to hold takes [-]; 0: the estimate."""
 
     def __post_init__(self) -> None:
         """Check the ranges."""
@@ -57,6 +64,10 @@ class ConservativePrior:
             value = getattr(self, name)
             if not 0.0 < value < np.inf:
                 raise ValueError(f"{name} = {value!r} of a conservative prior must be finite and > 0")
+        if not 0.0 <= self.deviations < np.inf:
+            raise ValueError(
+                f"deviations = {self.deviations!r} of a conservative prior must be finite and >= 0"
+            )
         if self.confidence > 1.0:
             raise ValueError(f"confidence = {self.confidence!r} of a conservative prior must be at most 1")
 
@@ -69,13 +80,44 @@ class ConservativePrior:
         weight = self.confidence_weight(columns, name)
         return weight * columns[name] + (1.0 - weight) * getattr(self, name)
 
+    def hold(self, columns: Columns, name: str) -> np.ndarray:
+        """As `blend`, with the quantile in place of the estimate, for a grip that has to hold, (n,)."""
+        weight, prior = self.confidence_weight(columns, name), getattr(self, name)
+        return weight * self._quantile(columns, name, prior) + (1.0 - weight) * prior
+
     def blend_lever(self, columns: Columns) -> np.ndarray:
         """mu_c r, the torque per normal force in rotation, blended with the prior, at least it, (n,) [m].
 
-        An estimate of r goes with the mu_c that it was found with, so r's confidence counts for both.
+        An estimate of r goes with the mu_c that it was found with, so r's confidence counts for both. Where
+        the deviation of the product is known, it counts, if that is better.
         """
+        return self._lever(columns, columns["mu_c"] * columns["r"])
+
+    def hold_lever(self, columns: Columns) -> np.ndarray:
+        """As `blend_lever`, with the quantile in place of the estimate, (n,) [m]."""
+        value = columns["mu_c"] * columns["r"]
+        return self._lever(columns, value * np.exp(-self.deviations * _relative(columns, "lever", value)))
+
+    def _lever(self, columns: Columns, value: np.ndarray) -> np.ndarray:
         weight, least = self.confidence_weight(columns, "r"), self.mu_c * self.r
-        return np.maximum(least, weight * columns["mu_c"] * columns["r"] + (1.0 - weight) * least)
+        if columns.has("sd_lever"):
+            square = _relative(columns, "lever", columns["mu_c"] * columns["r"]) ** 2
+            known = np.minimum(1.0, 1.0 / (1.0 + 100.0 * square) / self.confidence)
+            weight = np.maximum(weight, np.where(columns["confidence_mu_c"] > 0.0, known, 0.0))
+        return np.maximum(least, weight * value + (1.0 - weight) * least)
+
+    def _quantile(self, columns: Columns, name: str, least: float) -> np.ndarray:
+        """The estimate less some of its deviations; not below `least`, unless the estimate is."""
+        value = columns[name]
+        cautious = value * np.exp(-self.deviations * _relative(columns, name, value))
+        return np.maximum(cautious, np.minimum(value, least))
+
+
+def _relative(columns: Columns, name: str, value: np.ndarray) -> np.ndarray:
+    """Deviation of a value over the value, (n,); 0 if the environment does not show it."""
+    if not columns.has(f"sd_{name}"):
+        return np.zeros(len(columns))
+    return columns[f"sd_{name}"] / np.maximum(value, 1e-9)
 
 
 def Caution(mu_c: float = 0.3, r: float = 0.008, support: float = 0.1) -> ConservativePrior:

@@ -33,7 +33,7 @@ from slipgym.config.physics import ContactModel
 
 FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
 ActionMode: TypeAlias = Literal["grip_force", "grip_force_pitch", "grip_force_wrist", "force_increment"]
-ObservationMode: TypeAlias = Literal["flat", "sensor", "dict"]
+ObservationMode: TypeAlias = Literal["flat", "deviations", "sensor", "dict"]
 Engine: TypeAlias = Literal["bullet", "planar"]
 
 FRICTION_SOURCES: tuple[str, ...] = get_args(FrictionSource)

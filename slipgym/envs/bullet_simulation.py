@@ -139,7 +139,7 @@ class BulletSimulation(Simulation):
         self._guard.reset()
         for _ in range(WARM_UP_STEPS):
             self._settle(force)
-        self.stages.open(starts, self._fresh, self.state, self.infos.terms)
+        self.stages.open(starts, self._fresh, self.state, self.plant.force_torque, self.infos.terms)
         self.stages.evaluate(self.state, 0, 1)
         self._write_infos()
 

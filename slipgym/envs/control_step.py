@@ -51,11 +51,11 @@ class BatchState(NamedTuple):
     per_finger: np.ndarray
     """Estimated mu_s, mu_c, r (n, 2, 3)."""
     estimated: np.ndarray
-    """Both fingers' estimates merged: `FRICTION_COLUMNS` (n, 6)."""
+    """Both fingers' estimates merged: `FRICTION_COLUMNS` and `DEVIATION_COLUMNS` (n, 11)."""
     task_part: np.ndarray
     """The task's part of the observation, (n, k)."""
     ground_truth: np.ndarray
-    """True friction now, columns as `estimated`, (n, 6)."""
+    """True friction now, columns as `estimated`, (n, 11)."""
 
 
 @unlocked

@@ -63,9 +63,10 @@ the confidence (0 to 1) says how much data each value rests on: an estimate is u
 is low. With "true" and "nominal" every confidence is 1.
 
 With an `action_mode` that moves the wrist, the commanded wrist velocities and the wrist's pitch precede
-the friction part, unless the table has them already. `observation_mode="sensor"` leaves the friction part
-out; "dict" returns the groups "policy" (the observation above) and "privileged" (the ground truth);
-`history=k` prepends the last k observations (see docs/modes.md)."""
+the friction part, unless the table has them already. `observation_mode="deviations"` appends the standard
+deviations of the estimates; "sensor" leaves the friction part out; "dict" returns the groups "policy" (the
+observation above) and "privileged" (the ground truth); `history=k` prepends the last k observations (see
+docs/modes.md)."""
 
 _END = """\
 - Terminated: the object is dropped, that is, neither pad touches it or a pad reaches beyond its edge.

@@ -225,8 +225,8 @@ def write_infos(numbers, flags, worlds, pads, fingers, episodes, ground_truth, e
         pads: PAD (n, 2).
         fingers: FINGER (n, 2).
         episodes: EPISODE (n,).
-        ground_truth: (n, 6), of which the first three (mu_s, mu_c, r) are used.
-        estimated: (n, 6), likewise.
+        ground_truth: (n, 11), of which the first three (mu_s, mu_c, r) are used.
+        estimated: (n, 11), likewise.
         per_finger: Estimated mu_s, mu_c, r (n, 2, 3).
     """
     for i in range(numbers.shape[0]):

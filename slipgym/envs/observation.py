@@ -112,6 +112,11 @@ def _merged(name: str) -> str:
     return f"weighted_mean(first.{name}, second.{name}, {weights})"
 
 
+def _deviation(name: str) -> str:
+    weights = f"first.confidence_{name}, second.confidence_{name}"
+    return f"weighted_mean(first.sd_{name}, second.sd_{name}, {weights})"
+
+
 def _better(name: str) -> str:
     return f"max(first.{name}, second.{name})"
 
@@ -125,7 +130,34 @@ FRICTION = (
     Reading("confidence_r", (0.0, 1.0), "-", "confidence of r, 0 to 1", _better("confidence_r")),
 )
 """Friction part, computed from the estimates of the first and the second finger."""
+DEVIATIONS = (
+    Reading(
+        "sd_mu_s",
+        (0.0, 10.0),
+        "-",
+        "standard deviation of mu_s that the estimator states",
+        _deviation("mu_s"),
+    ),
+    Reading("sd_mu_c", (0.0, 10.0), "-", "the same of mu_c", _deviation("mu_c")),
+    Reading("sd_r", (0.0, 1.0), "m", "the same of r", _deviation("r")),
+    Reading(
+        "sd_lever",
+        (0.0, 10.0),
+        "m",
+        "the same of mu_c r, the torque per normal force of a spin",
+        "0.5 * (first.sd_lever + second.sd_lever)",
+    ),
+    Reading(
+        "spread_mu_c",
+        (0.0, 10.0),
+        "-",
+        "half the difference of the fingers' mu_c",
+        "0.5 * abs(first.mu_c - second.mu_c)",
+    ),
+)
+"""What follows the friction part with `observation_mode="deviations"`; both fingers are said to err alike."""
 FRICTION_COLUMNS = tuple(reading.column() for reading in FRICTION)
+DEVIATION_COLUMNS = tuple(reading.column() for reading in DEVIATIONS)
 
 
 class ObservationBuffers(NamedTuple):
@@ -134,8 +166,8 @@ class ObservationBuffers(NamedTuple):
     wrist: np.ndarray
     """Rows of `WRIST` in the wrist part, (w,)."""
     friction: np.ndarray
-    """Values of the friction part, (n, 6): a constant array, or a view of the simulation's array, which
-    changes with every step."""
+    """Values of the friction part and the deviations, (n, 11): a constant array, or a view of the
+    simulation's array, which changes with every step."""
     low: np.ndarray
     """Lower bounds, (m,) float32."""
     high: np.ndarray
@@ -172,6 +204,7 @@ def columns(
         *task.columns,
         *(WRIST[k].column(config) for k in wrist_part(task, action_mode)),
         *(() if no_friction else FRICTION_COLUMNS),
+        *(DEVIATION_COLUMNS if observation_mode == "deviations" and not no_friction else ()),
     )
 
 
@@ -217,10 +250,10 @@ _read_wrist = choice_reader(
 )
 _write_friction = row_writer(
     "_write_friction",
-    [reading.read for reading in FRICTION],
+    [reading.read for reading in (*FRICTION, *DEVIATIONS)],
     ("estimates",),
     __file__,
-    "Write `FRICTION` of environment i.",
+    "Write `FRICTION` and `DEVIATIONS` of environment i.",
     before=("first, second = estimates[2 * i], estimates[2 * i + 1]",),
     functions={"weighted_mean": weighted_mean, "merged_mu_s": merged_mu_s, "merged_mu_c": merged_mu_c},
 )
@@ -234,7 +267,7 @@ def combine(estimates, per_finger, friction):
     Args:
         estimates: ESTIMATE (2 n,), finger by finger.
         per_finger: Output (n, 2, 3): mu_s, mu_c, r of either finger.
-        friction: Output (n, 6): `FRICTION_COLUMNS`, that is mu_s, mu_c, r and the higher confidence in each.
+        friction: Output (n, 11): mu_s, mu_c, r, the higher confidence in each, and their standard deviations.
     """
     for i in range(friction.shape[0]):
         for f in range(2):
@@ -255,7 +288,8 @@ def observe(wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, 
         task_part: (n, k).
         worlds: WORLD (n,), for the wrist.
         wrist: Rows of `WRIST` in the wrist part, (w,).
-        friction: `FRICTION_COLUMNS` (n, 6); columns beyond the width of `out` are left out.
+        friction: `FRICTION_COLUMNS` and `DEVIATION_COLUMNS` (n, 11); those beyond the width of `out` are left
+            out.
         low: Lower bounds (m,).
         high: Upper bounds (m,).
         out: Output (n, m), float32.

@@ -8,7 +8,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.envs import privileged
-from slipgym.envs.observation import ObservationBuffers, columns, wrist_part
+from slipgym.envs.observation import DEVIATIONS, ObservationBuffers, columns, wrist_part
 from slipgym.envs.record_checks import check_array, check_finite
 from slipgym.envs.simulation import Simulation
 from slipgym.tasks.task import Column
@@ -24,7 +24,7 @@ class Observer:
         simulation: The simulation.
         friction_source: Source of the friction part: "estimated", "true", "nominal" or "none".
         action_mode: One of `ACTION_MODES`; it decides which wrist columns are observed.
-        mode: "flat", "sensor" or "dict".
+        mode: "flat", "deviations", "sensor" or "dict".
         history: Number of earlier observations in each observation.
 
     Attributes:
@@ -133,12 +133,14 @@ def first(observations: Observation) -> Observation:
 
 
 def _friction_part(simulation: Simulation, source: str) -> np.ndarray:
-    """Values of the friction part, (n, 6): a view of the simulation's array, or constants."""
+    """Values of the friction part, (n, 11): a view of the simulation's array, or constants."""
     if source in ("estimated", "true"):
         return simulation.estimated if source == "estimated" else simulation.ground_truth
     nominal = simulation.config.nominal
     radius = simulation.settings.radius or nominal.r
-    return np.tile([nominal.mu_s, nominal.mu_c, radius, 1.0, 1.0, 1.0], (simulation.n, 1))
+    return np.tile(
+        [nominal.mu_s, nominal.mu_c, radius, 1.0, 1.0, 1.0, *[0.0] * len(DEVIATIONS)], (simulation.n, 1)
+    )
 
 
 def _bounds(named: tuple[Column, ...]) -> tuple[np.ndarray, np.ndarray]:

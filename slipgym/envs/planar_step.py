@@ -156,7 +156,7 @@ def _start(stages, move, starts, values, state, contact, begun, infos):
         for _ in range(WARM_UP_STEPS):
             move(state, cells, force_torque, i, i + 1)
             stages.measure(state, force_torque, i, i + 1)
-    stages.open(starts, fresh, state, infos.terms)
+    stages.open(stages.update, starts, fresh, state, force_torque, infos.terms)
     for k in range(starts.shape[0]):
         i = starts[k].row
         stages.evaluate(stages.evaluate_step, state, i, i + 1)

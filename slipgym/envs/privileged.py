@@ -87,7 +87,7 @@ def write_privileged(worlds, pads, fingers, friction, low, high, out):
         worlds: WORLD (n,).
         pads: PAD (n, 2).
         fingers: FINGER (n, 2).
-        friction: The ground truth (n, 6), of which the first three (mu_s, mu_c, r) are used.
+        friction: The ground truth (n, 11), of which the first three (mu_s, mu_c, r) are used.
         low: Lower bounds (m,).
         high: Upper bounds (m,).
         out: Output (n, m), float32.

@@ -7,11 +7,14 @@ import numpy as np
 from slipgym._numba.compiled import compiled, unlocked
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
+from slipgym.sensors.unloaded import READINGS, read_unloaded
 from slipgym.world.placing import PATCHES_OF_WORLDS, place_world
 from slipgym.world.plant import friction_axes, stretch
 
 WARM_UP_STEPS = 6
 """Control steps before time 0 in which grip and sensors settle."""
+CLOSING_STEPS = 60
+"""Control steps between the last reading of the open gripper and time 0."""
 START = np.dtype(
     [
         ("row", "i8"),  # which environment
@@ -82,7 +85,7 @@ def equip(starts, values, hardware, patches, pads, cells, fingers, force_torque,
         fingers: FINGER (n, 2).
         force_torque: FORCE_TORQUE (n, 2).
         slip_sensors: SLIP_SENSOR (n, 2).
-        ground_truth: Output (n, 6), of which the first three are mu_s, mu_c, r, mean of both pads.
+        ground_truth: Output (n, 11), of which the first three are mu_s, mu_c, r, mean of both pads.
     """
     own = hardware[0]
     for k in range(starts.shape[0]):
@@ -145,14 +148,47 @@ def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
     )  # fmt: skip
 
 
-@unlocked
-def open_episodes(starts, fresh, state, terms):
-    """Reset measured slip, estimators, commands and reward terms, after grip and sensors have settled.
+@compiled
+def show_open_gripper(update, state, force_torque, i):
+    """Update the estimators of environment i with the readings of its sensors before the grasp.
+
+    The gripper is open: no slip sensor has a surface to see.
 
     Args:
+        update: Function of the estimator.
+        state: `BatchState`.
+        force_torque: FORCE_TORQUE (n, 2).
+        i: Which environment.
+    """
+    readings, twists = np.empty((2, READINGS, 4)), np.zeros((2, 3))
+    wrenches = np.empty((2, 4))
+    for f in range(2):
+        read_unloaded(force_torque[i, f], readings[f])
+    pair = slice(2 * i, 2 * i + 2)
+    own = pair if state.parameters.shape[0] > 1 else slice(0, 1)
+    for k in range(READINGS):
+        for f in range(2):
+            for a in range(4):
+                wrenches[f, a] = readings[f, k, a]
+        time = (k + 1 - READINGS - CLOSING_STEPS) * state.episodes[i].step_time
+        update(
+            state.estimator_states[pair, 0], state.parameters[own, 0], time, wrenches, twists,
+            state.estimates[pair],
+        )  # fmt: skip
+
+
+@unlocked
+def open_episodes(update, starts, fresh, state, force_torque, terms):
+    """Reset measured slip, estimators, commands and reward terms, after grip and sensors have settled.
+
+    The estimators then see the sensors without load, as they were before the grasp.
+
+    Args:
+        update: Function of the estimator.
         starts: START (m,).
         fresh: Of both fingers: initial states of the estimators, as bytes (2, q), and ESTIMATE (2,).
         state: `BatchState` of n environments.
+        force_torque: FORCE_TORQUE (n, 2).
         terms: (n, k).
     """
     states, estimates = fresh
@@ -164,6 +200,7 @@ def open_episodes(starts, fresh, state, terms):
             for b in range(states.shape[1]):
                 state.estimator_states[2 * i + f, b] = states[f, b]
             state.estimates[2 * i + f] = estimates[f]
+        show_open_gripper(update, state, force_torque, i)
         for a in range(state.commands.shape[1]):
             state.commands[i, a] = 0.0
         for a in range(terms.shape[1]):

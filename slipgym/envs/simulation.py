@@ -19,7 +19,7 @@ from slipgym.envs.episode_sampler import EpisodeSampler
 from slipgym.envs.estimator_choice import chosen_estimator, informed
 from slipgym.envs.hardware_randomization import prepare_hardware
 from slipgym.envs.infos import InfoBuffer
-from slipgym.envs.observation import FRICTION_COLUMNS, ObservationBuffers
+from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
 from slipgym.envs.record_checks import damaged
 from slipgym.envs.stages import compiled_stages
@@ -72,9 +72,9 @@ class Simulation(ABC):
         materials: Name of every episode's material.
         boxes: Every episode's object.
         drawn: Values that the randomization sampled for every episode.
-        ground_truth: True (mu_s, mu_c, r) now and full confidence, (n, 6); columns as `estimated`.
+        ground_truth: True (mu_s, mu_c, r) now and full confidence, (n, 11); columns as `estimated`.
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
-        estimated: Estimates of both fingers merged, with their confidence, (n, 6).
+        estimated: Estimates of both fingers merged, with their confidence and deviations, (n, 11).
         infos: Infos of all environments, including the last step's reward terms.
         estimator_choice: Name and parameters of the estimators; `velocity_delay` only if the user gave it.
         step_time: Length of a control step [s].
@@ -101,7 +101,8 @@ class Simulation(ABC):
         self.commands = np.zeros((n, len(COMMANDS)))
         self.wrenches, self.twists = np.zeros((n, 2, 4)), np.zeros((n, 2, 3))
         self.task_part = np.zeros((n, len(task.columns)))
-        self.ground_truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS)))
+        self.ground_truth, self.estimated = np.ones((2, n, len(FRICTION_COLUMNS) + len(DEVIATION_COLUMNS)))
+        self.ground_truth[:, len(FRICTION_COLUMNS) :] = 0.0
         self.per_finger = np.zeros((n, 2, 3))
         self.infos = InfoBuffer.zeros(n, len(task.term_names))
         self.step_time = 1.0 / config.physics.control_rate

@@ -137,7 +137,7 @@ class Stages:
         report: `slipgym.envs.control_step.report`.
         note: `slipgym.envs.nan_guard.note`.
         equip: `slipgym.envs.reset_kernels.equip_rows`.
-        open: `slipgym.envs.reset_kernels.open_episodes`.
+        open: Likewise `slipgym.envs.reset_kernels.open_episodes`.
     """
 
     def __init__(self, task: Any, update: Any, force_torque: np.dtype, cells: int) -> None:
@@ -154,7 +154,7 @@ class Stages:
             "report": (control_step.report, void(STATE, F2, flags, *rows)),
             "note": (note, WHOLE(F2, WHOLE, STATE, WHOLE)),
             "equip": (equip_rows, void(*arguments)),
-            "open": (open_episodes, void(array(START), FRESH, STATE, F2)),
+            "open": (open_episodes, void(learn, array(START), FRESH, STATE, sensors, F2)),
         }
         with patience(f"the control step of {task.name}"):
             programs = {name: Program(*each) for name, each in signatures.items()}
@@ -172,7 +172,8 @@ class Stages:
         self.evaluate = partial(programs["evaluate"].call, self.linked.evaluate_step)
         self.look_at = partial(look_at.call, self.linked.look)
         self.report, self.note = programs["report"].call, programs["note"].call
-        self.equip, self.open = programs["equip"].call, programs["open"].call
+        self.equip = programs["equip"].call
+        self.open = partial(programs["open"].call, self.linked.update)
 
     def program(self, function: Any, returned: Any, *arguments: Any) -> Callable[..., Any]:
         """Compile a function that takes `Linked` first; returns a function of its other arguments.

@@ -49,7 +49,7 @@ class History:
     def keep(self) -> None:
         """Record the present values."""
         simulation, i = self._simulation, self._row
-        mu_s, mu_c, _, confidence_s, confidence_c, _ = simulation.estimated[i]
+        mu_s, mu_c, _, confidence_s, confidence_c = simulation.estimated[i, :5]
         slip, reference = (
             simulation.plant.world["slip"][i],
             simulation.episode["reference"][i, self._motion.entry],

@@ -43,12 +43,12 @@ class Source(Protocol):
 
     @property
     def estimated(self) -> np.ndarray:
-        """Estimates of both fingers merged, with their confidence, (n, 6)."""
+        """Estimates of both fingers merged, with their confidence and deviations, (n, 11)."""
         ...
 
     @property
     def ground_truth(self) -> np.ndarray:
-        """True friction, columns as `estimated`, (n, 6)."""
+        """True friction, columns as `estimated`, (n, 11)."""
         ...
 
     @property

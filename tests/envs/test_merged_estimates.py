@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from estimator import ESTIMATE
-from slipgym.envs.observation import combine
+from slipgym.envs.observation import DEVIATIONS, FRICTION, combine
 
 friction, weight = st.floats(0.01, 10.0), st.floats(0.0, 1.0)
 finger = st.tuples(friction, friction, weight, weight)
@@ -19,7 +19,7 @@ def merged(*fingers):
         ("mu_s", "mu_c", "confidence_mu_s", "confidence_mu_c"), zip(*fingers, strict=True), strict=True
     ):
         estimates[name] = values
-    friction = np.zeros((1, 6))
+    friction = np.zeros((1, len(FRICTION) + len(DEVIATIONS)))
     combine(estimates, np.zeros((1, 2, 3)), friction)
     return friction[0, 0], friction[0, 1]
 

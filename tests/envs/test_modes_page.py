@@ -9,7 +9,7 @@ from slipgym.config import load
 from slipgym.envs import privileged
 from slipgym.envs.actions import ACTION_MODES, components
 from slipgym.envs.arguments import OBSERVATION_MODES
-from slipgym.envs.observation import WRIST
+from slipgym.envs.observation import DEVIATION_COLUMNS, WRIST
 
 PAGE = (Path(__file__).parents[2] / "docs" / "modes.md").read_text(encoding="utf-8")
 CONFIG = load()
@@ -31,6 +31,8 @@ def test_every_observation_mode_and_column_is_listed():
     for mode in OBSERVATION_MODES:
         assert f'| `"{mode}"` |' in PAGE
     for column in (reading.column(CONFIG) for reading in WRIST):
+        assert row(column) in PAGE
+    for column in DEVIATION_COLUMNS:
         assert row(column) in PAGE
     table = "\n".join(f"{row(column)}" for column in privileged.columns(CONFIG))
     assert f"| Column | Min | Max | Unit | Meaning |\n|---|---|---|---|---|\n{table}\n\n" in PAGE

@@ -130,3 +130,36 @@ def stick_slip():
         return sensed(wrench, motion, fingers, rng, mu_c=mu_c, mu_s=mu_s, r=0.008, phase=phase)
 
     return make
+
+
+@pytest.fixture(scope="session")
+def short_slips():
+    """Makes records of a block whose grip is lowered until it slips, and then closed, again and again.
+
+    Integrated as `stick_slip`. The grip closes at the second sample of a slip.
+    """
+
+    def make(mu_c=0.4, mu_s=0.55, fingers=8, seed=0, seconds=4.0, sigma_2=0.2, mass=0.1):
+        rng, steps = np.random.default_rng(seed), 83
+        n, dt = int(seconds * 120), 1 / (120 * 83)
+        v, seen, f_n, f_t, level, rest = 0.0, 0.0, 3.0, mass * 9.81, 3.0, 0
+        wrench, motion = np.zeros((n, 4)), np.zeros((n, 3))
+        for k in range(n):
+            rest = max(rest - 1, 0)
+            if seen > 0.0 and not rest:
+                level, rest = 1.6 * f_n, 20
+            level *= 1.0 if rest else 0.97 + 0.005 * rng.random()
+            command, seen = 4.0 * level if seen > 0.0 else level, v
+            for _ in range(steps):
+                f_n += (command - f_n) * dt / 0.012
+                if v > 0.0 or mass * 9.81 > mu_s * f_n:
+                    f_t = (mu_c + (mu_s - mu_c) * np.exp(-((v / 1e-3) ** 2)) + sigma_2 * v) * f_n
+                    v = max(v + (9.81 - f_t / mass) * dt, 0.0)
+                if v == 0.0:
+                    f_t = mass * 9.81
+                motion[k, 1] += v * dt
+            wrench[k] = 0.0, f_t, f_n, 0.0
+        phase = np.where(motion[:, 1] > 1e-3 / 120, "slip", "stick")
+        return sensed(wrench, motion, fingers, rng, mu_c=mu_c, mu_s=mu_s, r=0.008, phase=phase)
+
+    return make

@@ -12,6 +12,8 @@ pytestmark = pytest.mark.parametrize("name", estimator.names())
 def random_signals(n, samples, seed=0):
     """Signals that visit every branch: stick, slip, spin, fast rises and losses of contact.
 
+    Every other stretch of 80 samples is a stick and slip along a steady force, in five and seven samples.
+
     Returns:
         wrenches (samples, n, 4) and twists (samples, n, 3).
     """
@@ -20,6 +22,13 @@ def random_signals(n, samples, seed=0):
     wrenches[..., 2] = np.maximum(4.0 + np.cumsum(0.5 * wrenches[..., 2], axis=0), 0.0) % 9.0
     moving = np.repeat(rng.random((samples // 8 + 1, n, 3)) < 0.5, 8, axis=0)[:samples]
     twists = np.where(moving, rng.normal(scale=(0.01, 0.01, 1.0), size=(samples, n, 3)), 0.0)
+    steady = np.arange(samples) // 80 % 2 == 1
+    wrenches[steady, :, :3] = 0.02 * rng.normal(size=(steady.sum(), n, 3)) + np.array([1.0, 0.0, 4.0])
+    slides = (np.arange(samples) % 12 < 5) | (np.arange(samples) % 80 > 64)
+    twists[steady] = np.where(slides[steady], 0.02, 0.0)[:, np.newaxis, np.newaxis] * np.array(
+        [1.0, 0.0, 50.0]
+    )
+    wrenches[steady, :, 3] = 0.008
     return wrenches, twists
 
 

@@ -66,5 +66,5 @@ def test_start_values_need_no_warning(result):
 
 
 def test_the_default_is_that_of_the_environments(table, save):
-    assert DEFAULT_ESTIMATOR == DEFAULT == "disc"
+    assert DEFAULT_ESTIMATOR == DEFAULT == "adaptive"
     assert records.estimate(records.load(save(table))).estimator == DEFAULT

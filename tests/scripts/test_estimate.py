@@ -13,7 +13,6 @@ import pytest
 import policies
 from estimator import records
 from policies.evaluation.sensor_record import record_sensors
-from slipgym.envs.arguments import DEFAULT_ESTIMATOR
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = ROOT / "examples" / "linear_slip_wood.csv.gz"
@@ -101,10 +100,15 @@ def test_an_error_while_writing_leaves_nothing(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("finger", [1, 2])
 def test_a_record_gives_the_environments_own_estimates(tmp_path, finger):
-    keywords = {"material": "wood", "config": {"contact": {"cop_offset": [[0.002, 0.0], [0.0, -0.001]]}}}
+    """A record begins after the grasp: this holds for estimators that learn nothing before it."""
+    keywords = {
+        "estimator": "disc",
+        "material": "wood",
+        "config": {"contact": {"cop_offset": [[0.002, 0.0], [0.0, -0.001]]}},
+    }
     frame = record_sensors("LinearSlip", "linear_slip", finger, seed=3, options=OPTIONS, **keywords)
     frame.to_parquet(tmp_path / "log.parquet")
-    result = records.estimate(records.load(tmp_path / "log.parquet"), DEFAULT_ESTIMATOR)
+    result = records.estimate(records.load(tmp_path / "log.parquet"), "disc")
     env = gym.make("slipgym:slipgym/LinearSlip-v0", **keywords)
     policy, state, over = policies.make("linear_slip"), None, False
     observation, _ = env.reset(seed=3, options=OPTIONS)
