@@ -22,7 +22,7 @@ from typing import Any
 
 import llvmlite
 import numba
-from numba.core import sigutils
+from numba.core import config, sigutils
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
@@ -32,7 +32,7 @@ from estimator._numba.folders import program_folder
 from estimator._numba.linking import Kernel
 from estimator._numba.locking import only_one
 
-if numba.config.DISABLE_JIT:
+if vars(config)["DISABLE_JIT"]:
     raise ImportError(
         "slipgym and its estimators need numba's compiler: unset NUMBA_DISABLE_JIT. To debug one compiled "
         "function, call its `py_func`"
