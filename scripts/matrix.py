@@ -52,6 +52,15 @@ def interpreter(version: str) -> str | None:
     return None
 
 
+def reason(said: str) -> str:
+    """Why pip did not install something, in a few words."""
+    missing = re.search(r"The conflict is caused by:\s+\S+ \S+ depends on ([\w.-]+)", said)
+    if missing:
+        return f"no wheel of {missing[1]} that fits"
+    faults = [line[7:] for line in said.splitlines() if line.startswith("ERROR: ")]
+    return faults[0][:100] if faults else "see pip"
+
+
 def row(python: str, requirements: list[str], folder: Path, tests: list[str]) -> str:
     """Install and test one combination; what came of it, in a few words."""
     run = folder / "bin" / "python"
@@ -81,8 +90,7 @@ def row(python: str, requirements: list[str], folder: Path, tests: list[str]) ->
     ]
     done = subprocess.run([*install, *wanted, *requirements], capture_output=True, text=True, check=False)
     if done.returncode:
-        faults = [line for line in done.stderr.splitlines() if line.startswith("ERROR")]
-        return f"not installed: {faults[0][7:107] if faults else 'see pip'}"
+        return f"not installed: {reason(done.stdout + done.stderr)}"
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
     command = [str(run), "-m", "pytest", "-q", "-m", "not slow", "-p", "no:cacheprovider", *tests]
     done = subprocess.run(

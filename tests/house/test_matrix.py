@@ -22,6 +22,12 @@ def test_a_python_that_is_not_here_is_said_so():
     assert script("matrix").interpreter("2.99") is None
 
 
+def test_why_pip_did_not_install_something():
+    said = "The conflict is caused by:\n    slipgym 0.1.0 depends on pybullet>=3.2.7\nERROR: Cannot install"
+    assert script("matrix").reason(said) == "no wheel of pybullet that fits"
+    assert script("matrix").reason("WARNING: x\nERROR: No space\nERROR: other") == "No space"
+
+
 def test_ci_installs_what_the_constraints_say_with_hashes():
     pins = dict(re.findall(r"^([\w.-]+)==(\S+)$", (ROOT / "constraints.txt").read_text(), re.MULTILINE))
     pins = {name.lower().replace("_", "-"): version for name, version in pins.items()}
