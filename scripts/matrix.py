@@ -82,7 +82,6 @@ def row(python: str, requirements: list[str], folder: Path, tests: list[str]) ->
         "-m",
         "pip",
         "install",
-        "--quiet",
         "--only-binary",
         ":all:",
         "--no-binary",

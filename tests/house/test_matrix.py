@@ -15,7 +15,7 @@ def script(name):
 
 
 def test_the_oldest_versions_are_the_lower_bounds():
-    assert {"gymnasium==1.2", "numpy==1.26", "numba==0.61"} <= set(script("matrix").oldest())
+    assert {"gymnasium==1.2", "numpy==1.26", "numba==0.63"} <= set(script("matrix").oldest())
 
 
 def test_a_python_that_is_not_here_is_said_so():
