@@ -9,7 +9,7 @@ PIP := $(RUN) -m pip install --quiet --constraint constraints.txt
 PYTEST := OMP_NUM_THREADS=1 $(RUN) -m pytest -n $(JOBS)
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all lint types wheel-smoke check benchmark validate clean
+.PHONY: help demo test test-all lint types wheel-smoke check benchmark validate torture audit matrix clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -40,6 +40,16 @@ benchmark: $(VENV)/.dev ## steps per second
 
 validate: $(VENV)/.dev ## the acceptance figures of the physics
 	$(RUN) scripts/validate.py
+
+torture: $(VENV)/.dev ## attacks on the public interface for an hour; goes on where it was stopped
+	$(RUN) scripts/torture.py
+
+audit: $(RUN) ## known vulnerabilities of the pinned dependencies (needs the advisory data base)
+	$(RUN) -m pip install --quiet pip-audit
+	$(RUN) -m pip_audit --requirement requirements-ci.txt --no-deps --disable-pip
+
+matrix: $(VENV)/.eval ## tests with every Python and several versions of the dependencies found here
+	$(RUN) scripts/matrix.py
 
 clean: ## remove the environment and everything built
 	rm -rf $(VENV) build dist .pytest_cache .ruff_cache .hypothesis

@@ -35,7 +35,8 @@ class HoldPolicy(GainPolicy[HoldGains]):
 
         f = margin (|load| + reserve) / mu_c + k_v |slip twist|
 
-    in the scaled norm of the limit surface. The force rises at once and decays slowly. The
+    in the scaled norm of the limit surface, with a low quantile of mu_c and r if the environment shows their
+    deviations. The force rises at once and decays slowly. The
     gripper's public controller doubles the load instead (and assumes at least 2 N); a reserve
     that is added serves light objects, which a poke upsets more, and spares heavy ones.
 
@@ -43,8 +44,9 @@ class HoldPolicy(GainPolicy[HoldGains]):
     (`policies.controllers.exploration`), and then holds with the new estimate. The task does not poke the
     object at first, and the earlier friction is known, the longer force is saved. With full confidence in the
     observed friction it never explores.
-    Exploration suits estimators whose first update gives the answer, "disc" and "joint". "rls" and "ukf"
-    converge step by step from a start value; after a slip or two their estimate holds less than the load.
+    Exploration suits estimators whose first update gives the answer, "adaptive", "disc" and "joint". "rls"
+    and "ukf" converge step by step from a start value; after a slip or two their estimate holds less than the
+    load.
 
     Args:
         gains: See `HoldGains`; each is a keyword argument of its own, too.

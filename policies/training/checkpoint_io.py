@@ -10,6 +10,7 @@ import hashlib
 import io
 import json
 import struct
+import tokenize
 import zipfile
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -34,6 +35,7 @@ _FAULTS = (
     *(zipfile.BadZipFile, EOFError, RuntimeError, struct.error),  # no zip, or an encrypted one
     # not a tree as `write` writes it
     *(KeyError, ValueError, TypeError, AttributeError, MemoryError, OverflowError, SyntaxError),
+    tokenize.TokenError,  # in the header of an array
 )
 
 
