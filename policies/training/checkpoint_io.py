@@ -76,11 +76,12 @@ def read(path: Path) -> Any:
     check_regular(path)
     try:
         with zipfile.ZipFile(path) as archive:
+            packed = [entry.filename for entry in archive.infolist() if entry.compress_type]
+            if packed:
+                raise ValueError(f"{packed[0]!r} is compressed")
+            # what is stored as it is cannot be larger than the file
             if sum(entry.file_size for entry in archive.infolist()) > path.stat().st_size:
                 raise ValueError("its parts overlap")
-            packed = [entry.filename for entry in archive.infolist() if entry.compress_type]
-            if packed:  # what is stored as it is cannot be larger than the file
-                raise ValueError(f"{packed[0]!r} is compressed")
             members = {name: archive.read(name) for name in archive.namelist()}
         sums = json.loads(members.pop("sums.json"))
         if sums != {name: hashlib.sha256(content).hexdigest() for name, content in members.items()}:

@@ -29,9 +29,7 @@ from slipgym.world.snapshot import EngineState
 _SCALES = 1e-3, 1e3
 """Friction over that at the reference force, at a millionth and a million times it, load exponent 1/2."""
 _PLANT = {
-    "world": Rules(
-        fixed=("tick_length", "control_ticks", "engine_ticks", "substep_ticks", "calm_ticks", "gravity")
-    ),
+    "world": Rules(fixed=("tick_length", "control_ticks", "engine_ticks", "substep_ticks", "calm_ticks")),
     "pads": Rules(
         fixed=(
             *("surface", "stribeck_exponent", "sigma_1", "sigma_2", "reference_force", "radius_max"),
@@ -98,9 +96,20 @@ def check_plant(given: Any, own: Plant, rows: np.ndarray) -> None:
             _check_cells(array, mine, rows)
         elif mine is not None:
             found[name] = check_records(f"plant.{name}", array, mine, _PLANT[name], rows)
+    _check_gravity(found["world"]["gravity"], own, rows)
     check_between("plant.pads.friction_scale", found["pads"]["friction_scale"], *_SCALES)
     _check_fingers(found["fingers"], found["world"]["control_ticks"])
     _check_sensors(found["force_torque"], found["slip_sensors"])
+
+
+def _check_gravity(gravity: np.ndarray, own: Plant, rows: np.ndarray) -> None:
+    """Gravity in the contact plane is the environment's; roll of the wrist makes it smaller."""
+    if own.tilt is None:
+        least = most = own.world["gravity"][rows]
+    else:
+        most = np.abs(own.tilt["gravity"][rows])
+        least = -most
+    check_between("plant.world.gravity", gravity, least, most)
 
 
 def _check_cells(array: Any, own: np.ndarray, rows: np.ndarray) -> None:

@@ -21,7 +21,7 @@ def call(folder, *arguments):
 def test_help_teaches(tmp_path):
     done = call(tmp_path, "--help")
     assert done.returncode == 0, done.stderr
-    assert "study.py full --jobs 2" in done.stdout
+    assert "slipgym study full --jobs 2" in done.stdout
 
 
 def test_an_unknown_study_is_refused_by_name(tmp_path, invoke):
