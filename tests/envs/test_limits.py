@@ -84,6 +84,7 @@ def test_an_end_is_refused_or_finite(make, key, end):
     assert np.isfinite(reward)
 
 
+@pytest.mark.slow  # it compiles for a sensor with more samples
 def test_slow_steps_are_warned_of(make):
     default = work(load())
     for config, frame_skip in (

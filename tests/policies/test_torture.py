@@ -23,7 +23,11 @@ QUICK = {
 SEED = 2024
 
 
-@pytest.mark.parametrize("name", QUICK)
+CASES = [pytest.param(name, marks=[pytest.mark.slow] * (name == "randomization")) for name in QUICK]
+"""Randomization compiles every kind of pad and sensor."""
+
+
+@pytest.mark.parametrize("name", CASES)
 def test_every_outcome_is_explained(name):
     attack = run.ATTACKS[name]
     found = {k: run.outcome(attack, SEED, k) for k in range(QUICK[name])}
