@@ -11,7 +11,7 @@ from functools import cache
 from typing import Any
 
 from numba.core.targetconfig import TargetConfig
-from numba.core.types import Boolean, Function, Number, UniTuple
+from numba.core.types import Boolean, Function, Number
 from numba.core.types.functions import BaseFunction
 
 _compare = TargetConfig.__eq__
@@ -61,12 +61,9 @@ def _options_hash_of(kind: type[TargetConfig]) -> int:
 
 def _call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
     """`BaseFunction.get_call_type`, which tries all that numba knows of an operator at each of its uses."""
-    if kws or type(function) is not Function or not all(isinstance(kind, _SIMPLE) for kind in args):
+    if kws or type(function) is not Function or not all(isinstance(kind, Number | Boolean) for kind in args):
         return _resolve(function, context, args, kws)
     key = function, args
     if key not in _resolved:
         _resolved[key] = _resolve(function, context, args, kws)
     return _resolved[key]
-
-
-_SIMPLE = Number, Boolean, UniTuple

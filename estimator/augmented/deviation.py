@@ -5,8 +5,10 @@ import math
 from estimator._numba.caching import njit
 from estimator.augmented.slip_law import MU, SHAPE, ZERO, R
 from estimator.augmented.static_friction import order
+from estimator.estimate import confidence_of
 from estimator.sample import clamped
 
+_confidence = njit(confidence_of, error_model="numpy")
 EVERY = 8
 """Samples after which drifts and deviations are brought up to date while nothing is learned."""
 
@@ -64,15 +66,15 @@ def deviate(state, p, learned):
         of_torque = state.variance_torque * (normal / (state.mu_c * state.r)) ** 2
         square = _squared(state, weights, hidden + of_normal, 1.0, 0.0)
         state.sd_mu_c = state.mu_c * math.sqrt(square)
-        state.confidence_mu_c = 1.0 / (1.0 + 100.0 * square)
+        state.confidence_mu_c = _confidence(square)
         square = _squared(state, weights, hidden + of_normal + of_torque, 1.0, 1.0)
         state.sd_lever = state.mu_c * state.r * math.sqrt(square)
         if state.updates_r > 0:
             square = _squared(state, weights, hidden + of_torque, 0.0, 1.0)
             state.sd_r = state.r * math.sqrt(square)
-            state.confidence_r = 1.0 / (1.0 + 100.0 * square)
+            state.confidence_r = _confidence(square)
     if state.events_mu_s > 0:
         square = state.variance_mu_s + state.common_mu_s
         state.sd_mu_s = state.mu_s * math.sqrt(square)
-        state.confidence_mu_s = 1.0 / (1.0 + 100.0 * square)
+        state.confidence_mu_s = _confidence(square)
     order(state)

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from estimator import DEFAULT
+from policies.commands.several import TASK_HELP
 
 EPILOG = """
 Examples:\n
@@ -18,16 +19,12 @@ Examples:\n
 In a window, --policy keyboard leaves the grip force to you: up grips harder, down more loosely; Escape ends.
 A window needs pygame (pip install 'slipgym[window]'). docs/rendering.md explains the picture.
 """
-TASK = (
-    "Task: linear_slip, rotational_slip, hinge, planar_slip or hold; "
-    "LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
-)
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 @app.command(epilog=EPILOG)
 def main(
-    task: Annotated[str, typer.Argument(help=TASK, show_default=False)],
+    task: Annotated[str, typer.Argument(help=TASK_HELP, show_default=False)],
     policy: Annotated[
         str | None,
         typer.Option(
@@ -43,7 +40,7 @@ def main(
     material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
     friction_source: Annotated[str, typer.Option(help="estimated, true, nominal or none.")] = "estimated",
     estimator: Annotated[str, typer.Option(help="A name of estimator.names().")] = DEFAULT,
-    sensors: Annotated[str, typer.Option(help="realistic or ideal.")] = "realistic",
+    sensors: Annotated[str, typer.Option(help="realistic, ideal or lab.")] = "realistic",
     option: Annotated[
         list[str] | None, typer.Option(metavar="NAME=VALUE", help="Option of the episode; repeatable.")
     ] = None,

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from policies.commands.several import TASK_HELP
+
 EPILOG = """
 Examples:\n
 \b
@@ -15,16 +17,12 @@ Examples:\n
 Forces come at 1000 Hz and velocities at 120 Hz, at the pad centre, with the true friction beside them;
 cells are empty where a sensor has no sample. docs/records.md describes the format.
 """
-TASK = (
-    "Task: linear_slip, rotational_slip, hinge, planar_slip or hold; "
-    "LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
-)
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 @app.command(epilog=EPILOG)
 def main(
-    task: Annotated[str, typer.Argument(help=TASK, show_default=False)],
+    task: Annotated[str, typer.Argument(help=TASK_HELP, show_default=False)],
     files: Annotated[
         list[str],
         typer.Argument(
@@ -43,7 +41,7 @@ def main(
     finger: Annotated[int, typer.Option(help="1 or 2.")] = 1,
     seed: Annotated[int, typer.Option(help="Seed of the environment.")] = 0,
     material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
-    sensors: Annotated[str, typer.Option(help="realistic or ideal.")] = "realistic",
+    sensors: Annotated[str, typer.Option(help="realistic, ideal or lab.")] = "realistic",
     option: Annotated[
         list[str] | None, typer.Option(metavar="NAME=VALUE", help="Option of the episode; repeatable.")
     ] = None,

@@ -1,4 +1,4 @@
-"""Options of a command line that take several values, as in `--seeds 0 1 2`."""
+"""What several command lines share: options that take several values, the help of a task's name."""
 
 from __future__ import annotations
 
@@ -7,9 +7,14 @@ from collections.abc import Sequence
 import typer
 from typer.core import TyperCommand
 
+TASK_HELP = (
+    "Task: linear_slip, rotational_slip, hinge, planar_slip or hold; "
+    "LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
+)
+
 
 def expanded(arguments: Sequence[str], several: Sequence[str]) -> list[str]:
-    """The arguments with the name of such an option before each of its values.
+    """The arguments with the name of an option that takes several values, as in `--seeds 0 1 2`, before each.
 
     Args:
         arguments: Of a command line.

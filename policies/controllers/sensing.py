@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from estimator.estimate import confidence_of
 from policies.controllers.base import Columns
 
 
@@ -40,10 +41,9 @@ class ConservativePrior:
     The estimators' start values are optimistic: a controller that acts on them drops the object. Without
     confidence the prior replaces the estimate; in between the two are blended.
 
-    A grip that has to hold needs more than the estimate that is as often too high as too low. It takes the
-    value that friction is below with a small probability, the lower quartile: the estimate less 0.67 of its
-    standard deviations, on the logarithm. It is never more cautious than the prior. An environment without
-    deviations (`observation_mode="flat"`) gives the estimate itself.
+    The estimate is as often too high as too low. A grip that has to hold takes the lower quartile of friction
+    instead: the estimate less 0.67 of its standard deviations, on the logarithm. It is never more cautious
+    than the prior. An environment without deviations (`observation_mode="flat"`) gives the estimate itself.
 
     Raises:
         ValueError: A value is out of range.
@@ -102,7 +102,7 @@ class ConservativePrior:
         weight, least = self.confidence_weight(columns, "r"), self.mu_c * self.r
         if columns.has("sd_lever"):
             square = _relative(columns, "lever", columns["mu_c"] * columns["r"]) ** 2
-            known = np.minimum(1.0, 1.0 / (1.0 + 100.0 * square) / self.confidence)
+            known = np.minimum(1.0, confidence_of(square) / self.confidence)
             weight = np.maximum(weight, np.where(columns["confidence_mu_c"] > 0.0, known, 0.0))
         return np.maximum(least, weight * value + (1.0 - weight) * least)
 

@@ -16,7 +16,8 @@ from slipgym.envs.bullet_step import compiled_step
 from slipgym.envs.nan_guard import Guard
 from slipgym.envs.observation import SENSORS, ObservationBuffers
 from slipgym.envs.reset_kernels import WARM_UP_STEPS
-from slipgym.envs.simulation import Simulation, SimulationState
+from slipgym.envs.simulation import Simulation
+from slipgym.envs.simulation_state import SimulationState
 from slipgym.envs.state_checks import check_engine
 from slipgym.sensors.force_torque import roomier
 from slipgym.tasks import Task

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -22,30 +21,13 @@ from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
 from slipgym.envs.record_checks import damaged
+from slipgym.envs.simulation_state import SimulationState
 from slipgym.envs.stages import compiled_stages
 from slipgym.envs.state_checks import check_arrays, check_objects, check_plant
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.world.plant import Plant, build
-from slipgym.world.scene import Box
-from slipgym.world.snapshot import EngineState
-
-
-@dataclass(frozen=True)
-class SimulationState:
-    """State of a `Simulation` between two control steps, as plain data."""
-
-    engine: EngineState | None
-    """Bodies in PyBullet; None for the planar engine."""
-    plant: Plant
-    """Worlds, pads, fingers and sensors."""
-    arrays: Mapping[str, np.ndarray]
-    """Estimators, episodes, and their last outputs, by name."""
-    materials: list[str]
-    """Name of every episode's material."""
-    boxes: list[Box]
-    """Every episode's object."""
+from slipgym.world.plant import build
 
 
 class Simulation(ABC):

@@ -10,7 +10,7 @@ import numpy as np
 
 from slipgym.config.errors import unknown
 from slipgym.envs.record_checks import damaged
-from slipgym.envs.simulation import SimulationState
+from slipgym.envs.simulation_state import SimulationState
 
 
 @dataclass(frozen=True)
