@@ -77,7 +77,8 @@ def test_the_number_of_cells_is_the_configured_one(make):
     assert sizes[0] <= 25 < 21**2 / 2 < sizes[1] <= 21**2
 
 
-@pytest.mark.parametrize("name", [IDS[0], pytest.param(IDS[1], marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", IDS[:2])
 def test_same_bits_in_another_process_and_after_other_episodes(python, name):
     arguments = SCRIPT, name, "--contact", "distributed"
     assert python(*arguments) == python(*arguments, "--disturbed")

@@ -16,9 +16,9 @@ def open_clients() -> int:
     return sum(pybullet.getConnectionInfo(client)["isConnected"] for client in CLIENTS)
 
 
-def test_an_environment_holds_one_client_until_closed(make, env_id):
+def test_an_environment_holds_one_client_until_closed(make):
     before = open_clients()
-    env = make(env_id)
+    env = make()
     assert open_clients() == before + 1
     env.reset(seed=0)
     env.reset(options={"object_size": (0.4, 0.02, 0.26)})
@@ -28,19 +28,19 @@ def test_an_environment_holds_one_client_until_closed(make, env_id):
     assert open_clients() == before
 
 
-def test_a_forgotten_environment_gives_its_client_back(make, env_id):
+def test_a_forgotten_environment_gives_its_client_back(make):
     before = open_clients()
-    env = type(make(env_id))()
+    env = type(make())()
     env.reset(seed=0)
     assert open_clients() == before + 2
     del env
     assert open_clients() == before + 1
 
 
-def test_a_refused_environment_leaves_no_client(make, env_id):
+def test_a_refused_environment_leaves_no_client(make):
     before = open_clients()
     with pytest.raises(ValueError, match="estimator"):
-        make(env_id, estimator="unknown")
+        make(estimator="unknown")
     assert open_clients() == before
 
 

@@ -46,6 +46,7 @@ def test_without_ranges_nothing_changes(make, env_id, play):
     assert play(make(env_id, randomization={})) == play(make(env_id))
 
 
+@pytest.mark.slow
 def test_same_bits_in_another_process_and_after_other_episodes(python):
     arguments = SCRIPT, "slipgym/Hold-v0", LINEAR, "--randomization", "eval_ood"
     assert python(*arguments) == python(*arguments, "--disturbed")

@@ -8,12 +8,19 @@ import pytest
 from gymnasium.vector import AsyncVectorEnv, SyncVectorEnv
 from gymnasium.wrappers import RecordEpisodeStatistics, RecordVideo
 
+from slipgym.registration import ENVIRONMENTS
+
+IDS = tuple(ENVIRONMENTS)
+
 
 def actions(steps: int, envs: int) -> np.ndarray:
     return np.random.default_rng(0).uniform(-0.5, 1.0, (steps, envs, 1)).astype(np.float32)
 
 
-@pytest.mark.parametrize("vector", [SyncVectorEnv, partial(AsyncVectorEnv, context="spawn")])
+@pytest.mark.parametrize(
+    ("vector", "env_id"),
+    [(SyncVectorEnv, name) for name in IDS] + [(partial(AsyncVectorEnv, context="spawn"), IDS[0])],
+)
 def test_vector_environments_equal_single_ones(make, env_id, vector):
     envs = vector([partial(gym.make, f"slipgym:{env_id}", action_mode="grip_force") for _ in range(2)])
     singles = [make(env_id) for _ in range(2)]

@@ -155,6 +155,7 @@ def resume(path: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 def test_a_full_disk_is_one_sentence(unfinished):
     done = resume(unfinished)
     assert done.returncode == 1
