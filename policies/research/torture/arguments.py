@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import asdict
 from functools import cache
-from typing import Any
+from typing import Any, get_args
 
 import gymnasium as gym
 import numpy as np
 
+import estimator as estimators
+from estimator.registry import specification
 from policies.research.torture.cases import (
     ACCEPTED,
     REFUSED,
@@ -23,13 +26,23 @@ from policies.research.torture.cases import (
 )
 from slipgym.config import load
 from slipgym.config.load import load_randomization, merge
+from slipgym.envs.arguments import FRICTION_SOURCES, OBSERVATION_MODES, ActionMode
 from slipgym.registration import ENVIRONMENTS
 
 IDS = tuple(ENVIRONMENTS)
-KEYWORDS = (
-    *("friction_source", "material", "contact", "sensors", "estimator", "action_mode", "observation_mode"),
-    *("history", "randomization", "frame_skip", "config", "engine", "render_mode", "nonsense"),
-)
+KEYWORDS = {
+    "friction_source": FRICTION_SOURCES,
+    "material": (*load().materials, "random"),
+    "sensors": ("realistic", "ideal", "lab"),
+    "estimator": estimators.names(),
+    "action_mode": get_args(ActionMode),
+    "observation_mode": OBSERVATION_MODES,
+    "history": (1, 2, 5),
+    "randomization": (None, "train", "eval_ood", "lab"),
+    "frame_skip": (1, 2, 4),
+}
+"""Keyword argument -> values that are allowed for most tasks."""
+OTHERS = ("contact", "config", "engine", "render_mode", "nonsense")
 
 
 @cache
@@ -71,9 +84,24 @@ def _made(rng: np.random.Generator, **keywords: Any) -> str:
 
 
 def keywords(rng: np.random.Generator) -> str:
-    """One or two keyword arguments of any value."""
-    names = rng.choice(KEYWORDS, rng.integers(1, 3), replace=False)
-    return _made(rng, **{str(name): value(rng) for name in names})
+    """Some keyword arguments with values that are often allowed; in every second case one of any kind."""
+    chosen: dict[str, Any] = {
+        str(name): KEYWORDS[str(name)][rng.integers(len(KEYWORDS[str(name)]))]
+        for name in rng.choice(list(KEYWORDS), rng.integers(0, 5), replace=False)
+    }
+    if rng.random() < 0.3:
+        chosen["estimator"] = _some_estimator(rng)
+    if rng.random() < 0.5:
+        chosen[str(rng.choice([*KEYWORDS, *OTHERS]))] = value(rng)
+    return _made(rng, **chosen)
+
+
+def _some_estimator(rng: np.random.Generator) -> dict[str, Any]:
+    """An estimator with one parameter near its default."""
+    name = str(rng.choice(estimators.names()))
+    parameters = asdict(specification(name).parameters())
+    key = str(rng.choice(list(parameters)))
+    return {"name": name, key: near(rng, parameters[key])}
 
 
 def config(rng: np.random.Generator) -> str:
