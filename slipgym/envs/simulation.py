@@ -145,17 +145,7 @@ class Simulation(ABC):
         return self._steps.item(0) * self.step_time
 
     def reset(self, options: EpisodeOptions, material: str, rng: np.random.Generator) -> None:
-        """Start an episode of the first environment: sample it, close the grip, let grip and sensors settle.
-
-        Args:
-            options: Parameters to fix for the episode.
-            material: Name of a material, or "random".
-            rng: Random generator.
-
-        Raises:
-            ValueError: The options contradict each other or the configuration.
-            RuntimeError: The world is closed.
-        """
+        """Start an episode of the first environment, see `reset_rows`."""
         self.reset_rows(_FIRST, [rng], options, material)
 
     def reset_rows(
@@ -165,7 +155,7 @@ class Simulation(ABC):
         options: EpisodeOptions,
         material: str,
     ) -> None:
-        """Start episodes of some environments, see `reset`.
+        """Start episodes of some environments: sample them, close the grip, let grip and sensors settle.
 
         Args:
             rows: Their indices, (m,).
