@@ -3,7 +3,8 @@
 Each chip counts the displacement of the object's surface under it along two axes. Once per
 control step the counts of the averaging window, divided by its length, give the slip twist
 (v_x, v_y, omega) at the pad centre by least squares over all axes (gripper paper,
-arXiv 2410.19660). No count, no velocity: the twist is then exactly 0.
+arXiv 2410.19660). No count, no velocity: the twist is then exactly 0. A chip that counts nothing
+while the others count is left out; two chips determine the twist.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from slipgym.sensors.noise import standard_normal
 HISTORY = 16
 CHIPS_MAX = 4
 AXES = 2 * CHIPS_MAX  # x and y of the first chip, of the second, ...
+LOST_AFTER = 20
+"""Counts of each other chip after which a chip that counted nothing is left out."""
 
 SLIP_SENSOR = np.dtype(
     [
@@ -48,6 +51,7 @@ SLIP_SENSOR = np.dtype(
         ("moved", "f8", 3),  # slip displacement since the last sample, pad frame [m, m, rad]
         ("carry", "f8", AXES),  # displacement not yet counted [m]
         ("counted", "f8", AXES),  # displacement counted in the newest sample [m]
+        ("travel", "f8", CHIPS_MAX),  # distance that each chip counted since reset, sum over both axes [m]
         ("taken", "i8"),  # samples since reset
         ("measured_slip", "f8", 3),  # delivered slip displacement since reset
         ("history", "f8", (HISTORY, 3)),  # slip displacement counted in the newest samples, in turn
@@ -97,6 +101,7 @@ def sample_slip(sensor: Any) -> None:
         counted = sensor.count * math.trunc(seen / sensor.count) if sensor.count > 0.0 else seen
         sensor.carry[a] = seen - counted
         sensor.counted[a] = counted
+        sensor.travel[a // 2] += abs(counted)
     row = sensor.history[sensor.taken % HISTORY]
     row[0], row[1], row[2] = displacement(sensor)
     sensor.taken += 1
@@ -135,14 +140,40 @@ def read_slip(sensor: Any, twist: np.ndarray) -> None:
 
 @compiled
 def displacement(sensor: Any) -> Vector:
-    """Slip displacement (x, y, theta) counted in the newest sample: least squares over the axes of all chips.
+    """Slip displacement (x, y, theta) counted in the newest sample: least squares over the axes of the chips.
 
-    As the chips' mean is the pad centre, its three equations are independent of each other.
+    As the chips' mean is the pad centre, its three equations are independent of each other. Without a lost
+    chip they are so about the centre of the others.
     """
+    lost = lost_chip(sensor)
+    chips, spread, centre_x, centre_y = sensor.chips, sensor.spread, 0.0, 0.0
+    if lost >= 0:
+        chips -= 1
+        centre_x, centre_y = -sensor.at[lost, 0] / chips, -sensor.at[lost, 1] / chips
+        spread -= sensor.at[lost, 0] ** 2 + sensor.at[lost, 1] ** 2
+        spread -= chips * (centre_x**2 + centre_y**2)
     x, y, moment = 0.0, 0.0, 0.0
     counted = sensor.counted
     for k in range(sensor.chips):
-        x += counted[2 * k]
-        y += counted[2 * k + 1]
-        moment += sensor.at[k, 0] * counted[2 * k + 1] - sensor.at[k, 1] * counted[2 * k]
-    return x / sensor.chips, y / sensor.chips, sensor.mirror * moment / sensor.spread
+        if k != lost:
+            x += counted[2 * k]
+            y += counted[2 * k + 1]
+            moment += sensor.at[k, 0] * counted[2 * k + 1] - sensor.at[k, 1] * counted[2 * k]
+    if lost < 0:
+        return x / chips, y / chips, sensor.mirror * moment / spread
+    theta = (moment - centre_x * y + centre_y * x) / spread
+    return x / chips + theta * centre_y, y / chips - theta * centre_x, sensor.mirror * theta
+
+
+@compiled
+def lost_chip(sensor: Any) -> int:
+    """Index of a chip that has counted nothing since the reset while each of the others moved; -1 if none."""
+    lost, least = -1, math.inf
+    for k in range(sensor.chips):
+        if sensor.travel[k] > 0.0:
+            least = min(least, sensor.travel[k])
+        elif lost >= 0:
+            return -1
+        else:
+            lost = k
+    return lost if sensor.chips > 2 and least > LOST_AFTER * sensor.count else -1

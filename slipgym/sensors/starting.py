@@ -55,6 +55,7 @@ def start_sensors(
             slip.failed = among(slip.key, WHICH, slip.chips - 1)
         slip.last[:] = 0.0
         slip.counted[:] = 0.0
+        slip.travel[:] = 0.0
         slip.history[:] = 0.0
         slip.moved[:] = 0.0
         slip.measured_slip[:] = 0.0

@@ -83,6 +83,31 @@ def test_the_displacement_is_the_least_squares_one(chips):
     np.testing.assert_allclose(displacement(sensor), expected, rtol=1e-12)
 
 
+@pytest.mark.parametrize("finger", [0, 1])
+@pytest.mark.parametrize("chips", [3, 4])
+def test_a_chip_that_counts_nothing_is_left_out(finger, chips):
+    twist = np.array([0.01, -0.03, 1.0])
+    sensor = sensors(chips=chips, noise=0.0, latency_samples=0, latency_spread=0, window=1)[finger]
+    for failed in range(chips):
+        sensor["failed"], sensor["taken"], sensor["delivered"] = failed, 0, -1
+        for name in ("travel", "carry", "measured_slip"):
+            sensor[name] = 0.0
+        readings = run(sensor, np.tile(twist / RATE, (100, 1)))
+        # the rest of a count at either end, on each axis of a chip; rotation has the shortest lever
+        rest = COUNT * RATE / 80 * np.array([2.0, 2.0, 2.0 / RADIUS])
+        assert np.all(abs(readings[20:].mean(axis=0) - twist) < rest)
+        assert abs(readings[0] - twist).max() > 0.1 * abs(twist).min()
+
+
+def test_two_silent_chips_are_not_told_from_a_turn_about_them():
+    sensor = sensors(noise=0.0, latency_samples=0, latency_spread=0, window=1)[0]
+    sensor["travel"][:3] = 0.0, 0.0, 1.0
+    sensor["counted"][:] = 0.0
+    sensor["counted"][4:6] = COUNT
+    expected = np.linalg.lstsq(levers(RADIUS, 3), sensor["counted"][:6], rcond=None)[0]
+    np.testing.assert_allclose(displacement(sensor), expected, rtol=1e-12)
+
+
 def test_no_count_no_velocity():
     sensor = sensors()[0]
     tremble = 0.4 * COUNT * np.random.default_rng(0).uniform(-1, 1, (500, 1)) * (1.0, 1.0, 1.0 / RADIUS)
