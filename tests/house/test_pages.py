@@ -54,7 +54,8 @@ def test_every_page_can_be_reached_from_the_readme():
         if page.suffix == ".md" and page not in reached:
             reached.add(page)
             waiting += [to for to in (target(page, link) for link in links(page)) if to.is_file()]
-    assert [str(page.relative_to(ROOT)) for page in PAGES if page not in reached] == []
+    readable = [page for page in PAGES if page.parent != ROOT / "docs/api"]  # which are of the site alone
+    assert [str(page.relative_to(ROOT)) for page in readable if page not in reached] == []
 
 
 def test_a_broken_link_is_found(tmp_path):

@@ -1,0 +1,35 @@
+"""Hook of mkdocs: the files beside docs/ that are pages of the site, and links to them that fit."""
+
+from pathlib import Path
+from typing import Any
+
+from mkdocs.structure.files import File, Files
+
+OUTSIDE = {
+    "index.md": "README.md",
+    "changes.md": "CHANGELOG.md",
+    "contributing.md": "CONTRIBUTING.md",
+    "citation.cff": "CITATION.cff",
+}
+"""Path in the site -> path in the repository."""
+
+
+def on_files(files: Files, config: Any) -> Files:
+    """Add the pages from outside docs/."""
+    root = Path(config.config_file_path).parent
+    for page, source in OUTSIDE.items():
+        text = (root / source).read_text(encoding="utf-8").replace("](docs/", "](")
+        files.append(File.generated(config, page, content=linked(text)))
+    return files
+
+
+def on_page_markdown(markdown: str, **_: Any) -> str:
+    """Lead links of the pages in docs/ to the site's pages."""
+    return linked(markdown.replace("](../README.md", "](README.md"))
+
+
+def linked(text: str) -> str:
+    """The text with links to the pages of the site instead of files of the repository."""
+    for page, source in OUTSIDE.items():
+        text = text.replace(f"](../{source}", f"]({page}").replace(f"]({source}", f"]({page}")
+    return text
