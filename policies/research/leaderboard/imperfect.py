@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 from policies.research.leaderboard.imperfections import Imperfections, impaired
 from policies.research.leaderboard.scenario import Run, Scenario, after
-from policies.research.leaderboard.scenarios import MU_C, MU_S, SPEED, Effort, R, closed_loop, patch, rest
-from slipgym.synthetic import Course, sense
+from policies.research.leaderboard.scenarios import MU_C, MU_S, Effort, closed_loop, patch, turning
+from slipgym.synthetic import sense
 
 AT_ONCE = {"sensors": {"slip": {"latency_samples": 0}}}
 DELAYS = ((0, 0.0), (1, 0.3), (2, 0.0), (2, 0.3))
@@ -53,19 +53,3 @@ def jumps(effort: Effort) -> Iterator[Scenario]:
         record = sense(trace, effort.seeds, effort.seed)
         late = after(record, course.times[-1] + 0.3)
         yield Scenario("jump", f"× {factor:g}", (Run(record, {"mu_c": late, "r": late}),))
-
-
-def turning(duration: float, rate: float = 1.0, gamma_t: float = 0.7) -> Course:
-    """Planar slip of a constant scaled speed whose direction turns, in chords of 0.1 s.
-
-    Args:
-        duration: Of the slip at full speed [s].
-        rate: Of the turn [rad/s].
-        gamma_t: Fraction of translation [-].
-    """
-    course, omega = rest(), math.sqrt(1.0 - gamma_t**2) * SPEED / R
-    for k in range(round(10 * duration) + 1):
-        angle = 0.1 * rate * k
-        v_x, v_y = gamma_t * SPEED * math.cos(angle), gamma_t * SPEED * math.sin(angle)
-        course = course.to("planar", 0.25 if k == 0 else 0.1, v_x=v_x, v_y=v_y, omega=omega)
-    return course

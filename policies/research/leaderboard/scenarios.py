@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -114,6 +115,22 @@ def rest(**values: float) -> Course:
     return Course.start(**{"mu_c": MU_C, "mu_s": MU_S, "r": R, **values}).to(STOP, 0.25)
 
 
+def turning(duration: float, rate: float = 1.0, gamma_t: float = 0.7) -> Course:
+    """Planar slip of a constant scaled speed whose direction turns, in chords of 0.1 s.
+
+    Args:
+        duration: Of the slip at full speed [s].
+        rate: Of the turn [rad/s].
+        gamma_t: Fraction of translation [-].
+    """
+    course, omega = rest(), math.sqrt(1.0 - gamma_t**2) * SPEED / R
+    for k in range(round(10 * duration) + 1):
+        angle = 0.1 * rate * k
+        v_x, v_y = gamma_t * SPEED * math.cos(angle), gamma_t * SPEED * math.sin(angle)
+        course = course.to("planar", 0.25 if k == 0 else 0.1, v_x=v_x, v_y=v_y, omega=omega)
+    return course
+
+
 def mixed() -> Course:
     """One slip of each kind."""
     course = slip(rest(), "linear", 1.0, 1.0, SPEED)
@@ -131,9 +148,9 @@ def mixed_judged(record: Record) -> dict[str, np.ndarray]:
 
 
 @cache
-def patch(course: Course, cells: int, pressure: str = "uniform") -> Trace:
+def patch(course: Course, cells: int, pressure: str = "uniform", anisotropy: float = 0.0) -> Trace:
     """The trace of a distributed contact."""
-    return integrate(course, DistributedContact(cells=cells, pressure=pressure))
+    return integrate(course, DistributedContact(cells=cells, pressure=pressure, anisotropy=anisotropy))
 
 
 def grid(group: str, course: Course, effort: Effort) -> Scenario:
