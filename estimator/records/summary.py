@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 
 from estimator.records.alignment import period
+from estimator.records.calibration import calibration_rows
 from estimator.records.plausibility import warnings
 from estimator.records.reading import CONTACT
+from estimator.records.readings import reading_warnings
 from estimator.records.run import Result
 
 _NAMES = ("mu_s", "mu_c", "r")
@@ -25,13 +27,10 @@ _SPARSE = {
 
 def report(result: Result) -> str:
     """The summary for a terminal: final values with confidence, warnings, and what was not observable."""
-    rows = final_rows(result)
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    lines = [
-        "  ".join([row[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True))])
-        for row in rows
-    ]
-    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:], "", *findings(result)])
+    lines = [*_aligned(final_rows(result)), "", *findings(result)]
+    if result.calibration is not None:
+        lines += ["", *_aligned(_sensors(result))]
+    return "\n".join(lines)
 
 
 def markdown(result: Result) -> str:
@@ -41,14 +40,18 @@ def markdown(result: Result) -> str:
     settings = (
         ", ".join(f"{name} = {value}" for name, value in result.given.items()) or "all at their defaults"
     )
+    sensors: list[str] = []
+    if result.calibration is not None:
+        sensors = ["## What it found about the sensors", _table(_sensors(result))]
     parts = [
         f"# {result.record.name}",
         f"Estimator `{result.estimator}`; parameters: {settings}.",
         "## Final values",
-        "\n".join([_row(heading), "| --- |" + " ---: |" * (len(heading) - 1), *map(_row, rows)]),
+        _table([heading, *rows]),
         "Confidence is 0 for an untouched start value and near 1 once data has replaced it.",
         "## Warnings, and what was not observable",
         "\n".join(f"- {line}" for line in findings(result)),
+        *sensors,
         "## The record",
         "\n".join(["| | |", "| --- | ---: |", *(_row(fact) for fact in facts)]),
     ]
@@ -81,7 +84,8 @@ def final_rows(result: Result) -> list[list[str]]:
 
 def findings(result: Result) -> list[str]:
     """Warnings, then a line for each value that was not observable; "Everything was observed" if none."""
-    return [*warnings(result), *not_observable(result)] or ["Everything was observed."]
+    lines = [*reading_warnings(result.record, result.samples), *warnings(result), *not_observable(result)]
+    return lines or ["Everything was observed."]
 
 
 def not_observable(result: Result) -> list[str]:
@@ -131,6 +135,26 @@ def record_facts(result: Result) -> list[list[str]]:
         ("halts by the heuristic", f"{_starts(halted)}, {_percent(halted)} of the samples"),
     ]
     return [[name, str(value)] for name, value in facts]
+
+
+def _sensors(result: Result) -> list[list[str]]:
+    assert result.calibration is not None
+    return calibration_rows(result.calibration, period(result.record.twist_t))
+
+
+def _aligned(rows: list[list[str]]) -> list[str]:
+    """Lines of a table for a terminal, with a rule below the heading."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    lines = [
+        "  ".join([row[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True))])
+        for row in rows
+    ]
+    return [lines[0], "-" * len(lines[0]), *(line.rstrip() for line in lines[1:])]
+
+
+def _table(rows: list[list[str]]) -> str:
+    """A table as Markdown."""
+    return "\n".join([_row(rows[0]), "| --- |" + " ---: |" * (len(rows[0]) - 1), *map(_row, rows[1:])])
 
 
 def _row(cells: list[str]) -> str:

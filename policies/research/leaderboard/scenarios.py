@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
 
@@ -44,6 +44,11 @@ class Effort:
 
 
 QUICK = Effort(2, 11, ("wood",), ((0.02, 2.0),), (5.0,), (0.7,), 3)
+
+
+def effort_of(quick: bool, seed: int) -> Effort:
+    """The effort of a run, or a short one for a test of the machinery; the seed of the noise."""
+    return replace(QUICK if quick else Effort(), seed=seed)
 
 
 def profiles(effort: Effort) -> Iterator[Scenario]:
