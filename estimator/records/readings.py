@@ -29,8 +29,10 @@ _RADII = (0.002, 0.030)
 _USUAL = 0.008  # [m]
 _SLIDES, _TURNS = 2e-3, 0.02
 """Speed [m/s] and rate [rad/s] above the noise and the counts of a slip-velocity sensor."""
-_FORCE, _TORQUE, _LEVER = 0.1, 2e-3, 0.003
-"""Force [N], torque [N m] and their ratio [m] above noise, zero errors and offsets of the CoP."""
+_FORCE, _TORQUE = 0.1, 2e-3
+"""Force [N] and torque [N m] above noise and zero errors."""
+_LEVERS = (0.001, 0.003)
+"""Torque over force from which r may be too small, or too large [m]: an offset of the CoP makes r large."""
 _ENOUGH = 20  # samples
 _UNITS = {"deg/s": 180.0 / np.pi, "mrad/s": 1e3}
 """Unit of a rate -> factor by which it is too large if taken for rad/s."""
@@ -137,24 +139,29 @@ def _alike(names: tuple[str, ...], values: Array) -> list[str]:
 
 def _unit_of_rate(samples: Samples) -> list[str]:
     """Compares r^2 = tau v_t / (f_t omega), which any limit surface has about, with the pads of grippers."""
+    smallest, largest = _radius(samples, _LEVERS[0]), _radius(samples, _LEVERS[1])
+    if largest is not None and largest > _RADII[1]:
+        return [
+            f"rate, velocity and forces fit a radius r of {1e3 * largest:.3g} mm, more than a pad has: is "
+            "omega too small by its unit, are v_x and v_y too large by theirs, or is the CoP wrong?"
+        ]
+    if smallest is None or smallest >= _RADII[0]:
+        return []
+    unit = min(_UNITS, key=lambda name: abs(np.log(smallest * np.sqrt(_UNITS[name]) / _USUAL)))
+    return [
+        f"rate, velocity and forces fit a radius r of {1e3 * smallest:.3g} mm, less than a pad has: is omega "
+        f"in {unit}? `omega: {{unit: {unit}}}` in the mapping says so."
+    ]
+
+
+def _radius(samples: Samples, lever: float) -> float | None:
+    """Median of that r over the slip whose torque has at least this lever [m]; None: too few samples."""
     f_t, v_t = np.hypot(*samples.wrench[:, :2].T), np.hypot(*samples.twist[:, :2].T)
     tau, omega = np.abs(samples.wrench[:, 3]), np.abs(samples.twist[:, 2])
-    both = (v_t > _SLIDES) & (omega > _TURNS) & (f_t > _FORCE) & (tau > np.maximum(_TORQUE, _LEVER * f_t))
+    both = (v_t > _SLIDES) & (omega > _TURNS) & (f_t > _FORCE) & (tau > np.maximum(_TORQUE, lever * f_t))
     if np.count_nonzero(both) < _ENOUGH:
-        return []
-    r = float(np.sqrt(np.median(tau[both] * v_t[both] / (f_t[both] * omega[both]))))
-    if r > _RADII[1]:
-        return [
-            f"rate, velocity and forces fit a radius r of {1e3 * r:.3g} mm, more than a pad has: is omega "
-            "too small by its unit, or are v_x and v_y too large by theirs?"
-        ]
-    if r >= _RADII[0]:
-        return []
-    unit = min(_UNITS, key=lambda name: abs(np.log(r * np.sqrt(_UNITS[name]) / _USUAL)))
-    return [
-        f"rate, velocity and forces fit a radius r of {1e3 * r:.3g} mm, less than a pad has: is omega in "
-        f"{unit}? `omega: {{unit: {unit}}}` in the mapping says so."
-    ]
+        return None
+    return float(np.sqrt(np.median(tau[both] * v_t[both] / (f_t[both] * omega[both]))))
 
 
 def _says(what: str, begin: float, end: float, meanwhile: str) -> str:

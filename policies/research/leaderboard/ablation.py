@@ -113,13 +113,19 @@ def in_the_loop(episodes: int, seed: int, **arguments: Any) -> pd.DataFrame:
     columns = ["solved", "dropped", "mu_c error", "mu_c in 1 sd", "r error", "r in 1 sd"]
     rows = []
     for label in WITHOUT:
-        own = {name: values(where(played, estimator=label), name) for name in columns}
-        means = {
-            name: np.exp(np.nanmean(np.log(figures))) if name.endswith("error") else np.nanmean(figures)
-            for name, figures in own.items()
-        }
-        rows.append({"without": label, **{name: float(mean) for name, mean in means.items()}})
+        own = where(played, estimator=label)
+        rows.append(
+            {"without": label, **{name: _mean(values(own, name), "error" in name) for name in columns}}
+        )
     return pd.DataFrame(rows)
+
+
+def _mean(figures: np.ndarray, geometric: bool) -> float:
+    """Mean of the figures that are known; NaN if none is."""
+    known = figures[np.isfinite(figures)]
+    if not len(known):
+        return np.nan
+    return float(np.exp(np.log(known).mean()) if geometric else known.mean())
 
 
 def _cells(errors: pd.DataFrame) -> list[tuple[str, str, float]]:

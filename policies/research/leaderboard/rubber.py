@@ -12,12 +12,8 @@ from slipgym.synthetic import Course, sense
 DRIFTS = (0.7, 1.35)
 """Factor of the friction at the end of a drift; those of the group "jump"."""
 DRIFT_TIME = 2.0  # [s]
-EXPONENTS = ((0.15, 0.0), (0.31, 0.0), (0.0, 1.0 / 3.0), (0.31, 1.0 / 3.0))
-"""Exponents of `slipgym.contact.soft_pad`: friction falls with the load, r grows with it."""
 LOAD, SWING, PERIOD = 5.0, 0.5, 1.5
 """Mean normal force [N], its amplitude over the mean [-], its period [s]."""
-ANISOTROPIES = (0.1, 0.2)
-"""Friction along x is larger by this, along y smaller [-]."""
 
 
 def drifts(effort: Effort) -> Iterator[Scenario]:
@@ -32,7 +28,7 @@ def drifts(effort: Effort) -> Iterator[Scenario]:
 
 def load_dependent(effort: Effort) -> Iterator[Scenario]:
     """Planar slip that turns while the normal force swings; the truth is that at the load of the sample."""
-    for friction, radius in EXPONENTS:
+    for friction, radius in effort.exponents:
         record = sense(patch(swinging(friction, radius), effort.cells), effort.seeds, effort.seed)
         late = after(record, record.t[-1] - PERIOD)
         names = [f"μ a {friction:g}"] * (friction > 0.0) + ["r ⅓"] * (radius > 0.0)
@@ -41,7 +37,7 @@ def load_dependent(effort: Effort) -> Iterator[Scenario]:
 
 def anisotropic(effort: Effort) -> Iterator[Scenario]:
     """Planar slip that turns by half a circle, evaluated all over it; the truth is the mean of both axes."""
-    for anisotropy in ANISOTROPIES:
+    for anisotropy in effort.anisotropies:
         trace = patch(turning(1.0 + math.pi), effort.cells, anisotropy=anisotropy)
         record = sense(trace, effort.seeds, effort.seed)
         late = after(record, record.t[-1] - math.pi)

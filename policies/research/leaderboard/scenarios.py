@@ -39,11 +39,20 @@ class Effort:
     """Shares of translation of the start-value grids [-]."""
     radii: int = 9
     """Start values of r in the grids."""
+    exponents: tuple[tuple[float, float], ...] = (
+        (0.15, 0.0),
+        (0.31, 0.0),
+        (0.0, 1.0 / 3.0),
+        (0.31, 1.0 / 3.0),
+    )
+    """Exponents of `slipgym.contact.soft_pad`: friction falls with the load, r grows with it."""
+    anisotropies: tuple[float, ...] = (0.1, 0.2)
+    """Friction along x is larger by this, along y smaller [-]."""
     seed: int = 0
     """Of the noise."""
 
 
-QUICK = Effort(2, 11, ("wood",), ((0.02, 2.0),), (5.0,), (0.7,), 3)
+QUICK = Effort(2, 11, ("wood",), ((0.02, 2.0),), (5.0,), (0.7,), 3, ((0.31, 1.0 / 3.0),), (0.2,))
 
 
 def effort_of(quick: bool, seed: int) -> Effort:
