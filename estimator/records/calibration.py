@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from estimator.records.record import Array
+
 CALIBRATES = "adaptive"
 """Name of the estimator that finds them."""
 KNOWN = 0.95
@@ -51,20 +53,24 @@ class Calibration:
     """Whether that exceeded `timing_gate`; otherwise the delay is the nominal one."""
     errors: tuple[Found, ...]
     """Errors of the sensors, and the viscosity."""
+    misfit: float
+    """Mean squared normalised residual of the last slips; noise alone makes it 1 [-]."""
 
 
-def calibration(state: np.void, parameters: Any, correlation: float, load: float) -> Calibration:
+def calibration(state: np.void, parameters: Any, correlation: float, f_n: Array) -> Calibration:
     """Reads the last state of "adaptive".
 
     Args:
         state: Record of its state dtype.
         parameters: Its AdaptiveParameters.
         correlation: Largest `timing` of the state so far [-].
-        load: Usual normal force [N].
+        f_n: Normal forces, (k,) [N].
     """
     from estimator.augmented.slip_law import COP, SHAPE, SIGMA, STATES, TILT, ZERO
 
     p, errors = parameters, []
+    loaded = f_n[f_n >= p.eps_fn]
+    load = float(np.median(loaded)) if len(loaded) else 0.0
     x, covariance = state["x"], max(float(state["misfit"]), 1.0) * state["covariance"]
     spreads = np.ones(STATES)
     spreads[SIGMA], spreads[ZERO:TILT], spreads[TILT:COP] = p.sd_viscosity, p.sd_zero, p.sd_tilt
@@ -93,7 +99,8 @@ def calibration(state: np.void, parameters: Any, correlation: float, load: float
         what = "zero of f_n" if name == "normal" else "zero of tau"
         errors.append(Found(what, unit, float(state[f"zero_{name}"]), sd, spread))
     add("sigma_2", "s/m", {SIGMA: 1.0})
-    return Calibration(int(state["delay"]), correlation, correlation > p.timing_gate, tuple(errors))
+    seen = correlation > p.timing_gate
+    return Calibration(int(state["delay"]), correlation, seen, tuple(errors), float(state["misfit"]))
 
 
 def calibration_rows(found: Calibration, step: float) -> list[list[str]]:

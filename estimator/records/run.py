@@ -65,7 +65,5 @@ def estimate(record: Record, estimator: str = DEFAULT, allow_gaps: bool = False,
     found = None
     if estimator == CALIBRATES:
         f_n = samples.wrench[samples.segment == segment, 2]
-        loaded = f_n[f_n >= finger.parameters.eps_fn]
-        load = float(np.median(loaded)) if len(loaded) else 0.0
-        found = calibration(finger.states[0], finger.parameters, correlation, load)
+        found = calibration(finger.states[0], finger.parameters, correlation, f_n)
     return Result(record, samples, estimates, estimator, finger.parameters, parameters, found)

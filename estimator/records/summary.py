@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from estimator.estimate import Estimate
+from estimator.reasons import COUNTS, reasons
 from estimator.records.alignment import period
 from estimator.records.calibration import calibration_rows
 from estimator.records.plausibility import warnings
@@ -14,15 +16,6 @@ from estimator.records.readings import reading_warnings
 from estimator.records.run import Result
 
 _NAMES = ("mu_s", "mu_c", "r")
-_COUNTS = {"mu_s": "events_mu_s", "mu_c": "updates_mu_c", "r": "updates_r"}
-_LITTLE = 0.5
-_DOUBT = 0.1
-"""Standard deviation over the value from which it is named as the reason."""
-_SPARSE = {
-    "mu_s": "it needs slips that start or stop in contact",
-    "mu_c": "it needs slip with translation in it",
-    "r": "it needs slip with rotation in it",
-}
 
 
 def report(result: Result) -> str:
@@ -65,7 +58,7 @@ def final_rows(result: Result) -> list[list[str]]:
     rows = [["", "final", "confidence", "data", *(["true", "error"] if known else [])]]
     for k, name in enumerate(_NAMES):
         scale, digits = (1e3, 2) if name == "r" else (1.0, 3)
-        data = f"{last[_COUNTS[name]]} {'events' if name == 'mu_s' else 'samples'}"
+        data = f"{last[COUNTS[name]]} {'events' if name == 'mu_s' else 'samples'}"
         value = scale * float(last[name])
         cells = [
             "r [mm]" if name == "r" else name,
@@ -76,7 +69,7 @@ def final_rows(result: Result) -> list[list[str]]:
         if known and truth is not None:
             true = scale * float(truth[-1, k])
             error = f"{100.0 * (value / true - 1.0):+.0f} %".replace("-", "−")
-            compared = last[_COUNTS[name]] > 0 and not np.isnan(true)
+            compared = last[COUNTS[name]] > 0 and not np.isnan(true)
             cells += ["–" if np.isnan(true) else f"{true:.{digits}f}", error if compared else "–"]
         rows.append(cells)
     return rows
@@ -90,20 +83,11 @@ def findings(result: Result) -> list[str]:
 
 def not_observable(result: Result) -> list[str]:
     """A line for each value about which the record holds little or no information."""
-    last, lines = result.estimates[-1], []
     if not (result.samples.wrench[:, 2] >= CONTACT).any():
         return [f"f_n never reaches {CONTACT} N: there was no contact."]
-    for name in _NAMES:
-        count, confidence = int(last[_COUNTS[name]]), float(last[f"confidence_{name}"])
-        if confidence >= _LITTLE:
-            continue
-        doubt = float(last[f"sd_{name}"] / last[name])
-        seen = f"little data ({count}): be cautious"
-        if count == 0:
-            seen = "not observed: this is the start value"
-        elif doubt > _DOUBT:
-            seen = f"one standard deviation is {100.0 * doubt:.0f} %: be cautious"
-        lines.append(f"{name}: {seen}; {_SPARSE[name]}.")
+    misfit = 1.0 if result.calibration is None else result.calibration.misfit
+    found = reasons(Estimate._make(result.estimates[-1].item()), misfit)
+    lines = [f"{name}: {why}." for name, why in found.items()]
     if result.samples.segment[-1] > 0:
         lines.append(
             "The estimator starts afresh after a gap: the final values come from what follows the last gap."
