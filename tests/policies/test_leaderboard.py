@@ -141,9 +141,9 @@ def test_each_ablation_changes_known_parameters():
 def test_the_loop_is_averaged_over_tasks(monkeypatch):
     def played(choices, episodes, sensors, seed):
         assert choices[FULL] == {"name": "adaptive"}
-        figures = {"dropped": 0.0, "mu_c in 1 sd": 60.0, "r in 1 sd": np.nan, "r error": 5.0}
+        figures = {"dropped": 0.0, "mu_s in 1 sd": 5.0, "mu_c in 1 sd": 60.0, "r in 1 sd": np.nan}
         return pd.DataFrame(
-            {"estimator": name, "solved": solved, "mu_c error": error, **figures}
+            {"estimator": name, "solved": solved, "mu_c error": error, "mu_s error": 5.0, **figures}
             for name in choices
             for solved, error in ((50.0, 2.0), (100.0, 8.0), (75.0, np.nan))
         )
@@ -151,7 +151,7 @@ def test_the_loop_is_averaged_over_tasks(monkeypatch):
     monkeypatch.setattr(ablation, "closed_loop", played)
     found = ablation.in_the_loop(2, 0)
     assert found["without"].tolist() == list(WITHOUT)
-    np.testing.assert_allclose(found[["solved", "mu_c error", "r error"]].to_numpy()[0], (75.0, 4.0, 5.0))
+    np.testing.assert_allclose(found[["solved", "mu_c error", "mu_s error"]].to_numpy()[0], (75.0, 4.0, 5.0))
 
 
 def test_an_open_gripper_shows_zero_errors_and_the_ablation_what_that_is_worth():

@@ -105,12 +105,13 @@ def in_the_loop(episodes: int, seed: int, **arguments: Any) -> pd.DataFrame:
         **arguments: Of the environments.
 
     Returns:
-        `without`, `solved`, `dropped` [%], the errors of mu_c and r and the shares of truths within one
-        stated deviation [%], as in `closed_loop`: means over the tasks, of the errors geometric ones.
+        `without`, `solved`, `dropped` [%], the errors of mu_s and mu_c and the shares of truths within one
+        stated deviation [%], as in `closed_loop`: means over the tasks, of the errors geometric ones. r ends
+        too few episodes with confidence for its error to say something.
     """
     choices = {label: {"name": "adaptive", **removed} for label, removed in WITHOUT.items()}
     played = closed_loop(choices, episodes, ("lab",), seed, **arguments)
-    columns = ["solved", "dropped", "mu_c error", "mu_c in 1 sd", "r error", "r in 1 sd"]
+    columns = ["solved", "dropped", "mu_s error", "mu_c error", "mu_s in 1 sd", "mu_c in 1 sd", "r in 1 sd"]
     rows = []
     for label in WITHOUT:
         own = where(played, estimator=label)
