@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from estimator.batch import BatchEstimator, make_batch
 from estimator.estimate import ESTIMATE, Estimate
 from estimator.online import OnlineEstimator, make
+from estimator.reasons import reasons
 from estimator.registry import DEFAULT, FilterMatrices, Specification, names
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ __all__ = [
     "make",
     "make_batch",
     "names",
+    "reasons",
 ]
 
 

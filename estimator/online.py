@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from estimator.batch import BatchEstimator
 from estimator.estimate import Estimate
 from estimator.parameters import Parameters
+from estimator.reasons import reasons
 
 WRENCH = ("f_x", "f_y", "f_n", "tau")
 TWIST = ("v_x", "v_y", "omega")
@@ -131,6 +132,12 @@ class OnlineEstimator:
         _fill(self._twist, twist, "twist", TWIST)
         self.batch.update(float(t), self._wrenches, self._twists)
         return self.estimate
+
+    def reasons(self) -> dict[str, str]:
+        """Why values of the newest estimate have little confidence, as `estimator.reasons` says it."""
+        states = self.batch.states
+        kept = "misfit" in (states.dtype.names or ())
+        return reasons(self.estimate, float(states["misfit"][0]) if kept else 1.0)
 
     def reset(self) -> None:
         """Returns to the start values and forgets every sample."""

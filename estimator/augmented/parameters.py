@@ -59,6 +59,9 @@ class AdaptiveParameters(NoiseParameters):
         "m/N",
     )
     compliance_max: float = parameter(2.5e-4, "Largest shear compliance of a pad.", "[0, inf)", "m/N")
+    short_slips: bool = parameter(
+        True, "Whether mu_c is learned from slips of fewer than four samples, by the force alone."
+    )
     caution: float = parameter(
         0.1,
         "Fraction of these spreads that the filter assumes, so that an error must be evident.",

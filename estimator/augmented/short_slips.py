@@ -161,7 +161,7 @@ def learn_short_slip(state, scratch, p, moves):
     state.quiet += 1
     if state.quiet == WAIT:
         settle(state, p)
-    if state.first < 0 or state.quiet < WAIT:
+    if state.first < 0 or state.quiet < WAIT or not p.short_slips:
         return math.nan
     i = _break_away(state, p) if state.in_a_row > LAST else -1
     if i < 0 or not _stays(state, p, i):

@@ -9,6 +9,7 @@
 pandas, PyYAML and matplotlib are imported when a function needs them: the extra `slipgym[eval]`.
 """
 
+from estimator.records.calibration import Calibration, Found
 from estimator.records.columns import Column, Columns, load_columns
 from estimator.records.reading import load
 from estimator.records.record import Record
@@ -18,8 +19,10 @@ from estimator.records.settings import parse_settings, run_name
 from estimator.records.summary import report
 
 __all__ = [
+    "Calibration",
     "Column",
     "Columns",
+    "Found",
     "Record",
     "Result",
     "estimate",

@@ -12,6 +12,7 @@ from estimator.batch import make_batch
 from estimator.estimate import ESTIMATE
 from estimator.parameters import Parameters
 from estimator.records.alignment import Samples, align
+from estimator.records.calibration import CALIBRATES, Calibration, calibration
 from estimator.records.record import Record
 from estimator.registry import DEFAULT
 
@@ -32,6 +33,8 @@ class Result:
     """All its parameters."""
     given: Mapping[str, Any] = field(default_factory=dict)
     """The parameters that were given."""
+    calibration: Calibration | None = None
+    """What it found out about the sensors; None: it does not look for that."""
 
 
 def estimate(record: Record, estimator: str = DEFAULT, allow_gaps: bool = False, **parameters: Any) -> Result:
@@ -50,11 +53,17 @@ def estimate(record: Record, estimator: str = DEFAULT, allow_gaps: bool = False,
     finger = make_batch(estimator, 1, **parameters)
     samples = align(record, allow_gaps)
     estimates = np.zeros(len(samples.t), ESTIMATE)
-    segment = samples.segment[0]
+    timing = finger.states["timing"] if estimator == CALIBRATES else np.zeros(1)
+    segment, correlation = samples.segment[0], 0.0
     for k, t in enumerate(samples.t):
         if samples.segment[k] != segment:
-            segment = samples.segment[k]
+            segment, correlation = samples.segment[k], 0.0
             finger.reset()
         finger.update(t, samples.wrench[k : k + 1], samples.twist[k : k + 1])
         estimates[k] = finger.estimates[0]
-    return Result(record, samples, estimates, estimator, finger.parameters, parameters)
+        correlation = max(correlation, float(timing[0]))
+    found = None
+    if estimator == CALIBRATES:
+        f_n = samples.wrench[samples.segment == segment, 2]
+        found = calibration(finger.states[0], finger.parameters, correlation, f_n)
+    return Result(record, samples, estimates, estimator, finger.parameters, parameters, found)

@@ -6,32 +6,24 @@ from typing import Any
 
 import numpy as np
 
+from estimator.estimate import Estimate
+from estimator.reasons import COUNTS, reasons
 from estimator.records.alignment import period
+from estimator.records.calibration import calibration_rows
 from estimator.records.plausibility import warnings
 from estimator.records.reading import CONTACT
+from estimator.records.readings import reading_warnings
 from estimator.records.run import Result
 
 _NAMES = ("mu_s", "mu_c", "r")
-_COUNTS = {"mu_s": "events_mu_s", "mu_c": "updates_mu_c", "r": "updates_r"}
-_LITTLE = 0.5
-_DOUBT = 0.1
-"""Standard deviation over the value from which it is named as the reason."""
-_SPARSE = {
-    "mu_s": "it needs slips that start or stop in contact",
-    "mu_c": "it needs slip with translation in it",
-    "r": "it needs slip with rotation in it",
-}
 
 
 def report(result: Result) -> str:
     """The summary for a terminal: final values with confidence, warnings, and what was not observable."""
-    rows = final_rows(result)
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    lines = [
-        "  ".join([row[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True))])
-        for row in rows
-    ]
-    return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:], "", *findings(result)])
+    lines = [*_aligned(final_rows(result)), "", *findings(result)]
+    if result.calibration is not None:
+        lines += ["", *_aligned(_sensors(result))]
+    return "\n".join(lines)
 
 
 def markdown(result: Result) -> str:
@@ -41,14 +33,18 @@ def markdown(result: Result) -> str:
     settings = (
         ", ".join(f"{name} = {value}" for name, value in result.given.items()) or "all at their defaults"
     )
+    sensors: list[str] = []
+    if result.calibration is not None:
+        sensors = ["## What it found about the sensors", _table(_sensors(result))]
     parts = [
         f"# {result.record.name}",
         f"Estimator `{result.estimator}`; parameters: {settings}.",
         "## Final values",
-        "\n".join([_row(heading), "| --- |" + " ---: |" * (len(heading) - 1), *map(_row, rows)]),
+        _table([heading, *rows]),
         "Confidence is 0 for an untouched start value and near 1 once data has replaced it.",
         "## Warnings, and what was not observable",
         "\n".join(f"- {line}" for line in findings(result)),
+        *sensors,
         "## The record",
         "\n".join(["| | |", "| --- | ---: |", *(_row(fact) for fact in facts)]),
     ]
@@ -62,7 +58,7 @@ def final_rows(result: Result) -> list[list[str]]:
     rows = [["", "final", "confidence", "data", *(["true", "error"] if known else [])]]
     for k, name in enumerate(_NAMES):
         scale, digits = (1e3, 2) if name == "r" else (1.0, 3)
-        data = f"{last[_COUNTS[name]]} {'events' if name == 'mu_s' else 'samples'}"
+        data = f"{last[COUNTS[name]]} {'events' if name == 'mu_s' else 'samples'}"
         value = scale * float(last[name])
         cells = [
             "r [mm]" if name == "r" else name,
@@ -73,7 +69,7 @@ def final_rows(result: Result) -> list[list[str]]:
         if known and truth is not None:
             true = scale * float(truth[-1, k])
             error = f"{100.0 * (value / true - 1.0):+.0f} %".replace("-", "−")
-            compared = last[_COUNTS[name]] > 0 and not np.isnan(true)
+            compared = last[COUNTS[name]] > 0 and not np.isnan(true)
             cells += ["–" if np.isnan(true) else f"{true:.{digits}f}", error if compared else "–"]
         rows.append(cells)
     return rows
@@ -81,25 +77,17 @@ def final_rows(result: Result) -> list[list[str]]:
 
 def findings(result: Result) -> list[str]:
     """Warnings, then a line for each value that was not observable; "Everything was observed" if none."""
-    return [*warnings(result), *not_observable(result)] or ["Everything was observed."]
+    lines = [*reading_warnings(result.record, result.samples), *warnings(result), *not_observable(result)]
+    return lines or ["Everything was observed."]
 
 
 def not_observable(result: Result) -> list[str]:
     """A line for each value about which the record holds little or no information."""
-    last, lines = result.estimates[-1], []
     if not (result.samples.wrench[:, 2] >= CONTACT).any():
         return [f"f_n never reaches {CONTACT} N: there was no contact."]
-    for name in _NAMES:
-        count, confidence = int(last[_COUNTS[name]]), float(last[f"confidence_{name}"])
-        if confidence >= _LITTLE:
-            continue
-        doubt = float(last[f"sd_{name}"] / last[name])
-        seen = f"little data ({count}): be cautious"
-        if count == 0:
-            seen = "not observed: this is the start value"
-        elif doubt > _DOUBT:
-            seen = f"one standard deviation is {100.0 * doubt:.0f} %: be cautious"
-        lines.append(f"{name}: {seen}; {_SPARSE[name]}.")
+    misfit = 1.0 if result.calibration is None else result.calibration.misfit
+    found = reasons(Estimate._make(result.estimates[-1].item()), misfit)
+    lines = [f"{name}: {why}." for name, why in found.items()]
     if result.samples.segment[-1] > 0:
         lines.append(
             "The estimator starts afresh after a gap: the final values come from what follows the last gap."
@@ -131,6 +119,26 @@ def record_facts(result: Result) -> list[list[str]]:
         ("halts by the heuristic", f"{_starts(halted)}, {_percent(halted)} of the samples"),
     ]
     return [[name, str(value)] for name, value in facts]
+
+
+def _sensors(result: Result) -> list[list[str]]:
+    assert result.calibration is not None
+    return calibration_rows(result.calibration, period(result.record.twist_t))
+
+
+def _aligned(rows: list[list[str]]) -> list[str]:
+    """Lines of a table for a terminal, with a rule below the heading."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    lines = [
+        "  ".join([row[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(row[1:], widths[1:], strict=True))])
+        for row in rows
+    ]
+    return [lines[0], "-" * len(lines[0]), *(line.rstrip() for line in lines[1:])]
+
+
+def _table(rows: list[list[str]]) -> str:
+    """A table as Markdown."""
+    return "\n".join([_row(rows[0]), "| --- |" + " ---: |" * (len(rows[0]) - 1), *map(_row, rows[1:])])
 
 
 def _row(cells: list[str]) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 from estimator.records.columns import Columns, unknown
 from estimator.records.extras import extra
 from estimator.records.record import Array
+from estimator.records.separated import read_csv
 from estimator.records.units import UNITS
 
 TYPES = (".csv", ".csv.gz", ".parquet")
@@ -97,7 +98,7 @@ def read_table(path: Path, columns: Columns) -> Table:
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: It is of another type, or cannot be read as what its name says.
+        ValueError: It is of another type, cannot be read as what its name says, or has a column twice.
     """
     if not path.name.endswith(TYPES):
         raise ValueError(f"{path.name}: unknown file type; records are {', '.join(TYPES)}")
@@ -107,7 +108,23 @@ def read_table(path: Path, columns: Columns) -> Table:
     if path.suffix == ".parquet":
         extra("pyarrow")
     try:
-        frame = pandas.read_parquet(path) if path.suffix == ".parquet" else pandas.read_csv(path)
+        if path.suffix == ".parquet":
+            frame = pandas.read_parquet(path)
+            names = list(map(str, frame.columns))
+        else:
+            frame, names = read_csv(path)
     except (ValueError, OSError, EOFError) as error:
         raise ValueError(f"{path.name}: cannot be read: {error}") from error
+    _refuse_repeated(path.name, names, columns)
     return Table(path.name, frame, columns)
+
+
+def _refuse_repeated(source: str, names: list[str], columns: Columns) -> None:
+    """Refuses a header that has a column twice that the mapping reads."""
+    for column in filter(None, (columns[key] for key in UNITS)):
+        if names.count(column.column) > 1:
+            places = [str(k) for k, name in enumerate(names, start=1) if name == column.column]
+            raise ValueError(
+                f"{source}: {column.column!r} is the name of columns {' and '.join(places)}; "
+                "rename or remove all but one"
+            )

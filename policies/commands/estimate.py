@@ -46,8 +46,8 @@ def main(
     """Run a friction estimator on a record of one finger.
 
     Each velocity sample is paired with the newest force at or before it. Writes a folder with the estimates,
-    a summary and a figure. Prints the final values, warnings about implausible ones, and what was not
-    observable.
+    a summary and a figure. Prints the final values, warnings about implausible values and faulty readings,
+    what was not observable, and with "adaptive" the delay and the errors of the sensors that it found.
     """
     try:
         from estimator import records

@@ -20,9 +20,23 @@ def main(
         list[str] | None, typer.Option(help="Those in the loop; all if none.", show_default=False)
     ] = None,
     randomization: Annotated[str, typer.Option(help="Preset of the episodes in the loop.")] = "none",
+    ablation: Annotated[
+        bool, typer.Option("--ablation", help='Only print what each state and test of "adaptive" is worth.')
+    ] = False,
     costs: Annotated[bool, typer.Option("--costs", help="Only print what an update costs.")] = False,
 ) -> None:
     """Runs all estimators on all scenarios; writes a folder with tables and a picture."""
+    if ablation:
+        from policies.research.leaderboard import ablation as removing
+        from policies.research.leaderboard.scenarios import effort_of
+        from policies.research.leaderboard.tables import markdown
+
+        if closed_loop:
+            found = removing.in_the_loop(closed_loop, seed, randomization=randomization)
+        else:
+            found = removing.worth(removing.ablation(effort_of(quick, seed)))
+        typer.echo(markdown(found, 1 if closed_loop else 2))
+        return
     if closed_loop:
         import estimator
         from policies.research.leaderboard import closed_loop as loop

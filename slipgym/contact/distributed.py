@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from slipgym.contact.anisotropy import friction_axes, stretch
 from slipgym.contact.distributed_kernel import prescribed_step
 from slipgym.contact.pressure import MAX_CELLS, patch_cells
 from slipgym.contact.records import LOAD, Z_X, Z_Y, X, Y, pads, patch, rest, rest_cells
@@ -32,6 +33,7 @@ class DistributedContact:
         sigma_0: Bristle stiffness per normal force [1/m], > 0.
         sigma_1: Bristle damping per normal force [s/m], >= 0.
         sigma_2: Viscous friction per normal force [s/m], >= 0.
+        anisotropy: Friction along x is larger by this fraction, along y smaller [-], in (-0.5, 0.5).
 
     Raises:
         ValueError: A parameter is outside its range; the message names it.
@@ -49,6 +51,7 @@ class DistributedContact:
         sigma_0: float = 1e6,
         sigma_1: float = 80.0,
         sigma_2: float = 0.2,
+        anisotropy: float = 0.0,
     ) -> None:
         check_friction(mu_c, mu_s)
         positive(
@@ -60,6 +63,8 @@ class DistributedContact:
         positive(allow_zero=True, sigma_1=sigma_1, sigma_2=sigma_2)
         if not isinstance(cells, int | np.integer) or not 1 <= cells <= MAX_CELLS:
             raise ValueError(f"cells = {cells!r} must be a whole number from 1 to {MAX_CELLS}")
+        if not -0.5 < anisotropy < 0.5:
+            raise ValueError(f"anisotropy = {anisotropy!r} must be in (-0.5, 0.5)")
         self._pads = pads(
             1,
             r=radius,  # the cells' unit of length; their own r is 0 if there is but one
@@ -73,6 +78,9 @@ class DistributedContact:
         )
         self._radius = float(radius)
         self._cells = patch(*patch_cells(pressure, int(cells)))
+        if anisotropy:
+            self._pads["axes"] = friction_axes(float(anisotropy))
+            stretch(self._cells, self._pads["axes"][0])
 
     @property
     def effective_radius(self) -> float:
@@ -82,7 +90,7 @@ class DistributedContact:
     @property
     def positions(self) -> np.ndarray:
         """Copy of the loaded cells' positions from the centre of pressure, shape (n, 2) [m]."""
-        return self._radius * self._cells[[X, Y]].T
+        return self._radius * self._cells[[X, Y]].T / self._pads["axes"][0, ::-1]
 
     @property
     def shares(self) -> np.ndarray:

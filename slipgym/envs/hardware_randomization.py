@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from slipgym.config import Config
+from slipgym.contact.anisotropy import stretch
 from slipgym.contact.records import CELL_FIELDS
 from slipgym.envs.randomizer import Randomizer
 from slipgym.envs.reset_kernels import HARDWARE
@@ -15,7 +16,6 @@ from slipgym.world.plant import (
     check_slip_latency,
     dead_ticks,
     patch_of,
-    stretch,
     ticks_per_second,
     without_cells,
 )

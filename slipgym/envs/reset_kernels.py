@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from slipgym._numba.compiled import compiled, unlocked
+from slipgym.contact.anisotropy import friction_axes, stretch
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
 from slipgym.sensors.unloaded import READINGS, read_unloaded
 from slipgym.world.placing import PATCHES_OF_WORLDS, place_world
-from slipgym.world.plant import friction_axes, stretch
 
 WARM_UP_STEPS = 6
 """Control steps before time 0 in which grip and sensors settle."""

@@ -7,10 +7,10 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from slipgym._numba.compiled import compiled
 from slipgym.config import Config
+from slipgym.contact.anisotropy import friction_axes, stretch
 from slipgym.contact.pressure import OUTER_RADII, patch_cells
-from slipgym.contact.records import DISC, ELLIPSOID, Cells, X, Y, pads, patch, rest
+from slipgym.contact.records import DISC, ELLIPSOID, pads, patch, rest
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.force_torque import force_torque
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
@@ -102,23 +102,6 @@ def patch_of(config: Config) -> np.ndarray:
     """
     positions, loads = patch_cells(config.contact.pressure, config.contact.cells)
     return patch(positions / (loads @ np.hypot(*positions.T)), loads)
-
-
-@compiled
-def stretch(cells: Cells, axes: np.ndarray) -> None:
-    """Stretch the cells (CELL_FIELDS, m) of an anisotropic pad by its `axes` (2,).
-
-    A scaled displacement along x changes with the position along y, and the other way round.
-    """
-    for i in range(cells.shape[1]):
-        cells[X, i] *= axes[1]
-        cells[Y, i] *= axes[0]
-
-
-@compiled
-def friction_axes(anisotropy: float) -> tuple[float, float]:
-    """Friction along a pad's x and y over its mean [-]."""
-    return 1.0 + anisotropy, 1.0 - anisotropy
 
 
 def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:

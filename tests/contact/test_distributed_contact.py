@@ -24,6 +24,18 @@ def test_steady_translation_and_spin_of_named_pressures(pressure, ratio):
     assert torque == pytest.approx(0.5 * 5.0 * ratio * 0.015, rel=1e-9)
 
 
+def test_anisotropic_friction_is_normal_to_the_stretched_surface():
+    contact = DistributedContact(anisotropy=0.2, **FRICTION)
+    even = DistributedContact(**FRICTION)
+    a, b = 1.2, 0.8
+    f_x, f_y, tau = steady(contact, (0.03, 0.04, 0.0))
+    size = np.hypot(a * 0.03, b * 0.04)
+    assert (f_x, f_y) == pytest.approx((-2.5 * a * a * 0.03 / size, -2.5 * b * b * 0.04 / size), rel=1e-9)
+    assert tau == pytest.approx(0.0, abs=1e-9)
+    np.testing.assert_allclose(contact.positions, even.positions, rtol=1e-15)
+    assert contact.effective_radius == pytest.approx(even.effective_radius, rel=1e-15)
+
+
 def test_a_patch_may_be_a_single_cell():
     contact = DistributedContact(cells=1, **FRICTION)
     assert contact.effective_radius == 0.0
@@ -50,6 +62,7 @@ def test_sticks_without_drift_below_break_away():
         ({"pressure": "square"}, "'hertz'"),
         ({"pressure": np.ones((3, 3))}, r"\(21, 21\)"),
         ({"radius": -1.0}, "radius"),
+        ({"anisotropy": 0.5}, r"anisotropy = 0.5 must be in"),
     ],
 )
 def test_refuses_bad_parameters_by_name(change, named):

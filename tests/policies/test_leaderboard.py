@@ -1,6 +1,6 @@
 """The leaderboard: what is fed, how it is scored and ranked."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pandas as pd
@@ -8,10 +8,13 @@ import pytest
 
 import estimator
 from estimator.estimate import ESTIMATE
-from policies.research.leaderboard import run_leaderboard
+from policies.research.leaderboard import ablation, run_leaderboard
+from policies.research.leaderboard.ablation import FULL, WITHOUT, worth
 from policies.research.leaderboard.groups import GROUPS
+from policies.research.leaderboard.imperfect import opened
 from policies.research.leaderboard.ranking import ranked, winners
 from policies.research.leaderboard.replay import replay
+from policies.research.leaderboard.rubber import swinging
 from policies.research.leaderboard.run import entrants, evaluate
 from policies.research.leaderboard.scenario import FIELDS, Run, Scenario, ends
 from policies.research.leaderboard.scenarios import MU_C, QUICK, R, closed_loop, mixed, patch
@@ -118,6 +121,54 @@ def test_a_group_counts_as_much_as_another():
     assert ranking["score"][1] == pytest.approx((4.0 * 10.0 * 1.0) ** (1 / 3))
     assert ranking["worst"].tolist() == [10.0, 10.0]
     assert winners(table)["mu_c"].tolist() == ["a (4.1 %)", "a (0.0 %)"]
+
+
+def test_truth_follows_the_load():
+    course = swinging(0.31, 1 / 3)
+    normal, mu_c, r = (np.array([point[k] for point in course.points]) for k in (3, 4, 6))
+    assert normal.max() / normal.min() > 2.5
+    np.testing.assert_allclose(mu_c, MU_C * (normal / 5.0) ** -0.31)
+    np.testing.assert_allclose(r, R * (normal / 5.0) ** (1 / 3))
+
+
+def test_each_ablation_changes_known_parameters():
+    known = {field.name for field in fields(estimator.AdaptiveParameters)}
+    for removed in WITHOUT.values():
+        assert set(removed) <= known
+        estimator.AdaptiveParameters.create(**removed)
+
+
+def test_the_loop_is_averaged_over_tasks(monkeypatch):
+    def played(choices, episodes, sensors, seed):
+        assert choices[FULL] == {"name": "adaptive"}
+        figures = {"dropped": 0.0, "mu_s in 1 sd": 5.0, "mu_c in 1 sd": 60.0, "r in 1 sd": np.nan}
+        return pd.DataFrame(
+            {"estimator": name, "solved": solved, "mu_c error": error, "mu_s error": 5.0, **figures}
+            for name in choices
+            for solved, error in ((50.0, 2.0), (100.0, 8.0), (75.0, np.nan))
+        )
+
+    monkeypatch.setattr(ablation, "closed_loop", played)
+    found = ablation.in_the_loop(2, 0)
+    assert found["without"].tolist() == list(WITHOUT)
+    np.testing.assert_allclose(found[["solved", "mu_c error", "mu_s error"]].to_numpy()[0], (75.0, 4.0, 5.0))
+
+
+def test_an_open_gripper_shows_zero_errors_and_the_ablation_what_that_is_worth():
+    (scenario,) = opened(QUICK)
+    chosen = {
+        label: ("adaptive", WITHOUT[label]) for label in (FULL, "zeroing while unloaded", "short slips")
+    }
+    rows = evaluate(scenario, chosen)
+    assert [row["estimator"] for row in rows] == list(chosen)
+    full, blind, same = (row["error_mu_c"] for row in rows)
+    assert full == same < 2.0 < blind
+    blank = {f"{figure}_{field}": 0.0 for field in FIELDS for figure in ("calibration", "time")}
+    table = pd.DataFrame([{**blank, **row, "error_mu_s": 1.0} for row in rows])
+    found = worth(table)
+    assert found["without"].tolist() == [FULL, "zeroing while unloaded", "short slips"]
+    assert found["loses most"].tolist()[1] == f"open gripper, mu_c: {full:.1f} → {blind:.1f}"
+    assert found["loses most"].tolist()[::2] == ["–", "–"]
 
 
 def test_every_group_gives_scenarios_that_judge_something():

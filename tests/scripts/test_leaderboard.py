@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from policies.research.leaderboard.ablation import WITHOUT
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -18,13 +20,22 @@ ROOT = Path(__file__).resolve().parents[2]
     ],
 )
 def test_the_command_prints_its_tables_and_where_to_look(command, words, picture, tmp_path):
+    printed = call(*command, "--output", tmp_path, "--seed", "1")
+    assert words in printed
+    assert Path(printed.split()[-1]).name == picture
+    assert Path(printed.split()[-1]).is_file()
+
+
+@pytest.mark.slow
+def test_the_ablation_has_a_row_for_each_thing():
+    printed = call("scripts/leaderboard.py", "--ablation", "--quick").strip()
+    assert printed.startswith("| without |")
+    assert len(printed.splitlines()) == 2 + len(WITHOUT)
+    assert all(f"\n| {label} |" in printed for label in WITHOUT)
+
+
+def call(*command):
     done = subprocess.run(
-        [sys.executable, *command, "--output", tmp_path, "--seed", "1"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
+        [sys.executable, *map(str, command)], cwd=ROOT, capture_output=True, text=True, check=True
     )
-    assert words in done.stdout
-    assert Path(done.stdout.split()[-1]).name == picture
-    assert Path(done.stdout.split()[-1]).is_file()
+    return done.stdout

@@ -24,7 +24,7 @@ SURE = 0.5
 
 
 def closed_loop(
-    estimators: Sequence[str],
+    estimators: Sequence[str] | Mapping[str, Any],
     episodes: int = 200,
     sensors: Sequence[str] = ("realistic", "lab"),
     seed: int = 0,
@@ -34,7 +34,7 @@ def closed_loop(
     """Plays episodes of every task with every estimator and sensor preset.
 
     Args:
-        estimators: Names.
+        estimators: Names, or label -> the environments' argument `estimator`.
         episodes: Of each combination; the same initial conditions in all.
         sensors: Sensor presets.
         seed: Of the first episode.
@@ -45,9 +45,10 @@ def closed_loop(
         A row for each combination: see `played`.
     """
     rows = []
-    cells = [(task, name, preset) for task in tasks for name in estimators for preset in sensors]
+    choices = estimators if isinstance(estimators, Mapping) else {name: name for name in estimators}
+    cells = [(task, name, preset) for task in tasks for name in choices for preset in sensors]
     for task, name, preset in tqdm(cells, desc="closed loop"):
-        found = played(task, episodes, seed, estimator=name, sensors=preset, **arguments)
+        found = played(task, episodes, seed, estimator=choices[name], sensors=preset, **arguments)
         rows.append({"task": find(task).name, "estimator": name, "sensors": preset, **found})
     return pd.DataFrame(rows)
 

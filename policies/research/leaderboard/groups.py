@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from policies.research.leaderboard.imperfect import jumps, sensor_errors, unknown_delay
+from policies.research.leaderboard.rubber import anisotropic, drifts, load_dependent
 from policies.research.leaderboard.scenario import Scenario
 from policies.research.leaderboard.scenarios import (
     Effort,
@@ -30,4 +31,7 @@ GROUPS: tuple[Callable[[Effort], Iterator[Scenario]], ...] = (
     unknown_delay,
     sensor_errors,
     jumps,
+    drifts,
+    load_dependent,
+    anisotropic,
 )

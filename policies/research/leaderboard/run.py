@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +18,7 @@ from policies.research.leaderboard.picture import plot_leaderboard
 from policies.research.leaderboard.ranking import ranked, winners
 from policies.research.leaderboard.replay import replay
 from policies.research.leaderboard.scenario import FIELDS, Scenario
-from policies.research.leaderboard.scenarios import QUICK, Effort
+from policies.research.leaderboard.scenarios import effort_of
 from policies.research.leaderboard.score import FIGURES, score
 from policies.research.leaderboard.tables import markdown
 from policies.versions import write_versions
@@ -50,7 +49,7 @@ def run_leaderboard(
     Returns:
         The run's folder: leaderboard.md, ranking.csv, scenarios.csv, leaderboard.png.
     """
-    effort = replace(QUICK if quick else Effort(), seed=seed)
+    effort = effort_of(quick, seed)
     rows = []
     with tqdm(GROUPS, desc="leaderboard", unit="group", disable=not progress) as groups:
         for group in groups:
@@ -70,10 +69,10 @@ def run_leaderboard(
     return path
 
 
-def evaluate(scenario: Scenario) -> list[dict[str, object]]:
-    """A row for each entrant."""
+def evaluate(scenario: Scenario, chosen: Entrants | None = None) -> list[dict[str, object]]:
+    """A row for each of the chosen entrants; None: for all."""
     rows = []
-    for label, (name, parameters) in entrants().items():
+    for label, (name, parameters) in (entrants() if chosen is None else chosen).items():
         made = [
             replay(name, run.record, scenario.assumed, scenario.starts, **parameters) for run in scenario.runs
         ]

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
 
@@ -38,11 +39,25 @@ class Effort:
     """Shares of translation of the start-value grids [-]."""
     radii: int = 9
     """Start values of r in the grids."""
+    exponents: tuple[tuple[float, float], ...] = (
+        (0.15, 0.0),
+        (0.31, 0.0),
+        (0.0, 1.0 / 3.0),
+        (0.31, 1.0 / 3.0),
+    )
+    """Exponents of `slipgym.contact.soft_pad`: friction falls with the load, r grows with it."""
+    anisotropies: tuple[float, ...] = (0.1, 0.2)
+    """Friction along x is larger by this, along y smaller [-]."""
     seed: int = 0
     """Of the noise."""
 
 
-QUICK = Effort(2, 11, ("wood",), ((0.02, 2.0),), (5.0,), (0.7,), 3)
+QUICK = Effort(2, 11, ("wood",), ((0.02, 2.0),), (5.0,), (0.7,), 3, ((0.31, 1.0 / 3.0),), (0.2,))
+
+
+def effort_of(quick: bool, seed: int) -> Effort:
+    """The effort of a run, or a short one for a test of the machinery; the seed of the noise."""
+    return replace(QUICK if quick else Effort(), seed=seed)
 
 
 def profiles(effort: Effort) -> Iterator[Scenario]:
@@ -114,6 +129,22 @@ def rest(**values: float) -> Course:
     return Course.start(**{"mu_c": MU_C, "mu_s": MU_S, "r": R, **values}).to(STOP, 0.25)
 
 
+def turning(duration: float, rate: float = 1.0, gamma_t: float = 0.7) -> Course:
+    """Planar slip of a constant scaled speed whose direction turns, in chords of 0.1 s.
+
+    Args:
+        duration: Of the slip at full speed [s].
+        rate: Of the turn [rad/s].
+        gamma_t: Fraction of translation [-].
+    """
+    course, omega = rest(), math.sqrt(1.0 - gamma_t**2) * SPEED / R
+    for k in range(round(10 * duration) + 1):
+        angle = 0.1 * rate * k
+        v_x, v_y = gamma_t * SPEED * math.cos(angle), gamma_t * SPEED * math.sin(angle)
+        course = course.to("planar", 0.25 if k == 0 else 0.1, v_x=v_x, v_y=v_y, omega=omega)
+    return course
+
+
 def mixed() -> Course:
     """One slip of each kind."""
     course = slip(rest(), "linear", 1.0, 1.0, SPEED)
@@ -131,9 +162,9 @@ def mixed_judged(record: Record) -> dict[str, np.ndarray]:
 
 
 @cache
-def patch(course: Course, cells: int, pressure: str = "uniform") -> Trace:
+def patch(course: Course, cells: int, pressure: str = "uniform", anisotropy: float = 0.0) -> Trace:
     """The trace of a distributed contact."""
-    return integrate(course, DistributedContact(cells=cells, pressure=pressure))
+    return integrate(course, DistributedContact(cells=cells, pressure=pressure, anisotropy=anisotropy))
 
 
 def grid(group: str, course: Course, effort: Effort) -> Scenario:

@@ -1,0 +1,131 @@
+"""What "adaptive" found out about the sensors: delay, zero errors, tilt, centre of pressure, viscosity.
+
+Each value is what the filter holds, with its deviation from the spread that a careful user would assume:
+the filter assumes a narrower one (`caution`), so what it has not seen is widened back to that spread.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from estimator.records.record import Array
+
+CALIBRATES = "adaptive"
+"""Name of the estimator that finds them."""
+KNOWN = 0.95
+"""Deviation over the spread at the start below which a record has shown something."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """One error of the sensors."""
+
+    name: str
+    """What it is, in words."""
+    unit: str
+    """Unit of the values."""
+    value: float
+    """Estimate."""
+    sd: float
+    """Its standard deviation."""
+    spread: float
+    """Standard deviation before the record."""
+
+    @property
+    def seen(self) -> bool:
+        """Whether the record has shown it."""
+        return self.sd < KNOWN * self.spread
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What a run found, since the last gap."""
+
+    delay: int
+    """Delay of the velocity against the force [samples]."""
+    correlation: float
+    """Largest correlation of the changes of force and velocity at it [-]."""
+    delay_seen: bool
+    """Whether that exceeded `timing_gate`; otherwise the delay is the nominal one."""
+    errors: tuple[Found, ...]
+    """Errors of the sensors, and the viscosity."""
+    misfit: float
+    """Mean squared normalised residual of the last slips; noise alone makes it 1 [-]."""
+
+
+def calibration(state: np.void, parameters: Any, correlation: float, f_n: Array) -> Calibration:
+    """Reads the last state of "adaptive".
+
+    Args:
+        state: Record of its state dtype.
+        parameters: Its AdaptiveParameters.
+        correlation: Largest `timing` of the state so far [-].
+        f_n: Normal forces, (k,) [N].
+    """
+    from estimator.augmented.slip_law import COP, SHAPE, SIGMA, STATES, TILT, ZERO
+
+    p, errors = parameters, []
+    loaded = f_n[f_n >= p.eps_fn]
+    load = float(np.median(loaded)) if len(loaded) else 0.0
+    x, covariance = state["x"], max(float(state["misfit"]), 1.0) * state["covariance"]
+    spreads = np.ones(STATES)
+    spreads[SIGMA], spreads[ZERO:TILT], spreads[TILT:COP] = p.sd_viscosity, p.sd_zero, p.sd_tilt
+    spreads[COP:SHAPE], spreads[SHAPE] = p.sd_cop, p.sd_shape
+    assumed = p.caution * spreads[ZERO:]
+    beyond = np.sqrt(1.0 - p.caution**2) * spreads[ZERO:] / assumed**2
+
+    def add(name: str, unit: str, weights: dict[int, float]) -> None:
+        a = np.zeros(STATES)
+        a[list(weights)] = list(weights.values())
+        along = covariance @ a  # over a prior variance: what an error of that prior's mean does
+        variance = a @ along + np.square(beyond * along[ZERO:]).sum()
+        spread = math.sqrt(np.square(a * spreads).sum())
+        errors.append(Found(name, unit, float(a @ x), math.sqrt(variance), spread))
+
+    for k, axis in enumerate("xy"):
+        add(f"zero of f_{axis}", "N", {ZERO + k: 1.0})
+    for k, axis in enumerate("xy"):
+        add(f"tilt: f_{axis} by f_n", "-", {TILT + k: 1.0})
+    for k, axis in enumerate("xy"):
+        add(f"both at {load:.1f} N: f_{axis}", "N", {ZERO + k: 1.0, TILT + k: load})
+    for k, axis in enumerate("xy"):
+        add(f"CoP, {axis}", "mm", {COP + k: 1.0})
+    for name, unit, spread in (("normal", "N", p.sd_zero), ("torque", "N m", p.sd_zero_torque)):
+        sd = math.sqrt(float(state[f"variance_{name}"]))
+        what = "zero of f_n" if name == "normal" else "zero of tau"
+        errors.append(Found(what, unit, float(state[f"zero_{name}"]), sd, spread))
+    add("sigma_2", "s/m", {SIGMA: 1.0})
+    seen = correlation > p.timing_gate
+    return Calibration(int(state["delay"]), correlation, seen, tuple(errors), float(state["misfit"]))
+
+
+def calibration_rows(found: Calibration, step: float) -> list[list[str]]:
+    """A heading, then a row of cells for the delay and for each error; dashes for what was not seen.
+
+    To calibrate with it, subtract a zero error from the readings and f_n times the tilt from f_x and f_y;
+    give the CoP as `cop_x` and `cop_y`.
+
+    Args:
+        found: From `calibration`.
+        step: Time between two velocity samples [s].
+    """
+    samples = f"{found.delay} sample{'' if abs(found.delay) == 1 else 's'}"
+    seen = f"correlation {found.correlation:.2f}" if found.delay_seen else "not seen: assumed"
+    rows = [
+        ["sensors", "found", "sd", "sd before"],
+        ["delay", f"{samples}, {1e3 * step * found.delay:.1f} ms".replace("-", "−"), seen, ""],
+    ]
+    for error in found.errors:
+        digits = max(0, 2 - math.floor(math.log10(error.spread)))
+        sd, spread = f"{error.sd:.{digits}f}", f"{error.spread:.{digits}f}"
+        cells = (
+            [f"{round(error.value, digits) + 0.0:+.{digits}f}".replace("-", "−"), sd]
+            if error.seen
+            else ["–", "–"]
+        )
+        rows.append([f"{error.name} [{error.unit}]", *cells, spread])
+    return rows
