@@ -10,17 +10,18 @@ _KINDS = {
     bool: ((bool, np.bool_), "True or False"),
     int: ((int, np.integer), "an integer in"),
     float: ((float, int, np.floating, np.integer), "a number in"),
+    str: ((str,), "a text"),
 }
 """Field type -> accepted value types and the words for them; an int field does not accept a bool."""
 
 
-def parameter(default: float | int | bool, doc: str, within: str = "", unit: str = "") -> Any:
+def parameter(default: float | int | bool | str, doc: str, within: str = "", unit: str = "") -> Any:
     """Declares a parameter field.
 
     Args:
         default: Default value.
         doc: Its meaning, in one or two sentences.
-        within: Valid interval such as "(0, 1]"; a round bracket excludes the end. Empty for a bool.
+        within: Valid interval such as "(0, 1]"; a round bracket excludes the end. Empty for a bool or a text.
         unit: SI unit; empty if it has none.
     """
     return dataclasses.field(default=default, metadata={"doc": doc, "within": within, "unit": unit})
@@ -33,7 +34,7 @@ def _inside(value: float, interval: str) -> bool:
     return above and below
 
 
-def _checked(field: "dataclasses.Field[Any]", value: Any) -> float | int | bool:
+def _checked(field: "dataclasses.Field[Any]", value: Any) -> float | int | bool | str:
     kind: Any = field.type
     within, unit = field.metadata["within"], field.metadata["unit"]
     accepted, expected = _KINDS[kind]

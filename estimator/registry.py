@@ -13,7 +13,7 @@ from estimator.reference import is_reference, referenced
 DEFAULT = "adaptive"
 """Name of the default estimator, also of the environments (docs/leaderboard.md compares them)."""
 
-_MODULES = {name: f"estimator.{name}" for name in ("adaptive", "disc", "joint", "rls", "ukf")}
+_MODULES = {name: f"estimator.{name}" for name in ("adaptive", "disc", "gru", "joint", "rls", "ukf")}
 """Name -> module that holds its SPECIFICATION; imported on first use, because numba is slow to import."""
 
 

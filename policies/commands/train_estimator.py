@@ -1,0 +1,63 @@
+"""Trains the network of the estimator "gru", or compares it with the other estimators."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym train-estimator
+  slipgym train-estimator --seed 1 --output runs
+  slipgym train-estimator --compare 32
+  slipgym train-estimator --compare 32 --weights runs/gru__20260101-120000-000/gru.npz
+\n
+The training takes about ten minutes of one processor; estimator={"name": "gru", "weights": "…/gru.npz"} uses what it
+wrote. docs/learned_estimator.md describes network, data and results.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG)
+def main(
+    configuration: Annotated[
+        str, typer.Argument(help="Name of a file in configs/estimators, or path of a YAML file.")
+    ] = "gru",
+    seed: Annotated[int, typer.Option(min=0, max=400, help="Of episodes, first weights and order.")] = 0,
+    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
+    compare: Annotated[
+        int, typer.Option(min=0, help="Instead: all estimators on episodes of as many environments.")
+    ] = 0,
+    weights: Annotated[str, typer.Option(help="File that is compared; that of the package if none.")] = "",
+) -> None:
+    """Record episodes, fit the network, write a folder with gru.npz; or compare."""
+    from policies.research.learned_estimator import config
+
+    try:
+        training = config.read(configuration)
+    except (ValueError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error)) from error
+    if compare:
+        _compare(training, compare, weights, seed)
+        return
+    from policies.research.learned_estimator.run import WEIGHTS, train
+
+    folder = train(training, output, seed)
+    typer.echo(f"Look at:\n  {folder / WEIGHTS}\n  {folder / 'curve.csv'}")
+
+
+def _compare(training: object, rows: int, weights: str, seed: int) -> None:
+    import estimator
+    from policies.research.leaderboard.tables import markdown
+    from policies.research.learned_estimator.compare import compare
+
+    entrants = {name: (name, {}) for name in estimator.names()}
+    try:
+        estimator.make("gru", weights=weights)
+    except (ValueError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error)) from error
+    entrants["gru"] = "gru", {"weights": weights}
+    table = compare(training, entrants, rows, seed=seed)  # type: ignore[arg-type]
+    for quantity, part in table.groupby("quantity", sort=False):
+        typer.echo(f"\n## {quantity}\n\n{markdown(part.drop(columns='quantity'), 1)}")

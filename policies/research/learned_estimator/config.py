@@ -1,0 +1,64 @@
+"""What the training of a network is: episodes, their ranges, the optimisation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, field_validator
+
+from slipgym.config import load_randomization
+from slipgym.config.base import Count, Frozen, Positive, as_tuple
+from slipgym.config.yaml_model import Choice, read_model
+from slipgym.tasks import find
+
+Texts = Annotated[tuple[str, ...], Field(min_length=1), BeforeValidator(as_tuple)]
+Sources = Annotated[
+    tuple[Literal["true", "nominal", "estimated"], ...], Field(min_length=1), BeforeValidator(as_tuple)
+]
+Contacts = Annotated[
+    tuple[Literal["ellipsoid", "disc", "distributed"], ...], Field(min_length=1), BeforeValidator(as_tuple)
+]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class Training(Frozen):
+    """Training of the network of "gru"; the sizes of the network are those of `estimator.network`."""
+
+    tasks: Texts = Field(description="Tasks whose episodes are recorded")
+    friction_sources: Sources = Field(description="Friction that the tasks' controllers act on")
+    contacts: Contacts = Field(description="Friction models of the pads")
+    sensors: str = Field(default="lab", description="Sensor preset")
+    rows: Count = Field(description="Environments of each combination of the three lists [-]")
+    steps: Count = Field(description="Control steps of each of them [-]")
+    disturbed: Share = Field(default=0.5, description="Fraction of rows with disturbed or random actions [-]")
+    unzeroed: Share = Field(default=0.3, description="Fraction of recordings that begin under load [-]")
+    updates: Count = Field(description="Steps of the optimiser [-]")
+    batch: Count = Field(default=48, description="Recordings of each [-]")
+    learning_rate: Positive = Field(default=4e-3, description="Largest step size; it falls as a cosine [-]")
+    held_out: Share = Field(default=0.04, description="Fraction of recordings for the curve [-]")
+    randomization: Mapping[str, Any] = Field(description="Ranges of the episodes, as in a preset")
+
+    @field_validator("tasks")
+    @classmethod
+    def _tasks(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(find(name).key for name in names)
+
+    @field_validator("randomization")
+    @classmethod
+    def _ranges(cls, ranges: Mapping[str, Any]) -> Mapping[str, Any]:
+        load_randomization(ranges)
+        return ranges
+
+
+def read(choice: Choice = "gru") -> Training:
+    """Reads a training.
+
+    Args:
+        choice: Name of a file in configs/estimators, the path of a YAML file, or a mapping of the same shape.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        ValueError: A key is unknown or a value is not allowed.
+    """
+    return read_model(choice, Training, "estimators", "training of an estimator")
