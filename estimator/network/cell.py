@@ -25,6 +25,8 @@ OUTPUTS = 2 * TARGETS + TARGETS + 1
 """Weights and measurements of the targets, then the deviations."""
 SMALLEST, LARGEST = 0.01, 1.0
 """Range of the relative standard deviations [-]."""
+LOW, HIGH = np.float32(math.log(SMALLEST)), np.float32(math.log(LARGEST))
+"""Range of their logarithms."""
 ONE = np.float32(1.0)
 
 
@@ -35,8 +37,8 @@ def logistic(x):
 
 
 @njit(error_model="numpy")
-def _accumulate(out, x, weight, n):
-    """out += x weight for x (n,) and weight (n, m), row by row: the compiler may not change the sums' order."""
+def accumulate(out, x, weight, n):
+    """Adds x weight to out, for x (n,) and weight (n, m): row by row, which fixes the order of the sums."""
     for j in range(n):
         row, factor = weight[j], x[j]
         for i in range(row.shape[0]):
@@ -45,7 +47,7 @@ def _accumulate(out, x, weight, n):
 
 @njit(error_model="numpy")
 def working_arrays():
-    """Arrays that one step needs: columns, both halves of the gates, outputs."""
+    """Arrays of one step: columns, gates, their parts from the hidden state, outputs. See `advance`."""
     return (
         np.zeros(COLUMNS, np.float32),
         np.zeros(3 * HIDDEN, np.float32),
@@ -60,29 +62,32 @@ def advance(p, scratch, hidden, mean):
 
     Args:
         p: Record with the tensors of `estimator.network.weights.SHAPES`.
-        scratch: From `working_arrays`; holds the columns, which are normalised in place, and afterwards the
-            outputs, the last `TARGETS` + 1 of them logarithms of relative standard deviations.
+        scratch: From `working_arrays`. The first holds the columns, which are normalised in place. The others
+            are written: the gates reset, update and new (3 HIDDEN,); what the hidden state adds to their
+            arguments (3 HIDDEN,); weights, measurements and logarithms of relative standard deviations,
+            (OUTPUTS,).
         hidden: Hidden state (HIDDEN,), changed in place.
         mean: Averages (TARGETS,), changed in place.
     """
-    x, by_x, by_h, out = scratch
+    x, gates, by_h, out = scratch
     for k in range(COLUMNS):
         x[k] = (x[k] - p.centre[k]) * p.scale[k]
     for i in range(3 * HIDDEN):
-        by_x[i], by_h[i] = p.input_bias[i], p.hidden_bias[i]
-    _accumulate(by_x, x, p.input_weight, COLUMNS)
-    _accumulate(by_h, hidden, p.hidden_weight, HIDDEN)
+        gates[i], by_h[i] = p.input_bias[i], p.hidden_bias[i]
+    accumulate(gates, x, p.input_weight, COLUMNS)
+    accumulate(by_h, hidden, p.hidden_weight, HIDDEN)
     for i in range(HIDDEN):
-        reset = logistic(by_x[i] + by_h[i])
-        update = logistic(by_x[HIDDEN + i] + by_h[HIDDEN + i])
-        new = math.tanh(by_x[2 * HIDDEN + i] + reset * by_h[2 * HIDDEN + i])
+        reset = logistic(gates[i] + by_h[i])
+        update = logistic(gates[HIDDEN + i] + by_h[HIDDEN + i])
+        new = math.tanh(gates[2 * HIDDEN + i] + reset * by_h[2 * HIDDEN + i])
+        gates[i], gates[HIDDEN + i], gates[2 * HIDDEN + i] = reset, update, new
         hidden[i] = new + update * (hidden[i] - new)
     for i in range(OUTPUTS):
         out[i] = p.head_bias[i]
-    _accumulate(out, hidden, p.head_of_hidden, HIDDEN)
-    _accumulate(out, x, p.head_of_columns, COLUMNS)
+    accumulate(out, hidden, p.head_of_hidden, HIDDEN)
+    accumulate(out, x, p.head_of_columns, COLUMNS)
     for i in range(TARGETS):
-        mean[i] += logistic(out[i]) * (out[TARGETS + i] - mean[i])
-    low, high = np.float32(math.log(SMALLEST)), np.float32(math.log(LARGEST))
+        out[i] = logistic(out[i])
+        mean[i] += out[i] * (out[TARGETS + i] - mean[i])
     for i in range(2 * TARGETS, OUTPUTS):
-        out[i] = low + (high - low) * logistic(out[i])
+        out[i] = LOW + (HIGH - LOW) * logistic(out[i])

@@ -30,6 +30,8 @@ SHAPES: Mapping[str, tuple[int, ...]] = {
     "start": (TARGETS,),
 }
 """Tensor -> its shape; all are float32. The columns are normalised to (x - centre) scale."""
+TENSORS = np.dtype([(name, np.float32, shape) for name, shape in SHAPES.items()])
+"""The tensors as a record, without gaps."""
 NOTE = "about"
 """Entry with a text: origin and licence."""
 
@@ -66,7 +68,7 @@ def _read(path: Path) -> Tensors:
     try:
         return _checked(data)
     except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile, NotImplementedError) as error:
-        raise ValueError(f"{path}: is no file of weights of \"gru\", or damaged: {error}") from error
+        raise ValueError(f'{path}: is no file of weights of "gru", or damaged: {error}') from error
 
 
 def _checked(data: bytes) -> Tensors:

@@ -13,8 +13,8 @@ Examples:\n
   slipgym train-estimator --compare 32
   slipgym train-estimator --compare 32 --weights runs/gru__20260101-120000-000/gru.npz
 \n
-The training takes about ten minutes of one processor; estimator={"name": "gru", "weights": "…/gru.npz"} uses what it
-wrote. docs/learned_estimator.md describes network, data and results.
+The training takes about ten minutes of one processor. An environment uses what it wrote with
+estimator={"name": "gru", "weights": "…/gru.npz"}. See docs/learned_estimator.md.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 

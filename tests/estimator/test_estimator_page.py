@@ -11,12 +11,15 @@ from slipgym.validation.records import ellipsoid
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "estimator.md").read_text(encoding="utf-8")
-ADAPTIVE = (ROOT / "docs" / "adaptive.md").read_text(encoding="utf-8")
+OTHERS = "".join(
+    (ROOT / "docs" / name).read_text(encoding="utf-8") for name in ("adaptive.md", "learned_estimator.md")
+)
 FIELDS = [
     pytest.param(field, id=f"{kind.__name__}.{field.name}")
     for kind in (
         estimator.AdaptiveParameters,
         estimator.RlsParameters,
+        estimator.GruParameters,
         estimator.JointParameters,
         estimator.DiscParameters,
         estimator.UkfParameters,
@@ -35,7 +38,7 @@ def parameter_row(field: dataclasses.Field) -> str:
 def test_every_parameter_is_documented(field):
     assert len(field.metadata["doc"].split()) >= 4
     assert field.metadata["doc"].endswith(".")
-    assert parameter_row(field) in PAGE + ADAPTIVE
+    assert parameter_row(field) in PAGE + OTHERS
 
 
 @pytest.mark.parametrize("name", estimator.Estimate._fields)
@@ -68,7 +71,13 @@ def test_the_files_that_the_pages_name_exist():
     docs = ROOT / "docs"
     named = {
         path
-        for page in ("adaptive.md", "estimator.md", "adding_an_estimator.md", "records.md")
+        for page in (
+            "adaptive.md",
+            "learned_estimator.md",
+            "estimator.md",
+            "adding_an_estimator.md",
+            "records.md",
+        )
         for path in re.findall(
             r"`((?:estimator|scripts|tests|examples)/[\w./]+\.\w+)`", (docs / page).read_text()
         )

@@ -6,19 +6,30 @@ import pytest
 
 import estimator
 import policies
+from estimator.network.cell import HIDDEN
+from estimator.network.features import COLUMNS
 from estimator.network.weights import SHAPES, load
 from policies.research.learned_estimator import config
-from policies.research.learned_estimator.columns import sequences
+from policies.research.learned_estimator.columns import Sequence, sequences
 from policies.research.learned_estimator.compare import compare, conditions
-from policies.research.learned_estimator.episodes import cells, record
+from policies.research.learned_estimator.episodes import record
+from policies.research.learned_estimator.fit import first_weights
+from policies.research.learned_estimator.gradient import loss, loss_and_gradient
 from policies.research.learned_estimator.recorder import NAME
+from policies.research.learned_estimator.run import WEIGHTS, train
 from slipgym.sensors.unloaded import READINGS
 
 LINEAR = "slipgym:slipgym/LinearSlip-v0"
 TINY = {
     **config.read("gru").model_dump(mode="json"),
-    **{"tasks": ["linear_slip"], "friction_sources": ["true"], "contacts": ["ellipsoid"]},
-    **{"rows": 8, "steps": 60, "updates": 6, "batch": 4},
+    "tasks": ["linear_slip"],
+    "friction_sources": ["true"],
+    "contacts": ["ellipsoid"],
+    "rigid_contacts": [],
+    "rows": 8,
+    "steps": 60,
+    "updates": 6,
+    "batch": 4,
 }
 
 
@@ -53,40 +64,63 @@ def test_the_truth_of_a_recording_begins_with_the_grasp(recordings):
         assert (np.abs(one.readings[: READINGS - 1, 2]) < 0.6).all()
 
 
-def test_torch_and_the_compiled_network_agree(recordings):
-    """float32 with sums in another order; the averages forget, so errors do not grow with the samples."""
+def in_torch(tensors, columns):
+    """The network by `torch.nn.GRU`: averages (n, 3) and logarithms of the deviations (n, 4)."""
     torch = pytest.importorskip("torch")
-    from policies.research.learned_estimator.network import Network
-
-    own = load()
-    network = Network(own["centre"], own["scale"], own["start"])
+    own = {name: value if torch.is_tensor(value) else torch.tensor(value) for name, value in tensors.items()}
+    unit = torch.nn.GRU(COLUMNS, HIDDEN)
     state = {
-        "unit.weight_ih_l0": own["input_weight"].T,
-        "unit.bias_ih_l0": own["input_bias"],
-        "unit.weight_hh_l0": own["hidden_weight"].T,
-        "unit.bias_hh_l0": own["hidden_bias"],
-        "head.weight": np.concatenate([own["head_of_hidden"], own["head_of_columns"]]).T,
-        "head.bias": own["head_bias"],
-        **{name: own[name] for name in ("centre", "scale", "start")},
+        "weight_ih_l0": own["input_weight"].T,
+        "bias_ih_l0": own["input_bias"],
+        "weight_hh_l0": own["hidden_weight"].T,
+        "bias_hh_l0": own["hidden_bias"],
     }
-    network.load_state_dict({name: torch.tensor(np.array(value)) for name, value in state.items()})
-    for name, tensor in network.tensors().items():
-        np.testing.assert_array_equal(tensor, own[name])
+    x = (torch.tensor(columns) - own["centre"]) * own["scale"]
+    hidden = torch.func.functional_call(unit, state, (x[:, None],))[0][:, 0]
+    out = hidden @ own["head_of_hidden"] + x @ own["head_of_columns"] + own["head_bias"]
+    mean, means = own["start"], []
+    for row in out:
+        mean = torch.lerp(mean, row[3:6], torch.sigmoid(row[:3]))
+        means.append(mean)
+    return torch.stack(means), np.log(0.01) * (1.0 - torch.sigmoid(out[:, 6:]))
+
+
+def test_torch_and_the_compiled_estimator_agree(recordings):
+    """float32 with sums in another order; the averages forget, so errors do not grow with the samples."""
     one = recordings[0]
     (sequence,) = sequences([one], 0.0, 0)
-    with torch.no_grad():
-        means, deviations = network(torch.from_numpy(sequence.columns)[:, None])
-    batch = estimator.make_batch("gru", 1)
-    kept = []
-    for k, row in enumerate(one.readings.astype(float)):
-        batch.update((k + 1) / 120, row[None, :4].copy(), row[None, 4:].copy())
-        if batch.states["in_contact"][0] > 0:
-            kept.append((batch.states["mean"][0].copy(), batch.estimates["sd_mu_c"][0], batch.estimates["mu_c"][0]))
-    kept = kept[-len(sequence.columns) :]
-    np.testing.assert_allclose([mean for mean, *_ in kept], means[:, 0], atol=2e-4)
-    if batch.states["updates_mu_c"][0] > 0:
-        _, sd, mu_c = kept[-1]
-        assert np.log(sd / mu_c) == pytest.approx(float(deviations[-1, 0, 1]), abs=2e-3)
+    means, deviations = (np.asarray(found) for found in in_torch(load(), sequence.columns))
+    est, kept = estimator.make("gru"), []
+    for k, row in enumerate(one.readings.tolist()):
+        est.update((k + 1) / 120, row[:4], row[4:])
+        state = est.batch.states[0]
+        if state["in_contact"] > 0:
+            deviation = np.log(state["sd_lever"] / (state["mu_c"] * state["r"]))
+            kept.append((*state["mean"], deviation))
+    expected = np.column_stack([means, deviations[:, 3]])
+    np.testing.assert_allclose(kept[-len(expected) :], expected, atol=1e-3)
+
+
+def test_the_gradient_is_that_of_torch(recordings):
+    torch = pytest.importorskip("torch")
+    data = [Sequence(one.columns[:40], one.targets[:40]) for one in sequences(recordings[:3], 0.0, 0)]
+    network = first_weights(data, np.random.default_rng(0))
+    value, gradient = loss_and_gradient(network, data)
+    assert loss(network, data) == value
+    own = {name: torch.tensor(network[name][0].copy(), requires_grad=True) for name in SHAPES}
+    each = []
+    for one in data:
+        means, deviations = in_torch(own, one.columns)
+        errors = torch.tensor(one.targets, dtype=torch.float32) - means
+        errors = torch.cat([errors, errors[:, 1:2] + errors[:, 2:3]], dim=1)
+        each.append((0.5 * (errors * torch.exp(-deviations)) ** 2 + deviations).mean(dim=1))
+    mean = torch.cat(each).mean()
+    mean.backward()
+    assert value == pytest.approx(mean.item(), rel=1e-5)
+    for name in set(SHAPES) - {"centre", "scale"}:
+        expected = own[name].grad.numpy()
+        error = np.abs(gradient[name][0] - expected).max()
+        assert error < 1e-4 * np.abs(expected).max(), name  # float32, sums of 120 samples
 
 
 def test_environments_run_it_and_rows_equal_single_environments():
@@ -122,16 +156,17 @@ def test_a_wrong_training_is_refused(change, message):
         config.read({**TINY, **change})
 
 
-def test_cells_are_all_combinations():
-    found = list(cells({"a": [1, 2], "b": "xy"}))
-    assert found == [{"a": 1, "b": "x"}, {"a": 1, "b": "y"}, {"a": 2, "b": "x"}, {"a": 2, "b": "y"}]
+def test_a_training_has_all_combinations_and_rigid_pads_without_ranges_of_rubber():
+    found = config.read({**TINY, "tasks": ["Hinge", "hold"], "rigid_contacts": ["disc"]}).episodes()
+    assert [(one["task"], one["contact"]) for one in found] == [
+        *(("hinge", "ellipsoid"), ("hinge", "disc")),
+        *(("hold", "ellipsoid"), ("hold", "disc")),
+    ]
+    assert ["creep" in one["randomization"] for one in found] == [True, False, True, False]
 
 
 @pytest.mark.slow
 def test_training_is_deterministic_and_its_weights_are_used(tmp_path):
-    pytest.importorskip("torch")
-    from policies.research.learned_estimator.run import WEIGHTS, train
-
     training = config.read(TINY)
     folders = [train(training, tmp_path / name, 1, progress=False) for name in ("a", "b")]
     assert folders[0].joinpath(WEIGHTS).read_bytes() == folders[1].joinpath(WEIGHTS).read_bytes()

@@ -1,1 +1,1 @@
-"""Trains the network of the "gru" estimator on simulated episodes, and compares it with the other estimators."""
+"""Trains the network of the "gru" estimator on simulated episodes; compares it with the other estimators."""

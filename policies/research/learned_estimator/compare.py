@@ -1,4 +1,4 @@
-"""All estimators on the same recorded episodes, in and out of the distribution that the network was trained on."""
+"""All estimators on the same recorded episodes, in and out of the distribution of the training."""
 
 from __future__ import annotations
 
@@ -63,9 +63,9 @@ def compare(
         progress: Whether to show a progress bar.
 
     Returns:
-        A row per condition, estimator and quantity: `condition`, `quantity`, `estimator`; `median` and `p90` of
-        the size of the relative error over the samples after `SLID` of slip [%]; `in 1 sd`, `in 2 sd`: of the
-        samples at which the confidence is above 0 [%]; `known`: fraction of them among all in contact [%].
+        A row per condition, estimator and quantity: `condition`, `quantity`, `estimator`; `median` and `p90`
+        of the size of the relative error over the samples after `SLID` of slip [%]; `in 1 sd`, `in 2 sd`: of
+        the samples at which the confidence is above 0 [%]; `known`: fraction of these among all [%].
     """
     found = []
     items = list(conditions(training).items())
@@ -90,8 +90,8 @@ def replay(
     Args:
         name: Estimator.
         recordings: m recordings.
-        latency: Latency of the slip sensor that the preset states; an estimator that has `velocity_delay` gets
-            it, as in the environments [samples].
+        latency: Latency of the slip sensor that the preset states [samples]; an estimator that has
+            `velocity_delay` gets it, as in the environments.
         parameters: Of the estimator.
 
     Returns:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, field_validator
 
 from slipgym.config import load_randomization
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
+from slipgym.config.pad_ranges import PadRanges
 from slipgym.config.yaml_model import Choice, read_model
 from slipgym.tasks import find
 
@@ -16,9 +18,7 @@ Texts = Annotated[tuple[str, ...], Field(min_length=1), BeforeValidator(as_tuple
 Sources = Annotated[
     tuple[Literal["true", "nominal", "estimated"], ...], Field(min_length=1), BeforeValidator(as_tuple)
 ]
-Contacts = Annotated[
-    tuple[Literal["ellipsoid", "disc", "distributed"], ...], Field(min_length=1), BeforeValidator(as_tuple)
-]
+Contacts = Annotated[tuple[Literal["ellipsoid", "disc", "distributed"], ...], BeforeValidator(as_tuple)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
@@ -27,9 +27,12 @@ class Training(Frozen):
 
     tasks: Texts = Field(description="Tasks whose episodes are recorded")
     friction_sources: Sources = Field(description="Friction that the tasks' controllers act on")
-    contacts: Contacts = Field(description="Friction models of the pads")
+    contacts: Contacts = Field(min_length=1, description="Friction models of the pads")
+    rigid_contacts: Contacts = Field(
+        default=(), description="Friction models of further episodes, without the ranges of rubber"
+    )
     sensors: str = Field(default="lab", description="Sensor preset")
-    rows: Count = Field(description="Environments of each combination of the three lists [-]")
+    rows: Count = Field(description="Environments of each combination of task, source and contact [-]")
     steps: Count = Field(description="Control steps of each of them [-]")
     disturbed: Share = Field(default=0.5, description="Fraction of rows with disturbed or random actions [-]")
     unzeroed: Share = Field(default=0.3, description="Fraction of recordings that begin under load [-]")
@@ -49,6 +52,23 @@ class Training(Frozen):
     def _ranges(cls, ranges: Mapping[str, Any]) -> Mapping[str, Any]:
         load_randomization(ranges)
         return ranges
+
+    def episodes(self) -> list[dict[str, Any]]:
+        """Arguments of the environments and the task, of every combination."""
+        ranges = dict(self.randomization)
+        rigid = {name: value for name, value in ranges.items() if name not in PadRanges.model_fields}
+        pads = [(contact, ranges) for contact in self.contacts]
+        pads += [(contact, rigid) for contact in self.rigid_contacts]
+        return [
+            {
+                "task": task,
+                "friction_source": source,
+                "contact": contact,
+                "randomization": chosen,
+                "sensors": self.sensors,
+            }
+            for task, source, (contact, chosen) in product(self.tasks, self.friction_sources, pads)
+        ]
 
 
 def read(choice: Choice = "gru") -> Training:

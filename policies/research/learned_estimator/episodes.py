@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,7 +27,7 @@ class Recording:
     """(f_x, f_y, f_n, tau, v_x, v_y, omega) as measured, (n, 7) [N, N, N, N m, m/s, m/s, rad/s]; the first
     `READINGS` are those of the open gripper."""
     truth: np.ndarray
-    """True mu_s, mu_c [-] and r [m] of the finger at its present load and age, (n, 3); NaN before the grasp."""
+    """True mu_s, mu_c [-] and r [m] of the finger at its present load and age, (n, 3); first NaN."""
 
 
 def record(
@@ -104,11 +104,3 @@ class _Noise:
         plain, other = kind[:, None] == 0, kind[:, None] == 2
         disturbed = np.where(other, self._level, actions + self._size * self._level)
         return np.where(plain, actions, np.clip(disturbed, -1.0, 1.0)).astype(actions.dtype)
-
-
-def cells(tasks: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Combinations of the lists in a mapping of names to lists, as keyword arguments."""
-    names = list(tasks)
-    grid = np.meshgrid(*(np.arange(len(tasks[name])) for name in names), indexing="ij")
-    for which in np.stack([axis.ravel() for axis in grid], axis=-1):
-        yield {name: tasks[name][k] for name, k in zip(names, which.tolist(), strict=True)}

@@ -7,15 +7,14 @@ import time
 from pathlib import Path
 
 import pandas as pd
-import torch
 import yaml
 from tqdm import tqdm
 
-from estimator.network.weights import save
+from estimator.network.weights import SHAPES, save
 from policies.evaluation.folder import stamped
 from policies.research.learned_estimator.columns import Sequence, sequences
 from policies.research.learned_estimator.config import Training
-from policies.research.learned_estimator.episodes import cells, record
+from policies.research.learned_estimator.episodes import record
 from policies.research.learned_estimator.fit import fit
 from policies.versions import write_versions
 from slipgym.atomic_io import new_folder
@@ -23,8 +22,8 @@ from slipgym.atomic_io import new_folder
 WEIGHTS = "gru.npz"
 """Name of the file of weights in a run's folder."""
 NOTE = (
-    "Network of slipgym's estimator gru. Made by `slipgym train-estimator --seed {seed}` from simulated episodes "
-    "of slipgym alone, {samples} samples. Licence: that of slipgym (MIT)."
+    "Network of slipgym's estimator gru. Made by `slipgym train-estimator --seed {seed}` from simulated "
+    "episodes of slipgym alone, {samples} samples. Licence: that of slipgym (MIT)."
 )
 
 
@@ -36,26 +35,11 @@ def recorded(training: Training, seed: int, progress: bool = True) -> list[Seque
         seed: Of the episodes, >= 0; every combination has episodes of its own.
         progress: Whether to show a progress bar.
     """
-    grid = list(
-        cells(
-            {
-                "task": training.tasks,
-                "friction_source": training.friction_sources,
-                "contact": training.contacts,
-            }
-        )
-    )
     found: list[Sequence] = []
-    for k, cell in enumerate(tqdm(grid, desc="episodes", disable=not progress)):
+    for k, arguments in enumerate(tqdm(training.episodes(), desc="episodes", disable=not progress)):
         own = 1_000_000 * seed + 10_000 * k
         recordings = record(
-            rows=training.rows,
-            steps=training.steps,
-            seed=own,
-            disturbed=training.disturbed,
-            sensors=training.sensors,
-            randomization=dict(training.randomization),
-            **cell,
+            rows=training.rows, steps=training.steps, seed=own, disturbed=training.disturbed, **arguments
         )
         found += sequences(recordings, training.unzeroed, own)
     return found
@@ -75,7 +59,6 @@ def train(
     Returns:
         The run's folder: gru.npz, training.yaml, curve.csv, versions.
     """
-    torch.set_num_threads(1)
     began = time.monotonic()
     data = recorded(training, seed, progress)
     samples = sum(len(one.columns) for one in data)
@@ -84,7 +67,8 @@ def train(
     path = stamped(output, "gru")
     with new_folder(path) as folder:
         write_versions(folder)
-        save(folder / WEIGHTS, network.tensors(), NOTE.format(seed=seed, samples=samples))
+        tensors = {name: network[name][0] for name in SHAPES}
+        save(folder / WEIGHTS, tensors, NOTE.format(seed=seed, samples=samples))
         settings = yaml.safe_dump(training.model_dump(mode="json"), sort_keys=False)
         (folder / "training.yaml").write_text(f"# seed {seed}\n{settings}", encoding="utf-8")
         pd.DataFrame(curve).to_csv(folder / "curve.csv", index=False)
