@@ -86,7 +86,7 @@ STATE = np.dtype(
 )
 """`unloaded`: readings before the first contact, whose mean is `zero`; `touched`: there was contact;
 `in_contact`, `age`: samples in contact, and since the last start or stop of a slip; `v_t`: speed of the last
-sample [m/s]; `sd_lever`: of mu_c r [m]; `taps`, `logs`: the last f_t / f_n and |tau| / (LENGTH f_n), and their
+sample [m/s]; `sd_lever`: of mu_c r [m]; `taps`, `logs`: last f_t / f_n and |tau| / (LENGTH f_n), and their
 logarithms; `mean`: averages of ln mu_s, ln mu_c, ln r; `hidden`: of the network."""
 
 
