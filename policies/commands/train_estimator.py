@@ -1,7 +1,7 @@
 """Trains the network of the estimator "gru", or compares it with the other estimators."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -10,7 +10,7 @@ Examples:\n
 \b
   slipgym train-estimator
   slipgym train-estimator --seed 1 --output runs
-  slipgym train-estimator --compare 32
+  slipgym train-estimator --compare 32 --estimators adaptive --estimators gru
   slipgym train-estimator --compare 32 --weights runs/gru__20260101-120000-000/gru.npz
 \n
 The training takes about ten minutes of one processor. An environment uses what it wrote with
@@ -27,8 +27,11 @@ def main(
     seed: Annotated[int, typer.Option(min=0, max=400, help="Of episodes, first weights and order.")] = 0,
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     compare: Annotated[
-        int, typer.Option(min=0, help="Instead: all estimators on episodes of as many environments.")
+        int, typer.Option(min=0, help="Instead: estimators on episodes of as many environments.")
     ] = 0,
+    estimators: Annotated[
+        list[str] | None, typer.Option(help="Those compared; all if none.", show_default=False)
+    ] = None,
     weights: Annotated[str, typer.Option(help="File that is compared; that of the package if none.")] = "",
 ) -> None:
     """Record episodes, fit the network, write a folder with gru.npz; or compare."""
@@ -39,7 +42,7 @@ def main(
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
     if compare:
-        _compare(training, compare, weights, seed)
+        typer.echo(_compared(training, compare, estimators or [], weights, seed))
         return
     from policies.research.learned_estimator.run import WEIGHTS, train
 
@@ -47,17 +50,17 @@ def main(
     typer.echo(f"Look at:\n  {folder / WEIGHTS}\n  {folder / 'curve.csv'}")
 
 
-def _compare(training: object, rows: int, weights: str, seed: int) -> None:
+def _compared(training: Any, rows: int, names: list[str], weights: str, seed: int) -> str:
     import estimator
     from policies.research.leaderboard.tables import markdown
-    from policies.research.learned_estimator.compare import compare
+    from policies.research.learned_estimator.compare import compare, wide
 
-    entrants = {name: (name, {}) for name in estimator.names()}
+    entrants = {
+        name: (name, {"weights": weights} if name == "gru" else {}) for name in names or estimator.names()
+    }
     try:
-        estimator.make("gru", weights=weights)
+        for kind, parameters in entrants.values():
+            estimator.make(kind, **parameters)
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
-    entrants["gru"] = "gru", {"weights": weights}
-    table = compare(training, entrants, rows, seed=seed)  # type: ignore[arg-type]
-    for quantity, part in table.groupby("quantity", sort=False):
-        typer.echo(f"\n## {quantity}\n\n{markdown(part.drop(columns='quantity'), 1)}")
+    return markdown(wide(compare(training, entrants, rows, seed=seed)), 1)

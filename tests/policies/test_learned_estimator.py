@@ -11,7 +11,7 @@ from estimator.network.features import COLUMNS
 from estimator.network.weights import SHAPES, load
 from policies.research.learned_estimator import config
 from policies.research.learned_estimator.columns import Sequence, sequences
-from policies.research.learned_estimator.compare import compare, conditions
+from policies.research.learned_estimator.compare import compare, conditions, wide
 from policies.research.learned_estimator.episodes import record
 from policies.research.learned_estimator.fit import first_weights
 from policies.research.learned_estimator.gradient import loss, loss_and_gradient
@@ -177,4 +177,5 @@ def test_training_is_deterministic_and_its_weights_are_used(tmp_path):
     table = compare(training, entrants, rows=2, steps=60, progress=False)
     assert list(table["condition"].unique()) == list(conditions(training))
     assert len(table) == 3 * len(entrants) * len(conditions(training))
+    assert len(wide(table)) == len(entrants) * len(conditions(training))
     assert NAME not in estimator.names()

@@ -12,6 +12,7 @@ from tqdm import tqdm
 
 import estimator
 from estimator.registry import specification
+from policies.evaluation.frames import groups, values, where
 from policies.research.leaderboard.closed_loop import VALUES
 from policies.research.learned_estimator.columns import RATE
 from policies.research.learned_estimator.config import Training
@@ -80,6 +81,23 @@ def compare(
             for row in scores(estimates, recordings):
                 found.append({"condition": label, "estimator": name, **row})
     return pd.DataFrame(found)
+
+
+def wide(table: pd.DataFrame) -> pd.DataFrame:
+    """A row per condition and estimator: median error, and what lies within one and two deviations [%].
+
+    Args:
+        table: From `compare`.
+    """
+    rows = []
+    for (condition, name), part in groups(table, ["condition", "estimator"]):
+        row: dict[str, Any] = {"condition": condition, "estimator": name}
+        for quantity in ("mu_c", "r", "mu_s"):
+            mine = where(part, quantity=quantity)
+            row[f"{quantity} error"] = values(mine, "median")[0]
+            row |= {f"{quantity} {key}": values(mine, key)[0] for key in ("in 1 sd", "in 2 sd")}
+        rows.append(row)
+    return pd.DataFrame(rows)
 
 
 def replay(
