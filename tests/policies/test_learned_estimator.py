@@ -12,12 +12,12 @@ from estimator.network.weights import SHAPES, load
 from policies.research.learned_estimator import config
 from policies.research.learned_estimator.columns import Sequence, sequences
 from policies.research.learned_estimator.compare import compare, conditions, wide
-from policies.research.learned_estimator.episodes import record
+from policies.research.learned_estimator.episodes import READINGS, record
 from policies.research.learned_estimator.fit import first_weights
 from policies.research.learned_estimator.gradient import loss, loss_and_gradient
 from policies.research.learned_estimator.recorder import NAME
 from policies.research.learned_estimator.run import WEIGHTS, train
-from slipgym.sensors.unloaded import READINGS
+from slipgym.sensors import unloaded
 
 LINEAR = "slipgym:slipgym/LinearSlip-v0"
 TINY = {
@@ -35,7 +35,7 @@ TINY = {
 
 @pytest.fixture(scope="module")
 def recordings():
-    return list(record("linear_slip", 4, 90, 3, disturbed=0.5, sensors="lab", randomization="lab"))
+    return list(record("linear_slip", 4, 90, 3, disturbed=0.5, sensors="lab"))
 
 
 def test_a_recording_is_what_the_estimator_gets():
@@ -58,6 +58,7 @@ def test_a_recording_is_what_the_estimator_gets():
 
 def test_the_truth_of_a_recording_begins_with_the_grasp(recordings):
     assert len(recordings) == 8
+    assert READINGS == unloaded.READINGS
     for one in recordings:
         assert np.isnan(one.truth[: READINGS - 1]).all()
         assert np.isfinite(one.truth[-60:]).all()

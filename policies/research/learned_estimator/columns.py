@@ -10,8 +10,7 @@ import numpy as np
 from estimator._numba.caching import njit
 from estimator.gru import GruParameters, initial_states
 from estimator.network.features import COLUMNS, sense
-from policies.research.learned_estimator.episodes import Recording
-from slipgym.sensors.unloaded import READINGS
+from policies.research.learned_estimator.episodes import READINGS, Recording
 
 RATE = 120.0
 """Samples per second."""

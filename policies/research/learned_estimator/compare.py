@@ -18,8 +18,9 @@ from policies.research.learned_estimator.columns import RATE
 from policies.research.learned_estimator.config import Training
 from policies.research.learned_estimator.episodes import Recording, record
 from slipgym.config import load
-from slipgym.envs.estimator_choice import LATENCY
 
+LATENCY = "velocity_delay"
+"""Parameter of an estimator: the latency of the slip velocity."""
 MOVING = 3e-3
 """Measured speed from which a sample counts as slip, with 10 mm omega for a spin [m/s]."""
 SLID = 30
