@@ -10,7 +10,7 @@ COUNT = 2**36
 """Largest counter: 18 years of samples."""
 _COUNTERS = (
     *("samples", "events_mu_s", "updates_mu_c", "updates_r", "still_samples", "changes_mu_s"),
-    *("in_a_row", "moved", "above"),
+    *("in_a_row", "moved", "above", "in_contact", "age"),
 )
 _RANGES = {
     **dict.fromkeys(_COUNTERS, (0, COUNT)),
