@@ -18,6 +18,7 @@ from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
 from estimator.augmented.deviation import EVERY, deviate
 from estimator.augmented.parameters import AdaptiveParameters
+from estimator.augmented.prefetching import prefetch
 from estimator.augmented.short_slips import learn_short_slip
 from estimator.augmented.sliding import slide, store, test_for_jump
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, TILT, ZERO
@@ -112,6 +113,7 @@ def update_batch(states, parameters, t, wrenches, twists, estimates):
         estimates: (n,) of dtype ESTIMATE, written.
     """
     for i in range(len(states)):
+        prefetch(states, i)
         p = parameters[min(i, len(parameters) - 1)]
         wrench = wrenches[i, 0], wrenches[i, 1], wrenches[i, 2], wrenches[i, 3]
         twist = twists[i, 0], twists[i, 1], twists[i, 2]
