@@ -14,6 +14,9 @@ from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZE
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
 
+ENOUGH = 1e-4
+"""Step, over the standard deviation of the state, after which no further linearisation is made."""
+
 ABSURD = 1e6
 """Size of a state, in its unit, from which a step is refused."""
 
@@ -143,6 +146,16 @@ def _shifted(y_1, y_2, y_3, h, f_n, x, proposed):
 
 
 @njit(error_model="numpy")
+def _close(before, proposed, covariance):
+    """Whether a linearisation moved every state by less than `ENOUGH` of its standard deviation."""
+    close = True
+    for j in range(STATES):
+        step = proposed[j] - before[j]
+        close &= step * step <= ENOUGH * ENOUGH * covariance[j, j]
+    return close
+
+
+@njit(error_model="numpy")
 def _times(m, x, y, z):
     """The symmetric matrix m, given as in `_inverse`, times the vector (x, y, z)."""
     return m[0] * x + m[1] * y + m[2] * z, m[1] * x + m[3] * y + m[4] * z, m[2] * x + m[4] * y + m[5] * z
@@ -201,7 +214,8 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
         direction of mu_c, positive if mu_c seems too small [-].
     """
     x, covariance = state.x, state.covariance
-    h, crossed, by_twist, proposed = matrix(3, STATES), matrix(3, STATES), matrix(3, 3), matrix(1, STATES)[0]
+    h, crossed, by_twist = matrix(3, STATES), matrix(3, STATES), matrix(3, 3)
+    proposed, before = matrix(1, STATES)[0], matrix(1, STATES)[0]
     f_n = wrench[2]
     uncertain = covariance[0, 0] > KNOWN or covariance[1, 1] > KNOWN
     for j in range(STATES):
@@ -241,8 +255,11 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
             )
         z_1, z_2, z_3 = _times(m, y_1, y_2, y_3)
         for j in range(STATES):
+            before[j] = proposed[j]
             proposed[j] = x[j] + crossed[0, j] * z_1 + crossed[1, j] * z_2 + crossed[2, j] * z_3
         _limit(proposed, state.limits)
+        if uncertain and _close(before, proposed, covariance):
+            break
     if not (math.isfinite(squared) and math.isfinite(score)):
         return False, 0.0, 0.0
     if not _reduce(x, covariance, m, crossed, proposed):
