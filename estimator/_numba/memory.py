@@ -1,4 +1,4 @@
-"""Memory for compiled functions: matrices on the stack, and lines that the processor is asked for in advance."""
+"""Memory for compiled functions: matrices on the stack, and lines that are prefetched."""
 
 from typing import Any
 
@@ -49,7 +49,7 @@ def _making(_: Any, rows: Any, columns: Any) -> Any:
 
 
 ask: Any = intrinsic(_asking)
-"""Asks the processor for the line that lies a number of bytes after the start of an array: `ask(array, offset)`.
+"""Prefetches the line that lies some bytes after the start of an array: `ask(array, offset)`.
 
 The offset may lie beyond the array, where other arrays' rows follow: nothing is read.
 """

@@ -116,7 +116,7 @@ def _post_process(own: PostProcessor, emit_dels: bool = False, extend_lifetimes:
 def _once(owner: Any) -> Any:
     """`load_additional_registries`, which numba calls whenever it finds no implementation at first.
 
-    It registers what modules of numba define, which does not change. What others define is registered elsewhere.
+    It registers what modules of numba define, which does not change. Extensions register elsewhere.
     """
     load = owner.load_additional_registries
 

@@ -92,7 +92,7 @@ def _cross(covariance, h, f_n, crossed):
 
     Args:
         covariance: (10, 10), symmetric.
-        h: (3, 10), derivatives of the measurements; those by zero error and tilt are not read, they are 1 and f_n.
+        h: (3, 10), derivatives of the measurements. Those by zero error and tilt, 1 and f_n, are not read.
         f_n: Normal force [N].
         crossed: Output (3, 10).
     """
@@ -112,7 +112,7 @@ def _cross(covariance, h, f_n, crossed):
 
 @njit(error_model="numpy")
 def _spread(h, crossed, f_n):
-    """Covariance (11, 12, 13, 22, 23, 33) of the measurements by that of the states; arguments of `_cross`."""
+    """Covariance (11, 12, 13, 22, 23, 33) of the measurements by that of the states; see `_cross`."""
     s_11, s_12, s_13, s_22, s_23, s_33 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for j in range(SIGMA + 1):
         a, b, c = crossed[0, j], crossed[1, j], crossed[2, j]
@@ -177,14 +177,16 @@ def _reduce(x, covariance, m, crossed, proposed):
         a, b, c = crossed[0, j], crossed[1, j], crossed[2, j]
         z_1, z_2, z_3 = _times(m, a, b, c)
         removed = a * z_1 + b * z_2 + c * z_3
-        sound &= (abs(proposed[j]) < ABSURD) & (0.0 <= removed) & (removed < MOST * covariance[j, j])
+        sound &= (abs(proposed[j]) < ABSURD) & (removed >= 0.0) & (removed < MOST * covariance[j, j])
         weighted[0, j], weighted[1, j], weighted[2, j] = z_1, z_2, z_3
     if not sound:
         return False
     for k in range(STATES):
         for j in range(STATES):
             covariance[j, k] -= (
-                weighted[0, j] * crossed[0, k] + weighted[1, j] * crossed[1, k] + weighted[2, j] * crossed[2, k]
+                weighted[0, j] * crossed[0, k]
+                + weighted[1, j] * crossed[1, k]
+                + weighted[2, j] * crossed[2, k]
             )
     for j in range(1, STATES):
         for k in range(j):

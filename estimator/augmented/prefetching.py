@@ -1,29 +1,26 @@
-"""Asks the processor for the memory of a state before it is needed.
+"""Prefetches the states of "adaptive".
 
-The states of thousands of fingers do not fit into a processor's caches, and its own prefetcher follows streams,
-not records of which a sample needs some lines each.
+A processor's caches do not hold the states of thousands of fingers, and a sample needs some lines of each.
 """
+
+from typing import Any
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import LINE, ask
 from estimator.augmented.state import STATE
 
 AHEAD = 4
-"""Rows between the one that is updated and the one whose head is asked for."""
+"""Rows between the one that is updated and the one whose first fields are prefetched."""
 
 
-def _place(field: str) -> int:
-    fields = STATE.fields
-    assert fields is not None
-    return fields[field][1]
-
-
-SIZE, MOTION, END, BUFFER = STATE.itemsize, _place("spring"), _place("fallen"), _place("buffer")
+_FIELDS: Any = STATE.fields
+MOTION, END, BUFFER = (_FIELDS[name][1] for name in ("spring", "fallen", "buffer"))
+SIZE = STATE.itemsize
 
 
 @njit(error_model="numpy")
 def prefetch(states, i):
-    """Asks for what a sample needs of rows i and after it, be they there or not.
+    """Prefetches what a sample needs: the first fields of a later row, the other ones of the next row.
 
     Args:
         states: (n,) of dtype STATE.
