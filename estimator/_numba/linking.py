@@ -83,10 +83,6 @@ class _ProgramLibrary(JITCodeLibrary):
         self._final_module.verify()
         self._finalize_final_module()
 
-    def _optimize_functions(self, ll_module: Any) -> None:
-        """Leaves the optimisation to the link."""
-        ll_module.data_layout = self._codegen._data_layout
-
     def _optimize_final_module(self) -> None:
         """Optimises once: numba first inlines with a pass of its own, for which nothing is left here."""
         passes, builder = self._codegen._module_pass_manager(opt=2)
