@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
 from estimator.augmented.deviation import EVERY, deviate
-from estimator.augmented.filtering import working_arrays
 from estimator.augmented.parameters import AdaptiveParameters
+from estimator.augmented.prefetching import prefetch
 from estimator.augmented.short_slips import learn_short_slip
 from estimator.augmented.sliding import slide, store, test_for_jump
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, TILT, ZERO
@@ -41,7 +41,7 @@ def filter_matrices(states: NDArray[np.void]) -> FilterMatrices:
 
 
 @njit(error_model="numpy")
-def _update(state, scratch, p, t, read, twist, estimate):
+def _update(state, p, t, read, twist, estimate):
     """One finger, one sample, with the wrench as it is read."""
     x, f_n = state.x, read[2] - state.zero_normal
     wrench = read[0], read[1], f_n, read[3] - state.zero_torque
@@ -69,7 +69,7 @@ def _update(state, scratch, p, t, read, twist, estimate):
         if state.samples % EVERY == 0:
             rest = EVERY * p.drift_at_rest * p.drift_at_rest
             state.covariance[MU, MU] = min(state.covariance[MU, MU] + rest, p.sd_log_mu_c0**2)
-        if not halted and slide(state, scratch, p):
+        if not halted and slide(state, p):
             saw_mu_c = True
             state.updates_mu_c += 1
             saw_r = omega > p.noise_gate * p.sd_spin and v_t < 3.0 * p.r_max * omega
@@ -77,7 +77,7 @@ def _update(state, scratch, p, t, read, twist, estimate):
                 state.updates_r += 1
         elif not halted:
             updates_r = state.updates_r
-            score = learn_short_slip(state, scratch, p, moves)
+            score = learn_short_slip(state, p, moves)
             if math.isfinite(score):
                 saw_mu_c, saw_r = True, state.updates_r > updates_r
                 state.updates_mu_c += 1
@@ -112,12 +112,12 @@ def update_batch(states, parameters, t, wrenches, twists, estimates):
         twists: (n, 3) v_x, v_y, omega [m/s, m/s, rad/s] at the CoP.
         estimates: (n,) of dtype ESTIMATE, written.
     """
-    scratch = working_arrays()
     for i in range(len(states)):
+        prefetch(states, i)
         p = parameters[min(i, len(parameters) - 1)]
         wrench = wrenches[i, 0], wrenches[i, 1], wrenches[i, 2], wrenches[i, 3]
         twist = twists[i, 0], twists[i, 1], twists[i, 2]
-        _update(states[i], scratch, p, t, wrench, twist, estimates[i])
+        _update(states[i], p, t, wrench, twist, estimates[i])
 
 
 SPECIFICATION = Specification("adaptive", AdaptiveParameters, initial_states, update_batch, filter_matrices)

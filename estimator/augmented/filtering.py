@@ -7,13 +7,15 @@ the covariance of the measurement by its effect on it.
 
 import math
 
-import numpy as np
-
 from estimator._numba.caching import njit
+from estimator._numba.memory import matrix
 from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict_at
 
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
+
+ENOUGH = 1e-4
+"""Step, over the standard deviation of the state, after which no further linearisation is made."""
 
 ABSURD = 1e6
 """Size of a state, in its unit, from which a step is refused."""
@@ -23,12 +25,6 @@ MOST = 1.0 - 1e-5
 
 KNOWN = 0.01
 """Variance of ln mu_c and ln r from which one linearisation is enough."""
-
-
-@njit(error_model="numpy")
-def working_arrays():
-    """Arrays that one step needs: (3, 10) derivatives and covariances, (3, 3) derivatives, (10,) states."""
-    return np.zeros((3, STATES)), np.zeros((3, STATES)), np.zeros((3, 3)), np.zeros(STATES)
 
 
 @njit(error_model="numpy")
@@ -89,14 +85,125 @@ def _quadratic(m, x, y, z):
 
 
 @njit(error_model="numpy")
-def learn(state, scratch, p, sign, wrench, twist, of_speed, of_spin):
+def _cross(covariance, h, f_n, crossed):
+    """Covariances of the states with the measurements.
+
+    The loop over the states has no sum in it and reads rows, so that it computes several states at once.
+
+    Args:
+        covariance: (10, 10), symmetric.
+        h: (3, 10), derivatives of the measurements. Those by zero error and tilt, 1 and f_n, are not read.
+        f_n: Normal force [N].
+        crossed: Output (3, 10).
+    """
+    for j in range(STATES):
+        a = covariance[ZERO, j] + f_n * covariance[TILT, j]
+        b, c = covariance[ZERO + 1, j] + f_n * covariance[TILT + 1, j], 0.0
+        for k in range(SIGMA + 1):
+            a += covariance[k, j] * h[0, k]
+            b += covariance[k, j] * h[1, k]
+            c += covariance[k, j] * h[2, k]
+        for k in range(COP, SHAPE + 1):
+            a += covariance[k, j] * h[0, k]
+            b += covariance[k, j] * h[1, k]
+            c += covariance[k, j] * h[2, k]
+        crossed[0, j], crossed[1, j], crossed[2, j] = a, b, c
+
+
+@njit(error_model="numpy")
+def _spread(h, crossed, f_n):
+    """Covariance (11, 12, 13, 22, 23, 33) of the measurements by that of the states; see `_cross`."""
+    s_11, s_12, s_13, s_22, s_23, s_33 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for j in range(SIGMA + 1):
+        a, b, c = crossed[0, j], crossed[1, j], crossed[2, j]
+        s_11, s_12, s_13 = s_11 + h[0, j] * a, s_12 + h[0, j] * b, s_13 + h[0, j] * c
+        s_22, s_23, s_33 = s_22 + h[1, j] * b, s_23 + h[1, j] * c, s_33 + h[2, j] * c
+    s_11, s_12, s_13 = s_11 + crossed[0, ZERO], s_12 + crossed[1, ZERO], s_13 + crossed[2, ZERO]
+    s_22, s_23 = s_22 + crossed[1, ZERO + 1], s_23 + crossed[2, ZERO + 1]
+    s_11 += f_n * crossed[0, TILT]
+    s_12, s_13 = s_12 + f_n * crossed[1, TILT], s_13 + f_n * crossed[2, TILT]
+    s_22, s_23 = s_22 + f_n * crossed[1, TILT + 1], s_23 + f_n * crossed[2, TILT + 1]
+    for j in range(COP, SHAPE + 1):
+        a, b, c = crossed[0, j], crossed[1, j], crossed[2, j]
+        s_11, s_12, s_13 = s_11 + h[0, j] * a, s_12 + h[0, j] * b, s_13 + h[0, j] * c
+        s_22, s_23, s_33 = s_22 + h[1, j] * b, s_23 + h[1, j] * c, s_33 + h[2, j] * c
+    return s_11, s_12, s_13, s_22, s_23, s_33
+
+
+@njit(error_model="numpy")
+def _shifted(y_1, y_2, y_3, h, f_n, x, proposed):
+    """Innovations of the proposed states, as the linear model has them at the states before."""
+    for j in range(SIGMA + 1):
+        back = x[j] - proposed[j]
+        y_1, y_2, y_3 = y_1 - h[0, j] * back, y_2 - h[1, j] * back, y_3 - h[2, j] * back
+    y_1, y_2 = y_1 - (x[ZERO] - proposed[ZERO]), y_2 - (x[ZERO + 1] - proposed[ZERO + 1])
+    y_1 -= f_n * (x[TILT] - proposed[TILT])
+    y_2 -= f_n * (x[TILT + 1] - proposed[TILT + 1])
+    for j in range(COP, SHAPE + 1):
+        back = x[j] - proposed[j]
+        y_1, y_2, y_3 = y_1 - h[0, j] * back, y_2 - h[1, j] * back, y_3 - h[2, j] * back
+    return y_1, y_2, y_3
+
+
+@njit(error_model="numpy")
+def _close(before, proposed, covariance):
+    """Whether a linearisation moved every state by less than `ENOUGH` of its standard deviation."""
+    close = True
+    for j in range(STATES):
+        step = proposed[j] - before[j]
+        close &= step * step <= ENOUGH * ENOUGH * covariance[j, j]
+    return close
+
+
+@njit(error_model="numpy")
+def _times(m, x, y, z):
+    """The symmetric matrix m, given as in `_inverse`, times the vector (x, y, z)."""
+    return m[0] * x + m[1] * y + m[2] * z, m[1] * x + m[3] * y + m[4] * z, m[2] * x + m[4] * y + m[5] * z
+
+
+@njit(error_model="numpy")
+def _reduce(x, covariance, m, crossed, proposed):
+    """Takes the proposed states and their covariance, unless a number is absurd; whether it did.
+
+    Args:
+        x: (10,) states, changed in place.
+        covariance: (10, 10), changed in place; it stays symmetric bit for bit.
+        m: Inverse of the innovations' covariance.
+        crossed: (3, 10), covariances of states and innovations.
+        proposed: (10,) new states.
+    """
+    weighted, sound = matrix(3, STATES), True
+    for j in range(STATES):
+        a, b, c = crossed[0, j], crossed[1, j], crossed[2, j]
+        z_1, z_2, z_3 = _times(m, a, b, c)
+        removed = a * z_1 + b * z_2 + c * z_3
+        sound &= (abs(proposed[j]) < ABSURD) & (removed >= 0.0) & (removed < MOST * covariance[j, j])
+        weighted[0, j], weighted[1, j], weighted[2, j] = z_1, z_2, z_3
+    if not sound:
+        return False
+    for k in range(STATES):
+        for j in range(STATES):
+            covariance[j, k] -= (
+                weighted[0, j] * crossed[0, k]
+                + weighted[1, j] * crossed[1, k]
+                + weighted[2, j] * crossed[2, k]
+            )
+    for j in range(1, STATES):
+        for k in range(j):
+            covariance[j, k] = covariance[k, j]
+    for j in range(STATES):
+        x[j] = proposed[j]
+    return True
+
+
+@njit(error_model="numpy")
+def learn(state, p, sign, wrench, twist, of_speed, of_spin):
     """Moves the states by one measurement of a slip; a step that is not finite is refused.
 
     A measurement whose squared normalised innovation exceeds `p.outlier` gets as much more noise.
 
     Args:
         state: Record with `x`, `covariance`, `limits` and `smooth`; changed in place.
-        scratch: Working arrays, from `working_arrays`.
         p: Parameters.
         sign: As in `predict`.
         wrench: f_x, f_y, f_n, tau [N, N, N, N m].
@@ -109,7 +216,8 @@ def learn(state, scratch, p, sign, wrench, twist, of_speed, of_spin):
         direction of mu_c, positive if mu_c seems too small [-].
     """
     x, covariance = state.x, state.covariance
-    h, crossed, by_twist, proposed = scratch
+    h, crossed, by_twist = matrix(3, STATES), matrix(3, STATES), matrix(3, 3)
+    proposed, before = matrix(1, STATES)[0], matrix(1, STATES)[0]
     f_n = wrench[2]
     uncertain = covariance[0, 0] > KNOWN or covariance[1, 1] > KNOWN
     for j in range(STATES):
@@ -126,30 +234,14 @@ def learn(state, scratch, p, sign, wrench, twist, of_speed, of_spin):
         )
         y_1, y_2, y_3 = wrench[0] - f_x, wrench[1] - f_y, wrench[3] - tau
         predict_at(proposed, mu, r, sign, smooth[3], smooth[0], smooth[1], smooth[2], True, h, by_twist)
-        s_11, s_12, s_13, s_22, s_23, s_33 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for j in range(STATES):
-            back = x[j] - proposed[j]
-            y_1, y_2, y_3 = y_1 - h[0, j] * back, y_2 - h[1, j] * back, y_3 - h[2, j] * back
-            row = covariance[j]
-            a, b, c = row[ZERO] + smooth[3] * row[TILT], row[ZERO + 1] + smooth[3] * row[TILT + 1], 0.0
-            for k in range(SIGMA + 1):
-                a += row[k] * h[0, k]
-                b += row[k] * h[1, k]
-                c += row[k] * h[2, k]
-            for k in range(COP, SHAPE + 1):
-                a += row[k] * h[0, k]
-                b += row[k] * h[1, k]
-                c += row[k] * h[2, k]
-            crossed[0, j], crossed[1, j], crossed[2, j] = a, b, c
-            s_11, s_12, s_13 = s_11 + h[0, j] * a, s_12 + h[0, j] * b, s_13 + h[0, j] * c
-            s_22, s_23, s_33 = s_22 + h[1, j] * b, s_23 + h[1, j] * c, s_33 + h[2, j] * c
+        y_1, y_2, y_3 = _shifted(y_1, y_2, y_3, h, smooth[3], x, proposed)
+        _cross(covariance, h, smooth[3], crossed)
+        s_11, s_12, s_13, s_22, s_23, s_33 = _spread(h, crossed, smooth[3])
         m = _inverse(s_11 + n_11, s_12 + n_12, s_13 + n_13, s_22 + n_22, s_23 + n_23, s_33 + n_33)
         current = _quadratic(m, y_1, y_2, y_3)
         if iteration == 0:
             squared = current
-            z_1 = m[0] * y_1 + m[1] * y_2 + m[2] * y_3
-            z_2 = m[1] * y_1 + m[3] * y_2 + m[4] * y_3
-            z_3 = m[2] * y_1 + m[4] * y_2 + m[5] * y_3
+            z_1, z_2, z_3 = _times(m, y_1, y_2, y_3)
             score = (h[0, MU] * z_1 + h[1, MU] * z_2 + h[2, MU] * z_3) / math.sqrt(
                 _quadratic(m, h[0, MU], h[1, MU], h[2, MU])
             )
@@ -163,27 +255,15 @@ def learn(state, scratch, p, sign, wrench, twist, of_speed, of_spin):
                 s_23 + excess * n_23,
                 s_33 + excess * n_33,
             )
-        z_1 = m[0] * y_1 + m[1] * y_2 + m[2] * y_3
-        z_2 = m[1] * y_1 + m[3] * y_2 + m[4] * y_3
-        z_3 = m[2] * y_1 + m[4] * y_2 + m[5] * y_3
+        z_1, z_2, z_3 = _times(m, y_1, y_2, y_3)
         for j in range(STATES):
+            before[j] = proposed[j]
             proposed[j] = x[j] + crossed[0, j] * z_1 + crossed[1, j] * z_2 + crossed[2, j] * z_3
         _limit(proposed, state.limits)
+        if uncertain and _close(before, proposed, covariance):
+            break
     if not (math.isfinite(squared) and math.isfinite(score)):
         return False, 0.0, 0.0
-    for j in range(STATES):
-        a, b, c = crossed[0, j], crossed[1, j], crossed[2, j]
-        removed = _quadratic(m, a, b, c)
-        if not (abs(proposed[j]) < ABSURD and 0.0 <= removed < MOST * covariance[j, j]):
-            return False, 0.0, 0.0
-    for j in range(STATES):
-        a, b, c = crossed[0, j], crossed[1, j], crossed[2, j]
-        z_1 = m[0] * a + m[1] * b + m[2] * c
-        z_2 = m[1] * a + m[3] * b + m[4] * c
-        z_3 = m[2] * a + m[4] * b + m[5] * c
-        for k in range(j, STATES):
-            value = covariance[j, k] - (z_1 * crossed[0, k] + z_2 * crossed[1, k] + z_3 * crossed[2, k])
-            covariance[j, k] = value
-            covariance[k, j] = value
-        x[j] = proposed[j]
+    if not _reduce(x, covariance, m, crossed, proposed):
+        return False, 0.0, 0.0
     return True, squared, score

@@ -10,6 +10,7 @@ later, that it did not come back as far as the pad can spring.
 import math
 
 from estimator._numba.caching import njit
+from estimator._numba.memory import matrix
 from estimator.augmented.filtering import MOST
 from estimator.augmented.sliding import settle
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, STATES, TILT, ZERO, R
@@ -67,12 +68,11 @@ def _break_away(state, p):
 
 
 @njit(error_model="numpy")
-def _take(state, scratch, p, i, speed):
+def _take(state, p, i, speed):
     """Takes the ratio of forces at sample i as a measurement of mu_c, and of r where there is a torque.
 
     Args:
         state: Changed in place.
-        scratch: Working arrays.
         p: Parameters.
         i: Number of the sample.
         speed: Largest scaled speed of the slip [m/s].
@@ -84,7 +84,7 @@ def _take(state, scratch, p, i, speed):
     f_n, x, covariance = state.wrenches[i & LAST, 2], state.x, state.covariance
     f_t = norm(f_x, f_y)
     share = direction_cosines(f_t, abs(tau) / state.r)[1] ** 2
-    h, crossed = scratch[0][0], scratch[1][0]
+    h, crossed = matrix(1, STATES)[0], matrix(1, STATES)[0]
     for j in range(STATES):
         h[j] = 0.0
     h[MU], h[R] = 1.0, share
@@ -141,12 +141,11 @@ def _stays(state, p, i):
 
 
 @njit(error_model="numpy")
-def learn_short_slip(state, scratch, p, moves):
+def learn_short_slip(state, p, moves):
     """Learns mu_c from a slip that ended some samples ago.
 
     Args:
         state: Changed in place; the newest sample is in its rings.
-        scratch: Working arrays, from `estimator.augmented.filtering.working_arrays`.
         p: Parameters.
         moves: Whether the newest velocity moved.
 
@@ -172,4 +171,4 @@ def learn_short_slip(state, scratch, p, moves):
         twist = state.twists[k & LAST]
         speed = max(speed, norm(norm(twist[0], twist[1]), state.r * twist[2]))
     state.first, state.fallen = -1, i
-    return _take(state, scratch, p, i, speed)
+    return _take(state, p, i, speed)

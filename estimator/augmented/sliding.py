@@ -170,7 +170,7 @@ def _follow(state, p, twist, f_n, begins):
 
 
 @njit(error_model="numpy")
-def slide(state, scratch, p):
+def slide(state, p):
     """Learns from the newest instant around which the contact slid; whether it did."""
     k = state.samples
     i = k - 2 - state.delay
@@ -201,7 +201,7 @@ def slide(state, scratch, p):
     state.covariance[R, R] = min(state.covariance[R, R] + walk, p.sd_log_r0**2)
     for j in range(ZERO, SHAPE):
         state.covariance[j, j] += (p.error_drift * state.x[j]) ** 2
-    learned, squared, score = learn(state, scratch, p, state.sign, wrench, twist, of_speed, of_spin)
+    learned, squared, score = learn(state, p, state.sign, wrench, twist, of_speed, of_spin)
     for j in range(3):
         state.smooth[j] += SMOOTHING * (twist[j] - state.smooth[j])
     state.smooth[3] += SMOOTHING * (wrench[2] - state.smooth[3])

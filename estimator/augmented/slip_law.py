@@ -127,7 +127,9 @@ def predict_at(x, mu, r, sign, f_n, v_x, v_y, omega, complete, by_state, by_twis
         by_state[0, SHAPE], by_state[1, SHAPE] = dry * phi_shape * u_x, dry * phi_shape * u_y
         by_state[2, SHAPE] = dry * psi_shape * r_2 * omega
         # the torque is measured about the assumed centre of pressure
-        for j in (R, SIGMA, COP, COP + 1, SHAPE):
+        for j in range(R, SIGMA + 1):
+            by_state[2, j] += c_x * by_state[1, j] - c_y * by_state[0, j]
+        for j in range(COP, SHAPE + 1):
             by_state[2, j] += c_x * by_state[1, j] - c_y * by_state[0, j]
         by_state[2, COP] += MILLIMETRE * f_y
         by_state[2, COP + 1] -= MILLIMETRE * f_x

@@ -1,59 +1,71 @@
 """State of the "adaptive" estimator, and its start."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
 from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R
-from estimator.augmented.timing import CANDIDATES, RING
+from estimator.augmented.timing import CANDIDATES, NEWEST, RING
 from estimator.stick_slip import EVENT_STATE, STICK_SLIP_STATE, start
+
+_IN_CONTACT: list[tuple[Any, ...]] = [
+    ("elapsed", np.float64),
+    ("in_a_row", np.int64),
+    ("moved", np.int64),
+    ("beyond", np.int64),
+    ("first", np.int64),
+    ("quiet", np.int64),
+    ("delay", np.int64),
+    ("sign", np.float64),
+    ("unloaded", np.bool_),
+    ("touched", np.bool_),
+    ("signed", np.bool_),
+    ("zero_normal", np.float64),
+    ("zero_torque", np.float64),
+    ("timing", np.float64),
+    ("offset", np.float64),
+    ("sd_lever", np.float64),
+    ("variance_mu_s", np.float64),
+    ("common_mu_s", np.float64),
+    ("above", np.int64),
+    ("x", np.float64, (STATES,)),
+    ("products", np.float64, (CANDIDATES,)),
+    ("energies", np.float64, (2,)),
+    ("forces", np.float32, (NEWEST, 3)),
+]
+"""Used at every sample."""
+
+_IN_MOTION: list[tuple[Any, ...]] = [
+    ("spring", np.float64),
+    ("repeated", np.int64),
+    ("moved_by", np.float64, (3,)),
+    ("lowest", np.float64, (3,)),
+    ("highest", np.float64, (3,)),
+    ("before", np.float64, (3,)),
+    ("slides", np.int64),
+    ("slid", np.int64),
+    ("misfit", np.float64),
+    ("leverage", np.float64),
+    ("rise", np.float64),
+    ("fall", np.float64),
+    ("smooth", np.float64, (4,)),
+    ("limits", np.float64, (4,)),
+    ("covariance", np.float64, (STATES, STATES)),
+]
+"""Used while the contact moves."""
 
 STATE = np.dtype(
     [
         *STICK_SLIP_STATE,
-        ("elapsed", np.float64),
-        ("in_a_row", np.int64),
-        ("moved", np.int64),
-        ("repeated", np.int64),
-        ("beyond", np.int64),
-        ("first", np.int64),
-        ("quiet", np.int64),
-        ("spring", np.float64),
-        ("signed", np.bool_),
-        ("fallen", np.int64),
-        ("slides", np.int64),
-        ("slid", np.int64),
-        ("delay", np.int64),
-        ("sign", np.float64),
-        ("unloaded", np.bool_),
-        ("touched", np.bool_),
-        ("zero_normal", np.float64),
-        ("variance_normal", np.float64),
-        ("zero_torque", np.float64),
-        ("variance_torque", np.float64),
-        ("timing", np.float64),
-        ("offset", np.float64),
-        ("misfit", np.float64),
-        ("sd_lever", np.float64),
-        ("variance_mu_s", np.float64),
-        ("common_mu_s", np.float64),
-        ("above", np.int64),
-        ("leverage", np.float64),
-        ("rise", np.float64),
-        ("fall", np.float64),
-        ("products", np.float64, (CANDIDATES,)),
-        ("energies", np.float64, (2,)),
-        ("smooth", np.float64, (4,)),
-        ("x", np.float64, (STATES,)),
-        ("limits", np.float64, (4,)),
-        ("forces", np.float32, (RING, 3)),
+        *_IN_CONTACT,
         ("wrenches", np.float32, (RING, 4)),
         ("twists", np.float32, (RING, 3)),
-        ("covariance", np.float64, (STATES, STATES)),
-        ("moved_by", np.float64, (3,)),
-        ("lowest", np.float64, (3,)),
-        ("highest", np.float64, (3,)),
-        ("before", np.float64, (3,)),
+        *_IN_MOTION,
+        ("fallen", np.int64),
+        ("variance_normal", np.float64),
+        ("variance_torque", np.float64),
         *EVENT_STATE,
     ],
     align=True,

@@ -26,6 +26,9 @@ QUIET = 300.0
 RING = 16
 """Samples that are kept, a power of two."""
 LAST = RING - 1
+NEWEST = 8
+"""Changes of the wrench that are kept, for as many candidates and a power of two."""
+_LAST = NEWEST - 1
 
 
 @njit(error_model="numpy")
@@ -36,13 +39,13 @@ def _force_change(wrenches, forces, scale, k):
 
     Args:
         wrenches: (RING, 4) ring of f_x, f_y, f_n, tau.
-        forces: (RING, 3) ring of the changes of f_x, f_y, tau / scale [N].
+        forces: (NEWEST, 3) ring of the changes of f_x, f_y, tau / scale [N].
         scale: Length by which torque and spin are made comparable with force and speed [m].
         k: Number of the newest wrench.
     """
     a, b = wrenches[k & LAST], wrenches[(k - 1) & LAST]
     c, d = wrenches[(k - 2) & LAST], wrenches[(k - 3) & LAST]
-    change = forces[(k - 1) & LAST]
+    change = forces[(k - 1) & _LAST]
     change[0] = 0.25 * (a[0] + b[0] - c[0] - d[0])
     change[1] = 0.25 * (a[1] + b[1] - c[1] - d[1])
     change[2] = 0.25 * (a[3] + b[3] - c[3] - d[3]) / scale
@@ -54,8 +57,7 @@ def correlate(state, p):
 
     Args:
         state: Record with `samples`, `in_a_row`, the rings `wrenches`, `twists` and `forces`, the sums
-        `products`
-            and `energies`, `sign`; `delay`, `offset` and `timing` are the result.
+            `products` and `energies`, `sign`; `delay`, `offset` and `timing` are the result.
         p: Parameters.
     """
     k, scale = state.samples, p.r_max
@@ -65,28 +67,28 @@ def correlate(state, p):
     a, b, c = state.twists[(k - 1) & LAST], state.twists[(k - 2) & LAST], state.twists[(k - 3) & LAST]
     x, y = a[0] - 2.0 * b[0] + c[0], a[1] - 2.0 * b[1] + c[1]
     z = (a[2] - 2.0 * b[2] + c[2]) * scale
-    newest, best = state.forces[(k - 1) & LAST], 0
+    newest = state.forces[(k - 1) & _LAST]
     force = newest[0] * newest[0] + newest[1] * newest[1] + newest[2] * newest[2]
     speed = x * x + y * y + z * z
     if not (force < HUGE and speed < HUGE):  # so that no sum of products overflows
         return
-    products, energies = state.products, state.energies
-    energies[0] = p.timing_memory * energies[0] + force
-    energies[1] = p.timing_memory * energies[1] + speed
+    products, energies, forces = state.products, state.energies, state.forces
+    memory, sign = p.timing_memory, state.sign
+    energies[0] = of_force = memory * energies[0] + force
+    energies[1] = of_speed = memory * energies[1] + speed
+    largest = -math.inf
     for n in range(CANDIDATES):
-        change = state.forces[(k - 2 - EARLIEST - n) & LAST]
-        product = x * change[0] + y * change[1] + z * change[2]
-        products[n] = p.timing_memory * products[n] - state.sign * product
-        if products[n] > products[best]:
-            best = n
-    noise_of_force = QUIET * 0.75 * p.sd_force * p.sd_force
-    noise_of_speed = QUIET * 18.0 * p.sd_speed * p.sd_speed
-    of_both = math.sqrt((energies[0] + noise_of_force) * (energies[1] + noise_of_speed))
-    state.timing = products[best] / of_both
-    if (
-        products[best] > p.timing_gate * of_both
-        and products[best] > CLEARLY * products[state.delay - EARLIEST]
-    ):
+        change = forces[(k - 2 - EARLIEST - n) & _LAST]
+        products[n] = memory * products[n] - sign * (x * change[0] + y * change[1] + z * change[2])
+        largest = max(largest, products[n])
+    of_force += QUIET * 0.75 * p.sd_force * p.sd_force
+    of_speed += QUIET * 18.0 * p.sd_speed * p.sd_speed
+    of_both = math.sqrt(of_force * of_speed)
+    state.timing = largest / of_both
+    if largest > p.timing_gate * of_both and largest > CLEARLY * products[state.delay - EARLIEST]:
+        best = 0
+        while products[best] < largest:
+            best += 1
         state.delay = EARLIEST + best
     at = state.delay - EARLIEST
     state.offset = 0.5

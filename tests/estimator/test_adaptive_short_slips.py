@@ -38,6 +38,20 @@ def test_short_slips_teach_mu_c_whatever_the_delay(short_slips, mu_c, delay, jit
     assert np.median(np.abs(e["mu_c"] / mu_c - 1.0) * mu_c / e["sd_mu_c"]) < 1.0
 
 
+def test_a_short_slip_of_one_finger_does_not_affect_the_next_row(short_slips, planar_slip):
+    short, long = short_slips(mu_c=0.3, mu_s=0.4), planar_slip(1.5)
+    alone, pair = estimator.make_batch("adaptive", 1), estimator.make_batch("adaptive", 2)
+    for k, t in enumerate(short.t.tolist()):
+        i = k % len(long.t)
+        for batch, rows in ((alone, (long,)), (pair, (short, long))):
+            at = [k if row is short else i for row in rows]
+            wrenches = np.stack([row.wrenches[0, j] for row, j in zip(rows, at, strict=True)])
+            twists = np.stack([row.twists[0, j] for row, j in zip(rows, at, strict=True)])
+            batch.update(t, wrenches, twists)
+        assert pair.states[1].tobytes() == alone.states[0].tobytes(), t
+    assert pair.estimates["updates_mu_c"][0] > 5
+
+
 def test_a_pad_that_springs_does_not_slip():
     """A load that swings on a spring of 5 N/mm, 3 to 40 Hz, below static friction: nothing is learned."""
     t = np.arange(1, 601) / RATE

@@ -1,0 +1,60 @@
+"""Memory for compiled functions: matrices on the stack, and lines that are prefetched."""
+
+from typing import Any
+
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.extending import intrinsic
+
+LINE = 64
+"""Bytes of a cache line."""
+_READ, _SECOND_LEVEL, _DATA = 0, 2, 1
+
+
+def _asking(_: Any, array: Any, offset: Any) -> Any:
+    """Type and code of a function that prefetches the line `offset` bytes into an array, or beyond it."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        start = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+        byte, number = ir.IntType(8).as_pointer(), ir.IntType(32)
+        place = builder.gep(builder.bitcast(start, byte), [arguments[1]])
+        kind = ir.FunctionType(ir.VoidType(), [byte, number, number, number])
+        prefetch = builder.module.declare_intrinsic("llvm.prefetch", [byte], kind)
+        builder.call(prefetch, [place, *(number(value) for value in (_READ, _SECOND_LEVEL, _DATA))])
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp), generate
+
+
+def _making(_: Any, rows: Any, columns: Any) -> Any:
+    """Type and code of a function that makes a matrix on the stack; both numbers are literals."""
+    kind = types.Array(types.float64, 2, "C")
+    m, n = rows.literal_value, columns.literal_value
+
+    def generate(context: Any, builder: Any, signature: Any, _: Any) -> Any:
+        memory = cgutils.alloca_once(builder, ir.ArrayType(ir.DoubleType(), m * n))
+        memory.align = LINE
+        array, whole = context.make_array(kind)(context, builder), context.get_value_type(types.intp)
+        context.populate_array(
+            array,
+            data=builder.bitcast(memory, array.data.type),
+            shape=cgutils.pack_array(builder, [whole(m), whole(n)]),
+            strides=cgutils.pack_array(builder, [whole(8 * n), whole(8)]),
+            itemsize=whole(8),
+            meminfo=None,
+        )
+        return array._getvalue()
+
+    return kind(rows, columns), generate
+
+
+ask: Any = intrinsic(_asking)
+"""Prefetches the line that lies some bytes after the start of an array: `ask(array, offset)`.
+
+The offset may lie beyond the array, where other arrays' rows follow: nothing is read.
+"""
+matrix: Any = intrinsic(prefer_literal=True)(_making)
+"""A matrix of float64, not initialised, for the duration of a call: `matrix(rows, columns)`, both constants.
+
+It costs no allocation, and the compiler knows that nothing else lies in its memory.
+"""
