@@ -25,6 +25,9 @@ CHANGED = 8.0
 LOAD_MAX, TWIST_MAX = 1e4, 1e3
 """No gripper sees so large a wrench [N, N m] or twist [m/s, rad/s]: nothing is learned from it."""
 
+RECENT = 3
+"""Newest samples whose displacement must exceed what the pad springs: it swings on after a slip has ended."""
+
 BEFORE = 8
 """Samples before a motion whose forces count: the velocity is late."""
 
@@ -83,7 +86,39 @@ def _shear(state, p, moves, elapsed):
         else:  # against the force: it springs back
             state.spring = min(SAFETY * math.sqrt(square / max(spring, 1e-9)), p.compliance_max)
             beyond = False
-    state.beyond = state.beyond + 1 if beyond else 0
+    state.beyond = state.beyond + 1 if beyond and _goes_on(state, p, r, elapsed) else 0
+
+
+@njit(error_model="numpy")
+def _goes_on(state, p, r, elapsed):
+    """Whether the newest samples alone are further than the pad springs by the forces since shortly before.
+
+    Otherwise the slip has ended and the object swings on the pad. Where it swings back against the force, it
+    shows how soft the pad is.
+    """
+    k, square, spring, power = state.samples, 0.0, 0.0, 0.0
+    count = min(state.moved, RECENT)
+    for j in range(3):
+        scale, axis = (1.0, j) if j < 2 else (r, 3)
+        moved, force = 0.0, 0.0
+        for i in range(k - count + 1, k + 1):
+            moved += state.twists[i & LAST, j] * elapsed
+            force += state.wrenches[i & LAST, axis]
+        lowest, highest = math.inf, -math.inf
+        for i in range(k - min(count + BEFORE, state.in_a_row) + 1, k + 1):
+            value = state.wrenches[i & LAST, axis]
+            lowest, highest = min(lowest, value), max(highest, value)
+        noise = p.sd_force if j < 2 else p.sd_torque
+        square += (moved * scale) ** 2
+        spring += (max(highest - lowest - RANGE * noise, 0.0) / scale) ** 2
+        power += moved * force
+    if square <= state.spring * state.spring * spring:
+        return False
+    if power * state.sign >= 0.0:
+        return True
+    if square <= p.compliance_max * p.compliance_max * spring:
+        state.spring = min(SAFETY * math.sqrt(square / max(spring, 1e-9)), p.compliance_max)
+    return False
 
 
 @njit(error_model="numpy")
