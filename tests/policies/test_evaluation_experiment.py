@@ -1,6 +1,7 @@
 import pytest
 import yaml
 
+import policies
 from policies.evaluation import experiment_names, load_experiment, narrowed
 from policies.evaluation.plan import plan
 
@@ -8,7 +9,10 @@ from policies.evaluation.plan import plan
 def test_the_experiments_that_come_with_slipgym_load():
     assert {"demo", "hold", "linear_slip"} <= set(experiment_names())
     for name in experiment_names():
-        assert load_experiment(name).name == name
+        experiment = load_experiment(name)
+        assert experiment.name == name
+        for chosen in experiment.policies:  # an old name of a parameter would warn, which is an error here
+            policies.load(chosen.name, **chosen.parameters)
 
 
 def test_linear_slip_has_160_trials_for_each_friction_choice():
