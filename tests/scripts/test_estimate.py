@@ -49,7 +49,7 @@ def test_help_teaches(tmp_path, script, words):
     ("arguments", "message"),
     [
         (["nowhere.csv"], "no such file"),
-        ([SHIPPED, "--estimator", "rlss"], "unknown estimator 'rlss'; valid: adaptive, disc, gru, joint, rls"),
+        ([SHIPPED, "--estimator", "rlss"], "unknown estimator 'rlss'; valid: adaptive, disc, gru, joint"),
         ([SHIPPED, "--set", "lambda=0.9"], "unknown parameter lambda"),
         ([SHIPPED, "--set", "n_a"], "must be name=value"),
         ([SHIPPED, "--columns", "nowhere.yaml"], "nowhere.yaml"),
