@@ -13,12 +13,12 @@ everywhere = pytest.mark.parametrize("name", estimator.names())
 
 
 def signals(seed):
-    """Stick, slip, spin, loss of contact: wrenches (samples, fingers, 4) and twists (samples, fingers, 3)."""
+    """Stick, slips too long for a spring, spin, loss of contact: wrenches (samples, fingers, 4), twists (…, 3)."""
     rng = np.random.default_rng(seed)
     wrenches = rng.normal(scale=(1.0, 1.0, 1.0, 0.02), size=(SAMPLES, FINGERS, 4))
     wrenches[..., 2] = np.maximum(4.0 + np.cumsum(0.5 * wrenches[..., 2], axis=0), 0.0) % 9.0
     moving = np.repeat(rng.random((SAMPLES // 8 + 1, FINGERS, 3)) < 0.5, 8, axis=0)[:SAMPLES]
-    return wrenches, np.where(moving, rng.normal(scale=(0.01, 0.01, 1.0), size=(SAMPLES, FINGERS, 3)), 0.0)
+    return wrenches, np.where(moving, rng.normal(scale=(0.05, 0.05, 5.0), size=(SAMPLES, FINGERS, 3)), 0.0)
 
 
 @everywhere
