@@ -13,7 +13,7 @@ everywhere = pytest.mark.parametrize("name", estimator.names())
 
 
 def signals(seed):
-    """Stick, slips too long for a spring, spin, loss of contact: wrenches (samples, fingers, 4), twists (…, 3)."""
+    """Stick, slips longer than a spring, spin, no contact: wrenches (samples, fingers, 4), twists (…, 3)."""
     rng = np.random.default_rng(seed)
     wrenches = rng.normal(scale=(1.0, 1.0, 1.0, 0.02), size=(SAMPLES, FINGERS, 4))
     wrenches[..., 2] = np.maximum(4.0 + np.cumsum(0.5 * wrenches[..., 2], axis=0), 0.0) % 9.0
