@@ -176,24 +176,31 @@ def waited(process, *, until=lambda: False):
     return time.monotonic() - start
 
 
+def evaluations(path) -> int:
+    """Lines of the killed run's curve."""
+    return sum(len(curve.read_bytes().splitlines()) for curve in path.glob("killed/*/estimated__2/curve.csv"))
+
+
 @pytest.mark.slow
 def test_ten_kills_at_random_moments_lose_nothing_but_an_interval(small, tmp_path):
     (tmp_path / "mine.yaml").write_text(files.text(small(budget=9600)))
     begin = ("mine.yaml", "--seeds", "2", "--output")
     process = script(*begin, "whole", cwd=tmp_path)
     to_first = waited(process, until=lambda: any(tmp_path.glob("whole/*/*/curve.csv")))
-    to_end = to_first + waited(process)
+    waited(process)
     assert process.returncode == 0, (tmp_path / "errors").read_text()
     (whole,) = tmp_path.glob("whole/*/estimated__2")
     rows = folder.read_curve(whole)
     assert len(rows) == 301
 
-    random, moments, steps = np.random.default_rng(0), [], 0
-    while len(moments) < 10:
+    random, kills, steps = np.random.default_rng(0), 0, 0
+    while kills < 10:
         begun = list(tmp_path.glob("killed/*/estimated__2/run.yaml"))
         process = script(*(("--resume", begun[0].parent) if begun else (*begin, "killed")), cwd=tmp_path)
-        moments.append(random.uniform(0.5 * to_first, to_first + 0.15 * (to_end - to_first)))
-        time.sleep(moments[-1])
+        kills, more = kills + 1, max(int(random.integers(-5, 20)), 0)  # evaluations; of 300 at most 200
+        goal = evaluations(tmp_path) + more
+        waited(process, until=lambda goal=goal: evaluations(tmp_path) >= goal)
+        time.sleep(random.uniform(0.0, 0.1 if more else to_first))
         process.send_signal(signal.SIGKILL)
         assert process.wait() == -signal.SIGKILL, (tmp_path / "errors").read_text()
         for killed in tmp_path.glob("killed/*/estimated__2"):
