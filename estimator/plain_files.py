@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import re
 import stat
 from collections.abc import Iterator
@@ -26,9 +27,16 @@ def check_regular(path: Path) -> None:
     """Raise ValueError if something is at a path that is no regular file: a folder, a pipe, a device.
 
     Raises:
-        FileNotFoundError: Nothing is there.
+        FileNotFoundError: Nothing is there, or nothing can be: the name is too long.
     """
-    if not stat.S_ISREG(path.stat().st_mode):
+    try:
+        mode = path.stat().st_mode
+    except OSError as error:
+        if error.errno != errno.ENAMETOOLONG:
+            raise
+        text = str(path)
+        raise FileNotFoundError(f"{text[:80]}…: a path of {len(text)} characters is too long") from None
+    if not stat.S_ISREG(mode):
         raise ValueError(f"{path}: is no regular file")
 
 

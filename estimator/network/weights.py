@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from estimator.network.cell import HIDDEN, OUTPUTS, TARGETS
 from estimator.network.features import COLUMNS
+from estimator.plain_files import check_regular
 
 OWN = Path(__file__).with_name("gru.npz")
 """The weights that come with the package; docs/learned_estimator.md says how they were made."""
@@ -57,10 +58,10 @@ def _loaded(path: Path) -> Tensors:
 
 
 def _read(path: Path) -> Tensors:
-    if not path.exists():
-        raise FileNotFoundError(f"weights = {os.fspath(path)!r}: there is no such file")
-    if not path.is_file():
-        raise ValueError(f"{path}: is no regular file")
+    try:
+        check_regular(path)
+    except FileNotFoundError:
+        raise FileNotFoundError(f"weights = {os.fspath(path)[:80]!r}: there is no such file") from None
     with path.open("rb") as stream:
         data = stream.read(LIMIT + 1)
     if len(data) > LIMIT:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from slipgym import config
-from slipgym.config import files
+from slipgym.config import files, load
 from slipgym.config.load import _files
 
 
@@ -146,3 +146,8 @@ def test_mappings_that_hold_themselves_are_refused():
         config.load_randomization({"friction_scale": [0.0] * 30_000})
     with pytest.raises(ValueError, match=r"object\.mass = a very large int"):
         config.load({"object": {"mass": 10**5000}})
+
+
+def test_a_name_that_no_file_can_have_is_missing():
+    with pytest.raises(FileNotFoundError, match="a path of 1000 characters is too long"):
+        load("x" * 1000)
