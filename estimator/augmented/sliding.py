@@ -42,6 +42,13 @@ ALIKE = 10.0
 
 
 @njit(error_model="numpy")
+def _range(p, j, change, r):
+    """Range of force j, or of the torque over r, less that of noise: what can have sprung the pad [N]."""
+    noise, scale = (p.sd_force, 1.0) if j < 2 else (p.sd_torque, r)
+    return max(change - RANGE * noise, 0.0) / scale
+
+
+@njit(error_model="numpy")
 def _shear(state, p, moves, elapsed):
     """Compares how far the object has moved with how far the pad can have sprung.
 
@@ -76,9 +83,7 @@ def _shear(state, p, moves, elapsed):
         scale = 1.0 if j < 2 else r
         square += (state.moved_by[j] * scale) ** 2
         power += state.moved_by[j] * (state.lowest[j] + state.highest[j])
-        noise = p.sd_force if j < 2 else p.sd_torque
-        change = max(state.highest[j] - state.lowest[j] - RANGE * noise, 0.0)
-        spring += (change / scale) ** 2
+        spring += _range(p, j, state.highest[j] - state.lowest[j], r) ** 2
     beyond = square > state.spring * state.spring * spring and state.in_a_row >= MARGIN
     if beyond and (power * state.sign < 0.0 or not state.signed):
         if square > p.compliance_max * p.compliance_max * spring:  # no pad springs so far
@@ -108,9 +113,8 @@ def _goes_on(state, p, r, elapsed):
         for i in range(k - min(count + BEFORE, state.in_a_row) + 1, k + 1):
             value = state.wrenches[i & LAST, axis]
             lowest, highest = min(lowest, value), max(highest, value)
-        noise = p.sd_force if j < 2 else p.sd_torque
         square += (moved * scale) ** 2
-        spring += (max(highest - lowest - RANGE * noise, 0.0) / scale) ** 2
+        spring += _range(p, j, highest - lowest, r) ** 2
         power += moved * force
     if square <= state.spring * state.spring * spring:
         return False
@@ -141,8 +145,7 @@ def settle(state, p):
         now = 0.5 * (state.wrenches[k & LAST, axis] + state.wrenches[(k - 1) & LAST, axis])
         square += (state.moved_by[j] * scale) ** 2
         power += state.moved_by[j] * (now + state.before[j])
-        noise = RANGE * (p.sd_force if j < 2 else p.sd_torque)
-        spring += (max(abs(now - state.before[j]) - noise, 0.0) / scale) ** 2
+        spring += _range(p, j, abs(now - state.before[j]), r) ** 2
     least = p.compliance_max * math.sqrt(spring) + RANGE * p.sd_speed * p.sample_time
     if square > least * least and state.in_a_row > LAST:
         _direct(state, p, power)

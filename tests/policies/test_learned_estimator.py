@@ -17,7 +17,6 @@ from policies.research.learned_estimator.fit import first_weights
 from policies.research.learned_estimator.gradient import loss, loss_and_gradient
 from policies.research.learned_estimator.recorder import NAME
 from policies.research.learned_estimator.run import WEIGHTS, train
-from slipgym.sensors import unloaded
 
 LINEAR = "slipgym:slipgym/LinearSlip-v0"
 TINY = {
@@ -58,7 +57,6 @@ def test_a_recording_is_what_the_estimator_gets():
 
 def test_the_truth_of_a_recording_begins_with_the_grasp(recordings):
     assert len(recordings) == 8
-    assert READINGS == unloaded.READINGS
     for one in recordings:
         assert np.isnan(one.truth[: READINGS - 1]).all()
         assert np.isfinite(one.truth[-60:]).all()

@@ -12,10 +12,9 @@ import numpy as np
 import policies
 from policies.research.leaderboard.closed_loop import VALUES, present
 from policies.research.learned_estimator.recorder import NAME, ROOM
+from slipgym.sensors.unloaded import READINGS
 from slipgym.tasks import find
 
-READINGS = 24
-"""Readings of the open gripper at the start of an episode."""
 CHANGE = 0.05
 """Chance in a control step that a random part of the actions changes [-]."""
 
