@@ -119,7 +119,7 @@ def pressure(effort: Effort) -> Iterator[Scenario]:
 def latency(effort: Effort) -> Iterator[Scenario]:
     """Stick-slip in wood with another age of the velocity, known to the estimator, and once not known."""
     for samples, assumed in ((0, 0), (1, 1), (2, 2), (3, 3), (2, 1)):
-        name = f"{samples}" if assumed == samples else f"{samples}, told {assumed}"
+        name = f"{samples}" if assumed == samples else f"{samples}, set to {assumed}"
         runs = tuple(late(trace, samples, effort) for trace in closed_loop("wood", effort.trials))
         yield Scenario("latency" if assumed == samples else "wrong latency", name, runs, assumed)
 
