@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from policies.registry import Policy
 
 
@@ -44,3 +46,37 @@ def steps(env: Any, policy: Policy, observation: Any) -> Iterator[Step]:
         step = Step(*env.step(action))
         observation, over = step.observation, step.over
         yield step
+
+
+class BatchStep(NamedTuple):
+    """What the `step` of a vector environment returned; arrays have a leading axis of n."""
+
+    observations: Any
+    """The observations after the step: an array, or a mapping of groups."""
+    rewards: np.ndarray
+    """Rewards of the step, (n,)."""
+    infos: Mapping[str, Any]
+    """See `slipgym.envs.infos`."""
+    running: np.ndarray
+    """Whether the first episode of each environment was running before the step, (n,) bool."""
+    ended: np.ndarray
+    """Whether it ended with the step, (n,) bool."""
+
+
+def batch_steps(envs: Any, policy: Policy, observations: Any) -> Iterator[BatchStep]:
+    """Acts with a policy, without exploration, until the first episode of every environment has ended.
+
+    Args:
+        envs: A `SlipVectorEnv` that was just reset, which begins the next episodes by itself.
+        policy: Who acts; its memory starts fresh.
+        observations: What `reset` returned.
+    """
+    state, begun = None, np.ones(envs.num_envs, dtype=bool)
+    running = np.ones(envs.num_envs, dtype=bool)
+    while running.any():
+        actions, state = policy.predict(observations, state, begun)
+        observations, rewards, terminated, truncated, infos = envs.step(actions)
+        ended = running & (terminated | truncated)
+        yield BatchStep(observations, rewards, infos, running, ended)
+        running = running & ~ended
+        begun = np.zeros(envs.num_envs, dtype=bool)

@@ -17,6 +17,7 @@ from tqdm import tqdm
 from policies.controllers.constant_force import ConstantForcePolicy
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.plan import seed
+from policies.stepping import batch_steps
 from slipgym.tasks import find
 
 CANDIDATES = 24
@@ -95,16 +96,11 @@ def _run(
     policy = ConstantForcePolicy(force, dict(experiment.config))
     seeds, options = zip(*rows, strict=True)
     observations, _ = envs.reset(seed=list(seeds), options={"rows": list(options)})
-    n = len(rows)
-    running, reward = np.ones(n, bool), np.zeros(n)
-    success, dropped = np.zeros(n, bool), np.zeros(n, bool)
-    actions, _ = policy.predict(observations)
-    while running.any():
-        _, rewards, terminated, truncated, infos = envs.step(actions)
-        reward += np.where(running, rewards, 0.0)
-        ended = running & (terminated | truncated)
-        success[ended], dropped[ended] = infos["is_success"][ended], infos["dropped"][ended]
-        running &= ~ended
+    reward, success, dropped = np.zeros(len(rows)), np.zeros(len(rows), bool), np.zeros(len(rows), bool)
+    for step in batch_steps(envs, policy, observations):
+        reward += np.where(step.running, step.rewards, 0.0)
+        success[step.ended] = step.infos["is_success"][step.ended]
+        dropped[step.ended] = step.infos["dropped"][step.ended]
     return Outcomes(force, success, dropped, reward)
 
 

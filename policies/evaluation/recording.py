@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from policies.controllers.base import ObservationIndex
+
+INFOS = (
+    "time", "slip", "reference", "grip_force", "contact_wrench", "true", "estimated_per_finger", "is_success",
+    "dropped",
+)  # fmt: skip
+"""Entries of an info that are kept."""
 
 
 @dataclass(frozen=True)
@@ -54,45 +60,56 @@ class Recording:
 
 
 class Recorder:
-    """Collects an episode.
+    """Collects the episodes of n environments, step by step.
 
     Args:
         index: Where the columns of the observation are.
+        drawn: What the randomization drew for each environment, n mappings.
     """
 
-    def __init__(self, index: ObservationIndex) -> None:
+    def __init__(self, index: ObservationIndex, drawn: Sequence[Mapping[str, Any]]) -> None:
         goals = (index.get(name) for name in ("distance", "angle"))
         self._goal = next((goal for goal in goals if goal is not None), None)
-        self._drawn: Mapping[str, Any] = {}
-        self._steps: list[tuple[np.ndarray, float, Mapping[str, Any]]] = []
+        self._drawn = drawn
+        self._steps: list[dict[str, np.ndarray]] = []
+        self._lengths = np.zeros(len(drawn), dtype=np.int64)
 
-    def begin(self, info: Mapping[str, Any]) -> None:
-        """Keeps what `reset` said."""
-        self._drawn = info.get("drawn", {})
+    def add(
+        self, observations: np.ndarray, rewards: np.ndarray, infos: Mapping[str, Any], running: np.ndarray
+    ) -> None:
+        """Keeps what `step` returned.
 
-    def add(self, observation: np.ndarray, reward: float, info: Mapping[str, Any]) -> None:
-        """Keeps what `step` returned."""
-        self._steps.append((observation, reward, info))
+        Args:
+            observations: (n, m).
+            rewards: (n,).
+            infos: Name -> array (n, ...).
+            running: Whether each environment's episode was still running before the step, (n,) bool.
+        """
+        goals = np.zeros(len(rewards)) if self._goal is None else observations[:, self._goal]
+        self._steps.append({"reward": rewards, "goal": goals, **{name: infos[name] for name in INFOS}})
+        self._lengths[running] = len(self._steps)
 
-    def finish(self) -> Recording:
-        """The whole episode, once it is over."""
-        observations, rewards, infos = zip(*self._steps, strict=True)
-        last = infos[-1]
-        wrenches = np.array([info["contact_wrench"] for info in infos])
-        true = np.array([info["true"] for info in infos])
+    def finish(self) -> list[Recording]:
+        """The whole episodes, once all are over."""
+        series = {name: np.array([step[name] for step in self._steps]) for name in ("reward", "goal", *INFOS)}
+        return [self._recording(i, series) for i in range(len(self._drawn))]
+
+    def _recording(self, i: int, series: Mapping[str, np.ndarray]) -> Recording:
+        own = {name: values[: self._lengths[i], i].copy() for name, values in series.items()}
+        true = own["true"]
         return Recording(
-            time=np.array([info["time"] for info in infos]),
-            slip=np.array([info["slip"] for info in infos]),
-            reference=np.array([info["reference"] for info in infos]),
-            grip_force=np.array([info["grip_force"] for info in infos]),
-            needed_force=needed_force(wrenches, true),
-            estimated=np.array([info["estimated_per_finger"] for info in infos]),
-            true=last["true"],
-            reward=np.array(rewards),
-            goal=0.0 if self._goal is None else float(observations[-1][self._goal]),
-            success=last["is_success"],
-            dropped=last["dropped"],
-            drawn=self._drawn,
+            time=own["time"],
+            slip=own["slip"],
+            reference=own["reference"],
+            grip_force=own["grip_force"],
+            needed_force=needed_force(own["contact_wrench"], true),
+            estimated=own["estimated_per_finger"],
+            true=true[-1],
+            reward=own["reward"],
+            goal=float(own["goal"][-1]),
+            success=bool(own["is_success"][-1]),
+            dropped=bool(own["dropped"][-1]),
+            drawn=self._drawn[i],
         )
 
 

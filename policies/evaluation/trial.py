@@ -15,10 +15,11 @@ from tqdm import tqdm
 import policies
 from policies.controllers.base import ObservationIndex
 from policies.controllers.rate import at_rate
+from policies.evaluation.batch import acts_on_batches, blocks, record_block
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.metrics import measure, measures
 from policies.evaluation.plan import Trial
-from policies.evaluation.recording import Recorder, Recording
+from policies.evaluation.recording import INFOS, Recorder, Recording
 from policies.learned import LearnedPolicy
 from policies.stepping import steps
 from slipgym.tasks import configure, find
@@ -39,6 +40,9 @@ def run_trials(
 ) -> list[Result]:
     """Runs trials in parallel; the results do not depend on how many run at once.
 
+    On the planar engine, trials of one policy run as rows of a vector environment
+    (`policies.evaluation.batch`), unless the policy is one of your own.
+
     Args:
         experiment: What they are part of.
         trials: From `plan`.
@@ -48,9 +52,38 @@ def run_trials(
     Raises:
         ValueError: A policy refuses its parameters or the observations.
     """
+    work = pieces(experiment, trials)
     parallel = joblib.Parallel(n_jobs=jobs, return_as="generator")
-    results: Any = parallel(joblib.delayed(run_trial)(experiment, trial) for trial in trials)
-    return list(tqdm(results, total=len(trials), desc=experiment.name, unit="trial", disable=not progress))
+    results: list[Result] = []
+    with tqdm(total=len(trials), desc=experiment.name, unit="trial", disable=not progress) as bar:
+        found: Any = parallel(joblib.delayed(run_block)(experiment, block) for block in work)
+        for some in found:
+            results += some
+            bar.update(len(some))
+    return results
+
+
+def pieces(experiment: Experiment, trials: Sequence[Trial]) -> list[tuple[Trial, ...]]:
+    """Trials that run together: on the planar engine `policies.evaluation.batch.blocks`, else each alone."""
+    return blocks(trials) if experiment.engine == "planar" else [(trial,) for trial in trials]
+
+
+def run_block(experiment: Experiment, trials: Sequence[Trial]) -> list[Result]:
+    """Runs trials of one policy and friction choice, one of `pieces`.
+
+    Raises:
+        ValueError: The policy refuses its parameters or the observations.
+    """
+    first = trials[0]
+    try:
+        policy = make_policy(experiment, first)
+        if experiment.engine == "planar" and acts_on_batches(policy):
+            recordings = record_block(experiment, trials, policy, environment(experiment, first))
+            return [_result(experiment, *pair) for pair in zip(trials, recordings, strict=True)]
+    except Exception as error:
+        error.add_note(f"in trial {first.keys}")
+        raise
+    return [run_trial(experiment, trial) for trial in trials]
 
 
 def run_trial(experiment: Experiment, trial: Trial) -> Result:
@@ -64,6 +97,11 @@ def run_trial(experiment: Experiment, trial: Trial) -> Result:
     except Exception as error:
         error.add_note(f"in trial {trial.keys}")
         raise
+    return _result(experiment, trial, recording)
+
+
+def _result(experiment: Experiment, trial: Trial, recording: Recording) -> Result:
+    """The row of a trial in the table, and its steps."""
     task = find(experiment.task)
     settings = configure(task, experiment.config, experiment.sensors)[1]
     settings = task.options.parse(trial.options).applied_to(settings)
@@ -90,17 +128,18 @@ def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None 
     keywords = {**environment(experiment, trial), **modes}
     env: Any = gym.make(f"slipgym:{task.id}", disable_env_checker=True, **keywords)
     index = ObservationIndex(experiment.task, experiment.environment_config(), modes.get("action_mode"))
-    recorder = Recorder(index)
     try:
         if isinstance(policy, LearnedPolicy):
             policy.check(env)
         observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
-        recorder.begin(info)
+        recorder, running = Recorder(index, [info.get("drawn", {})]), np.ones(1, dtype=bool)
         for step in steps(env, policy, observation):
-            recorder.add(_present(env, step.observation), float(step.reward), step.info)
+            newest = _present(env, step.observation)[np.newaxis]
+            infos = {name: np.asarray(step.info[name])[np.newaxis] for name in INFOS}
+            recorder.add(newest, np.array([step.reward]), infos, running)
     finally:
         env.close()
-    return recorder.finish()
+    return recorder.finish()[0]
 
 
 def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:

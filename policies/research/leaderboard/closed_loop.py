@@ -15,6 +15,7 @@ import pandas as pd
 from tqdm import tqdm
 
 import policies
+from policies.stepping import batch_steps
 from slipgym.registration import TASK_MODULES
 from slipgym.tasks import find
 
@@ -70,17 +71,11 @@ def played(task: str, episodes: int, seed: int, **arguments: Any) -> dict[str, f
     policy = policies.make(find(task).key)
     env: Any = gym.make_vec(task, num_envs=episodes, **policies.modes(policy), **arguments).unwrapped
     observations, _ = env.reset(seed=seed)
-    begun, state = np.ones(episodes, bool), None
-    alive, tally = np.ones(episodes, bool), _Tally(episodes)
-    while alive.any():
-        actions, state = policy.predict(observations, state, begun)
-        observations, _, terminated, truncated, infos = env.step(actions)
-        begun = np.zeros(episodes, bool)
-        tally.add(env.simulation, alive)
-        over = alive & (terminated | truncated)
-        if over.any():
-            tally.end(env.simulation, over, infos, terminated)
-            alive = alive & ~over
+    tally = _Tally(episodes)
+    for step in batch_steps(env, policy, observations):
+        tally.add(env.simulation, step.running)
+        if step.ended.any():
+            tally.end(env.simulation, step.ended, step.infos)
     env.close()
     return tally.result()
 
@@ -104,14 +99,14 @@ class _Tally:
             off = np.abs(estimates[name] - truth[name])[known] / estimates[f"sd_{name}"][known]
             self._instants[name] += off.size, np.count_nonzero(off <= 1.0), np.count_nonzero(off <= 2.0)
 
-    def end(self, simulation: Any, over: np.ndarray, infos: Mapping[str, Any], dropped: np.ndarray) -> None:
+    def end(self, simulation: Any, over: np.ndarray, infos: Mapping[str, Any]) -> None:
         """The ends of episodes."""
         estimates = simulation.estimator.estimates.reshape(-1, 2)[over]
         for name, value in present(simulation.plant.pads).items():
             sure = estimates[f"confidence_{name}"] > SURE
             self._errors[name] += (100.0 * np.abs(estimates[name] / value[over] - 1.0))[sure].tolist()
         self._solved += np.count_nonzero(infos["is_success"][over])
-        self._dropped += np.count_nonzero(dropped[over])
+        self._dropped += np.count_nonzero(infos["dropped"][over])
 
     def result(self) -> dict[str, float]:
         """See `played`."""

@@ -10,7 +10,7 @@ import pandas as pd
 from tqdm import tqdm
 
 from policies.evaluation.plan import plan
-from policies.evaluation.trial import run_trial
+from policies.evaluation.trial import pieces, run_block
 from policies.research.study.conditions import Condition
 from policies.research.study.config import Study
 from policies.research.study.store import Store
@@ -40,15 +40,18 @@ def episodes(
     planned = [(condition, each, plan(each)) for condition, each in zip(pending, experiments, strict=True)]
     parallel = joblib.Parallel(n_jobs=jobs, return_as="generator")
     results: Any = parallel(
-        joblib.delayed(run_trial)(experiment, trial) for _, experiment, trials in planned for trial in trials
+        joblib.delayed(run_block)(experiment, piece)
+        for _, experiment, trials in planned
+        for piece in pieces(experiment, trials)
     )
     total = sum(len(trials) for _, _, trials in planned)
     with tqdm(total=total, desc=study.name, unit="episode", disable=not progress) as bar:
         for condition, _, trials in planned:
-            rows = []
-            for number in range(len(trials)):
-                row = next(results).row
-                rows.append({**condition.keys, "episode": number, **{name: row[name] for name in COLUMNS}})
-                bar.update()
+            rows: list[dict[str, Any]] = []
+            while len(rows) < len(trials):
+                for result in next(results):
+                    kept = {name: result.row[name] for name in COLUMNS}
+                    rows.append({**condition.keys, "episode": len(rows), **kept})
+                    bar.update()
             store.write(condition, pd.DataFrame(rows))
     return pd.concat([store.read(condition) for condition in conditions], ignore_index=True)
