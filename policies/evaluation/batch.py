@@ -40,8 +40,8 @@ def record_block(
 ) -> list[Recording]:
     """Runs trials of one policy and friction choice side by side, and keeps their steps.
 
-    Each episode is that of a single environment with the trial's seed and options on the planar engine, bit for bit as
-    long as the policy's actions are: a learned policy's differ by rounding.
+    Each episode is that of a single environment with the trial's seed and options on the planar engine, bit
+    for bit if the policy's actions are; those of a learned policy differ by rounding.
 
     Args:
         experiment: What the trials are part of.
