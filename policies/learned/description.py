@@ -147,7 +147,9 @@ class Critic(Frozen):
 class Origin(Frozen):
     """How a policy came about."""
 
-    algorithm: Literal["PPO", "SAC", "TQC", "RecurrentPPO"] = Field(description="What trained it [-]")
+    algorithm: Literal["PPO", "SAC", "TQC", "RecurrentPPO", "DAgger"] = Field(
+        description="What trained it [-]"
+    )
     command: str = Field(max_length=10_000, description="The command that trained it [-]")
     steps: int = Field(ge=0, description="Steps of experience [-]")
     seeds: Annotated[tuple[int, ...], BeforeValidator(as_tuple), Field(max_length=1024)] = Field(

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from policies.learned.description import Description
+from policies.learned import description
 
 Memory = tuple[np.ndarray, np.ndarray]
 """Hidden and cell state of the LSTM layers, (n, layers, size) each."""
@@ -16,12 +16,18 @@ class Network:
     """Observations to actions.
 
     Args:
-        description: Of the policy.
+        network: Its layers.
+        normalisation: Of the observations; None: none.
         tensors: Those of `tensors.expected`.
     """
 
-    def __init__(self, description: Description, tensors: Mapping[str, np.ndarray]) -> None:
-        self._network, self._normalisation = description.network, description.normalisation
+    def __init__(
+        self,
+        network: description.Network,
+        normalisation: description.Normalisation | None,
+        tensors: Mapping[str, np.ndarray],
+    ) -> None:
+        self._network, self._normalisation = network, normalisation
         self._dense = [
             (tensors[f"layers.{k}.weight"].T, tensors[f"layers.{k}.bias"])
             for k in range(len(self._network.layers) + 1)

@@ -33,7 +33,7 @@ class LearnedPolicy:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.description, tensors = files.read(path)
-        self._network = Network(self.description, tensors)
+        self._network = Network(self.description.network, self.description.normalisation, tensors)
         self._underlying = None
         if (residual := self.description.residual) is not None:
             where = self.description.environment

@@ -48,16 +48,22 @@ def changed(training: Training, overrides: Mapping[str, Any], source: str = "com
     Raises:
         ValueError: A key or value is wrong.
     """
-    values = training.model_dump(exclude_unset=True)
+    values = with_values(training.model_dump(exclude_unset=True), overrides)
+    return checked(values, source if overrides else training.task)
+
+
+def with_values(values: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """Nested values with others by dotted key."""
+    changed = dict(values)
     for key, value in overrides.items():
         *groups, last = key.split(".")
-        at = values
+        at = changed
         for group in groups:
             inner = at.get(group)
             at[group] = dict(inner) if isinstance(inner, Mapping) else {}
             at = at[group]
         at[last] = value
-    return checked(values, source if overrides else training.task)
+    return changed
 
 
 def assignments(texts: Iterable[str]) -> dict[str, Any]:

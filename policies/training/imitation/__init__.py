@@ -1,0 +1,1 @@
+"""Imitation of a controller that knows the true friction by a network that does not."""

@@ -1,0 +1,77 @@
+"""What an imitation is: task, what the network observes, its size, rounds and optimisation."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+from pydantic import BeforeValidator, Field, field_validator, model_validator
+
+from policies.task_names import canonical
+from policies.training import seeds
+from policies.training.config import Environment
+from slipgym.config.base import Count, Frozen, Positive, as_tuple
+from slipgym.config.yaml_model import Choice, read_model
+
+FOLDER = "imitation"
+"""Folder of the default configuration that holds them."""
+
+
+class Imitation(Frozen):
+    """An imitation: the arguments of its environments, the network, rounds of episodes and updates."""
+
+    task: str = Field(default="PlanarSlip", description="Task, as `slipgym.tasks.find` takes it")
+    environment: Environment = Field(
+        default=Environment(friction_source="none", frame_skip=2),
+        description="Keyword arguments of the environment; friction_source: what the network observes",
+    )
+    memory: int = Field(ge=0, le=1024, description="Units of the LSTM layer; 0: a network without memory [-]")
+    layers: Annotated[tuple[Count, ...], BeforeValidator(as_tuple), Field(max_length=8)] = Field(
+        description="Sizes of the dense layers behind it [-]"
+    )
+    rounds: Count = Field(
+        default=8, description="Rounds of episodes; in the first one the controller acts [-]"
+    )
+    rows: Count = Field(default=128, le=4096, description="Episodes of a round [-]")
+    controlled: float = Field(
+        default=0.25,
+        ge=0.0,
+        le=1.0,
+        description="Fraction of later rounds' rows where the controller acts [-]",
+    )
+    updates: Count = Field(default=120, description="Steps of the optimiser in a round [-]")
+    batch: Count = Field(default=32, description="Episodes of each [-]")
+    learning_rate: Positive = Field(default=3e-3, description="Largest step size; it falls as a cosine [-]")
+    held_out: int = Field(default=256, ge=0, description="Held-out episodes that the result is judged by [-]")
+    threads: Count = Field(default=1, description="Threads of torch [-]")
+
+    @field_validator("task")
+    @classmethod
+    def _task_exists(cls, name: str) -> str:
+        return canonical(name)
+
+    @model_validator(mode="after")
+    def _is_seen(self) -> Self:
+        if self.environment.history:
+            raise ValueError("environment.history must be 0: the LSTM layer is the network's memory")
+        if self.environment.observation_mode == "sensor":
+            raise ValueError(
+                "environment.observation_mode must be 'flat'; friction_source 'none' shows sensors"
+            )
+        if self.environment.action_mode is not None:
+            raise ValueError("environment.action_mode must be null: it is the controller's")
+        if self.rounds * self.rows > seeds.ROWS:
+            raise ValueError(f"rounds * rows = {self.rounds * self.rows} episodes; at most {seeds.ROWS}")
+        return self
+
+
+def read(choice: Choice) -> Imitation:
+    """Reads an imitation.
+
+    Args:
+        choice: Name of a file in configs/imitation, path of a YAML file, or a mapping.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        ValueError: A key or value is wrong; the message names file, key and what is valid.
+    """
+    return read_model(choice, Imitation, FOLDER, "imitation")

@@ -1,0 +1,101 @@
+"""Episodes of an imitation: observations of the network, and what the controller would do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+import policies
+from policies.controllers import table as controllers
+from policies.controllers.rate import at_rate
+from policies.learned.forward import Network
+from policies.training.imitation.config import Imitation
+from slipgym.envs.observation import FRICTION_COLUMNS
+from slipgym.tasks import find
+
+
+@dataclass(frozen=True)
+class Demonstrations:
+    """n episodes of at most T steps; those that ended early are filled with zeros."""
+
+    observations: np.ndarray
+    """What the network observes, (T, n, m) float32."""
+    actions: np.ndarray
+    """What the controller would do in its place, (T, n, k) float32."""
+    lengths: np.ndarray
+    """Steps of each episode, (n,)."""
+    solved: np.ndarray
+    """Whether each was a success, (n,) bool."""
+
+
+def arguments(config: Imitation) -> dict[str, Any]:
+    """Keyword arguments of the environments, with the action mode of the controller."""
+    modes = policies.modes(policies.make(find(config.task).key))
+    return {**config.environment.model_dump(mode="json"), **modes}
+
+
+class Scene:
+    """The environments of an imitation, and the controller that is imitated.
+
+    Args:
+        config: The imitation.
+        rows: Environments.
+    """
+
+    def __init__(self, config: Imitation, rows: int) -> None:
+        task, given = find(config.task), arguments(config)
+        self.envs: Any = gym.make_vec(f"slipgym:{task.id}", rows, "vector_entry_point", **given).unwrapped
+        at = at_rate(self.envs.metadata["render_fps"], given["config"])
+        self.controller = controllers.make(task.key, {"config": at})
+
+    def close(self) -> None:
+        """Close the environments."""
+        self.envs.close()
+
+
+def demonstrate(scene: Scene, network: Network | None, acts: np.ndarray, seed: int) -> Demonstrations:
+    """Plays an episode in each environment; the controller says at each step what it would do.
+
+    Args:
+        scene: Environments and controller.
+        network: The network that acts; None: the controller acts in all rows.
+        acts: Rows in which the network acts, (n,) bool.
+        seed: Of the first environment.
+    """
+    envs, n = scene.envs, scene.envs.num_envs
+    observations, infos = envs.reset(seed=seed)
+    memory = None if network is None else _fresh(network, n)
+    state, running, solved = None, np.ones(n, bool), np.zeros(n, bool)
+    seen, wanted, lengths = [], [], np.zeros(n, np.int64)
+    while running.any():
+        labels, state = scene.controller.predict(_with_truth(observations, infos["true"], envs), state)
+        actions = labels
+        if network is not None:
+            given, memory = network.forward(observations, memory)
+            actions = np.where(acts[:, None], given, labels)
+        seen.append(np.where(running[:, None], observations, np.float32(0.0)))
+        wanted.append(np.where(running[:, None], labels, np.float32(0.0)))
+        lengths[running] += 1
+        observations, _, terminated, truncated, infos = envs.step(actions)
+        ended = running & (terminated | truncated)
+        solved[ended] = infos["is_success"][ended]
+        running = running & ~ended
+    return Demonstrations(np.array(seen, np.float32), np.array(wanted, np.float32), lengths, solved)
+
+
+def _with_truth(observations: np.ndarray, true: np.ndarray, envs: Any) -> np.ndarray:
+    """Observations (n, m) with the true mu_s, mu_c, r (n, 3), in full confidence, as their friction part."""
+    names = [column.name for column in envs.columns]
+    first = names.index(FRICTION_COLUMNS[0].name) if FRICTION_COLUMNS[0].name in names else len(names)
+    confidence = np.ones((len(true), len(FRICTION_COLUMNS) - true.shape[1]))
+    return np.concatenate([observations[:, :first], true, confidence], axis=1).astype(np.float32)
+
+
+def _fresh(network: Network, n: int) -> tuple[np.ndarray, np.ndarray] | None:
+    if network.memory_shape is None:
+        return None
+    shape = n, *network.memory_shape
+    return np.zeros(shape, np.float32), np.zeros(shape, np.float32)

@@ -1,0 +1,185 @@
+"""Imitates a controller in rounds of episodes: DAgger.
+
+S. Ross, G. Gordon, D. Bagnell, A reduction of imitation learning and structured prediction to no-regret
+online learning, AISTATS 2011. The network acts, the controller with the true friction says what it would
+have done, and the network is fitted to what it said in all rounds so far.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import torch
+from tqdm import tqdm
+
+from policies.learned import files
+from policies.learned.description import Column
+from policies.learned.export import described
+from policies.learned.fitting import column_of
+from policies.learned.forward import Network
+from policies.training import seeds
+from policies.training.imitation.config import Imitation
+from policies.training.imitation.episodes import Demonstrations, Scene, arguments, demonstrate
+from policies.training.imitation.student import NORMALISATION, Student, network_of
+from policies.versions import versions
+from slipgym import atomic_io
+from slipgym.tasks import find
+
+LIMIT = 1.0
+"""Largest norm of a gradient."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What an imitation came to."""
+
+    weights: dict[str, np.ndarray]
+    """Tensors of the network, see `policies.learned.tensors.expected`."""
+    curve: list[dict[str, float]]
+    """Of each round: its number, episodes so far, share that the network solved, loss after the updates."""
+    solved: float
+    """Share of the held-out episodes that the network solves; NaN without any."""
+    steps: int
+    """Steps of experience."""
+
+
+def imitate(
+    config: Imitation, output: str | os.PathLike[str], seed: int = 0, command: str = ""
+) -> tuple[Path, float]:
+    """Trains a network and writes it as a policy (docs/policy_files.md), with its curve beside it.
+
+    Args:
+        config: The imitation.
+        output: Folder for the run's own folder.
+        seed: Of episodes, first weights and order.
+        command: What started it, for the record.
+
+    Returns:
+        The run's folder, which holds the folder "policy" and curve.csv, and the share of held-out episodes
+        that the policy solves.
+
+    Raises:
+        FileExistsError: The run's folder is there already.
+        FloatingPointError: The loss is not finite.
+        OSError: The output cannot be written.
+    """
+    folder = Path(output) / f"{find(config.task).key}_{config.environment.friction_source}_{seed}"
+    if folder.exists():
+        raise FileExistsError(f"{folder} is there already; choose another output or seed")
+    outcome = run(config, seed)
+    where = described(find(config.task).id, arguments(config))
+    with atomic_io.new_folder(folder) as made:
+        files.write(
+            made / "policy",
+            {
+                "environment": where,
+                "network": network_of(config).model_dump(mode="json"),
+                "normalisation": NORMALISATION.model_dump(mode="json"),
+                "residual": None,
+                "origin": {
+                    "algorithm": "DAgger",
+                    "command": command,
+                    "steps": outcome.steps,
+                    "seeds": [seed],
+                    "versions": versions(),
+                    "critic": None,
+                },
+            },
+            outcome.weights,
+        )
+        pd.DataFrame(outcome.curve).to_csv(made / "curve.csv", index=False)
+    return folder, outcome.solved
+
+
+def run(config: Imitation, seed: int = 0, progress: bool = True) -> Outcome:
+    """Trains a network; see `imitate`."""
+    torch.set_num_threads(config.threads)
+    torch.manual_seed(seed)
+    rng = np.random.default_rng(seed)
+    scene, first = Scene(config, config.rows), seeds.training(seed)
+    columns = [column_of(column) for column in scene.envs.action_columns]
+    data: list[Demonstrations] = []
+    fit: Fit | None = None
+    curve = []
+    try:
+        with tqdm(range(config.rounds), desc="rounds", disable=not progress) as bar:
+            for number in bar:
+                acts = np.arange(config.rows) >= config.controlled * config.rows
+                network = None if fit is None else fit.network()
+                data.append(demonstrate(scene, network, acts, first + number * config.rows))
+                fit = fit or Fit(config, data[0], columns)
+                loss = fit.update(data, rng)
+                solved = float("nan") if network is None else float(data[-1].solved[acts].mean())
+                curve.append(
+                    {"round": number, "episodes": len(data) * config.rows, "solved": solved, "loss": loss}
+                )
+                bar.set_postfix(loss=f"{loss:.3g}", solved=f"{solved:.0%}")
+    finally:
+        scene.close()
+    assert fit is not None
+    steps = int(sum(one.lengths.sum() for one in data))
+    return Outcome(fit.student.tensors(), curve, judged(config, fit.network()), steps)
+
+
+def judged(config: Imitation, network: Network) -> float:
+    """Share of the held-out episodes that a network solves; NaN without any."""
+    if not config.held_out:
+        return math.nan
+    scene = Scene(config, config.held_out)
+    try:
+        everywhere = np.ones(config.held_out, dtype=bool)
+        return float(demonstrate(scene, network, everywhere, seeds.held_out(0)).solved.mean())
+    finally:
+        scene.close()
+
+
+class Fit:
+    """Fits the network to the episodes of all rounds so far.
+
+    Args:
+        config: The imitation.
+        first: Episodes of the first round, which normalise the observations.
+        components: Of an action.
+    """
+
+    def __init__(self, config: Imitation, first: Demonstrations, components: Sequence[Column]) -> None:
+        running = np.arange(len(first.observations))[:, None] < first.lengths
+        seen = first.observations[running].astype(np.float64)
+        self._config = config
+        self.student = Student(config, seen.mean(axis=0), seen.var(axis=0), components)
+        self._adam = torch.optim.Adam(self.student.parameters(), config.learning_rate)
+        total = config.rounds * config.updates
+        self._schedule = torch.optim.lr_scheduler.CosineAnnealingLR(self._adam, total)
+
+    def update(self, data: Sequence[Demonstrations], rng: np.random.Generator) -> float:
+        """Makes the updates of a round and returns their mean loss.
+
+        Raises:
+            FloatingPointError: The loss is not finite.
+        """
+        total = 0.0
+        for _ in range(self._config.updates):
+            one = data[rng.integers(len(data))]
+            rows = rng.choice(len(one.lengths), min(self._config.batch, len(one.lengths)), replace=False)
+            length = one.lengths[rows].max()
+            parts = one.observations[:length, rows], one.actions[:length, rows], one.lengths[rows]
+            loss = self.student.loss(*(torch.from_numpy(part) for part in parts))
+            self._adam.zero_grad()
+            loss.backward()
+            torch.nn.utils.clip_grad_norm_(self.student.parameters(), LIMIT)
+            self._adam.step()
+            self._schedule.step()
+            total += loss.item()
+        if not math.isfinite(total):
+            raise FloatingPointError("the loss is not finite; a smaller learning_rate may help")
+        return total / self._config.updates
+
+    def network(self) -> Network:
+        """The present network as it acts."""
+        return Network(network_of(self._config), NORMALISATION, self.student.tensors())

@@ -1,0 +1,100 @@
+"""The network of an imitation in torch: layers, loss, tensors as a policy's file holds them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import torch
+from torch import nn
+
+from policies.learned.description import Column, Memory, Network, Normalisation
+from policies.learned.extract import array
+from policies.training.imitation.config import Imitation
+
+EPSILON = 1e-8
+"""Added to the variance of an observation [unit^2]."""
+CLIP = 10.0
+"""Largest size of a normalised observation [-]."""
+FORCE = "grip_force"
+"""Component of an action whose relative error counts."""
+LEAST = 0.1
+"""Added to the distance of a force from its lower end before an error is divided by it [-]."""
+OTHER = 0.3
+"""What errors of other components are divided by [-]."""
+
+
+class Student(nn.Module):
+    """An LSTM layer, unless the memory is 0, and dense layers.
+
+    Args:
+        config: Sizes.
+        mean: Of the observations, (m,).
+        var: Their variance, (m,).
+        components: Of an action.
+    """
+
+    def __init__(
+        self, config: Imitation, mean: np.ndarray, var: np.ndarray, components: Sequence[Column]
+    ) -> None:
+        super().__init__()
+        self.mean, self.var = torch.from_numpy(mean.copy()), torch.from_numpy(var.copy())
+        width = len(mean)
+        self.memory = nn.LSTM(width, config.memory) if config.memory else None
+        width = config.memory or width
+        sizes = [width, *config.layers, len(components)]
+        self.dense = nn.ModuleList(nn.Linear(a, b) for a, b in pairwise(sizes))
+        self._is_force = torch.tensor([column.name == FORCE for column in components])
+
+    def forward(self, observations: torch.Tensor) -> torch.Tensor:
+        """Actions (T, n, k), not clipped, for observations (T, n, m) from the beginning of their episodes."""
+        scaled = (observations.double() - self.mean) / torch.sqrt(self.var + EPSILON)
+        x = torch.clip(scaled, -CLIP, CLIP).float()
+        if self.memory is not None:
+            x, _ = self.memory(x)
+        for layer in self.dense[:-1]:
+            x = torch.tanh(layer(x))
+        return self.dense[-1](x)
+
+    def loss(self, observations: torch.Tensor, wanted: torch.Tensor, lengths: torch.Tensor) -> torch.Tensor:
+        """Mean Huber loss of the errors, a force's relative to its size.
+
+        Args:
+            observations: (T, n, m).
+            wanted: Actions (T, n, k).
+            lengths: Steps of each episode, (n,).
+        """
+        scale = torch.where(self._is_force, wanted + 1.0 + LEAST, torch.tensor(OTHER))
+        error = nn.functional.huber_loss(
+            self(observations) / scale, wanted / scale, reduction="none", delta=0.5
+        )
+        running = torch.arange(len(wanted))[:, None] < lengths
+        return (error.mean(-1) * running).sum() / running.sum()
+
+    def tensors(self) -> dict[str, np.ndarray]:
+        """Tensors by their names in a policy's file, see `policies.learned.tensors.expected`."""
+        found = {"observation.mean": self.mean.numpy().copy(), "observation.var": self.var.numpy().copy()}
+        if self.memory is not None:
+            for ours, theirs in (
+                ("input_weight", self.memory.weight_ih_l0),
+                ("hidden_weight", self.memory.weight_hh_l0),
+                ("input_bias", self.memory.bias_ih_l0),
+                ("hidden_bias", self.memory.bias_hh_l0),
+            ):
+                found[f"memory.0.{ours}"] = array(theirs)
+        for k, layer in enumerate(self.dense):
+            found[f"layers.{k}.weight"], found[f"layers.{k}.bias"] = array(layer.weight), array(layer.bias)
+        return found
+
+
+def network_of(config: Imitation) -> Network:
+    """What a policy's file says about the network."""
+    memory = Memory(size=config.memory, layers=1) if config.memory else None
+    return Network(
+        kind="lstm" if memory else "mlp", memory=memory, layers=config.layers, activation="tanh", squash=False
+    )
+
+
+NORMALISATION = Normalisation(clip=CLIP, epsilon=EPSILON)
+"""What a policy's file says about the observations."""
