@@ -62,7 +62,7 @@ def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
     def fail(*_):
         raise AssertionError("planted")
 
-    monkeypatch.setattr("policies.research.study.episodes.run_trial", fail)
+    monkeypatch.setattr("policies.research.study.episodes.run_block", fail)
     assert run_study(small(), output, 1, progress=False) == run
     assert (run / "episodes.parquet").read_bytes() == before
     with pytest.raises(AssertionError, match="planted"):
@@ -73,7 +73,7 @@ def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monke
     from policies.research.study import episodes
 
     study, count = small(), [0]
-    actual = episodes.run_trial
+    actual = episodes.run_block
 
     def some(*arguments):
         count[0] += 1
@@ -81,7 +81,7 @@ def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monke
             raise KeyboardInterrupt
         return actual(*arguments)
 
-    monkeypatch.setattr(episodes, "run_trial", some)
+    monkeypatch.setattr(episodes, "run_block", some)
     with pytest.raises(KeyboardInterrupt):
         run_study(study, tmp_path, 1, progress=False)
     kept = list((tmp_path / run.name / "conditions").iterdir())

@@ -1,0 +1,118 @@
+"""Imitation of the controller that knows the true friction."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import policies
+from policies.stepping import batch_steps
+from policies.training.imitation.command import configured
+from policies.training.imitation.config import Imitation, read
+
+torch = pytest.importorskip("torch")
+from policies.learned.forward import Network  # noqa: E402
+from policies.training.imitation.episodes import Scene, demonstrate  # noqa: E402
+from policies.training.imitation.run import imitate  # noqa: E402
+from policies.training.imitation.student import NORMALISATION, Student, network_of  # noqa: E402
+
+SHORT = {"tasks": {"linear_slip": {"duration": 0.3, "settle": 0.1, "hold": 0.05}}}
+SMALL = {
+    "task": "LinearSlip",
+    "environment": {"friction_source": "none", "frame_skip": 2, "randomization": "train", "config": SHORT},
+    "memory": 8,
+    "layers": [8],
+    "rounds": 2,
+    "rows": 8,
+    "updates": 6,
+    "batch": 4,
+    "held_out": 8,
+}
+
+
+@pytest.mark.parametrize("memory", [0, 5])
+def test_the_network_that_learns_is_the_one_that_acts(memory):
+    config = Imitation.model_validate({**SMALL, "memory": memory})
+    rng = np.random.default_rng(0)
+    components = [type("Component", (), {"name": name})() for name in ("grip_force", "wrist_pitch_rate")]
+    student = Student(config, rng.normal(size=7), rng.uniform(0.5, 2.0, 7), components)
+    observations = rng.normal(size=(9, 3, 7)).astype(np.float32)
+    learns = student(torch.from_numpy(observations)).detach().numpy()
+    acts = Network(network_of(config), NORMALISATION, student.tensors())
+    state = None if not memory else (np.zeros((3, 1, memory), np.float32),) * 2
+    for t, seen in enumerate(observations):
+        actions, state = acts.forward(seen, state)
+        np.testing.assert_allclose(actions, np.clip(learns[t], -1.0, 1.0), atol=2e-6)
+
+
+def test_the_controller_acts_as_in_an_environment_that_shows_the_true_friction():
+    config = Imitation.model_validate(SMALL)
+    scene = Scene(config, 8)
+    found = demonstrate(scene, None, np.zeros(8, bool), seed=3)
+    scene.close()
+    arguments = {
+        **config.environment.model_dump(mode="json"),
+        "friction_source": "true",
+        "action_mode": "grip_force",
+    }
+    envs = gym.make_vec("slipgym:slipgym/LinearSlip-v0", 8, "vector_entry_point", **arguments).unwrapped
+    policy = policies.make("linear_slip", config=_at_sixty())
+    observations, _ = envs.reset(seed=3)
+    for k, step in enumerate(batch_steps(envs, policy, observations)):
+        width = found.observations.shape[2]
+        if k + 1 < len(found.observations):
+            running = step.running & ~step.ended
+            np.testing.assert_array_equal(
+                found.observations[k + 1][running], step.observations[running][:, :width]
+            )
+    assert found.lengths.max() == k + 1
+    envs.close()
+
+
+def _at_sixty():
+    from policies.controllers.rate import at_rate
+
+    return at_rate(60, SHORT)
+
+
+@pytest.mark.parametrize("source", ["none", "estimated"])
+def test_a_policy_is_written_and_acts(tmp_path, source):
+    config = configured(
+        "recurrent", "linear_slip", {"friction_source": source, "randomization": None}, _assignments()
+    )
+    folder, solved = imitate(config, tmp_path, seed=1, command="test")
+    again, _ = imitate(config, tmp_path / "again", seed=1, command="test")
+    assert 0.0 <= solved <= 1.0
+    weights = [(each / "policy" / "weights.safetensors").read_bytes() for each in (folder, again)]
+    assert weights[0] == weights[1]
+    policy = policies.load(folder / "policy")
+    assert policy.description.origin.algorithm == "DAgger"
+    env = gym.make(
+        "slipgym:slipgym/LinearSlip-v0", engine="planar", **policy.description.environment.arguments
+    )
+    policy.check(env)
+    observation, _ = env.reset(seed=0)
+    action, state = policy.predict(observation)
+    assert env.action_space.contains(action)
+    assert state is not None
+    with pytest.raises(FileExistsError, match="already"):
+        imitate(config, tmp_path, seed=1)
+
+
+def _assignments():
+    small = {key: SMALL[key] for key in ("memory", "rounds", "rows", "updates", "batch", "held_out")}
+    return [f"{key}={value}" for key, value in small.items()] + ["layers=[8]", f"environment.config={SHORT}"]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"environment": {"history": 2}}, "history must be 0"),
+        ({"environment": {"action_mode": "grip_force"}}, "action_mode must be null"),
+        ({"rows": 4096, "rounds": 8}, "at most 16384"),
+        ({"task": "Linear"}, "unknown task"),
+        ({"memory": -1}, "memory"),
+    ],
+)
+def test_what_cannot_be_imitated_is_refused(change, message):
+    with pytest.raises(ValueError, match=message):
+        read({**SMALL, **change})
