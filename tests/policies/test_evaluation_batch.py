@@ -27,8 +27,8 @@ def test_rows_are_single_environments_bit_for_bit(small):
     for one, other in zip(together, alone, strict=True):
         assert one.row == other.row
         assert (one.series is None) == (other.series is None)
-        for name in one.series or ():
-            np.testing.assert_array_equal(one.series[name], other.series[name])
+        for name, values in (one.series or {}).items():
+            np.testing.assert_array_equal(values, (other.series or {})[name])
 
 
 def test_a_block_has_one_policy_one_friction_choice_and_few_rows(small):

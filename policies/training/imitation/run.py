@@ -165,7 +165,7 @@ class Fit:
         """
         total = 0.0
         for _ in range(self._config.updates):
-            one = data[rng.integers(len(data))]
+            one = data[int(rng.integers(len(data)))]
             rows = rng.choice(len(one.lengths), min(self._config.batch, len(one.lengths)), replace=False)
             length = one.lengths[rows].max()
             parts = one.observations[:length, rows], one.actions[:length, rows], one.lengths[rows]

@@ -10,6 +10,8 @@ from policies.training.imitation.command import configured
 from policies.training.imitation.config import Imitation, read
 
 torch = pytest.importorskip("torch")
+from policies.learned import LearnedPolicy  # noqa: E402
+from policies.learned.description import Column  # noqa: E402
 from policies.learned.forward import Network  # noqa: E402
 from policies.training.imitation.episodes import Scene, demonstrate  # noqa: E402
 from policies.training.imitation.run import imitate  # noqa: E402
@@ -33,12 +35,15 @@ SMALL = {
 def test_the_network_that_learns_is_the_one_that_acts(memory):
     config = Imitation.model_validate({**SMALL, "memory": memory})
     rng = np.random.default_rng(0)
-    components = [type("Component", (), {"name": name})() for name in ("grip_force", "wrist_pitch_rate")]
+    components = [
+        Column(name=name, low=-1.0, high=1.0, unit="-") for name in ("grip_force", "wrist_pitch_rate")
+    ]
     student = Student(config, rng.normal(size=7), rng.uniform(0.5, 2.0, 7), components)
     observations = rng.normal(size=(9, 3, 7)).astype(np.float32)
     learns = student(torch.from_numpy(observations)).detach().numpy()
     acts = Network(network_of(config), NORMALISATION, student.tensors())
-    state = None if not memory else (np.zeros((3, 1, memory), np.float32),) * 2
+    zeros = np.zeros((3, 1, memory), np.float32)
+    state = (zeros, zeros.copy()) if memory else None
     for t, seen in enumerate(observations):
         actions, state = acts.forward(seen, state)
         np.testing.assert_allclose(actions, np.clip(learns[t], -1.0, 1.0), atol=2e-6)
@@ -84,7 +89,7 @@ def test_a_policy_is_written_and_acts(tmp_path, source):
     assert 0.0 <= solved <= 1.0
     weights = [(each / "policy" / "weights.safetensors").read_bytes() for each in (folder, again)]
     assert weights[0] == weights[1]
-    policy = policies.load(folder / "policy")
+    policy = LearnedPolicy(folder / "policy")
     assert policy.description.origin.algorithm == "DAgger"
     env = gym.make(
         "slipgym:slipgym/LinearSlip-v0", engine="planar", **policy.description.environment.arguments
