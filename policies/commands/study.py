@@ -31,8 +31,11 @@ def main(
         list[str] | None,
         typer.Option(help="Keep only this task: linear_slip, also LinearSlip or its id; repeatable."),
     ] = None,
-    kind: Annotated[list[str] | None, typer.Option(help="Only classic, or only learned; repeatable.")] = None,
+    kind: Annotated[
+        list[str] | None, typer.Option(help="Only classic, learned or imitation; repeatable.")
+    ] = None,
     learned: Annotated[str, typer.Option(help="Folder of learned policies instead of those shipped.")] = "",
+    imitation: Annotated[str, typer.Option(help="Folder of the runs of slipgym imitate.")] = "",
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
     output: Annotated[Path, typer.Option(help="Folder for the study's own folder.")] = Path("runs"),
     seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the study's.")] = None,
@@ -42,7 +45,13 @@ def main(
 
     try:
         chosen = studies.narrowed(
-            studies.load_study(study), episodes=episodes, tasks=task, kinds=kind, learned=learned, seed=seed
+            studies.load_study(study),
+            episodes=episodes,
+            tasks=task,
+            kinds=kind,
+            learned=learned,
+            imitation=imitation,
+            seed=seed,
         )
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from policies.evaluation.experiment import Experiment, PolicyChoice
@@ -14,7 +13,7 @@ from policies.evaluation.rate import common_frame_skip
 from policies.play.screenshot import own_policy
 from policies.research.study.changes import UNCHANGED, Change, changes
 from policies.research.study.config import BLOCKS_MAX, Study, World
-from policies.research.study.learned import TRAINED_WITH
+from policies.research.study.learned import TRAINED_WITH, Shelf
 from slipgym.config.yaml_model import validate
 from slipgym.tasks import find
 
@@ -88,19 +87,19 @@ class Condition:
         return PolicyChoice(name=self.policy, label=self.kind)
 
 
-def conditions(study: Study, learned: Mapping[tuple[str, str], Sequence[Path]]) -> list[Condition]:
+def conditions(study: Study, learned: Shelf) -> list[Condition]:
     """Every condition of a study, in the order of the tables.
 
     Args:
         study: The study.
-        learned: Learned policies, by task and friction source of the training; what is not there is left out.
+        learned: From `policies_of`; what is not there is left out.
 
     Raises:
         ValueError: Learned policies of a task act at different rates: they cannot be compared.
     """
     skips = {
         task: common_frame_skip(
-            str(path) for (of, _), paths in learned.items() if of == task for path in paths
+            str(path) for (_, of, _), seeds in learned.items() if of == task for path in seeds.values()
         )
         for task in study.tasks
     }
@@ -127,15 +126,10 @@ def _places(study: Study) -> Iterator[tuple]:
             yield world, task, worse.preset, change, worse.sources, study.estimators[:1], worse.episodes
 
 
-def _policy(
-    task: str,
-    kind: str,
-    source: str,
-    block: int,
-    learned: Mapping[tuple[str, str], Sequence[Path]],
-) -> list[str]:
+def _policy(task: str, kind: str, source: str, block: int, learned: Shelf) -> list[str]:
     """The policy of a block, or none."""
     if kind == "classic":
         return [own_policy(task)]
-    seeds = learned.get((task, TRAINED_WITH[source]), ())
-    return [str(seeds[block % len(seeds)])] if seeds else []
+    seeds = learned.get((kind, task, TRAINED_WITH[source]), {})
+    chosen = sorted(seeds)
+    return [str(seeds[chosen[block % len(chosen)]])] if chosen else []

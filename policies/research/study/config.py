@@ -14,7 +14,7 @@ from slipgym.config.base import Count, Frozen, Positive, PositiveInterval, as_tu
 from slipgym.config.errors import unknown
 from slipgym.config.physics import ContactModel
 
-Kind: TypeAlias = Literal["classic", "learned"]
+Kind: TypeAlias = Literal["classic", "learned", "imitation"]
 Source: TypeAlias = Literal["none", "nominal", "estimated", "true"]
 SOURCES: tuple[Source, ...] = ("none", "nominal", "estimated", "true")
 BLOCKS_MAX = 1000
@@ -62,6 +62,7 @@ class Study(Frozen):
         default=("classic", "learned"), description="Kinds of policies [-]"
     )
     learned: str = Field(default="", description="Folder of learned policies; empty: those shipped [-]")
+    imitation: str = Field(default="", description="Folder of the runs of `slipgym imitate` [-]")
     estimators: Annotated[Names, Field(min_length=1)] = Field(
         default=("disc",), description="Estimators; the first is the main one [-]"
     )
@@ -94,6 +95,8 @@ class Study(Frozen):
             _among("preset", world.presets, self.presets)
             _among("estimator", world.estimators, self.estimators)
         _among("task", self.videos, self.tasks)
+        if "imitation" in self.kinds and not self.imitation:
+            raise ValueError("kind 'imitation' needs the folder `imitation`; slipgym imitate fills one")
         if self.degradation is not None:
             load_randomization(self.degradation.preset)
             _among("world", [self.degradation.world], [world.label for world in self.worlds])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+import itertools
 import re
 from pathlib import Path
 
@@ -14,46 +14,67 @@ from slipgym.tasks import find
 TRAINED_WITH: dict[str, str] = {source: source for source in SOURCES} | {"nominal": "true"}
 """Friction source of an evaluation -> that of the training; nobody trains on wrong values on purpose."""
 
+Shelf = dict[tuple[str, str, str], dict[int, Path]]
+"""(kind, task, source) -> seed -> folder."""
 
-def policies_of(study: Study) -> dict[tuple[str, str], list[Path]]:
-    """The policies of a study, by task and friction source of the training; by seed within.
+
+def policies_of(study: Study) -> Shelf:
+    """The learned policies of a study, by kind, task and friction source of the training; by seed within.
 
     A policy lies in a folder <task>_<source> or <task>_<source>_<seed>, as in "linear_slip_true_2"; without a
-    number it is seed 0. Or it is one of those that scripts/train.py left in the folder.
+    number it is seed 0. Or it is one of those that `slipgym train` or `slipgym imitate` left in the folder.
 
     Raises:
         ValueError: Two folders stand for the same seed.
     """
-    top = Path(study.learned) if study.learned else pretrained.FOLDER
+    found: Shelf = {}
+    for kind, where in folders(study).items():
+        for folder, name in _named(where):
+            for task, source in itertools.product(study.tasks, SOURCES):
+                match = re.fullmatch(rf"{find(task).key}_{source}(?:_+(\d+))?", name)
+                if match is not None:
+                    _keep(found.setdefault((kind, task, source), {}), int(match[1] or 0), folder)
+    return found
+
+
+def folders(study: Study) -> dict[str, Path]:
+    """Kind of learned policy -> folder of its policies, of the kinds that have one."""
+    given = {"learned": study.learned or str(pretrained.FOLDER), "imitation": study.imitation}
+    return {kind: Path(folder) for kind, folder in given.items() if folder and kind in study.kinds}
+
+
+def _named(top: Path) -> list[tuple[Path, str]]:
+    """Folders of policies, and what they are called."""
     named = {path.parent: path.parent.name for path in top.glob(f"*/{DESCRIPTION}")}
+    for path in top.glob(f"*/policy/{DESCRIPTION}"):
+        named[path.parent] = path.parents[1].name
     for path in top.glob(f"*__*/*__*/policy/{DESCRIPTION}"):
         key, _, _ = path.parents[2].name.partition("__")
         named[path.parent] = f"{key}_{path.parents[1].name}"
-    found: dict[tuple[str, str], dict[int, Path]] = {}
-    for folder, name in sorted(named.items()):
-        for task in study.tasks:
-            for source in SOURCES:
-                match = re.fullmatch(rf"{find(task).key}_{source}(?:_+(\d+))?", name)
-                if match is None:
-                    continue
-                seeds = found.setdefault((task, source), {})
-                seed = int(match[1] or 0)
-                if seed in seeds:
-                    raise ValueError(f"{folder} and {seeds[seed]} are both seed {seed}")
-                seeds[seed] = folder
-    return {key: [seeds[seed] for seed in sorted(seeds)] for key, seeds in found.items()}
+    return sorted(named.items())
 
 
-def missing(study: Study, found: dict[tuple[str, str], list[Path]]) -> list[str]:
+def _keep(seeds: dict[int, Path], seed: int, folder: Path) -> None:
+    if seed in seeds:
+        raise ValueError(f"{folder} and {seeds[seed]} are both seed {seed}")
+    seeds[seed] = folder
+
+
+def missing(study: Study, found: Shelf) -> list[str]:
     """In words, the policies that a study would need and that are not there."""
-    if "learned" not in study.kinds:
-        return []
     lacking = []
-    for task in study.tasks:
-        sources = [source for source in SOURCES if (task, TRAINED_WITH[source]) not in found]
-        if sources:
-            lacking.append(
-                f"{task}: no learned policy for {', '.join(sources)}; looked for {find(task).key}_<source> "
-                f"in {os.fspath(study.learned) or 'the policies that come with slipgym'}"
-            )
+    for kind in (kind for kind in study.kinds if kind != "classic"):
+        place = folders(study).get(kind)
+        for task in study.tasks:
+            sources = [source for source in SOURCES if (kind, task, TRAINED_WITH[source]) not in found]
+            if sources:
+                where = (
+                    "the policies that come with slipgym"
+                    if place == pretrained.FOLDER
+                    else place or "no folder"
+                )
+                lacking.append(
+                    f"{task}: no policy of kind {kind} for {', '.join(sources)}; looked for "
+                    f"{find(task).key}_<source> in {where}"
+                )
     return lacking

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ import pandas as pd
 from policies.evaluation.frames import distinct, values, where
 from policies.evaluation.statistics import Interval, share_interval
 from policies.research.study.config import Study
-from policies.research.study.statistics import Bootstrap, Drawn, iqm, mean
+from policies.research.study.statistics import Bootstrap, Drawn
 
 PLACE = ["world", "task", "preset", "change", "level", "kind"]
 FRICTION = ["source", "estimator"]
@@ -23,16 +23,16 @@ SHARES = [
 """Columns of the table of shares."""
 ALL = "all tasks"
 ENOUGH = 0.8
-FIGURES: dict[str, Callable[[np.ndarray], np.ndarray]] = {"success": mean, "return": iqm}
-"""Column of an episode -> the figure of many."""
+FIGURES = "success", "return"
+"""Columns of an episode whose means are compared."""
 
 
 def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
     """Success, drops, return and grip force of each condition.
 
     There are rows for the success over all tasks, too, of the tasks that have every source; returns of
-    different tasks are not averaged. Shares have Wilson intervals, the return's interquartile mean a
-    bootstrap interval stratified over the blocks.
+    different tasks are not averaged. Shares have Wilson intervals, the mean return a bootstrap interval
+    stratified over the blocks.
     """
     rows = []
     together = [part.assign(task=ALL) for _, part in _over_tasks(episodes)]
@@ -46,7 +46,7 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
             "dropped": share_interval(int(values(group, "dropped").sum()), len(group)),
         }
         if keys[1] != ALL:
-            figures["return"] = bootstrap(values(group, "return"), iqm).interval
+            figures["return"] = bootstrap(values(group, "return")).interval
             figures["force"] = bootstrap(values(group, "mean_force_N")).interval
         by_block = [float(values(part, "success").mean()) for _, part in by(group, ["block"])]
         row = dict(zip([*PLACE, *FRICTION], keys, strict=True)) | {
@@ -77,10 +77,10 @@ def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
         if min(map(len, parts.values())) == 0:
             continue
         bootstrap = Bootstrap(_strata(parts["true"]))
-        for column, figure in FIGURES.items():
+        for column in FIGURES:
             if column == "return" and keys[1] == ALL:
                 continue
-            drawn = {name: bootstrap(values(part, column), figure) for name, part in parts.items()}
+            drawn = {name: bootstrap(values(part, column)) for name, part in parts.items()}
             row = dict(zip(["world", "task", "preset", "kind"], keys, strict=True))
             rows.append({**row, "figure": column, "n": len(parts["true"]), **_share(drawn)})
     return pd.DataFrame(rows, columns=SHARES)

@@ -41,7 +41,9 @@ class Imitation(Frozen):
     updates: Count = Field(default=400, description="Steps of the optimiser in a round [-]")
     batch: Count = Field(default=32, description="Episodes of each [-]")
     learning_rate: Positive = Field(default=2e-3, description="Largest step size; it falls as a cosine [-]")
-    held_out: int = Field(default=256, ge=0, description="Held-out episodes that the result is evaluated on [-]")
+    held_out: int = Field(
+        default=256, ge=0, description="Held-out episodes that the result is evaluated on [-]"
+    )
     threads: Count = Field(default=1, description="Threads of torch [-]")
 
     @field_validator("task")

@@ -64,12 +64,16 @@ def test_learned_policies_by_task_source_and_seed(small, shelf):
     )
     study = small(learned=folder)
     found = policies_of(study)
-    assert {key: [path.name for path in paths] for key, paths in found.items()} == {
-        ("LinearSlip", "true"): ["linear_slip_true", "linear_slip_true_2", "linear_slip_true_10"],
-        ("LinearSlip", "none"): ["linear_slip_none"],
+    assert {key: {seed: path.name for seed, path in paths.items()} for key, paths in found.items()} == {
+        ("learned", "LinearSlip", "true"): {
+            0: "linear_slip_true",
+            2: "linear_slip_true_2",
+            10: "linear_slip_true_10",
+        },
+        ("learned", "LinearSlip", "none"): {0: "linear_slip_none"},
     }
     (notice,) = missing(study, found)
-    assert "no learned policy for estimated;" in notice
+    assert "no policy of kind learned for estimated;" in notice
 
 
 def test_learned_policies_as_training_left_them(small, shelf):
@@ -79,10 +83,22 @@ def test_learned_policies_as_training_left_them(small, shelf):
         for seed in (0, 1)
     ]
     found = policies_of(small(learned=shelf(*runs, "hold__ppo__20260101/true__0/policy")))
-    assert {key: [path.parent.name for path in paths] for key, paths in found.items()} == {
-        ("LinearSlip", "none"): ["none__0", "none__1"],
-        ("LinearSlip", "true"): ["true__0", "true__1"],
+    assert {key: [path.parent.name for path in paths.values()] for key, paths in found.items()} == {
+        ("learned", "LinearSlip", "none"): ["none__0", "none__1"],
+        ("learned", "LinearSlip", "true"): ["true__0", "true__1"],
     }
+
+
+def test_imitations_are_a_kind_of_their_own(small, shelf):
+    folder = shelf("linear_slip_none_0/policy", "linear_slip_none_3/policy", "linear_slip_estimated_0/policy")
+    study = small(imitation=folder, kinds=["classic", "imitation"])
+    found = policies_of(study)
+    assert {key: sorted(paths) for key, paths in found.items()} == {
+        ("imitation", "LinearSlip", "none"): [0, 3],
+        ("imitation", "LinearSlip", "estimated"): [0],
+    }
+    with pytest.raises(ValueError, match="needs the folder"):
+        small(kinds=["imitation"])
 
 
 def test_two_folders_of_one_seed_are_an_error(small, shelf):
@@ -98,18 +114,25 @@ def test_a_learned_policy_is_told_nominal_values_by_that_of_the_truth(small, she
     }
 
 
+def _learned(**folders):
+    return {
+        ("learned", "LinearSlip", source): {seed: Path(name) for seed, name in enumerate(names)}
+        for source, names in folders.items()
+    }
+
+
 def test_all_policies_of_a_task_act_at_the_same_rate(small, monkeypatch):
     skips = {"a": 2, "b": 2, "c": 1}
     monkeypatch.setattr("policies.evaluation.rate.frame_skip_of", skips.get)
     study = small(tasks=["LinearSlip", "Hold"])
-    found = conditions(study, {("LinearSlip", "true"): [Path("a")], ("LinearSlip", "none"): [Path("b")]})
+    found = conditions(study, _learned(true=["a"], none=["b"]))
     assert {each.kind for each in found if each.task == "LinearSlip"} == {"classic", "learned"}
     assert {each.frame_skip for each in found if each.task == "LinearSlip"} == {2}
     assert {each.frame_skip for each in found if each.task == "Hold"} == {1}
     classic = next(each for each in found if each.task == "LinearSlip" and each.kind == "classic")
     assert classic.experiment(study).steps_per_action == 2
     with pytest.raises(ValueError, match=r"same rate of action only.*a 2, c 1"):
-        conditions(study, {("LinearSlip", "true"): [Path("a"), Path("c")]})
+        conditions(study, _learned(true=["a", "c"]))
 
 
 def test_episodes_come_in_pairs(small):

@@ -132,7 +132,7 @@ def test_a_study_without_all_sources_has_no_shares(run, small, output):
 
 def test_nothing_to_run_is_an_error(small, tmp_path):
     study = small(kinds=["learned"], learned=str(tmp_path))
-    with pytest.raises(ValueError, match="no condition to run; LinearSlip: no learned policy"):
+    with pytest.raises(ValueError, match="no condition to run; LinearSlip: no policy of kind learned"):
         run_study(study, tmp_path, progress=False)
 
 
