@@ -15,6 +15,7 @@ import numpy as np
 from tqdm import tqdm
 
 from policies.controllers.constant_force import ConstantForcePolicy
+from policies.evaluation.batch import play
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.plan import seed
 from slipgym.tasks import find
@@ -94,18 +95,7 @@ def _run(
 ) -> Outcomes:
     policy = ConstantForcePolicy(force, dict(experiment.config))
     seeds, options = zip(*rows, strict=True)
-    observations, _ = envs.reset(seed=list(seeds), options={"rows": list(options)})
-    n = len(rows)
-    running, reward = np.ones(n, bool), np.zeros(n)
-    success, dropped = np.zeros(n, bool), np.zeros(n, bool)
-    actions, _ = policy.predict(observations)
-    while running.any():
-        _, rewards, terminated, truncated, infos = envs.step(actions)
-        reward += np.where(running, rewards, 0.0)
-        ended = running & (terminated | truncated)
-        success[ended], dropped[ended] = infos["is_success"][ended], infos["dropped"][ended]
-        running &= ~ended
-    return Outcomes(force, success, dropped, reward)
+    return Outcomes(force, *play(envs, policy, seeds, options))
 
 
 def _options(material: str, options: Mapping[str, Any]) -> dict[str, Any]:
