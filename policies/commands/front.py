@@ -28,6 +28,7 @@ COMMANDS = {
     "warmup": "Compile everything once, for images and CI.",
     "compare-engines": "Compare the planar engine with PyBullet.",
     "compare-learned": "Compare pretrained policies with controllers.",
+    "rank": "Compare the order of returns with that of success.",
     "export-policy": "Write a learned policy as an ONNX graph.",
     "pushes": "Compare the estimators on real pushes of a block.",
     "ship": "Add trained policies to the pretrained ones.",

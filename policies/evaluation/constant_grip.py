@@ -17,7 +17,7 @@ from tqdm import tqdm
 from policies.controllers.constant_force import ConstantForcePolicy
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.plan import seed
-from policies.stepping import batch_steps
+from policies.evaluation.play import play
 from slipgym.tasks import find
 
 CANDIDATES = 24
@@ -95,13 +95,7 @@ def _run(
 ) -> Outcomes:
     policy = ConstantForcePolicy(force, dict(experiment.config))
     seeds, options = zip(*rows, strict=True)
-    observations, _ = envs.reset(seed=list(seeds), options={"rows": list(options)})
-    reward, success, dropped = np.zeros(len(rows)), np.zeros(len(rows), bool), np.zeros(len(rows), bool)
-    for step in batch_steps(envs, policy, observations):
-        reward += np.where(step.running, step.rewards, 0.0)
-        success[step.ended] = step.infos["is_success"][step.ended]
-        dropped[step.ended] = step.infos["dropped"][step.ended]
-    return Outcomes(force, success, dropped, reward)
+    return Outcomes(force, *play(envs, policy, seeds, options))
 
 
 def _options(material: str, options: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 
 from policies.learned.description import Column, Environment
+from policies.learned.reading import layout
 
 
 def check_environment(trained: Environment, env: Any) -> None:
     """Refuse an environment whose observations or actions mean something else.
+
+    Columns that were added to the observations of slipgym since the training are ignored.
 
     Args:
         trained: What the policy was trained in.
@@ -21,9 +24,11 @@ def check_environment(trained: Environment, env: Any) -> None:
         ValueError: A column differs in name, bounds or unit, or the history or the rate does; the message
             names the first difference.
     """
-    inner = env.unwrapped
+    inner, names = env.unwrapped, layout(trained)
+    added = set(names) - {column.name for column in trained.observation}
+    observed = [column for column in inner.columns if column.name not in added]
     for what, ours, theirs in (
-        ("observation", trained.observation, inner.columns),
+        ("observation", trained.observation, observed),
         ("action", trained.action, inner.action_columns),
     ):
         difference = first_difference(ours, [column_of(column) for column in theirs])
@@ -31,9 +36,10 @@ def check_environment(trained: Environment, env: Any) -> None:
             raise ValueError(f"the policy was trained for another {what}: {difference}")
     space = inner.observation_space
     width = getattr(space, "spaces", {"policy": space})["policy"].shape[-1]
-    if width != trained.width:
+    wanted = (trained.history + 1) * len(names)
+    if width != wanted:
         raise ValueError(
-            f"the policy was trained with history={trained.history}: {trained.width} numbers; "
+            f"the policy was trained with history={trained.history}: {wanted} numbers; "
             f"the environment's observation has {width}"
         )
     rate = inner.metadata["render_fps"]
@@ -41,20 +47,25 @@ def check_environment(trained: Environment, env: Any) -> None:
         raise ValueError(f"the policy was trained at {trained.rate:g} steps per second, here are {rate:g}")
 
 
-def check_width(trained: Environment, width: int) -> None:
+def check_width(names: Sequence[str], history: int, width: int) -> None:
     """Refuse observations of another length.
+
+    Args:
+        names: Columns of one observation.
+        history: Number of earlier observations along with each.
+        width: Numbers in the given observation.
 
     Raises:
         ValueError: The length is another one; the message names the first column that is missing or follows.
     """
-    if width == trained.width:
+    wanted = (history + 1) * len(names)
+    if width == wanted:
         return
-    columns, message = trained.observation, f"observation has {width} columns, "
-    message += f"the policy was trained on {trained.width} (history={trained.history})"
-    if trained.history == 0 and width < len(columns):
-        message += f"; the first that it lacks at its end is {columns[width].name!r}"
-    elif trained.history == 0:
-        message += f"; the last one known is {columns[-1].name!r}"
+    message = f"observation has {width} columns, the policy needs {wanted} (history={history})"
+    if history == 0 and width < wanted:
+        message += f"; the first that it lacks at its end is {names[width]!r}"
+    elif history == 0:
+        message += f"; the last one known is {names[-1]!r}"
     raise ValueError(message)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from policies.learned import files
 from policies.learned.fitting import check_environment, check_width
 from policies.learned.forward import Memory, Network
+from policies.learned.reading import layout, selection
 from policies.learned.residual import Underlying
 
 MODES = ("action_mode", "observation_mode", "history", "frame_skip")
@@ -25,6 +26,9 @@ class LearnedPolicy:
 
     Attributes:
         description: What policy.json says.
+        names: Columns of an observation that it takes: those of the environment in this version of slipgym.
+            The network reads the columns of its training among them.
+        width: Numbers in an observation that it takes, earlier observations included.
 
     Raises:
         FileNotFoundError: There is nothing at the path.
@@ -35,9 +39,12 @@ class LearnedPolicy:
         self.description, tensors = files.read(path)
         self._network = Network(self.description.network, self.description.normalisation, tensors)
         self._underlying = None
+        where = self.description.environment
+        self.names = layout(where)
+        self.width = (where.history + 1) * len(self.names)
+        self._read = selection(where, self.width + self.description.width - where.width)
         if (residual := self.description.residual) is not None:
-            where = self.description.environment
-            self._underlying = Underlying(residual, where.arguments, len(where.observation), where.rate)
+            self._underlying = Underlying(residual, where.arguments, len(self.names), where.rate)
             if self._underlying.memory != residual.memory:
                 raise ValueError(
                     f"{path}: the memory of its controller {residual.controller!r} had {residual.memory} "
@@ -99,6 +106,8 @@ class LearnedPolicy:
     ) -> tuple[np.ndarray, Memory | None]:
         """What the network makes of rows (n, width) of numbers."""
         memory = self._memory(state, episode_start, len(rows))
+        if self._read is not None:
+            rows = np.take(rows, self._read, axis=1)
         with np.errstate(over="ignore", invalid="ignore"):
             actions, memory = self._network.forward(rows, memory)
         if np.isnan(actions).any():
@@ -114,11 +123,10 @@ class LearnedPolicy:
         observations = np.asarray(observation)
         if observations.ndim not in (1, 2):
             raise ValueError(f"observation must have shape (m,) or (n, m), got {observations.shape}")
-        environment = self.description.environment
-        check_width(environment, observations.shape[-1])
+        check_width(self.names, self.description.environment.history, observations.shape[-1])
         if not np.isfinite(observations).all():
             column = int(np.argwhere(~np.isfinite(np.atleast_2d(observations)))[0, 1])
-            name = environment.observation[column % len(environment.observation)].name
+            name = self.names[column % len(self.names)]
             raise ValueError(f"observation column {column} ({name}) must be finite")
         return observations
 

@@ -13,7 +13,7 @@ from policies.learned.description import Residual
 from policies.training import seeds
 from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO
 from slipgym.config import load, load_randomization
-from slipgym.config.base import Count, Frozen, NonNegative, Positive, as_tuple
+from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.envs.arguments import CommonArguments, fields
 from slipgym.registration import ENVIRONMENTS
@@ -137,9 +137,6 @@ class Training(Frozen):
     shaping: Mapping[str, Any] = Field(
         default={},
         description="Overrides of the environment's config where it learns; not where it is evaluated [-]",
-    )
-    bonus: NonNegative = Field(
-        default=0.0, description="Reward for a solved episode at its end, where it learns [-]"
     )
     residual: Residual | None = Field(
         default=None,

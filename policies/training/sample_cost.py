@@ -14,7 +14,6 @@ from policies.training import model as learners
 from policies.training.adapter import SlipVecEnv
 from policies.training.config import Training
 from policies.training.residual import ResidualVecEnv
-from policies.training.success_bonus import BonusVecEnv
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import Stopwatches
 from slipgym.tasks import find
@@ -23,7 +22,6 @@ _WRAPPERS: dict[type, str] = {
     SlipVecEnv: "adapter",
     VecMonitor: "monitor",
     ResidualVecEnv: "controller",
-    BonusVecEnv: "bonus",
     VecNormalize: "normalisation",
 }
 """Label of each layer around the vector environment."""

@@ -14,7 +14,6 @@ from policies.training.adapter import SlipVecEnv, make_vec_env
 from policies.training.config import Training
 from policies.training.residual import ResidualVecEnv
 from policies.training.state_checks import check_array
-from policies.training.success_bonus import BonusVecEnv
 from slipgym.tasks import find
 
 
@@ -69,7 +68,7 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
         columns, metadata = envs.get_attr("columns")[0], envs.get_attr("metadata")[0]
         underlying = Underlying(config.residual, keywords, len(columns), metadata["render_fps"])
         envs = ResidualVecEnv(envs, underlying)
-    return BonusVecEnv(envs, config.bonus) if shaped and config.bonus else envs
+    return envs
 
 
 def scalar(
@@ -98,8 +97,6 @@ def get_state(envs: Any) -> dict[str, Any]:
     """Everything that decides what the environments do next, as plain data."""
     if isinstance(envs, ResidualVecEnv):
         return {**get_state(envs.venv), "residual": envs.get_state()}
-    if isinstance(envs, BonusVecEnv):
-        return get_state(envs.venv)
     states = envs.env_method("get_state")
     return {
         "envs": states[:1] if _is_batch(envs) else states,
@@ -114,9 +111,8 @@ def set_state(envs: Any, state: dict[str, Any]) -> None:
     Raises:
         ValueError: It is of other environments.
     """
-    if isinstance(envs, ResidualVecEnv | BonusVecEnv):
-        if isinstance(envs, ResidualVecEnv):
-            envs.set_state(state["residual"])
+    if isinstance(envs, ResidualVecEnv):
+        envs.set_state(state["residual"])
         set_state(envs.venv, state)
         return
     check_array("environments.returns", state["returns"], (envs.num_envs,))

@@ -29,6 +29,7 @@ from gymnasium.vector import AutoresetMode
 
 import estimator as estimators
 from slipgym.config.errors import unknown
+from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
 from slipgym.config.physics import ContactModel
 
 FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
@@ -90,6 +91,14 @@ class CommonArguments(TypedDict, total=False):
             "none",
             'parameters sampled per episode: `"none"`, `"train"`, `"lab"`, `"eval_ood"`, a file or a mapping '
             "(see docs/randomization.md)",
+        ),
+    ]
+    level: Annotated[
+        str | os.PathLike[str] | Mapping[str, Any],
+        Argument(
+            DEFAULT_LEVEL,
+            'difficulty: `"easy"`, `"standard"`, `"hard"`, a file or a mapping (see docs/levels.md); '
+            "`config` and reset options replace its settings, it replaces parts of `randomization`",
         ),
     ]
     frame_skip: Annotated[

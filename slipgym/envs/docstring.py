@@ -11,7 +11,6 @@ from __future__ import annotations
 import importlib
 import inspect
 import re
-import textwrap
 
 from slipgym.config import Config, load
 from slipgym.envs.arguments import ScalarArguments, fields
@@ -73,7 +72,16 @@ _END = """\
 - Truncated: the episode has reached its time limit. The environment truncates by itself; no `TimeLimit` is
   needed."""
 
-_REWARD_TERMS = ("`reward_terms`", "scaled reward terms of this step by name; they add up to the reward")
+_REWARDS = """\
+The reward of a control step is the sum of these terms. A dense term pays its value, limited to [-1, 1], times
+scale / (control steps of the episode) in every step, so that its sum over an episode stays within its scale.
+An event pays value times scale when it happens. The scales stand under `tasks.{key}.reward` in the
+configuration; docs/rewards.md explains them."""
+
+_REWARD_TERMS = (
+    "`reward_terms`",
+    "what each reward term pays in this step, by name; they add up to the reward",
+)
 _DRAWN = """\
 With a randomization, the info of a reset also holds `drawn`: the values sampled for the episode, by name (see
 docs/randomization.md)."""
@@ -135,11 +143,12 @@ def _observation(config: Config, task: Task) -> str:
 
 
 def _rewards(task: Task) -> str:
-    where = f"`tasks.{task.key}.reward` in the configuration"
-    text = f"The reward of a control step is the sum of these terms, each times its scale ({where}):"
-    head = textwrap.fill(text, 106)
-    rows = [(f"`{term.name}`", f"{term.scale:g}", term.meaning) for term in task.terms]
-    return f"{head}\n\n{_table(('Term', 'Scale', 'Value before scaling'), rows)}"
+    rows = [
+        (f"`{term.name}`", "event" if term.event else "dense", f"{term.scale:g}", term.meaning)
+        for term in task.terms
+    ]
+    table = _table(("Term", "Paid", "Scale", "Value before scaling"), rows)
+    return f"{_REWARDS.format(key=task.key)}\n\n{table}"
 
 
 def _arguments(task: Task) -> str:

@@ -90,6 +90,7 @@ NUMBERS = (
 FLAGS = (
     Info("is_success", (), "", "whether the task is solved; see Episode End", "episodes[i].success"),
     Info("dropped", (), "", "whether the box was dropped", "episodes[i].dropped"),
+    Info("violated", (), "", "whether success has become impossible", "episodes[i].violated"),
 )
 """Entries that are true or false, in the order of a row."""
 
@@ -109,7 +110,7 @@ class InfoBuffer(NamedTuple):
     numbers: np.ndarray
     """See `NUMBERS`, (n, m)."""
     flags: np.ndarray
-    """See `FLAGS`, (n, 2) bool."""
+    """See `FLAGS`, (n, 3) bool."""
     terms: np.ndarray
     """Reward terms of the last step, summed over its control steps, (n, k)."""
 
@@ -220,7 +221,7 @@ def write_infos(numbers, flags, worlds, pads, fingers, episodes, ground_truth, e
 
     Args:
         numbers: Output (n, m), see `NUMBERS`.
-        flags: Output (n, 2), see `FLAGS`.
+        flags: Output (n, 3), see `FLAGS`.
         worlds: WORLD (n,).
         pads: PAD (n, 2).
         fingers: FINGER (n, 2).

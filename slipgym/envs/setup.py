@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from slipgym.config import Config, Randomization, TaskConfig, load_randomization
+from slipgym.config.level import load_level
 from slipgym.envs.actions import Actions
 from slipgym.envs.arguments import CommonArguments, fields, one_of
 from slipgym.envs.observer import Observer
@@ -28,7 +29,7 @@ class Setup:
     Attributes:
         config: The configuration.
         settings: The task's settings.
-        randomization: Distributions that an episode is sampled from.
+        randomization: Distributions that an episode is sampled from, those of the level in place.
         material: Name of the material, or "random".
         actions: Action space and the meaning of actions.
         simulation: The simulation.
@@ -41,10 +42,13 @@ class Setup:
 
     def __init__(self, task: Task, arguments: Mapping[str, Any], make_simulation: MakeSimulation) -> None:
         values = {name: arguments[name] for name in fields(CommonArguments)}
-        self.config, self.settings = configure(task, values["config"], values["sensors"], values["contact"])
+        level = load_level(values["level"], task.key)
+        given = values["config"], values["sensors"], values["contact"]
+        self.config, self.settings = configure(task, *given, level)
         warn_if_slow(self.config, values["frame_skip"])
         keys = [each.key for each in TASKS.values()]
-        self.randomization = load_randomization(values["randomization"], keys)
+        randomization = load_randomization(values["randomization"], keys)
+        self.randomization = level.level.applied_to(randomization, task.key)
         self.material = one_of("material", values["material"], ("random", *self.config.materials))
         values["action_mode"] = values["action_mode"] or task.action_mode
         self.actions = Actions(values["action_mode"], self.config)
@@ -56,6 +60,7 @@ class Setup:
         self.arguments: dict[str, Any] = {
             **values,
             "estimator": self.simulation.estimator_choice,
-            "randomization": self.randomization.model_dump(mode="json", exclude_unset=True),
+            "level": level.argument,
+            "randomization": randomization.model_dump(mode="json", exclude_unset=True),
             "config": recorded(self.config, self.settings, task.key),
         }

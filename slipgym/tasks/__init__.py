@@ -3,6 +3,18 @@
 from slipgym.config.task import Option, TaskConfig, setting
 from slipgym.tasks.configure import configure
 from slipgym.tasks.table import TASKS, find
-from slipgym.tasks.task import Column, Task, Term, term
+from slipgym.tasks.task import Column, Task, Term, event, term
 
-__all__ = ["TASKS", "Column", "Option", "Task", "TaskConfig", "Term", "configure", "find", "setting", "term"]
+__all__ = [
+    "TASKS",
+    "Column",
+    "Option",
+    "Task",
+    "TaskConfig",
+    "Term",
+    "configure",
+    "event",
+    "find",
+    "setting",
+    "term",
+]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
 from numba import njit
@@ -10,7 +10,7 @@ from numba.core.dispatcher import Dispatcher
 
 from slipgym._numba.compiled import compiled
 from slipgym._numba.generate import generate
-from slipgym.tasks.episode import detect_drop, drive_wrist
+from slipgym.tasks.episode import detect_drop, drive_wrist, limited
 
 
 class _Term(Protocol):
@@ -18,6 +18,8 @@ class _Term(Protocol):
     def name(self) -> str: ...
     @property
     def value(self) -> Callable[..., Any]: ...
+    @property
+    def event(self) -> bool: ...
 
 
 class _Column(Protocol):
@@ -62,8 +64,7 @@ def compile_script_wrist(key: str, wrist_velocity: Callable[..., Any] | None, fi
 
 def compile_evaluate_step(
     key: str,
-    track: Callable[..., Any] | None,
-    success: Callable[..., Any],
+    functions: Mapping[str, Callable[..., Any] | None],
     terms: Sequence[_Term],
     columns: Sequence[_Column],
     file: str,
@@ -72,28 +73,32 @@ def compile_evaluate_step(
 
     Args:
         key: The task's.
-        track: The task's, or None.
-        success: The task's.
-        terms: The task's; term k is written, scaled, to `episode.terms[k]`.
+        functions: The task's `track`, `violated` and `success`, by these names; each may be None.
+        terms: The task's; what the step pays for term k is written to `episode.terms[k]`.
         columns: The task's; column k is written to `columns[i, k]`.
         file: The task's source file.
     """
-    namespace: dict[str, Any] = {"detect_drop": detect_drop, "success": inlined(success)}
-    if track is not None:
-        namespace["track"] = inlined(track)
+    namespace: dict[str, Any] = {"detect_drop": detect_drop, "limited": limited}
+    namespace |= {name: inlined(each) for name, each in functions.items() if each is not None}
+    violated = " or violated(episode, world, fingers)" if "violated" in namespace else ""
+    success = " and success(episode, world)" if "success" in namespace else ""
     body = [
         "for i in range(episodes.shape[0]):",
         "    episode, world, fingers = episodes[i], worlds[i], grippers[i]",
-        *(["    track(episode, world)"] if track is not None else []),
+        *(["    track(episode, world)"] if "track" in namespace else []),
         "    episode.dropped = detect_drop(episode, world, fingers)",
-        "    finished = episode.step >= episode.steps and not episode.dropped",
-        "    episode.success = finished and success(episode, world)",
+        "    before = episode.violated",
+        f"    episode.violated = before{violated}",
+        "    episode.just_violated = episode.violated and not before",
+        "    finished = episode.step >= episode.steps and not episode.dropped and not episode.violated",
+        f"    episode.success = finished{success}",
+        "    share = 1.0 / episode.steps",
     ]
     for k, term in enumerate(terms):
         namespace[f"term_{term.name}"] = inlined(term.value)
-        body.append(
-            f"    episode.terms[{k}] = episode.scales[{k}] * term_{term.name}(episode, world, fingers)"
-        )
+        value = f"term_{term.name}(episode, world, fingers)"
+        paid = value if term.event else f"share * limited({value})"
+        body.append(f"    episode.terms[{k}] = episode.scales[{k}] * {paid}")
     for k, column in enumerate(columns):
         read = column.read
         if not isinstance(read, str):
@@ -101,5 +106,5 @@ def compile_evaluate_step(
             read = f"column_{column.name}(episode, world, fingers)"
         body.append(f"    columns[i, {k}] = {read}  # {column.name}")
     arguments = "episodes", "worlds", "grippers", "columns"
-    doc = "After a control step: drop, success, scaled reward terms, the task's part of the observation."
+    doc = "After a control step: drop, violation, success, what the terms of the reward pay, columns."
     return generate(f"evaluate_step_{key}", arguments, body, namespace, compiled, file, doc)

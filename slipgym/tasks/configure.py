@@ -7,6 +7,7 @@ from typing import Any
 
 from slipgym.config import Config, Overrides, load
 from slipgym.config.errors import unknown
+from slipgym.config.level import Chosen
 from slipgym.config.load import merge, read_overrides
 from slipgym.config.task import SettingsT, TaskConfig
 from slipgym.config.yaml_model import validate
@@ -19,6 +20,7 @@ def configure(
     overrides: Overrides | None = None,
     sensors: str = "realistic",
     contact: str | None = None,
+    level: Chosen | None = None,
 ) -> tuple[Config, SettingsT]:
     """Loads the configuration and the settings of a task.
 
@@ -29,6 +31,7 @@ def configure(
             other tasks are checked and then ignored.
         sensors: Sensor preset, see `slipgym.config.load`.
         contact: Friction model, see `slipgym.config.load`.
+        level: Its settings replace the task's defaults; None: none.
 
     Raises:
         FileNotFoundError: The overrides' file does not exist.
@@ -45,7 +48,11 @@ def configure(
         if key not in known:
             raise ValueError(f"{source}: tasks.{key}: {unknown('key', key, known)}")
         _settings(known[key], group, source)
-    settings = _settings(task, groups.get(task.key, {}), source)
+    changed: Mapping[str, Any] = {}
+    if level is not None:
+        changed = level.level.settings
+        _settings(task, changed, level.source)
+    settings = _settings(task, groups.get(task.key, {}), source, changed)
     try:
         settings.check(config, f"tasks.{task.key}")
     except ValueError as error:
@@ -53,11 +60,13 @@ def configure(
     return config, settings
 
 
-def _settings(task: Task[SettingsT], group: Any, source: str) -> SettingsT:
+def _settings(
+    task: Task[SettingsT], group: Any, source: str, changed: Mapping[str, Any] | None = None
+) -> SettingsT:
     place = f"tasks.{task.key}"
     if not isinstance(group, Mapping):
         raise ValueError(f"{source}: {place} = {group!r:.80} must be a mapping of names to values")
-    values = merge(task.default_settings, group)
+    values = merge(merge(task.default_settings, changed or {}), group)
     settings = validate(values, task.settings, source, prefix=("tasks", task.key))
     for name in settings.reward:
         if name not in task.term_names:

@@ -12,7 +12,7 @@ from slipgym._numba.compiled import compiled
 from slipgym.tasks.disturbance import FIELDS, shake_velocity
 from slipgym.world.wrist import ramp_wrist
 
-TERMS_MAX = 8
+TERMS_MAX = 12
 """Largest number of reward terms of a task."""
 OWN_MAX = 8
 """Number of values that a task can keep besides the fields of all tasks."""
@@ -62,6 +62,8 @@ EPISODE = np.dtype(
         ("scales", "f8", TERMS_MAX),
         ("success", "?"),
         ("dropped", "?"),
+        ("violated", "?"),  # whether success has become impossible; it stays true
+        ("just_violated", "?"),  # whether it became impossible in the last step
         ("largest_slip", "f8"),  # of the pad centre since reset [m]
         ("largest_tilt", "f8"),  # of the object against its start since reset [rad]
         # tasks with a reference
@@ -167,6 +169,16 @@ def detect_drop(episode, world, fingers):
     outside = abs(bx) > episode.reach[0] or abs(bz) > episode.reach[1]
     lost = fingers[0].contact_force <= 0.0 and fingers[1].contact_force <= 0.0
     return outside or lost
+
+
+@compiled
+def limited(value):
+    """A number limited to [-1, 1]; NaN stays NaN."""
+    if value > 1.0:
+        return 1.0
+    if value < -1.0:
+        return -1.0
+    return value
 
 
 @compiled

@@ -37,7 +37,7 @@ pitches by `turn` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never
 slid further than `slide_tolerance` (2 mm) at the pad centre and never tilted by more than
-`tilt_tolerance` (5 deg).
+`tilt_tolerance` (5 deg). A further slide or tilt is the violation that `violated` reports.
 
 ## Info
 
@@ -64,7 +64,7 @@ from slipgym.tasks.episode import schedule, scratch, slip_distance, track_slip, 
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
-from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
+from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
 
 SCRATCH = scratch(scripted_pitch=1)
 """`scripted_pitch`: pitch of the wrist by the script alone, without the agent's commands [rad]."""
@@ -137,18 +137,18 @@ def tilt(episode, world):
     return max(abs(world.angle), abs(world.wrist_plan[2] - episode.own[SCRATCH.scripted_pitch]))
 
 
-def success(episode, world):
-    """Whether the object neither slid nor tilted far."""
-    return episode.largest_slip <= episode.slide_tolerance and episode.largest_tilt <= episode.tilt_tolerance
+def violated(episode, world, fingers):
+    """Whether the object slid or tilted far."""
+    return episode.largest_slip > episode.slide_tolerance or episode.largest_tilt > episode.tilt_tolerance
 
 
-@term(scale=1.0)
+@term(scale=0.5)
 def still(episode, world, fingers):
     """exp(-(s / slide_tolerance)^2), s = slip at the pad centre."""
     return math.exp(-((slip_distance(world) / episode.slide_tolerance) ** 2))
 
 
-@term(scale=1.0)
+@term(scale=0.5)
 def upright(episode, world, fingers):
     """exp(-(tilt / tilt_tolerance)^2), tilt = turn of the box since reset or, if larger, e."""
     return math.exp(-((tilt(episode, world) / episode.tilt_tolerance) ** 2))
@@ -160,8 +160,8 @@ TASK = Task(
     start=start,
     wrist_velocity=wrist_velocity,
     track=track,
-    success=success,
-    terms=(still, upright, effort, smoothness, drop),
+    violated=violated,
+    terms=(still, upright, effort, smoothness, *OUTCOME),
     columns=(
         Column(
             "wrist_pitch", -10.0, 10.0, "rad", "pitch of the wrist since the start", "episode.reference[0]"
@@ -172,6 +172,7 @@ TASK = Task(
         ),
         Column("wrist_pitch_goal", -10.0, 10.0, "rad", "pitch at the end of the turn", "episode.goal"),
         TIME_LEFT,
+        VIOLATED,
     ),
     motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), sign=-1.0, goal="wrist_pitch_goal"),
     page=__doc__,

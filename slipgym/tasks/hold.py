@@ -23,7 +23,7 @@ the gripper's limits apply to the sum.
   `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped and never
-slipped further than `tolerance` (2 mm).
+slipped further than `tolerance` (2 mm). A slip further than that is the violation that `violated` reports.
 
 ## Info
 
@@ -48,7 +48,7 @@ from slipgym.tasks.disturbance import POKES_MAX
 from slipgym.tasks.episode import between, slip_distance, track_slip, whole_steps
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
-from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
+from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
 
 
 class Settings(TaskConfig):
@@ -131,12 +131,12 @@ def disturb_hold(shares, amplitudes, ranges, times, episode):
         episode.pushes = k + 1
 
 
-def success(episode, world):
-    """Whether the object never slid far."""
-    return episode.largest_slip <= episode.tolerance
+def violated(episode, world, fingers):
+    """Whether the object slid far."""
+    return episode.largest_slip > episode.tolerance
 
 
-@term(scale=1.0)
+@term(scale=0.5)
 def still(episode, world, fingers):
     """exp(-(s / tolerance)^2), s = slip displacement at the pad centre."""
     return math.exp(-((slip_distance(world) / episode.tolerance) ** 2))
@@ -147,8 +147,8 @@ TASK = Task(
     settings=Settings,
     start=start,
     track=track_slip,
-    success=success,
-    terms=(still, effort._replace(scale=1.0), smoothness, drop),
+    violated=violated,
+    terms=(still, effort._replace(scale=0.5), smoothness, *OUTCOME),
     columns=(
         Column(
             "wrist_velocity_x", -2.0, 2.0, "m/s", "commanded wrist velocity along world x",
@@ -162,6 +162,7 @@ TASK = Task(
             "wrist_pitch_rate", -10.0, 10.0, "rad/s", "commanded wrist pitch rate", "world.wrist_velocity[2]"
         ),
         TIME_LEFT,
+        VIOLATED,
     ),
     page=__doc__,
 )  # fmt: skip

@@ -21,7 +21,8 @@ of a count in the slip sensors. Grip and sensors run for six control steps befor
   environment truncates by itself; no `TimeLimit` is needed.
 
 Success (`info["is_success"]`): at the end of the last step the distance slid is within `tolerance` (2
-mm) of `distance`, and the box was not dropped.
+mm) of `distance`, and the box was not dropped. Nothing before the end makes it impossible: `violated` is
+always 0.
 
 ## Info
 
@@ -45,7 +46,7 @@ from slipgym.tasks.episode import follow_trapezoid, schedule
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
-from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
+from slipgym.tasks.terms import TIME_LEFT, VIOLATED, drop, effort, smoothness, solved
 
 
 class Settings(TaskConfig):
@@ -81,11 +82,11 @@ def tracking(episode, world, fingers):
     return math.exp(-((error / episode.tolerance) ** 2))
 
 
-@term(scale=0.1)
+@term(scale=0.5)
 def sideways(episode, world, fingers):
-    """-(abs(x) + gripper.pad_radius abs(theta)) / tolerance, at least -10."""
+    """-(abs(x) + gripper.pad_radius abs(theta)) / (10 tolerance)."""
     away = abs(world.slip[0]) + episode.pad_radius * abs(world.slip[2])
-    return -min(away / episode.tolerance, 10.0)
+    return -away / (10.0 * episode.tolerance)
 
 
 TASK = Task(
@@ -94,7 +95,7 @@ TASK = Task(
     start=start,
     track=track,
     success=success,
-    terms=(tracking, sideways, effort, smoothness, drop),
+    terms=(tracking, sideways, effort, smoothness, solved, drop),
     columns=(
         Column(
             "reference_position",
@@ -108,6 +109,7 @@ TASK = Task(
         Column("reference_acceleration", -5.0, 5.0, "m/s^2", "its second rate", "episode.reference[2]"),
         Column("distance", 0.0, 1.0, "m", "distance to slide in the episode", "episode.goal"),
         TIME_LEFT,
+        VIOLATED,
     ),
     motion=Motion("slid down", axis=(0.0, -1.0, 0.0), goal="distance"),
     page=__doc__,

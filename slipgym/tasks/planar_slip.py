@@ -58,7 +58,8 @@ sensors run for six control steps before time 0.
 
 Success (`info["is_success"]`): the episode was played to its end, the box was not dropped, and at the end
 its slip displacement is within `tolerance` (2 mm) of the target in (x, y) and within `angle_tolerance`
-(3 deg) in theta, at rest: no point of the pads slips faster than `rest_speed` (1 mm/s).
+(3 deg) in theta, at rest: no point of the pads slips faster than `rest_speed` (1 mm/s). Nothing before the
+end makes it impossible: `violated` is always 0.
 
 ## Info
 
@@ -84,7 +85,7 @@ from slipgym.tasks.episode import scratch
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
-from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
+from slipgym.tasks.terms import TIME_LEFT, VIOLATED, drop, effort, smoothness, solved
 
 SCRATCH = scratch(target=3, angle_tolerance=1, rest_speed=1)
 """`target`: slip displacement to reach [m, m, rad]; `angle_tolerance` [rad]; `rest_speed` [m/s]."""
@@ -186,22 +187,22 @@ def success(episode, world):
     )
 
 
-@term(scale=1.0)
+@term(scale=0.5)
 def position(episode, world, fingers):
     """exp(-e^2), e = error in (x, y) / tolerance."""
     return math.exp(-(position_error(episode, world) ** 2))
 
 
-@term(scale=1.0)
+@term(scale=0.5)
 def angle(episode, world, fingers):
     """exp(-a^2), a = error in theta / angle_tolerance."""
     return math.exp(-(angle_error(episode, world) ** 2))
 
 
-@term(scale=0.1)
+@term(scale=0.5)
 def distance(episode, world, fingers):
-    """-(e + a) / 2, at least -10."""
-    return -min(0.5 * (position_error(episode, world) + angle_error(episode, world)), 10.0)
+    """-(e + a) / 20."""
+    return -(position_error(episode, world) + angle_error(episode, world)) / 20.0
 
 
 @term(scale=0.1)
@@ -219,7 +220,7 @@ TASK = Task(
     start=start,
     track=track,
     success=success,
-    terms=(position, angle, distance, effort, smoothness, wrist, drop),
+    terms=(position, angle, distance, effort, smoothness, wrist, solved, drop),
     columns=(
         Column(
             "target_x", -1.0, 1.0, "m", "slip displacement to reach, along the pads' x axis",
@@ -228,6 +229,7 @@ TASK = Task(
         Column("target_y", -1.0, 1.0, "m", "the same along the pads' y axis", "episode.reference[1]"),
         Column("target_theta", -10.0, 10.0, "rad", "the same about the grip axis", "episode.reference[2]"),
         TIME_LEFT,
+        VIOLATED,
     ),
     action_mode="grip_force_pitch",
     motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), entry=2, goal="target_theta"),

@@ -35,7 +35,7 @@ Grip and sensors run for six control steps before time 0. The reference rests fo
 
 Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, -theta is
 `angle` within `tolerance` (2 deg), and it never slid further than `slide_tolerance` (1 mm) at the pad
-centre.
+centre. A slide further than that is the violation that `violated` reports.
 
 ## Info
 
@@ -60,7 +60,7 @@ from slipgym.tasks.episode import follow_trapezoid, schedule, slip_distance, tra
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
-from slipgym.tasks.terms import TIME_LEFT, drop, effort, smoothness
+from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
 
 
 class Settings(TaskConfig):
@@ -96,9 +96,13 @@ def track(episode, world):
 
 
 def success(episode, world):
-    """Whether the object turned by the given angle without sliding far."""
-    error = -world.slip[2] - episode.goal
-    return abs(error) <= episode.tolerance and episode.largest_slip <= episode.slide_tolerance
+    """Whether the object turned by the given angle."""
+    return abs(-world.slip[2] - episode.goal) <= episode.tolerance
+
+
+def violated(episode, world, fingers):
+    """Whether the object slid far."""
+    return episode.largest_slip > episode.slide_tolerance
 
 
 @term(scale=1.0)
@@ -108,10 +112,10 @@ def tracking(episode, world, fingers):
     return math.exp(-((error / episode.tolerance) ** 2))
 
 
-@term(scale=0.1)
+@term(scale=0.5)
 def sliding(episode, world, fingers):
-    """-min(slip at the pad centre / slide_tolerance, 10)."""
-    return -min(slip_distance(world) / episode.slide_tolerance, 10.0)
+    """-(slip at the pad centre) / (10 slide_tolerance)."""
+    return -slip_distance(world) / (10.0 * episode.slide_tolerance)
 
 
 TASK = Task(
@@ -120,7 +124,8 @@ TASK = Task(
     start=start,
     track=track,
     success=success,
-    terms=(tracking, sliding, effort, smoothness, drop),
+    violated=violated,
+    terms=(tracking, sliding, effort, smoothness, *OUTCOME),
     columns=(
         Column(
             "reference_position", 0.0, 2.0, "rad", "angle the object should have turned, clockwise",
@@ -130,6 +135,7 @@ TASK = Task(
         Column("reference_acceleration", -100.0, 100.0, "rad/s^2", "its second rate", "episode.reference[2]"),
         Column("angle", 0.0, 2.0, "rad", "angle to turn in the episode", "episode.goal"),
         TIME_LEFT,
+        VIOLATED,
     ),
     motion=Motion("turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle"),
     page=__doc__,

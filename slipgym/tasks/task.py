@@ -6,7 +6,7 @@ import re
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Generic, NamedTuple
 
 from gymnasium.envs.registration import parse_env_id
@@ -43,34 +43,50 @@ class Term(NamedTuple):
     """Its value before scaling."""
     value: Value
     """Computes it, not scaled."""
+    event: bool = False
+    """Whether it is paid in full when it happens. If not, the term is dense: every control step pays its
+    value, limited to [-1, 1], times scale / (control steps of the episode)."""
 
 
 def term(scale: float) -> Callable[[Value], Term]:
-    """Decorator that makes a reward term of a function (episode, world, fingers).
+    """Decorator that makes a dense reward term of a function (episode, world, fingers).
 
-    The term has the function's name, and its meaning is the function's docstring.
+    The term has the function's name, and its meaning is the function's docstring. The value is limited to
+    [-1, 1] and paid in every control step, times scale / (control steps of the episode). The sum over an
+    episode therefore lies within [-scale, scale].
 
     Args:
         scale: Default scale of the term.
     """
+    return partial(_declared, scale, False)
 
-    def declare(value: Value) -> Term:
-        meaning = " ".join((value.__doc__ or "").split()).removesuffix(".")
-        return Term(value.__name__, scale, meaning, value)
 
-    return declare
+def event(scale: float) -> Callable[[Value], Term]:
+    """Decorator that makes a reward term of a function as `term` does, but of an event.
+
+    The value, 0 in steps without the event, is paid times the scale when the event happens.
+
+    Args:
+        scale: Default scale of the term.
+    """
+    return partial(_declared, scale, True)
+
+
+def _declared(scale: float, event: bool, value: Value) -> Term:
+    meaning = " ".join((value.__doc__ or "").split()).removesuffix(".")
+    return Term(value.__name__, scale, meaning, value, event)
 
 
 @dataclass(frozen=True, eq=False)
 class Task(Generic[SettingsT]):
     """A task, for every engine and every number of environments.
 
-    The functions `track`, `success` and `wrist_velocity`, and those of terms and columns, are plain Python
-    that is compiled by numba. They work on one environment: `episode` is an EPISODE record, `world` a WORLD
-    record.
+    The functions `track`, `success`, `violated` and `wrist_velocity`, and those of terms and columns, are
+    plain Python that is compiled by numba. They work on one environment: `episode` is an EPISODE record,
+    `world` a WORLD record.
 
     Raises:
-        ValueError: The id is malformed.
+        ValueError: The id is malformed, or the task has neither `success` nor `violated`.
     """
 
     id: str
@@ -79,12 +95,16 @@ class Task(Generic[SettingsT]):
     """Its settings, which stand under `tasks.<key>` in overrides of the configuration."""
     start: Callable[..., None]
     """Fills one EPISODE row: (settings, options, rng, episode). The settings hold the options already."""
-    success: Value
-    """Whether an episode that is over, without a drop, was a success: (episode, world) -> bool."""
     terms: tuple[Term, ...]
     """Terms of the reward, at most `slipgym.tasks.episode.TERMS_MAX`."""
     columns: tuple[Column, ...]
     """The task's part of the observation."""
+    success: Value | None = None
+    """Whether an episode that is over, without drop and violation, was a success: (episode, world) -> bool;
+    None: it was."""
+    violated: Value | None = None
+    """After each control step: (episode, world, fingers) -> bool, whether success has become impossible,
+    whatever follows; `episode.violated` stays true from then on. None: never before the end."""
     track: Value | None = None
     """After each control step, first: (episode, world) updates `episode.reference` and what is kept."""
     wrist_velocity: Value | None = None
@@ -103,6 +123,8 @@ class Task(Generic[SettingsT]):
             name = self.name
         except Error as error:
             raise ValueError(f"id = {self.id!r}: {error}") from error
+        if self.success is None and self.violated is None:
+            raise ValueError(f"{self.id} needs `success`, `violated` or both")
         if not self.key:
             object.__setattr__(self, "key", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower())
 
@@ -141,10 +163,11 @@ class Task(Generic[SettingsT]):
     def evaluate_step(self) -> Any:
         """Compiled, after a control step: (episodes, worlds, fingers, columns) evaluates it.
 
-        It writes `dropped`, `success` and the scaled reward terms into the episodes, and the task's part of
-        the observation into `columns` (n, k).
+        It writes `dropped`, `violated`, `success` and the scaled reward terms into the episodes, and the
+        task's part of the observation into `columns` (n, k).
         """
-        return compile_evaluate_step(self.key, self.track, self.success, self.terms, self.columns, self._file)
+        functions = {"track": self.track, "violated": self.violated, "success": self.success}
+        return compile_evaluate_step(self.key, functions, self.terms, self.columns, self._file)
 
     @property
     def _file(self) -> str:

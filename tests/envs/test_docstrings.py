@@ -64,8 +64,12 @@ def test_the_observation_table_is_the_observation_space(env):
 
 
 def test_the_reward_table_is_the_configuration(env):
-    expected = [[f"`{name}`", f"{env.settings.reward[name]:g}"] for name in env.task.term_names]
-    assert [row[:2] for row in rows(section(env, "Rewards"))] == expected
+    events = {"solved", "violated", "drop"}
+    expected = [
+        [f"`{name}`", "event" if name in events else "dense", f"{env.settings.reward[name]:g}"]
+        for name in env.task.term_names
+    ]
+    assert [row[:3] for row in rows(section(env, "Rewards"))] == expected
 
 
 def test_every_argument_is_listed_with_its_default(env):

@@ -23,20 +23,20 @@ def records(simulation):
         "time": episode["step"] * simulation.step_time,
         "is_success": episode["success"] != 0,
         "dropped": episode["dropped"] != 0,
-        **{
-            name: episode["terms"][:, k] * (episode["step"] > 0)  # of no step after a reset
-            for k, name in enumerate(simulation.task.term_names)
-        },
+        "violated": episode["violated"] != 0,
     }
 
 
 def check(simulation, infos):
     """Compare the infos of one environment or of all with the arrays of the simulation."""
-    terms = infos["reward_terms"]
-    wanted = records(simulation)
-    assert {*(info.name for info in (*NUMBERS, *FLAGS)), *simulation.task.term_names} == set(wanted)
-    for name, values in wanted.items():
-        found = np.asarray(infos[name] if name in infos else terms[name])
+    wanted, episode = records(simulation), simulation.episode
+    assert {info.name for info in (*NUMBERS, *FLAGS)} == set(wanted)
+    pairs = [(name, infos[name], values) for name, values in wanted.items()]
+    for k, name in enumerate(simulation.task.term_names):
+        values = episode["terms"][:, k] * (episode["step"] > 0)  # of no step after a reset
+        pairs.append((f"reward_terms.{name}", infos["reward_terms"][name], values))
+    for name, given, values in pairs:
+        found = np.asarray(given)
         np.testing.assert_array_equal(found, values.reshape(found.shape), err_msg=name)
         assert found.dtype == values.dtype, name
 

@@ -57,7 +57,7 @@ def test_an_episode_with_every_kind_of_argument(own_task):
     assert (steps, terminated, info["dropped"]) == (30, False, False)
     assert info["reference"][0] == 0.02
     assert sum(info["reward_terms"].values()) == pytest.approx(reward)
-    assert list(info["reward_terms"]) == ["near", "effort", "drop"]
+    assert list(info["reward_terms"]) == ["near", "effort", "solved", "drop"]
 
 
 def test_the_line_is_drawn_or_given(own_task):
@@ -74,7 +74,7 @@ def test_the_line_is_drawn_or_given(own_task):
     [
         ({"lime": 1.0}, "tasks.slide_to_line.lime: unknown key 'lime'; did you mean 'line'"),
         ({"tolerance": -1.0}, "tasks.slide_to_line.tolerance = -1.0: must be a finite number > 0 (Largest"),
-        ({"reward": {"nearr": 1.0}}, "did you mean 'near'? valid: drop, effort, near"),
+        ({"reward": {"nearr": 1.0}}, "did you mean 'near'? valid: drop, effort, near, solved"),
         ({"initial_force": 30.0}, "tasks.slide_to_line.initial_force must lie within"),
     ],
 )
@@ -92,7 +92,7 @@ def test_its_page(own_task):
     text = own_task.SlideToLineEnv.__doc__
     assert text.startswith("Let the object slide down to a line")
     assert "| 18 | `line`: distance of the line | 0 | 1 | m |" in text
-    assert "| `near` | 1 | exp(-abs(e) / 10 mm)" in text
+    assert "| `near` | dense | 1 | exp(-abs(e) / 10 mm)" in text
     assert "## Starting State" not in text  # it says nothing of it
     wrong = dataclasses.replace(own_task.TASK, page="Summary.\n\n## Rewads\n\nNone.\n")
     with pytest.raises(ValueError, match="unknown section 'Rewads'; valid: Description, Action Space"):
@@ -145,8 +145,8 @@ def test_the_picture_shows_its_motion(own_task):
         ({"id": "my/A Line"}, "id = 'my/A Line'"),
         ({"key": "slide-to-line"}, "key = 'slide-to-line' of my/SlideToLine-v0 must be a word"),
         (
-            {"terms": tuple(Term(f"near_{k}", 1.0, "", lambda e, w, f: 0.0) for k in range(9))},
-            "has 9 reward terms; at most 8",
+            {"terms": tuple(Term(f"near_{k}", 1.0, "", lambda e, w, f: 0.0) for k in range(13))},
+            "has 13 reward terms; at most 12",
         ),
         ({"terms": 2 * (drop,)}, "has two reward terms of the name 'drop'"),
         ({"columns": 2 * (TIME_LEFT,)}, "has two columns of the name 'time_left'"),

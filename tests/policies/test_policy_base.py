@@ -182,7 +182,7 @@ def test_a_policy_can_command_by_increments():
 def test_the_wrong_mode_is_a_clear_error():
     policy = policies.make("linear_slip")
     wrist, _ = gym.make("slipgym/LinearSlip-v0", action_mode="grip_force_wrist").reset(seed=0)
-    with pytest.raises(ValueError, match=r"33 columns; LinearSlip has 29.*action_mode='grip_force'"):
+    with pytest.raises(ValueError, match=r"34 columns; LinearSlip has 30.*action_mode='grip_force'"):
         policy.predict(wrist)
     grouped, _ = gym.make("slipgym/LinearSlip-v0", observation_mode="dict").reset(seed=0)
     with pytest.raises(ValueError, match=r"groups policy, privileged.*observation_mode='flat'"):

@@ -28,12 +28,14 @@ class Hand:
         self.task.start(self.settings, parsed, np.random.default_rng(0), self.episode)
 
     def evaluate(self, step: int, **world: Any) -> dict[str, float]:
-        """Reward terms before scaling, of a step in a state."""
+        """Reward terms before scaling, of a step in a state; dense ones are limited to [-1, 1]."""
         self.episode["step"] = step
         for field, value in world.items():
             self.world[field] = value
         self.task.evaluate_step(self.episodes, self.worlds, self.fingers, self.columns)
-        return dict(zip(self.task.term_names, self.episode["terms"].tolist(), strict=False))
+        paid = zip(self.task.terms, self.episode["terms"].tolist(), strict=False)
+        steps = self.episode["steps"].item()
+        return {term.name: value if term.event else steps * value for term, value in paid}
 
 
 @pytest.fixture

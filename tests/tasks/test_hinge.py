@@ -35,7 +35,7 @@ def test_terms_and_columns(hand):
     terms = state.evaluate(120, **motion, slip=(0.0006, -0.0008, 0.3), angle=-0.1)
     assert terms["still"] == pytest.approx(math.exp(-1.0))
     assert terms["upright"] == pytest.approx(math.exp(-1.0))
-    assert state.columns[0].tolist() == pytest.approx([-0.4, -1.0, 0.0, -0.8, 1.0])
+    assert state.columns[0].tolist() == pytest.approx([-0.4, -1.0, 0.0, -0.8, 1.0, 0.0])
 
 
 @pytest.mark.parametrize(

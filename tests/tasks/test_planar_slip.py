@@ -47,14 +47,14 @@ def test_an_option_shifts_no_other_draw(hand):
 def test_terms_and_columns(hand):
     state = hand("PlanarSlip", **PLAN, tolerance=0.001, angle_tolerance=0.1)
     x, y, theta = target = hang(**PLAN)
-    state.episode["wrist_command"] = 0.3, -0.4, 1.5
+    state.episode["wrist_command"] = 0.15, -0.2, 1.5
     terms = state.evaluate(120, slip=(x + 0.0012, y - 0.0016, theta + 0.05))
     assert terms["position"] == pytest.approx(math.exp(-4.0))
     assert terms["angle"] == pytest.approx(math.exp(-0.25))
-    assert terms["distance"] == pytest.approx(-1.25)
-    assert terms["wrist"] == pytest.approx(-1.25)
-    assert state.columns[0].tolist() == pytest.approx([*target, 11.0])
-    assert state.evaluate(120, slip=(0.1, 0.1, 0.0))["distance"] == -10.0
+    assert terms["distance"] == pytest.approx(-0.125)
+    assert terms["wrist"] == pytest.approx(-0.5)
+    assert state.columns[0].tolist() == pytest.approx([*target, 11.0, 0.0])
+    assert state.evaluate(120, slip=(0.1, 0.1, 0.0))["distance"] == -1.0
 
 
 @pytest.mark.parametrize(

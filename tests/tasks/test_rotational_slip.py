@@ -19,8 +19,8 @@ def test_tracking_falls_with_the_error_and_sliding_with_the_slip(hand):
     middle = 120  # half way: 0.4 rad
     assert state.evaluate(middle, slip=(0.0, 0.0, -0.4))["tracking"] == pytest.approx(1.0)
     assert state.evaluate(middle, slip=(0.0, 0.0, -0.3))["tracking"] == pytest.approx(math.exp(-1.0))
-    assert state.evaluate(middle, slip=(0.0003, -0.0004, -0.4))["sliding"] == pytest.approx(-0.5)
-    assert state.columns[0].tolist() == pytest.approx([0.4, 1.0, 0.0, 0.8, 1.0])
+    assert state.evaluate(middle, slip=(0.0003, -0.0004, -0.4))["sliding"] == pytest.approx(-0.05)
+    assert state.columns[0].tolist() == pytest.approx([0.4, 1.0, 0.0, 0.8, 1.0, 0.0])
 
 
 @pytest.mark.parametrize(

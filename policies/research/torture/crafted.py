@@ -80,7 +80,7 @@ def policy(rng: np.random.Generator) -> str:
 
         def act() -> None:
             made: Any = policies.load(folder)
-            made.predict(np.zeros(made.description.environment.width, np.float32))
+            made.predict(np.zeros(made.width, np.float32))
 
         return attempt(act)
 

@@ -199,7 +199,7 @@ def test_another_environment_or_algorithm_is_refused(venv, tmp_path):
     with pytest.raises(ValueError, match=r"unknown algorithm 'A2C'.*PPO"):
         export.save(A2C("MlpPolicy", venv, device="cpu"), tmp_path / "no", ENV, ARGUMENTS)
     model = made("PPO", venv)
-    with pytest.raises(ValueError, match=r"observation has shape \(56,\), .* \(28,\)"):
+    with pytest.raises(ValueError, match=r"observation has shape \(58,\), .* \(29,\)"):
         export.save(model, tmp_path / "no", ENV, {})
 
 
@@ -207,7 +207,7 @@ def test_acting_loads_no_torch(venv, tmp_path):
     folder = export.save(made("PPO", venv), tmp_path / "ppo", ENV, ARGUMENTS, venv)
     code = (
         "import sys, numpy, policies, policies.learned.export\n"
-        f"policies.load({str(folder)!r}).predict(numpy.zeros(56, 'f4'))\n"
+        f"policies.load({str(folder)!r}).predict(numpy.zeros(58, 'f4'))\n"
         "print(sorted({'torch', 'stable_baselines3', 'onnx'} & set(sys.modules)))\n"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)

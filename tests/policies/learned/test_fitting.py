@@ -22,11 +22,11 @@ def refused(policy, message, task="Hold", **arguments):
 
 def test_an_environment_that_means_something_else_is_refused(policy_folder):
     policy = LearnedPolicy(policy_folder())
-    refused(policy, r"column 22, 'mu_s' .* in training, is missing here", friction_source="none")
+    refused(policy, r"column 23, 'mu_s' .* in training, is missing here", friction_source="none")
     refused(policy, r"another observation: column 18 is 'reference_position'", task="LinearSlip")
     refused(policy, r"another action: column 0 is 'force_increment'", action_mode="force_increment")
-    refused(policy, r"another observation: column 22 is 'wrist_pitch'", action_mode="grip_force_wrist")
-    refused(policy, r"history=0: 28 numbers; .* has 84", history=2)
+    refused(policy, r"another observation: column 23 is 'wrist_pitch'", action_mode="grip_force_wrist")
+    refused(policy, r"history=0: 29 numbers; .* has 87", history=2)
     refused(policy, r"120 steps per second, here are 60", frame_skip=2)
     wider = {"gripper": {"force_max": 30.0}}
     refused(
@@ -49,7 +49,7 @@ def test_by_path_and_by_name_it_is_the_same(policy_folder, tmp_path, monkeypatch
     folder = policy_folder("shelf/hold_ppo")
     monkeypatch.setattr(pretrained, "FOLDER", tmp_path / "shelf")
     assert set(policies.names()) == {*before, "hold_ppo"}
-    observation = np.linspace(-1.0, 1.0, 28, dtype=np.float32)
+    observation = np.linspace(-1.0, 1.0, 29, dtype=np.float32)
     wanted, _ = policies.load(folder).predict(observation)
     for policy in (policies.make("hold_ppo"), policies.load("hold_ppo"), policies.load(str(folder))):
         np.testing.assert_array_equal(policy.predict(observation)[0], wanted)

@@ -41,12 +41,12 @@ def test_a_layer_that_picks_a_column_gives_it_back(policy_folder, squash, bound)
 
 
 def test_observations_are_normalised_and_clipped(policy_folder):
-    mean, var = np.zeros(28), np.zeros(28)
+    mean, var = np.zeros(29), np.zeros(29)
     mean[3], var[3] = 7.0, 3.5  # sqrt(var + epsilon) = 2
     moments = {"observation.mean": mean, "observation.var": var}
     k, folder = picking(policy_folder, "tau_1", 0.25, moments, normalisation={"clip": 3.0, "epsilon": 0.5})
     assert k == 3
-    observations = np.zeros((4, 28), np.float32)
+    observations = np.zeros((4, 29), np.float32)
     observations[:, 3] = 7.0, 9.0, 12.0, -100.0
     actions, _ = LearnedPolicy(folder).predict(observations)
     np.testing.assert_array_equal(actions[:, 0], np.float32([0.0, 0.25, 0.625, -0.75]))
@@ -141,7 +141,7 @@ def test_what_does_not_fit_is_refused(policy_folder, lstm):
     for bad in (good[:, :-6], good[None], np.float32(1.0), np.hstack([good, good])):
         with pytest.raises(ValueError, match="observation"):
             policy.predict(bad)
-    with pytest.raises(ValueError, match=r"22 columns.*first that it lacks at its end is 'mu_s'"):
+    with pytest.raises(ValueError, match=r"23 columns.*first that it lacks at its end is 'mu_s'"):
         policy.predict(good[:, :-6])
     with pytest.raises(ValueError, match=r"column 2 \(f_n_1\) must be finite"):
         policy.predict(np.where(np.arange(good.shape[1]) == 2, np.nan, good))
@@ -156,11 +156,11 @@ def test_what_does_not_fit_is_refused(policy_folder, lstm):
 
 
 def test_weights_that_overflow_give_no_action(policy_folder):
-    large = {"layers.0.weight": np.full((8, 28), 3e38, np.float32), "layers.0.bias": np.zeros(8, np.float32)}
+    large = {"layers.0.weight": np.full((8, 29), 3e38, np.float32), "layers.0.bias": np.zeros(8, np.float32)}
     mixed = {"layers.1.weight": np.tile(np.float32([3e38, -3e38]), (6, 4))}
     policy = LearnedPolicy(policy_folder(weights={**large, **mixed}, network={"activation": "relu"}))
     with pytest.raises(ValueError, match="too large"):
-        policy.predict(np.full(28, 10.0, np.float32))
+        policy.predict(np.full(29, 10.0, np.float32))
 
 
 def test_neither_import_nor_acting_needs_torch(policy_folder):
@@ -169,7 +169,7 @@ def test_neither_import_nor_acting_needs_torch(policy_folder):
         "sys.modules.update(torch=None, stable_baselines3=None, sb3_contrib=None, onnx=None)\n"
         "import numpy, policies, policies.learned.export\n"
         f"policy = policies.load({str(policy_folder())!r})\n"
-        "print(policy.predict(numpy.zeros(28, 'f4'))[0].shape)\n"
+        "print(policy.predict(numpy.zeros(29, 'f4'))[0].shape)\n"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
     assert "(1,)" in done.stdout, done.stderr

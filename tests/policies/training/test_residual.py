@@ -129,18 +129,3 @@ def test_what_does_not_fit_is_refused(small):
         small(residual=RESIDUAL, environment={"action_mode": "grip_force_wrist"})
     with pytest.raises(ValueError, match="observation_mode"):
         small(residual=RESIDUAL, environment={"observation_mode": "sensor"})
-
-
-def test_a_bonus_is_paid_where_it_learns_for_solved_episodes(small):
-    short = {"frame_skip": 4, "randomization": "none", "config": {"tasks": {"hold": {"duration": 0.3}}}}
-    config = small(task="Hold", environment=short, bonus=50.0, engine_threads=1)
-    learns, judged = vector.make(config, 3, 3, shaped=True), vector.make(config, 3, 3)
-    rng, paid, ended = np.random.default_rng(0), 0, 0
-    assert np.array_equal(learns.reset(), judged.reset())
-    for _ in range(60):
-        actions = rng.uniform(-1.0, 1.0, (3, 1)).astype(np.float32)
-        (_, with_bonus, dones, infos), (_, without, _, _) = learns.step(actions), judged.step(actions)
-        solved = np.array([done and info["is_success"] for done, info in zip(dones, infos, strict=True)])
-        assert with_bonus - without == pytest.approx(50.0 * solved, abs=1e-4)
-        paid, ended = paid + solved.sum(), ended + dones.sum()
-    assert 0 < paid < ended

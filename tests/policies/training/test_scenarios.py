@@ -74,7 +74,7 @@ def test_wrong_values_are_named(small):
 
 
 def test_it_learns_with_the_shaping_and_is_evaluated_without(small):
-    shaping = {"tasks": {"linear_slip": {"reward": {"effort": 100.0}, "tolerance": 0.005}}}
+    shaping = {"tasks": {"linear_slip": {"reward": {"effort": 1e5}, "tolerance": 0.005}}}
     config, rewards = small(shaping=shaping, engine_threads=1), []
     assert config.environment.config["tasks"]["linear_slip"] == {"duration": 0.2, "settle": 0.1, "hold": 0.1}
     for shaped in (False, True):

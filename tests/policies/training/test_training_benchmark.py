@@ -34,7 +34,6 @@ def test_parts_of_a_sample(monkeypatch, small):
     config = small(
         num_envs=4,
         residual={"controller": "linear_slip", "reach": 0.2},
-        bonus=1.0,
         vary={"distance": [0.02, 0.03]},
     )
     monkeypatch.setattr(sample_cost.files, "load", lambda name, changes: config)
@@ -43,7 +42,7 @@ def test_parts_of_a_sample(monkeypatch, small):
     available = 1e6 * (process_time() - start) / (3 * 16 * 4)
     total = figures.pop("test, sum")
     parts = {name.removeprefix("test, ") for name in figures}
-    assert {"environments", "adapter", "monitor", "controller", "bonus", "normalisation"} <= parts
+    assert {"environments", "adapter", "monitor", "controller", "normalisation"} <= parts
     assert {"policy in rollouts", "forward pass", "backward pass", "optimiser", "evaluation"} <= parts
     assert total == pytest.approx(sum(figures.values()))
     assert 0.0 < total < available

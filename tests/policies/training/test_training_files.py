@@ -34,7 +34,7 @@ def test_every_sweep_tries_keys_that_exist():
             ["ppo.gama=0.9"],
             r"ppo\.gama: unknown key 'gama'; did you mean 'gamma'\? valid: activation, .*vf_coef",
         ),
-        (["gamma=0.9"], r"unknown key 'gamma'; valid: algorithm, bonus, budget"),
+        (["gamma=0.9"], r"unknown key 'gamma'; valid: algorithm, budget"),
         (
             ["ppo.gamma=1.5"],
             r"ppo\.gamma = 1\.5: must be a number|ppo\.gamma = 1\.5: must be a finite number",

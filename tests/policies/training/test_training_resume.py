@@ -52,7 +52,6 @@ def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algori
     config = small(
         algorithm=algorithm,
         residual=residual,
-        bonus=0.0 if residual is None else 20.0,
         spread=residual is None,
     )
     whole, broken = tmp_path / "whole", tmp_path / "broken"

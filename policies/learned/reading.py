@@ -1,0 +1,53 @@
+"""Which columns of an environment's observation a policy reads."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from policies.learned.description import Environment
+from slipgym.config import load
+from slipgym.envs.actions import ACTION_MODES
+from slipgym.envs.observation import columns
+from slipgym.tasks import find
+
+
+def layout(trained: Environment) -> tuple[str, ...]:
+    """Names of the columns that the environment of a policy has in this version of slipgym, in order.
+
+    Columns may have been added since the policy was trained. If one that it reads is missing, these are the
+    columns of its training, and no environment fits (`policies.learned.fitting`).
+
+    Args:
+        trained: The environment the policy was trained in.
+    """
+    given, task = trained.arguments, find(trained.id)
+    read = tuple(column.name for column in trained.observation)
+    source, action_mode, mode = (
+        str(given.get(name) or default)
+        for name, default in (
+            *(("friction_source", "estimated"), ("action_mode", task.action_mode)),
+            ("observation_mode", "flat"),
+        )
+    )
+    if action_mode not in ACTION_MODES:
+        return read
+    present = tuple(column.name for column in columns(load(), task, source, action_mode, mode))
+    return present if set(read) <= set(present) else read
+
+
+def selection(trained: Environment, width: int) -> np.ndarray | None:
+    """Places of the numbers that a policy's network reads.
+
+    Args:
+        trained: The environment the policy was trained in.
+        width: Numbers to choose from: a present observation with its history, and what follows it: action and
+            memory of a controller.
+
+    Returns:
+        Indices, or None if all are read in their order.
+    """
+    present = layout(trained)
+    places = np.array([present.index(column.name) for column in trained.observation])
+    frames = np.arange(trained.history + 1)[:, np.newaxis] * len(present)
+    chosen = np.append(frames + places, np.arange(frames.size * len(present), width))
+    return None if np.array_equal(chosen, np.arange(width)) else chosen

@@ -1,0 +1,1 @@
+"""Whether mean returns of policies have the order of their success rates."""

@@ -1,0 +1,124 @@
+"""Plays a zoo of policies and compares the order of mean returns with that of success rates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pandas as pd
+from tqdm import tqdm
+
+from policies.evaluation.play import play
+from policies.research.reward_order.zoo import Member
+from slipgym.tasks import find
+
+SUCCESS, DROPPED, RETURN = "success [%]", "dropped [%]", "mean return"
+SOURCES = "none", "nominal", "estimated", "true"
+"""Friction sources of the controller, in the order of the table of levels."""
+APART = 10.0
+"""Pairs whose success rates differ by at least so many points are compared."""
+
+
+def played(
+    task: str,
+    members: Sequence[Member],
+    episodes: int = 200,
+    arguments: Mapping[str, Any] | None = None,
+    progress: bool = True,
+) -> pd.DataFrame:
+    """Plays the same episodes with every policy, on the planar engine.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        members: The policies.
+        episodes: How many; episode i has the seed i.
+        arguments: Further arguments of the environments, such as `randomization`.
+        progress: Whether to show a progress bar.
+
+    Returns:
+        A row for each policy, best first: its name, SUCCESS, DROPPED and RETURN.
+    """
+    rows = []
+    for member in tqdm(members, desc=find(task).key, unit="policy", disable=not progress):
+        made = {**(arguments or {}), **member.arguments}
+        envs = gym.make_vec(f"slipgym:{find(task).id}", episodes, "vector_entry_point", **made)
+        try:
+            found = play(envs, member.policy, range(episodes))
+        finally:
+            envs.close()
+        shares = 100.0 * found.success.mean(), 100.0 * found.dropped.mean()
+        rows.append((member.name, *shares, found.reward.mean()))
+    table = pd.DataFrame(rows, columns=pd.Index(["policy", SUCCESS, DROPPED, RETURN]))
+    return table.sort_values([SUCCESS, RETURN], ascending=False, ignore_index=True)
+
+
+def order(table: pd.DataFrame, apart: float = APART) -> tuple[int, list[tuple[str, str]]]:
+    """Compares the orders of success and of mean return.
+
+    Args:
+        table: From `played`.
+        apart: Least difference of the success rates of a pair, in points.
+
+    Returns:
+        The number of pairs that far apart, and those whose mean returns have the wrong order, better first.
+    """
+    pairs, wrong = 0, []
+    names, success, returns = (table[name].to_numpy() for name in ("policy", SUCCESS, RETURN))
+    for i, j in combinations(range(len(table)), 2):
+        better, worse = (i, j) if success[i] > success[j] else (j, i)
+        if success[better] - success[worse] < apart - 1e-9:
+            continue
+        pairs += 1
+        if not returns[better] > returns[worse]:
+            wrong.append((str(names[better]), str(names[worse])))
+    return pairs, wrong
+
+
+def sentence(table: pd.DataFrame, apart: float = APART) -> str:
+    """What `order` finds, in words."""
+    pairs, wrong = order(table, apart)
+    share = 100.0 if pairs == 0 else 100.0 * (pairs - len(wrong)) / pairs
+    text = f"{pairs} pairs differ by {apart:g} points of success or more; "
+    text += f"in {share:.1f} % of them the mean returns have the same order."
+    if wrong:
+        listed = "; ".join(f"{better} below {worse}" for better, worse in wrong[:12])
+        text += f" Wrong: {listed}{'; ...' if len(wrong) > 12 else '.'}"
+    return text
+
+
+def spread(table: pd.DataFrame) -> float:
+    """Range of the success rates of a table, in points; without a range it says nothing about the order."""
+    return float(np.ptp(table[SUCCESS]))
+
+
+def by_level(
+    task: str, levels: Sequence[str], members: Sequence[Member], episodes: int = 200, progress: bool = True
+) -> pd.DataFrame:
+    """Success of the best constant grip and of the controller by friction source, in each level.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        levels: Names of levels.
+        members: From `policies.research.reward_order.zoo.zoo`; those that are neither a constant grip nor the
+            undisturbed controller are left out.
+        episodes: How many.
+        progress: Whether to show a progress bar.
+
+    Returns:
+        A row for each level, success in percent. The best constant grip is chosen on these same episodes.
+    """
+    kinds = {f"controller, {source}" for source in SOURCES}
+    chosen = [member for member in members if member.name in kinds or member.name.startswith("constant ")]
+    rows = []
+    for level in levels:
+        found = played(task, chosen, episodes, {"level": level}, progress).set_index("policy")[SUCCESS]
+        constants = found[[name for name in found.index if str(name).startswith("constant ")]]
+        best = constants.max()
+        force = str(constants.idxmax()).removeprefix("constant ") if best > 0.0 else "none"
+        known = (found[f"controller, {each}"] for each in SOURCES)
+        rows.append((find(task).name, level, best, force, *known))
+    heads = ["task", "level", "best constant", "its force", *SOURCES]
+    return pd.DataFrame(rows, columns=pd.Index(heads))

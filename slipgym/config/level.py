@@ -1,0 +1,111 @@
+"""Configuration model of a level of difficulty: settings of the task and randomization that it changes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from pydantic import Field
+
+from slipgym.config import files
+from slipgym.config.base import Frozen
+from slipgym.config.errors import unknown
+from slipgym.config.randomization import Randomization, Ranges
+from slipgym.config.yaml_model import Choice, validate
+
+DEFAULT = "easy"
+"""The level that changes nothing."""
+_FOLDER = "levels"
+
+
+class Level(Frozen):
+    """What a level changes."""
+
+    settings: Mapping[str, Any] = Field(default={}, description="Settings of the task that differ")
+    randomization: Ranges = Field(default=Ranges(), description="Distributions of the task that differ")
+
+    def applied_to(self, randomization: Randomization, task: str) -> Randomization:
+        """A randomization with the level's distributions in place of its own of the same name.
+
+        The level's disturbances are added. A disturbance of a kind that can happen only once in an episode,
+        that is, any but a push, replaces the one of its kind.
+
+        Args:
+            randomization: The randomization.
+            task: Key of the task.
+
+        Raises:
+            ValueError: The distributions contradict each other.
+        """
+        own = self.randomization
+        if not own.model_fields_set:
+            return randomization
+        before = randomization.of(task)
+        changed = {name: getattr(own, name) for name in own.model_fields_set}
+        if not {"mu_c", "mu_s", "friction_ratio"}.isdisjoint(changed):
+            changed.setdefault("materials", None)
+        once = {each.kind for each in own.disturbances} - {"push"}
+        kept = tuple(each for each in before.disturbances if each.kind not in once)
+        changed["disturbances"] = (*kept, *own.disturbances)
+        values = {name: getattr(before, name) for name in Ranges.model_fields} | changed
+        ranges = validate(values, Ranges, "level and randomization together")
+        return randomization.model_copy(update={"tasks": {**randomization.tasks, task: ranges}})
+
+
+class Chosen(NamedTuple):
+    """A level and where it comes from."""
+
+    level: Level
+    source: str
+    """File or argument, for the messages of errors."""
+    argument: str | dict[str, Any]
+    """JSON-able argument that chooses it again."""
+
+
+def level_names(task: str) -> list[str]:
+    """Names of the levels of a task: those of its file in `configs/levels`, or DEFAULT alone.
+
+    Args:
+        task: Key of the task.
+    """
+    return list(_levels(task))
+
+
+def load_level(choice: Choice, task: str) -> Chosen:
+    """Loads a level of a task.
+
+    Args:
+        choice: One of `level_names(task)`, the path of a YAML file with the keys `settings` and
+            `randomization`, or a mapping of the same shape.
+        task: Key of the task.
+
+    Raises:
+        FileNotFoundError: The file does not exist.
+        ValueError: The name or a key is unknown, or a value is not allowed.
+    """
+    if isinstance(choice, Mapping):
+        files.check_size(choice, "level argument")
+        return _own(choice, "level argument")
+    if not isinstance(choice, str | os.PathLike):
+        known = ", ".join(level_names(task))
+        raise ValueError(f"level = {choice!r} must be a name, a path or a mapping; names: {known}")
+    path = Path(choice)
+    if path.suffix in (".yaml", ".yml"):
+        return _own(files.read(path), os.fspath(path))
+    known = _levels(task)
+    if choice not in known:
+        raise ValueError(unknown(f"level of {task}", str(choice), known))
+    source = os.fspath(files.folder() / _FOLDER / f"{task}.yaml")
+    return Chosen(validate(known[str(choice)], Level, source, prefix=(str(choice),)), source, str(choice))
+
+
+def _own(values: Mapping[str, Any], source: str) -> Chosen:
+    level = validate(values, Level, source)
+    return Chosen(level, source, level.model_dump(mode="json", exclude_unset=True))
+
+
+def _levels(task: str) -> Mapping[str, Mapping[str, Any]]:
+    path = files.folder() / _FOLDER / f"{task}.yaml"
+    return files.read(path) if path.is_file() else {DEFAULT: {}}
