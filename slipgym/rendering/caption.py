@@ -8,7 +8,8 @@ import numpy as np
 
 from slipgym.rendering.camera import HEIGHT, WIDTH
 from slipgym.rendering.forces import Contact
-from slipgym.rendering.palette import FRICTION, GRIP, INK, MUTED, PAPER, SLIP
+from slipgym.rendering.palette import FRICTION, GRIP, INK, MUTED, PAPER, SLIP, TARGET
+from slipgym.rendering.poses import Pose
 from slipgym.rendering.text import write
 
 _FOOT = 46  # height of the band with the keys [pixels]
@@ -22,6 +23,7 @@ def caption(
     state: str,
     contact: Contact,
     slip: np.ndarray,
+    target: Pose | None = None,
 ) -> None:
     """Write text over the view.
 
@@ -33,11 +35,16 @@ def caption(
         state: State of the object, such as whether it slips.
         contact: Forces of the pads on the object.
         slip: Slip displacement (x, y, theta) [m, m, rad].
+        target: The one that the task asks for; None: none.
     """
     write(picture, 14, 26, title, INK, 17)
     write(picture, 14, 45, about, MUTED, 13)
     write(picture, WIDTH - 14, 26, f"{time:.2f} s", INK, 17, align=1.0)
     write(picture, WIDTH - 14, 45, state, MUTED, 13, align=1.0)
+    if target is not None:
+        write(picture, 14, HEIGHT - _FOOT - 10, "dashed:", MUTED, 13)
+        write(picture, 66, HEIGHT - _FOOT - 10, "grasp", SLIP, 13)
+        write(picture, 106, HEIGHT - _FOOT - 10, "target", TARGET, 13)
     foot = picture[HEIGHT - _FOOT :]
     foot[:] = (foot.astype(np.uint16) + 3 * np.array(PAPER, np.uint16)) // 4
     friction, torque = math.hypot(*contact.friction), 1e3 * contact.torque

@@ -1,4 +1,4 @@
-"""Draws forces and slip: the pads' forces on the object, and its slip displacement."""
+"""Draws forces and slip: the pads' forces on the object, its slip displacement and the one asked for."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from slipgym.rendering.camera import Camera
-from slipgym.rendering.marks import Marks, arc, arrow, outline, stacked
-from slipgym.rendering.palette import FRICTION, GRIP, SLIP
+from slipgym.rendering.marks import Marks, arc, arrow, stacked
+from slipgym.rendering.palette import FRICTION, GRIP, SLIP, TARGET
+from slipgym.rendering.poses import AT_THE_GRASP, Pose, gravity, held_at
 from slipgym.rendering.stage import View
 from slipgym.world.scene import PAD_THICKNESS
 
@@ -39,16 +40,23 @@ def before(view: View, contact: Contact, camera: Camera) -> Marks:
     return _push(view, contact.grip[0], camera, 1.0, 1.0, cased=False)
 
 
-def above(view: View, contact: Contact, camera: Camera) -> Marks:
-    """Marks that nothing hides."""
-    half, face = np.array(view.box.size) / 2, -view.box.size[1] / 2
+def above(view: View, contact: Contact, camera: Camera, target: Pose | None = None) -> Marks:
+    """Marks that nothing hides.
+
+    Args:
+        view: Poses of object and gripper.
+        contact: Forces of the pads on the object.
+        camera: The camera.
+        target: Slip displacement that the task asks for; None: none is drawn.
+    """
+    face = -view.box.size[1] / 2
     grasp = np.array([view.box.grasp_offset[0], face, view.box.grasp_offset[1]])
-    corners = [(-half[0], face, -half[2]), (half[0], face, -half[2])]
-    corners += [(half[0], face, half[2]), (-half[0], face, half[2])]
     centre = np.array([0.0, face, 0.0])
-    held = view.place(np.array(corners) - grasp + centre)
     slip = np.stack([view.place(centre), view.carry(grasp)])
-    parts = [outline(camera, held, SLIP, 1.5, 5.0), arrow(camera, slip, SLIP, _WIDTH)]
+    parts = [gravity(camera), held_at(view, AT_THE_GRASP, camera, SLIP)]
+    if target is not None:
+        parts.append(held_at(view, target, camera, TARGET))
+    parts.append(arrow(camera, slip, SLIP, _WIDTH))
     if math.hypot(*contact.friction) > 0.0:
         force = _limited(np.array([contact.friction[0], 0.0, contact.friction[1]]), FRICTION_LENGTH)
         path = view.place(np.stack([centre, centre + camera.span * force]))

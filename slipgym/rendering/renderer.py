@@ -67,11 +67,12 @@ class Renderer:
         picture = np.empty((HEIGHT, WIDTH, 3), np.uint8)
         view, beside = picture[:, : camera.WIDTH], picture[:, camera.WIDTH :]
         contact = self._contact()
-        draw_scene(view, self._view(), contact, self._camera)
         row, world = self._row, simulation.plant.world[self._row]
+        target = self._motion.pose(simulation.episode[row])
+        draw_scene(view, self._view(), contact, self._camera, target)
         about = f"{simulation.materials[row]}, {1e3 * world['mass']:.0f} g"
         slip = world["slip"]
-        caption(view, simulation.task.name, about, self._history.time, self._state(), contact, slip)
+        caption(view, simulation.task.name, about, self._history.time, self._state(), contact, slip, target)
         true = float(simulation.ground_truth[row, 0]), float(simulation.ground_truth[row, 1])
         strip.draw_strip(beside, self._history, self._motion, self._goal, true)
         return picture

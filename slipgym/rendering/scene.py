@@ -10,6 +10,7 @@ import numpy as np
 from slipgym.rendering import forces
 from slipgym.rendering.camera import FINE, HEIGHT, WIDTH, Camera
 from slipgym.rendering.forces import Contact
+from slipgym.rendering.poses import Pose, name_gravity
 from slipgym.rendering.raster import fill, shrink
 from slipgym.rendering.stage import View, assemble, grid
 
@@ -19,7 +20,9 @@ _TOP, _BOTTOM = np.array([249.0, 250.0, 251.0]), np.array([229.0, 232.0, 237.0])
 _SIZE = FINE * HEIGHT, FINE * WIDTH
 
 
-def draw_scene(picture: np.ndarray, view: View, contact: Contact, camera: Camera) -> None:
+def draw_scene(
+    picture: np.ndarray, view: View, contact: Contact, camera: Camera, target: Pose | None = None
+) -> None:
     """Draw the scene.
 
     Args:
@@ -27,6 +30,7 @@ def draw_scene(picture: np.ndarray, view: View, contact: Contact, camera: Camera
         view: Poses of object and gripper.
         contact: Forces of the pads on the object.
         camera: The camera.
+        target: Slip displacement that the task asks for; None: none is drawn.
     """
     corners, colours = assemble(view)
     shaded = colours.copy()
@@ -35,8 +39,9 @@ def draw_scene(picture: np.ndarray, view: View, contact: Contact, camera: Camera
     fill(camera.project(corners), shaded, image, nearness)
     fill(*forces.before(view, contact, camera), image, nearness)
     nearness[:] = 0.0
-    fill(*forces.above(view, contact, camera), image, nearness)
+    fill(*forces.above(view, contact, camera, target), image, nearness)
     shrink(image, picture)
+    name_gravity(picture, camera)
 
 
 def measure_depth(view: View, camera: Camera) -> np.ndarray:

@@ -51,7 +51,7 @@ slid further than `slide_tolerance` (2 mm) at the pad centre and never tilted by
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -154,6 +154,11 @@ def upright(episode, world, fingers):
     return math.exp(-((tilt(episode, world) / episode.tilt_tolerance) ** 2))
 
 
+def hanging(episode: Any) -> tuple[float, float, float]:
+    """Slip displacement of an object that hangs as at the start [m, m, rad]."""
+    return 0.0, 0.0, -float(episode["reference"][0])
+
+
 TASK = Task(
     id="slipgym/Hinge-v0",
     settings=Settings,
@@ -174,6 +179,8 @@ TASK = Task(
         TIME_LEFT,
         VIOLATED,
     ),
-    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), sign=-1.0, goal="wrist_pitch_goal"),
+    motion=Motion(
+        "turned in the grip", "rad", (0.0, 0.0, 1.0), sign=-1.0, goal="wrist_pitch_goal", end=hanging
+    ),
     page=__doc__,
 )

@@ -36,7 +36,7 @@ always 0.
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -89,6 +89,11 @@ def sideways(episode, world, fingers):
     return -away / (10.0 * episode.tolerance)
 
 
+def slid(episode: Any) -> tuple[float, float, float]:
+    """Slip displacement at the end of the slide [m, m, rad]."""
+    return 0.0, -float(episode["goal"]), 0.0
+
+
 TASK = Task(
     id="slipgym/LinearSlip-v0",
     settings=Settings,
@@ -111,6 +116,6 @@ TASK = Task(
         TIME_LEFT,
         VIOLATED,
     ),
-    motion=Motion("slid down", axis=(0.0, -1.0, 0.0), goal="distance"),
+    motion=Motion("slid down", axis=(0.0, -1.0, 0.0), goal="distance", end=slid),
     page=__doc__,
 )

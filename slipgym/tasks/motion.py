@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -26,6 +27,10 @@ class Motion:
     goal: str = ""
     """Column of the task's observation with the end of the reference; none if the reference is 0."""
 
+    end: Callable[[Any], tuple[float, float, float]] | None = None
+    """Slip displacement (x, y, theta) that the task asks for [m, m, rad], of an EPISODE record, as pictures
+    show it; None: none but that at the grasp."""
+
     @property
     def title(self) -> str:
         """Name of the coordinate, with the unit it is shown in."""
@@ -48,6 +53,10 @@ class Motion:
         if self.axis is None:
             return self.scale * np.hypot(slip[..., 0], slip[..., 1])
         return self.scale * (slip @ np.array(self.axis))
+
+    def pose(self, episode: Any) -> tuple[float, float, float] | None:
+        """Slip displacement that an episode asks for, see `end`."""
+        return None if self.end is None else self.end(episode)
 
     def target(self, reference: Any) -> Any:
         """Target of the coordinate [mm or degrees], from the reference position [m or rad]."""

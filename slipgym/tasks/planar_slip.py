@@ -73,7 +73,7 @@ end makes it impossible: `violated` is always 0.
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -214,6 +214,12 @@ def wrist(episode, world, fingers):
     return -(speed**2 + rate**2)
 
 
+def at_target(episode: Any) -> tuple[float, float, float]:
+    """Slip displacement to reach [m, m, rad]."""
+    x, y, angle = episode["own"][SCRATCH.target].tolist()
+    return x, y, angle
+
+
 TASK = Task(
     id="slipgym/PlanarSlip-v0",
     settings=Settings,
@@ -232,6 +238,6 @@ TASK = Task(
         VIOLATED,
     ),
     action_mode="grip_force_pitch",
-    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), entry=2, goal="target_theta"),
+    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), entry=2, goal="target_theta", end=at_target),
     page=__doc__,
 )  # fmt: skip

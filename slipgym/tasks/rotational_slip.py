@@ -49,7 +49,7 @@ centre. A slide further than that is the violation that `violated` reports.
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -118,6 +118,11 @@ def sliding(episode, world, fingers):
     return -slip_distance(world) / (10.0 * episode.slide_tolerance)
 
 
+def turned(episode: Any) -> tuple[float, float, float]:
+    """Slip displacement at the end of the turn [m, m, rad]."""
+    return 0.0, 0.0, -float(episode["goal"])
+
+
 TASK = Task(
     id="slipgym/RotationalSlip-v0",
     settings=Settings,
@@ -137,6 +142,6 @@ TASK = Task(
         TIME_LEFT,
         VIOLATED,
     ),
-    motion=Motion("turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle"),
+    motion=Motion("turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle", end=turned),
     page=__doc__,
 )  # fmt: skip

@@ -186,3 +186,50 @@ def test_a_restored_state_begins_a_new_strip(make, changed):
     other.set_state(state)
     np.testing.assert_array_equal(view(other.render()), view(picture))
     assert changed(other.render()[:, camera.WIDTH :], picture[:, camera.WIDTH :]).any()
+
+
+GREEN = np.array([0x00, 0x9E, 0x73])
+
+
+def greens(picture: np.ndarray) -> np.ndarray:
+    """Pixels (row, column) of the view in the colour of the target, without the words below it."""
+    part = picture[50 : camera.HEIGHT - 70, : camera.WIDTH].astype(int)
+    return np.argwhere(np.abs(part - GREEN).max(axis=-1) < 40)
+
+
+def test_the_target_is_drawn_where_the_object_is_to_be(make):
+    def target(distance: float) -> np.ndarray:
+        env = make(engine="planar")
+        env.reset(seed=0, options={"distance": distance})
+        return greens(env.render())
+
+    near, far = target(0.01), target(0.03)
+    assert len(near) > 50
+    assert far[:, 0].max() > near[:, 0].max() + 5  # further down
+    hold = make("slipgym/Hold-v0", engine="planar")
+    hold.reset(seed=0)
+    assert len(greens(hold.render())) == 0
+
+
+def test_a_solved_object_covers_its_target():
+    """The outline at the target is that of an object with the target as its slip."""
+    from slipgym.rendering.poses import held_at
+    from slipgym.rendering.stage import View
+    from slipgym.world.scene import Box
+
+    box = Box((0.16, 0.03, 0.2), (0.01, 0.02), (0.03, -0.04), 0.2, 1e-3)
+    pitch, pose = 0.4, (0.004, -0.012, 0.3)
+    angle = pitch + pose[2]
+
+    def turn(by: float) -> np.ndarray:
+        return np.array([[np.cos(by), 0.0, -np.sin(by)], [0.0, 1.0, 0.0], [np.sin(by), 0.0, np.cos(by)]])
+
+    grasp = np.array([0.03, 0.0, -0.04]) - (0.01, 0.0, 0.02)  # from the centre of mass, on the object's axes
+    at = turn(pitch) @ [pose[0], 0.0, pose[1]]
+    view = View(box, "wood", at - turn(angle) @ grasp, turn(angle), (0.0, 0.0, pitch), 0.015)
+    eye = camera.framing(np.array([[-0.2, 0.0, -0.2], [0.2, 0.0, 0.2]]))
+    corners, _ = held_at(view, pose, eye, (0, 0, 0))
+    seen = corners.reshape(-1, 3)[:, :2]
+    front = np.array([(x, -0.015, z) for x in (-0.08, 0.08) for z in (-0.1, 0.1)])
+    for corner in eye.project(view.carry(front))[:, :2]:
+        assert np.linalg.norm(seen - corner, axis=1).min() < 4.0
