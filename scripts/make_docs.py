@@ -1,4 +1,4 @@
-"""Writes docs/environments/ from the environments' docstrings, and a picture of each to docs/images/."""
+"""Writes docs/environments/ from the environments' docstrings, and pictures to docs/images/."""
 
 from pathlib import Path
 from typing import Annotated
@@ -13,8 +13,9 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 def main(
     pictures: Annotated[bool, typer.Option(help="Whether to make the pictures too.")] = True,
 ) -> None:
-    """Write a page and a picture for every registered environment."""
+    """Write a page and a picture for every registered environment, and an animation of all."""
     from policies.play import write_screenshots
+    from policies.play.montage import write_montage
     from slipgym.envs.docstring import pages
 
     for name, text in pages().items():
@@ -23,6 +24,8 @@ def main(
     if pictures:
         for path in write_screenshots(DOCS / "images"):
             typer.echo(path)
+        write_montage(DOCS / "images" / "tasks.gif")
+        typer.echo(DOCS / "images" / "tasks.gif")
 
 
 if __name__ == "__main__":

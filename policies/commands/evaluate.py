@@ -32,7 +32,7 @@ def main(
             show_default=False,
         ),
     ] = None,
-    demo: Annotated[bool, typer.Option("--demo", help="Run the experiment 'demo': under a minute.")] = False,
+    demo: Annotated[bool, typer.Option("--demo", help="Run the experiment 'demo': about a minute.")] = False,
     trials: Annotated[int | None, typer.Option(help="Trials per cell instead of the experiment's.")] = None,
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
     friction_source: Annotated[

@@ -12,7 +12,7 @@ except ModuleNotFoundError as error:
     raise SystemExit("typer is not installed: pip install 'slipgym[eval]'") from error
 
 COMMANDS = {
-    "demo": "Run a short evaluation with figures: under a minute.",
+    "demo": "Run a short evaluation with figures: about a minute.",
     "play": "Watch a policy in a window, or write a video.",
     "train": "Train slip-control policies.",
     "evaluate": "Compare policies by the friction they know; test one.",

@@ -40,8 +40,13 @@ class _Mp4:
         self._frames.close()
 
 
-class _Gif:
-    """Frames reduced to the first one's colours and the plots', the same for all: what rests stays still."""
+class Gif:
+    """Frames reduced to the first one's colours and the plots', the same for all: what rests stays still.
+
+    Args:
+        path: The file.
+        rate: Frames per second.
+    """
 
     def __init__(self, path: Path, rate: int) -> None:
         self._path, self._rate = path, rate
@@ -49,6 +54,7 @@ class _Gif:
         self._colours = Image.new("P", (1, 1))
 
     def add(self, picture: np.ndarray) -> None:
+        """Append a frame (height, width, 3) uint8."""
         image = Image.fromarray(picture)
         if not self._frames:
             pale = [(channel + 255) // 2 for sign in _SIGNS for channel in sign]
@@ -58,6 +64,7 @@ class _Gif:
         self._frames.append(image.quantize(palette=self._colours, dither=Image.Dither.NONE))
 
     def finish(self) -> None:
+        """Write the file."""
         if self._frames:
             first, *rest = self._frames
             first.save(
@@ -65,7 +72,7 @@ class _Gif:
             )
 
 
-VIDEO_TYPES: dict[str, tuple[Callable[[Path, int], _Writer], int]] = {".mp4": (_Mp4, 30), ".gif": (_Gif, 25)}
+VIDEO_TYPES: dict[str, tuple[Callable[[Path, int], _Writer], int]] = {".mp4": (_Mp4, 30), ".gif": (Gif, 25)}
 """File type -> writer and frames per second; a GIF counts time in hundredths of a second."""
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -10,10 +11,14 @@ from policies.evaluation.frames import distinct, values, where
 from policies.evaluation.plots.style import STYLE, note
 
 _GOOD, _BAD = STYLE.palette[0], STYLE.palette[1]
+_FARTHEST = 4.0
+"""End of an axis, in what is allowed; what lies beyond is drawn there."""
 
 
 def plot_allowed(trials: pd.DataFrame, across: tuple[str, str], up: tuple[str, str]) -> Figure:
     """A panel for each friction choice: a measure over another, and the box of what is allowed.
+
+    Trials beyond `_FARTHEST` times what is allowed are drawn at the edge.
 
     Args:
         trials: The table of trials of one policy.
@@ -24,26 +29,36 @@ def plot_allowed(trials: pd.DataFrame, across: tuple[str, str], up: tuple[str, s
     figure = Figure(figsize=(max(4.0, 2.7 * len(choices)), 3.2))
     panels = figure.subplots(1, len(choices), sharex=True, sharey=True, squeeze=False)[0]
     slide, tilt = (values(trials, f"tolerance_{unit}").max() for unit in ("mm", "deg"))
+    ends = _end(trials, across[0], slide), _end(trials, up[0], tilt)
     for axes, choice in zip(panels, choices, strict=True):
         axes.add_patch(Rectangle((0.0, 0.0), slide, tilt, color=STYLE.band, linewidth=0))
         group = where(trials, friction=choice)
         for success, colour, marker in ((True, _GOOD, "o"), (False, _BAD, "X")):
             some = where(group, success=success)
             axes.scatter(
-                values(some, across[0]),
-                values(some, up[0]),
+                np.minimum(values(some, across[0]), ends[0]),
+                np.minimum(values(some, up[0]), ends[1]),
                 s=18,
+                clip_on=False,
                 color=colour,
                 marker=marker,
                 alpha=0.65,
                 linewidths=0,
             )
         share = 100.0 * values(group, "success").mean()
-        note(axes, 0.03, 0.04, f"success {share:.0f} %", _GOOD, xycoords="axes fraction")
+        note(
+            axes, 0.97, 0.94, f"success {share:.0f} %", _GOOD, xycoords="axes fraction", ha="right", va="top"
+        )
         axes.set_title(f"friction: {choice}")
-    panels[0].set_xlim(0.0, 1.1 * max(slide, values(trials, across[0]).max()))
-    panels[0].set_ylim(0.0, 1.1 * max(tilt, values(trials, up[0]).max()))
+    panels[0].set_xlim(0.0, ends[0])
+    panels[0].set_ylim(0.0, ends[1])
     panels[0].set_ylabel(up[1])
     note(panels[0], slide, tilt, "allowed ", STYLE.muted, ha="right", va="bottom")
-    figure.supxlabel(across[1], fontsize=9.0)
+    beyond = values(trials, across[0]).max() > ends[0] or values(trials, up[0]).max() > ends[1]
+    figure.supxlabel(across[1] + ("; at the edge: beyond" if beyond else ""), fontsize=9.0)
     return figure
+
+
+def _end(trials: pd.DataFrame, column: str, allowed: float) -> float:
+    """End of an axis: all trials, or `_FARTHEST` times what is allowed."""
+    return max(1.1 * allowed, min(1.1 * float(values(trials, column).max()), _FARTHEST * allowed))
