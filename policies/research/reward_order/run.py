@@ -114,11 +114,11 @@ def by_level(
     chosen = [member for member in members if member.name in kinds or member.name.startswith("constant ")]
     rows = []
     for level in levels:
-        found = played(task, chosen, episodes, {"level": level}, progress).set_index("policy")[SUCCESS]
-        constants = found[[name for name in found.index if str(name).startswith("constant ")]]
-        best = constants.max()
-        force = str(constants.idxmax()).removeprefix("constant ") if best > 0.0 else "none"
-        known = (found[f"controller, {each}"] for each in SOURCES)
-        rows.append((find(task).name, level, best, force, *known))
+        table = played(task, chosen, episodes, {"level": level}, progress)
+        found = dict(zip(table["policy"].tolist(), table[SUCCESS].tolist(), strict=True))
+        best = max((name for name in found if name.startswith("constant ")), key=lambda name: found[name])
+        force = best.removeprefix("constant ") if found[best] > 0.0 else "any"
+        known = (found[f"controller, {source}"] for source in SOURCES)
+        rows.append((find(task).name, level, found[best], force, *known))
     heads = ["task", "level", "best constant", "its force", *SOURCES]
     return pd.DataFrame(rows, columns=pd.Index(heads))

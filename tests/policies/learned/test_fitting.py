@@ -9,6 +9,10 @@ import slipgym  # noqa: F401
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import run_trial, run_trials
 from policies.learned import LearnedPolicy, pretrained
+from policies.learned.fitting import column_of
+from slipgym.config import load
+from slipgym.envs.observation import columns
+from slipgym.tasks import TASKS
 
 
 def refused(policy, message, task="Hold", **arguments):
@@ -136,3 +140,43 @@ def test_no_shipped_policy_takes_a_controllers_name():
     from policies.controllers.table import CLASSES
 
     assert not set(pretrained.folders()) & set(CLASSES)
+
+
+def described():
+    """Columns of Hold as policy.json has them."""
+    return [column_of(column).model_dump() for column in columns(load(), TASKS["Hold"], "estimated")]
+
+
+@pytest.mark.parametrize("history", [0, 2])
+@pytest.mark.parametrize(
+    "residual", [None, {"controller": "hold", "parameters": {}, "reach": 0.3, "memory": 5}]
+)
+def test_a_policy_reads_its_columns_by_name_and_ignores_later_ones(policy_folder, history, residual):
+    """As one that was trained before the observation had `violated`."""
+    observed = described()
+    at = [column["name"] for column in observed].index("violated")
+    old = {"observation": [*observed[:at], *observed[at + 1 :]], "history": history}
+    old["arguments"] = {"friction_source": "estimated", "action_mode": "grip_force", "history": history}
+    policy = LearnedPolicy(policy_folder(environment=old, residual=residual))
+    assert (len(policy.names), policy.width) == (len(observed), (history + 1) * len(observed))
+    env = gym.make("slipgym/Hold-v0", engine="planar", history=history)
+    policy.check(env)
+    observation, _ = env.reset(seed=0)
+    other = observation.copy()
+    other[at :: len(observed)] = 1.0
+    np.testing.assert_array_equal(policy.predict(other)[0], policy.predict(observation)[0])
+    read = observation[np.newaxis]
+    if residual is not None:
+        _, read, _ = policy._underlying.act(read, None, None)
+    frames = observation.reshape(history + 1, -1)
+    wanted = np.append(np.delete(frames, at, axis=1), read[0, observation.size :])
+    np.testing.assert_array_equal(np.take(read, policy._read, axis=1)[0], wanted)
+    env.close()
+
+
+def test_a_column_that_is_gone_is_an_error(policy_folder):
+    observed = described()
+    gone = {"observation": [*observed, {**observed[-1], "name": "colour"}]}
+    refused(
+        LearnedPolicy(policy_folder(environment=gone)), r"column 29, 'colour' .* in training, is missing here"
+    )
