@@ -6,6 +6,7 @@ import numpy as np
 
 from estimator._numba.caching import njit
 from estimator.augmented.filtering import learn
+from estimator.augmented.load import at_load
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
 from estimator.augmented.timing import LAST, correlate
@@ -239,6 +240,7 @@ def slide(state, p):
     state.covariance[R, R] = min(state.covariance[R, R] + walk, p.sd_log_r0**2)
     for j in range(ZERO, SHAPE):
         state.covariance[j, j] += (p.error_drift * state.x[j]) ** 2
+    at_load(state, p, wrench[2])
     learned, squared, score = learn(state, p, state.sign, wrench, twist, of_speed, of_spin)
     for j in range(3):
         state.smooth[j] += SMOOTHING * (twist[j] - state.smooth[j])
