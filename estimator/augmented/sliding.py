@@ -6,6 +6,7 @@ import numpy as np
 
 from estimator._numba.caching import njit
 from estimator.augmented.filtering import learn
+from estimator.augmented.holding import may_slide
 from estimator.augmented.load import at_load
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
@@ -92,7 +93,8 @@ def _shear(state, p, moves, elapsed):
         else:  # against the force: it springs back
             state.spring = min(SAFETY * math.sqrt(square / max(spring, 1e-9)), p.compliance_max)
             beyond = False
-    state.beyond = state.beyond + 1 if beyond and _goes_on(state, p, r, elapsed) else 0
+    slips = beyond and _goes_on(state, p, r, elapsed) and may_slide(state, p)
+    state.beyond = state.beyond + 1 if slips else 0
 
 
 @njit(error_model="numpy")

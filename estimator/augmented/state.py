@@ -32,6 +32,8 @@ _IN_CONTACT: list[tuple[Any, ...]] = [
     ("common_mu_s", np.float64),
     ("above", np.int64),
     ("load", np.float64),
+    ("held", np.float64),
+    ("held_load", np.float64),
     ("x", np.float64, (STATES,)),
     ("products", np.float64, (CANDIDATES,)),
     ("energies", np.float64, (2,)),
@@ -85,7 +87,8 @@ velocities in a row that moved; `repeated`: 1 if two were the same; `moved_by`: 
 newest sample of sliding; `first`: number of the first sample of a short slip, -1 for none; `quiet`: samples
 since it moved; `fallen`: number of the sample after its break-away; `slides`: instants of sliding learned
 from since the delay is as it is; `misfit`: mean squared normalised innovation; `rise`, `fall`: sums of the
-jump test; `load`: normal force at which ln mu_c and ln r are [N]; `event`, `event_load`: mu_s at the normal
+jump test; `load`: normal force at which ln mu_c and ln r are [N]; `held`,
+`held_load`: largest ratio that was carried, and its normal force [-, N]; `event`, `event_load`: mu_s at the normal
 force of its last event [-, N]."""
 
 
