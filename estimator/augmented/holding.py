@@ -37,16 +37,28 @@ def hold(state, p, f_t, f_n):
 
 
 @njit(error_model="numpy")
+def least_friction(state, p, f_n):
+    """Smallest mu_c that is plausible at a normal force [N]."""
+    held = AT_LEAST * state.held
+    if f_n > state.held_load > 0.0:
+        held *= (state.held_load / f_n) ** LOAD_EXPONENT
+    return max(held, p.mu_c0 * math.exp(-LOWEST * p.sd_log_mu_c0))
+
+
+@njit(error_model="numpy")
+def least_radius(state):
+    """Smallest r that is plausible [m]."""
+    return state.r * math.exp(-LOWEST * math.sqrt(state.covariance[R, R]))
+
+
+@njit(error_model="numpy")
 def may_slide(state, p):
     """Whether the newest load is one at which a contact may slide, or the motion too long for any pad."""
-    k, least = state.samples, p.mu_c0 * math.exp(-LOWEST * p.sd_log_mu_c0)
-    r = state.r * math.exp(-LOWEST * math.sqrt(state.covariance[R, R]))
+    k, r = state.samples, least_radius(state)
     for i in range(k - NEWEST + 1, k + 1):
         w = state.wrenches[i & LAST]
-        held = AT_LEAST * state.held
-        if w[2] > state.held_load > 0.0:
-            held *= (state.held_load / w[2]) ** LOAD_EXPONENT
-        if load_size(True, norm(w[0], w[1]), abs(w[3]) / r) > max(least, held) * w[2]:
+        load = load_size(True, norm(w[0], w[1]), abs(w[3]) / r)
+        if load > w[2] * least_friction(state, p, w[2]):
             return True
     moved, spring = 0.0, 0.0
     for j in range(3):

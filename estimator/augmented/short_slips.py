@@ -12,6 +12,7 @@ import math
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
 from estimator.augmented.filtering import MOST
+from estimator.augmented.holding import least_friction
 from estimator.augmented.load import at_load, limit
 from estimator.augmented.sliding import settle
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, STATES, TILT, ZERO, R
@@ -63,7 +64,8 @@ def _break_away(state, p):
         fall = before - after
         if state.wrenches[i & LAST, 2] < p.eps_fn or not fall > max(FALL * before, NOISES * p.sd_force):
             continue
-        if fall > largest and ratio > AT_LEAST * most:
+        least = max(AT_LEAST * most, least_friction(state, p, state.wrenches[i & LAST, 2]))
+        if fall > largest and ratio > least:
             found, largest = i, fall
     return found
 
