@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
 from estimator.augmented.deviation import EVERY, deviate
-from estimator.augmented.holding import hold
+from estimator.augmented.holding import hold, stiffen
 from estimator.augmented.load import at_load
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.prefetching import prefetch
@@ -73,6 +73,7 @@ def _update(state, p, t, read, twist, estimate):
             rest = EVERY * p.drift_at_rest * p.drift_at_rest
             state.covariance[MU, MU] = min(state.covariance[MU, MU] + rest, p.sd_log_mu_c0**2)
             hold(state, p, f_t, f_n)
+            stiffen(state, p)
         if not halted and slide(state, p):
             saw_mu_c = True
             state.updates_mu_c += 1

@@ -23,6 +23,10 @@ LOWEST = 2.0
 """Deviations below its start value of the smallest mu_c and r that are expected."""
 NEWEST = 4
 """Newest samples of which one must carry the load: the velocity is late."""
+LEAST_CHANGE = 0.2
+"""Change of the tangential force from which a pad shows how stiff it is [N]."""
+SAFETY = 1.5
+"""Compliance that is assumed, over that which a motion shows."""
 NOISE = 3.0
 """Deviations of the noise by which a force may be off."""
 
@@ -34,6 +38,27 @@ def hold(state, p, f_t, f_n):
     ratio = (f_t - NOISE * p.sd_force) / (f_n + NOISE * p.sd_normal)
     if ratio > state.held:
         state.held, state.held_load = ratio, f_n
+
+
+@njit(error_model="numpy")
+def stiffen(state, p):
+    """Lowers the compliance that is assumed: a pad springs no further than the object moves.
+
+    The tangential force changed between the ends of a window and its middle; the late velocity shows the
+    motion by its end. Whether a part of the motion was slip does not matter.
+    """
+    if state.in_a_row <= LAST:
+        return
+    k, path = state.samples, NOISE * p.sd_speed * p.sample_time * LAST**0.5
+    change = -NOISE * p.sd_force
+    first, middle = state.wrenches[(k - LAST) & LAST], state.wrenches[(k - LAST // 2) & LAST]
+    change += norm(middle[0] - first[0], middle[1] - first[1])
+    if change < LEAST_CHANGE:
+        return
+    for i in range(k - LAST + 1, k + 1):
+        twist = state.twists[i & LAST]
+        path += norm(twist[0], twist[1]) * p.sample_time
+    state.spring = max(min(state.spring, SAFETY * path / change), p.compliance)
 
 
 @njit(error_model="numpy")

@@ -6,7 +6,7 @@ import numpy as np
 
 from estimator._numba.caching import njit
 from estimator.augmented.filtering import learn
-from estimator.augmented.holding import may_slide
+from estimator.augmented.holding import SAFETY, may_slide
 from estimator.augmented.load import at_load
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
@@ -33,9 +33,6 @@ RECENT = 3
 BEFORE = 8
 """Samples before a motion whose forces count: the velocity is late."""
 
-SAFETY = 1.5
-"""Compliance that is assumed, over that with which the pad sprang back."""
-
 RANGE = 3.0
 """Range of some samples of noise, over its standard deviation."""
 
@@ -45,9 +42,8 @@ ALIKE = 10.0
 
 @njit(error_model="numpy")
 def _range(p, j, change, r):
-    """Range of force j, or of the torque over r, less that of noise: what can have sprung the pad [N]."""
-    noise, scale = (p.sd_force, 1.0) if j < 2 else (p.sd_torque, r)
-    return max(change - RANGE * noise, 0.0) / scale
+    """Range of force j less that of noise, or of the torque over r: what can have sprung the pad [N]."""
+    return max(change - RANGE * p.sd_force, 0.0) if j < 2 else change / r
 
 
 @njit(error_model="numpy")
@@ -134,8 +130,6 @@ def _direct(state, p, power):
     sign = 1.0 if power > 0.0 else -1.0
     if sign != state.sign:
         state.products[:] = 0.0
-    if sign != state.sign or not state.signed:
-        state.spring = p.compliance
     state.sign, state.signed = sign, True
 
 
