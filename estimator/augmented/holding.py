@@ -24,7 +24,7 @@ LOWEST = 2.0
 NEWEST = 4
 """Newest samples of which one must carry the load: the velocity is late."""
 LEAST_CHANGE = 0.2
-"""Change of the tangential force from which a pad shows how stiff it is [N]."""
+"""Change of the load from which a pad shows how stiff it is [N]."""
 SAFETY = 1.5
 """Compliance that is assumed, over that which a motion shows."""
 NOISE = 3.0
@@ -44,20 +44,20 @@ def hold(state, p, f_t, f_n):
 def stiffen(state, p):
     """Lowers the compliance that is assumed: a pad springs no further than the object moves.
 
-    The tangential force changed between the ends of a window and its middle; the late velocity shows the
+    The load changed between the ends of a window and its middle; the late velocity shows the
     motion by its end. Whether a part of the motion was slip does not matter.
     """
     if state.in_a_row <= LAST:
         return
     k, path = state.samples, NOISE * p.sd_speed * p.sample_time * LAST**0.5
-    change = -NOISE * p.sd_force
     first, middle = state.wrenches[(k - LAST) & LAST], state.wrenches[(k - LAST // 2) & LAST]
-    change += norm(middle[0] - first[0], middle[1] - first[1])
+    change = max(norm(middle[0] - first[0], middle[1] - first[1]) - NOISE * p.sd_force, 0.0)
+    change = norm(change, max(abs(middle[3] - first[3]) - NOISE * p.sd_torque, 0.0) / state.r)
     if change < LEAST_CHANGE:
         return
     for i in range(k - LAST + 1, k + 1):
         twist = state.twists[i & LAST]
-        path += norm(twist[0], twist[1]) * p.sample_time
+        path += norm(norm(twist[0], twist[1]), state.r * twist[2]) * p.sample_time
     state.spring = max(min(state.spring, SAFETY * path / change), p.compliance)
 
 
