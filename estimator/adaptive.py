@@ -69,11 +69,11 @@ def _update(state, p, t, read, twist, estimate):
         halted = halts(state, p, f_n, elapsed)
         moves = speed_2 > p.eps_v * p.eps_v
         store(state, p, wrench, twist, moves, elapsed)
+        stiffen(state, p)
         if state.samples % EVERY == 0:
             rest = EVERY * p.drift_at_rest * p.drift_at_rest
             state.covariance[MU, MU] = min(state.covariance[MU, MU] + rest, p.sd_log_mu_c0**2)
             hold(state, p, f_t, f_n)
-            stiffen(state, p)
         if not halted and slide(state, p):
             saw_mu_c = True
             state.updates_mu_c += 1

@@ -23,8 +23,10 @@ LOWEST = 2.0
 """Deviations below its start value of the smallest mu_c and r that are expected."""
 NEWEST = 4
 """Newest samples of which one must carry the load: the velocity is late."""
-LEAST_CHANGE = 0.2
-"""Change of the load from which a pad shows how stiff it is [N]."""
+CHANGE, LEAST_CHANGE = 3, 0.4
+"""Samples over which a load must change, and by how much at least [N], to show how stiff a pad is."""
+SPARE = 2
+"""Samples later than its delay by which a velocity may come."""
 SAFETY = 1.5
 """Compliance that is assumed, over that which a motion shows."""
 NOISE = 3.0
@@ -44,20 +46,22 @@ def hold(state, p, f_t, f_n):
 def stiffen(state, p):
     """Lowers the compliance that is assumed: a pad springs no further than the object moves.
 
-    The load changed between the ends of a window and its middle; the late velocity shows the
-    motion by its end. Whether a part of the motion was slip does not matter.
+    The load changed some samples ago, and the late velocity has shown by now what motion that made. Whether a
+    part of the motion was slip does not matter.
     """
-    if state.in_a_row <= LAST:
+    k, r = state.samples, max(state.r, 0.5 * p.r_max)
+    after = state.delay + SPARE
+    if state.in_a_row <= after + CHANGE:
         return
-    k, path = state.samples, NOISE * p.sd_speed * p.sample_time * LAST**0.5
-    first, middle = state.wrenches[(k - LAST) & LAST], state.wrenches[(k - LAST // 2) & LAST]
-    change = max(norm(middle[0] - first[0], middle[1] - first[1]) - NOISE * p.sd_force, 0.0)
-    change = norm(change, max(abs(middle[3] - first[3]) - NOISE * p.sd_torque, 0.0) / state.r)
+    now, before = state.wrenches[(k - after) & LAST], state.wrenches[(k - after - CHANGE) & LAST]
+    force = max(norm(now[0] - before[0], now[1] - before[1]) - NOISE * p.sd_force, 0.0)
+    change = norm(force, max(abs(now[3] - before[3]) - NOISE * p.sd_torque, 0.0) / r)
     if change < LEAST_CHANGE:
         return
-    for i in range(k - LAST + 1, k + 1):
+    path = NOISE * p.sd_speed * p.sample_time * math.sqrt(after + CHANGE)
+    for i in range(k - after - CHANGE + 1, k + 1):
         twist = state.twists[i & LAST]
-        path += norm(norm(twist[0], twist[1]), state.r * twist[2]) * p.sample_time
+        path += norm(norm(twist[0], twist[1]), r * twist[2]) * p.sample_time
     state.spring = max(min(state.spring, SAFETY * path / change), p.compliance)
 
 

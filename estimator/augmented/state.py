@@ -142,6 +142,7 @@ def restart(state, p):
         assumed = p.caution if SIGMA < j <= SHAPE else 1.0
         covariance[j, j] = variance if kept else (assumed * spread) ** 2
     state.misfit, state.rise, state.fall, state.slides = 1.0, 0.0, 0.0, 0
+    state.spring = p.compliance_max
 
 
 @njit
