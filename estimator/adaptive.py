@@ -17,13 +17,14 @@ from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
+from estimator.augmented.change import test_for_jump
 from estimator.augmented.deviation import EVERY, deviate
 from estimator.augmented.holding import hold, stiffen
 from estimator.augmented.load import at_load
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.prefetching import prefetch
 from estimator.augmented.short_slips import learn_short_slip
-from estimator.augmented.sliding import slide, store, test_for_jump
+from estimator.augmented.sliding import slide, store
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, TILT, ZERO
 from estimator.augmented.state import STATE, initial_states
 from estimator.augmented.static_friction import learn_static_friction

@@ -90,6 +90,9 @@ class AdaptiveParameters(NoiseParameters):
     jump_limit: float = parameter(
         6.0, "Jump test: sum of the excess that marks a change of mu_c.", "(0, inf)"
     )
+    jump_evidence: float = parameter(
+        12.0, "Jump test: square of the mean over that which scatter explains.", "[0, inf)"
+    )
     sd_jump: float = parameter(0.3, "Standard deviation of a jump of ln mu_c.", "(0, 3]")
     timing_memory: float = parameter(0.999, "Fading of the correlations per sample.", "(0, 1)")
     timing_gate: float = parameter(0.15, "Correlation from which the delay is believed.", "(0, 1)")

@@ -6,6 +6,7 @@ import numpy as np
 
 from estimator._numba.caching import njit
 from estimator.augmented.filtering import learn
+from estimator.augmented.change import test_for_jump
 from estimator.augmented.holding import SAFETY, may_slide
 from estimator.augmented.load import at_load
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
@@ -165,17 +166,6 @@ def store(state, p, wrench, twist, moves, elapsed):
     correlate(state, p)
     if abs(state.delay - delay) > 1 and state.slides > 0:
         restart(state, p)
-
-
-@njit(error_model="numpy")
-def test_for_jump(state, p, score):
-    """Cumulative sums of the innovations (Page, Biometrika 41, 1954); a jump widens the variance of mu_c."""
-    z = min(max(score, -3.0), 3.0)
-    state.rise = max(state.rise + z - p.jump_slack, 0.0)
-    state.fall = max(state.fall - z - p.jump_slack, 0.0)
-    if state.rise > p.jump_limit or state.fall > p.jump_limit:
-        state.rise, state.fall = 0.0, 0.0
-        state.covariance[MU, MU] += p.sd_jump * p.sd_jump
 
 
 @njit(error_model="numpy")

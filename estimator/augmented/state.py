@@ -52,8 +52,8 @@ _IN_MOTION: list[tuple[Any, ...]] = [
     ("slid", np.int64),
     ("misfit", np.float64),
     ("leverage", np.float64),
-    ("rise", np.float64),
-    ("fall", np.float64),
+    ("runs", np.float64, (2, 3)),
+    ("scatter", np.float64),
     ("smooth", np.float64, (4,)),
     ("limits", np.float64, (8,)),
     ("covariance", np.float64, (STATES, STATES)),
@@ -86,8 +86,8 @@ velocities in a row that moved; `repeated`: 1 if two were the same; `moved_by`: 
 [m/N]; `beyond`: samples in a row that the motion was longer than the pad can spring; `slid`: number of the
 newest sample of sliding; `first`: number of the first sample of a short slip, -1 for none; `quiet`: samples
 since it moved; `fallen`: number of the sample after its break-away; `slides`: instants of sliding learned
-from since the delay is as it is; `misfit`: mean squared normalised innovation; `rise`, `fall`: sums of the
-jump test; `load`: normal force at which ln mu_c and ln r are [N]; `held`,
+from since the delay is as it is; `misfit`: mean squared normalised innovation; `runs`: of the jump
+test, for a rise and a fall: sum of the excess, number and sum of innovations; `scatter`: mean square of all; `load`: normal force at which ln mu_c and ln r are [N]; `held`,
 `held_load`: largest ratio that was carried, and its normal force [-, N]; `event`, `event_load`: mu_s at the normal
 force of its last event [-, N]."""
 
@@ -141,7 +141,8 @@ def restart(state, p):
         spread = _spread(p, j)
         assumed = p.caution if SIGMA < j <= SHAPE else 1.0
         covariance[j, j] = variance if kept else (assumed * spread) ** 2
-    state.misfit, state.rise, state.fall, state.slides = 1.0, 0.0, 0.0, 0
+    state.misfit, state.slides = 1.0, 0
+    state.runs[:] = 0.0
     state.spring = p.compliance_max
 
 
