@@ -30,7 +30,7 @@ def _squared(state, weights, hidden, mu, r):
     """
     first, second = state.covariance[MU], state.covariance[R]
     filtered = mu * mu * first[MU] + 2.0 * mu * r * first[R] + r * r * second[R]
-    square = hidden + max(state.misfit, 1.0) * max(filtered, 0.0)
+    square = hidden + max(state.misfit, state.scatter, 1.0) * max(filtered, 0.0)
     for group in range(3):
         at = ZERO + 2 * group
         a, b = mu * first[at] + r * second[at], mu * first[at + 1] + r * second[at + 1]
