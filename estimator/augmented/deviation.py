@@ -77,7 +77,7 @@ def deviate(state, p, changed):
     if state.events_mu_s > 0:
         state.mu_s, of_exponent = static_at_load(state, state.load)
         state.mu_s = clamped(state.mu_s, p.mu_min, p.mu_max)
-        square = state.variance_mu_s + state.common_mu_s + of_exponent
+        square = state.variance_mu_s + state.common_mu_s + of_exponent + max(state.scatter_mu_s, 0.0)
         state.sd_mu_s = state.mu_s * math.sqrt(square)
         state.confidence_mu_s = _confidence(square)
     order(state)

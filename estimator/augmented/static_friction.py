@@ -18,7 +18,7 @@ from estimator.augmented.slip_law import TILT, ZERO, R
 from estimator.augmented.timing import LAST
 from estimator.limit_surface.inverse import load_size
 from estimator.sample import direction_cosines
-from estimator.stick_slip import append, clear_buffer, take_event, transition
+from estimator.stick_slip import SCATTER_GAIN, append, clear_buffer, take_event, transition
 
 SAMPLING = 0.03
 """Relative deviation of an event: the load rises between samples, and the largest of noisy values counts."""
@@ -42,6 +42,9 @@ def _event(state, p, value, f_n, torque_share):
     present, of_exponent = static_at_load(state, f_n) if state.events_mu_s > 0 else (state.mu_s, 0.0)
     change = math.log(value / present)
     prior = state.variance_mu_s + p.drift_mu_s * p.drift_mu_s + of_exponent
+    if state.events_mu_s > 0:
+        excess = min(change * change, 1.0) - prior - noise
+        state.scatter_mu_s += SCATTER_GAIN * (excess - state.scatter_mu_s)
     if state.events_mu_s == 0 or abs(change) > max(p.jump_mu_s, 3.0 * math.sqrt(prior + noise)):
         gain = 1.0
         state.variance_mu_s = noise
