@@ -1,8 +1,8 @@
 """The "adaptive" estimator: a filter that identifies the imperfections of its sensors while it works.
 
 An iterated extended Kalman filter on twelve states: ln mu_c, ln r, the viscosity sigma_2, a zero error and a
-tilt of the force sensor, an offset of the centre of pressure, the shape of the limit surface, and the exponents
-with which mu_c falls and r grows with the normal force (`estimator.augmented.load`). The
+tilt of the force sensor, an offset of the centre of pressure, the shape of the limit surface, and the
+exponents with which mu_c falls and r grows with the normal force (`estimator.augmented.load`). The
 measurement is the wrench as a vector (`estimator.augmented.slip_law`). States that the motion does not show
 keep their prior variance, and their covariance with mu_c and r carries it into the stated deviations. The
 delay between velocity and force is found from their changes (`estimator.augmented.timing`); a sample is
@@ -63,7 +63,7 @@ def _update(state, p, t, read, twist, estimate):
     unloaded = without_load(state, p, read[2])
     if unloaded or f_n < p.eps_fn:
         lose_contact(state)
-        state.in_a_row, state.moved, state.beyond, state.first = 0, 0, 0, -1
+        state.in_a_row, state.moved, state.beyond, state.first, state.held = 0, 0, 0, -1, 0.0
         if unloaded:
             learn_zero(state, p, read)
     else:

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from estimator._numba.caching import njit
-from estimator.augmented.filtering import learn
 from estimator.augmented.change import test_for_jump
+from estimator.augmented.filtering import learn
 from estimator.augmented.holding import SAFETY, may_slide
 from estimator.augmented.load import at_load
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R

@@ -76,20 +76,20 @@ STATE = np.dtype(
     ],
     align=True,
 )
-"""`x`, `covariance`: the filter; `limits`: of ln mu_c, ln r and both
-exponents; `delay`: of the velocity [samples];
-`timing`: its correlation; `offset`: its fraction of a sample; `sign`: 1 if the wrench is that on the
-finger, once `signed`; `unloaded`: whether the sensor was seen without load; `touched`: whether there was
-contact; `zero_normal`, `zero_torque`: zero errors of f_n and tau [N, N m], with their variances; `moved`:
-velocities in a row that moved; `repeated`: 1 if two were the same; `moved_by`: how far [m, m, rad];
-`lowest`, `highest`: f_x, f_y, tau meanwhile; `before`: the same before it; `spring`: compliance of the pad
-[m/N]; `beyond`: samples in a row that the motion was longer than the pad can spring; `slid`: number of the
-newest sample of sliding; `first`: number of the first sample of a short slip, -1 for none; `quiet`: samples
-since it moved; `fallen`: number of the sample after its break-away; `slides`: instants of sliding learned
-from since the delay is as it is; `misfit`: mean squared normalised innovation; `runs`: of the jump
-test, for a rise and a fall: sum of the excess, number and sum of innovations; `scatter`: mean square of all; `load`: normal force at which ln mu_c and ln r are [N]; `held`,
-`held_load`: largest ratio that was carried, and its normal force [-, N]; `event`, `event_load`: mu_s at the normal
-force of its last event [-, N]."""
+"""`x`, `covariance`: the filter; `limits`: of ln mu_c, ln r and both exponents; `delay`: of the velocity
+[samples]; `timing`: its correlation; `offset`: its fraction of a sample; `sign`: 1 if the wrench is that
+on the finger, once `signed`; `unloaded`: whether the sensor was seen without load; `touched`: whether
+there was contact; `zero_normal`, `zero_torque`: zero errors of f_n and tau [N, N m], with their
+variances; `moved`: velocities in a row that moved; `repeated`: 1 if two were the same; `moved_by`: how
+far [m, m, rad]; `lowest`, `highest`: f_x, f_y, tau meanwhile; `before`: the same before it; `spring`:
+compliance of the pad [m/N]; `beyond`: samples in a row that the motion was longer than the pad can
+spring; `slid`: number of the newest sample of sliding; `first`: number of the first sample of a short
+slip, -1 for none; `quiet`: samples since it moved; `fallen`: number of the sample after its break-away;
+`slides`: instants of sliding learned from since the delay is as it is; `misfit`: mean squared normalised
+innovation; `runs`: of the jump test, for a rise and a fall: sum of the excess, number and sum of
+innovations; `scatter`: mean square of all; `load`: normal force at which ln mu_c and ln r are [N];
+`held`, `held_load`: largest ratio that was carried, and its normal force [-, N]; `event`, `event_load`:
+mu_s of the last events, and its normal force [-, N]."""
 
 
 _SPREADS = {MU: "log_mu_c0", R: "log_r0", SIGMA: "viscosity", ZERO: "zero", ZERO + 1: "zero"}

@@ -62,7 +62,7 @@ def _event(state, p, value, f_n, torque_share):
 
 @njit(error_model="numpy")
 def _heaviest(state, p, f_n):
-    """Normal force [N] of the sample with the largest load over it, among the newest; f_n if there is none."""
+    """Normal force [N] of that of the newest samples with the largest load over it; f_n if there is none."""
     largest = 0.0
     for i in range(state.samples - min(LAST, state.in_a_row - 1), state.samples + 1):
         _, _, _, _, ratio = load_of(state, i)

@@ -6,7 +6,6 @@ import pytest
 import estimator
 from policies.research.leaderboard.imperfections import Imperfections, impaired
 
-
 RIGID = {"load_exponent0": 0.0, "sd_load_exponent": 1e-3}
 """Friction of a hanging block does not depend on the load; what else is stated: `test_adaptive_load.py`."""
 
