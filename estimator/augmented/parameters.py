@@ -62,7 +62,7 @@ class AdaptiveParameters(NoiseParameters):
     )
     compliance: float = parameter(
         5e-5,
-        "Shear compliance of the pad that is assumed until it springs back further.",
+        "Smallest shear compliance of the pad that is assumed, however stiff it seems.",
         "[0, inf)",
         "m/N",
     )
