@@ -1,7 +1,8 @@
 """The "adaptive" estimator: a filter that identifies the imperfections of its sensors while it works.
 
-An iterated extended Kalman filter on ten states: ln mu_c, ln r, the viscosity sigma_2, a zero error and a
-tilt of the force sensor, an offset of the centre of pressure, and the shape of the limit surface. The
+An iterated extended Kalman filter on twelve states: ln mu_c, ln r, the viscosity sigma_2, a zero error and a
+tilt of the force sensor, an offset of the centre of pressure, the shape of the limit surface, and the
+exponents with which mu_c falls and r grows with the normal force (`estimator.augmented.load`). The
 measurement is the wrench as a vector (`estimator.augmented.slip_law`). States that the motion does not show
 keep their prior variance, and their covariance with mu_c and r carries it into the stated deviations. The
 delay between velocity and force is found from their changes (`estimator.augmented.timing`); a sample is
@@ -16,11 +17,14 @@ from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
+from estimator.augmented.change import test_for_jump
 from estimator.augmented.deviation import EVERY, deviate
+from estimator.augmented.holding import hold, stiffen
+from estimator.augmented.load import at_load
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.prefetching import prefetch
 from estimator.augmented.short_slips import learn_short_slip
-from estimator.augmented.sliding import slide, store, test_for_jump
+from estimator.augmented.sliding import slide, store
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, TILT, ZERO
 from estimator.augmented.state import STATE, initial_states
 from estimator.augmented.static_friction import learn_static_friction
@@ -54,21 +58,23 @@ def _update(state, p, t, read, twist, estimate):
     if not readable(state, t, f_t, f_n, tau, speed_2):
         return
     halted, saw_mu_c, saw_r, gamma_t, gamma_tau = False, False, False, 0.0, 0.0
-    events = state.events_mu_s
+    events, changed = state.events_mu_s, False
     elapsed = t - state.t if state.samples > 0 else p.sample_time
     unloaded = without_load(state, p, read[2])
     if unloaded or f_n < p.eps_fn:
         lose_contact(state)
-        state.in_a_row, state.moved, state.beyond, state.first = 0, 0, 0, -1
+        state.in_a_row, state.moved, state.beyond, state.first, state.held = 0, 0, 0, -1, 0.0
         if unloaded:
             learn_zero(state, p, read)
     else:
         halted = halts(state, p, f_n, elapsed)
         moves = speed_2 > p.eps_v * p.eps_v
         store(state, p, wrench, twist, moves, elapsed)
+        stiffen(state, p)
         if state.samples % EVERY == 0:
             rest = EVERY * p.drift_at_rest * p.drift_at_rest
             state.covariance[MU, MU] = min(state.covariance[MU, MU] + rest, p.sd_log_mu_c0**2)
+            hold(state, p, f_t, f_n)
         if not halted and slide(state, p):
             saw_mu_c = True
             state.updates_mu_c += 1
@@ -82,6 +88,7 @@ def _update(state, p, t, read, twist, estimate):
                 saw_mu_c, saw_r = True, state.updates_r > updates_r
                 state.updates_mu_c += 1
                 test_for_jump(state, p, score)
+        changed = saw_mu_c | at_load(state, p, f_n)
         still = speed_2 <= p.stick_band * p.stick_band
         moves = state.beyond > 0
         learn_static_friction(state, p, f_t, f_n, tau, still, moves, halted)
@@ -92,7 +99,7 @@ def _update(state, p, t, read, twist, estimate):
             gamma_t, gamma_tau = across / size, rim / size
     if state.samples % EVERY == 0:
         drift_zero(state, p, EVERY * elapsed)
-    deviate(state, p, saw_mu_c or state.events_mu_s != events)
+    deviate(state, p, changed or state.events_mu_s != events)
     state.elapsed = elapsed
     publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate)
     estimate.sd_lever = state.sd_lever

@@ -3,6 +3,7 @@
 import math
 
 from estimator._numba.caching import njit
+from estimator.augmented.load import static_at_load
 from estimator.augmented.slip_law import MU, SHAPE, ZERO, R
 from estimator.augmented.static_friction import order
 from estimator.estimate import confidence_of
@@ -29,7 +30,7 @@ def _squared(state, weights, hidden, mu, r):
     """
     first, second = state.covariance[MU], state.covariance[R]
     filtered = mu * mu * first[MU] + 2.0 * mu * r * first[R] + r * r * second[R]
-    square = hidden + max(state.misfit, 1.0) * max(filtered, 0.0)
+    square = hidden + max(state.misfit, state.scatter, 1.0) * max(filtered, 0.0)
     for group in range(3):
         at = ZERO + 2 * group
         a, b = mu * first[at] + r * second[at], mu * first[at + 1] + r * second[at + 1]
@@ -39,15 +40,15 @@ def _squared(state, weights, hidden, mu, r):
 
 
 @njit(error_model="numpy")
-def deviate(state, p, learned):
+def deviate(state, p, changed):
     """Standard deviations and confidence; the order of mu_s and mu_c.
 
     Args:
         state: Changed in place.
         p: Parameters.
-        learned: Whether the states changed at this sample.
+        changed: Whether the states changed at this sample.
     """
-    if not learned and state.samples % EVERY != 0:
+    if not changed and state.samples % EVERY != 0:
         return
     if state.updates_mu_c > 0:
         state.mu_c = clamped(math.exp(state.x[MU]), p.mu_min, p.mu_max)
@@ -74,7 +75,9 @@ def deviate(state, p, learned):
             state.sd_r = state.r * math.sqrt(square)
             state.confidence_r = _confidence(square)
     if state.events_mu_s > 0:
-        square = state.variance_mu_s + state.common_mu_s
+        state.mu_s, of_exponent = static_at_load(state, state.load)
+        state.mu_s = clamped(state.mu_s, p.mu_min, p.mu_max)
+        square = state.variance_mu_s + state.common_mu_s + of_exponent + max(state.scatter_mu_s, 0.0)
         state.sd_mu_s = state.mu_s * math.sqrt(square)
         state.confidence_mu_s = _confidence(square)
     order(state)

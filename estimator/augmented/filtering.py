@@ -1,4 +1,4 @@
-"""One step of the iterated extended Kalman filter of "adaptive": three measurements, ten states.
+"""One step of the iterated extended Kalman filter of "adaptive": three measurements, twelve states.
 
 Source: Bell & Cathey, The iterated Kalman filter update as a Gauss-Newton method, IEEE Transactions on
 Automatic Control 38(2), 1993. The noise of the twist, of the normal force and of the law of friction enters
@@ -9,6 +9,7 @@ import math
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
+from estimator.augmented.load import limit
 from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict_at
 
 ITERATIONS = 4
@@ -56,13 +57,6 @@ def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin):
     )
 
 
-@njit
-def _limit(x, limits):
-    """Keeps ln mu_c and ln r in their bounds."""
-    x[MU] = min(max(x[MU], limits[0]), limits[1])
-    x[R] = min(max(x[R], limits[2]), limits[3])
-
-
 @njit(error_model="numpy")
 def _inverse(a, b, c, d, e, f):
     """Inverse (11, 12, 13, 22, 23, 33) of a symmetric matrix that is given in the same way."""
@@ -91,10 +85,10 @@ def _cross(covariance, h, f_n, crossed):
     The loop over the states has no sum in it and reads rows, so that it computes several states at once.
 
     Args:
-        covariance: (10, 10), symmetric.
-        h: (3, 10), derivatives of the measurements. Those by zero error and tilt, 1 and f_n, are not read.
+        covariance: (12, 12), symmetric.
+        h: (3, 12), derivatives of the measurements. Those by zero error and tilt, 1 and f_n, are not read.
         f_n: Normal force [N].
-        crossed: Output (3, 10).
+        crossed: Output (3, 12).
     """
     for j in range(STATES):
         a = covariance[ZERO, j] + f_n * covariance[TILT, j]
@@ -166,11 +160,11 @@ def _reduce(x, covariance, m, crossed, proposed):
     """Takes the proposed states and their covariance, unless a number is absurd; whether it did.
 
     Args:
-        x: (10,) states, changed in place.
-        covariance: (10, 10), changed in place; it stays symmetric bit for bit.
+        x: (12,) states, changed in place.
+        covariance: (12, 12), changed in place; it stays symmetric bit for bit.
         m: Inverse of the innovations' covariance.
-        crossed: (3, 10), covariances of states and innovations.
-        proposed: (10,) new states.
+        crossed: (3, 12), covariances of states and innovations.
+        proposed: (12,) new states.
     """
     weighted, sound = matrix(3, STATES), True
     for j in range(STATES):
@@ -259,7 +253,7 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
         for j in range(STATES):
             before[j] = proposed[j]
             proposed[j] = x[j] + crossed[0, j] * z_1 + crossed[1, j] * z_2 + crossed[2, j] * z_3
-        _limit(proposed, state.limits)
+        limit(proposed, state.limits)
         if uncertain and _close(before, proposed, covariance):
             break
     if not (math.isfinite(squared) and math.isfinite(score)):

@@ -49,12 +49,20 @@ class AdaptiveParameters(NoiseParameters):
     sd_shape: float = parameter(
         0.1, "Spread of the limit surface's shape: 0 is a uniform disc's, 1 the ellipsoid.", "(0, inf)"
     )
+    load_exponent0: float = parameter(
+        0.1, "Exponent of the normal force with which mu_c and mu_s are expected to fall.", "[0, 0.5]"
+    )
+    sd_load_exponent: float = parameter(0.15, "Spread of this exponent before it is seen.", "(0, 1]")
+    radius_exponent0: float = parameter(
+        0.1, "Exponent of the normal force with which r is expected to grow.", "[0, 0.34]"
+    )
+    sd_radius_exponent: float = parameter(0.1, "Spread of this exponent before it is seen.", "(0, 1]")
     sd_gain: float = parameter(
         0.02, "Relative errors that no motion shows: gain and cross-talk of the forces.", "[0, inf)"
     )
     compliance: float = parameter(
         5e-5,
-        "Shear compliance of the pad that is assumed until it springs back further.",
+        "Smallest shear compliance of the pad that is assumed, however stiff it seems.",
         "[0, inf)",
         "m/N",
     )
@@ -81,6 +89,9 @@ class AdaptiveParameters(NoiseParameters):
     jump_slack: float = parameter(0.75, "Jump test: deviations that an innovation may have.", "(0, inf)")
     jump_limit: float = parameter(
         6.0, "Jump test: sum of the excess that marks a change of mu_c.", "(0, inf)"
+    )
+    jump_evidence: float = parameter(
+        12.0, "Jump test: square of the mean over that which scatter explains.", "[0, inf)"
     )
     sd_jump: float = parameter(0.3, "Standard deviation of a jump of ln mu_c.", "(0, 3]")
     timing_memory: float = parameter(0.999, "Fading of the correlations per sample.", "(0, 1)")

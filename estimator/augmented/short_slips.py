@@ -12,6 +12,8 @@ import math
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
 from estimator.augmented.filtering import MOST
+from estimator.augmented.holding import least_friction
+from estimator.augmented.load import at_load, limit
 from estimator.augmented.sliding import settle
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, STATES, TILT, ZERO, R
 from estimator.augmented.timing import EARLIEST, LAST, LATEST
@@ -39,7 +41,7 @@ BEYOND = 9.0
 
 
 @njit(error_model="numpy")
-def _load(state, i):
+def load_of(state, i):
     """Load (f_x, f_y, tau) at sample i without the errors that are known, its size [N] and that over f_n."""
     x, w = state.x, state.wrenches[i & LAST]
     f_n = w[2]
@@ -56,13 +58,14 @@ def _break_away(state, p):
     found, largest, most = -1, 0.0, 0.0
     oldest = max(first - LATEST - 1, state.samples - LAST + 2, state.fallen + 2)
     for i in range(oldest, min(first - EARLIEST, state.samples) + 1):
-        _, _, _, before, ratio_before = _load(state, i - 1)
+        _, _, _, before, ratio_before = load_of(state, i - 1)
         most = max(most, ratio_before)
-        _, _, _, after, ratio = _load(state, i)
+        _, _, _, after, ratio = load_of(state, i)
         fall = before - after
         if state.wrenches[i & LAST, 2] < p.eps_fn or not fall > max(FALL * before, NOISES * p.sd_force):
             continue
-        if fall > largest and ratio > AT_LEAST * most:
+        least = max(AT_LEAST * most, least_friction(state, p, state.wrenches[i & LAST, 2]))
+        if fall > largest and ratio > least:
             found, largest = i, fall
     return found
 
@@ -80,8 +83,9 @@ def _take(state, p, i, speed):
     Returns:
         The normalised innovation; NaN if nothing was learned.
     """
-    f_x, f_y, tau, size, ratio = _load(state, i)
+    f_x, f_y, tau, size, ratio = load_of(state, i)
     f_n, x, covariance = state.wrenches[i & LAST, 2], state.x, state.covariance
+    at_load(state, p, f_n)
     f_t = norm(f_x, f_y)
     share = direction_cosines(f_t, abs(tau) / state.r)[1] ** 2
     h, crossed = matrix(1, STATES)[0], matrix(1, STATES)[0]
@@ -111,8 +115,7 @@ def _take(state, p, i, speed):
         x[j] += crossed[j] * gain * innovation
         for k in range(STATES):
             covariance[j, k] -= crossed[j] * crossed[k] * gain
-    x[MU] = min(max(x[MU], state.limits[0]), state.limits[1])
-    x[R] = min(max(x[R], state.limits[2]), state.limits[3])
+    limit(x, state.limits)
     if state.updates_mu_c == 0:
         state.smooth[3] = f_n
     if share > TURNS:
@@ -123,7 +126,7 @@ def _take(state, p, i, speed):
 @njit(error_model="numpy")
 def _stays(state, p, i):
     """Whether the object moved along the force of sample i, and further than the pad can spring."""
-    f_x, f_y, tau, _, _ = _load(state, i)
+    f_x, f_y, tau, _, _ = load_of(state, i)
     k, r, power, square, spring = state.samples, state.r, 0.0, 0.0, 0.0
     for axis, force in enumerate((f_x, f_y, tau)):
         scale, at = (1.0, axis) if axis < 2 else (r, 3)

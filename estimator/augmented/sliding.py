@@ -5,7 +5,10 @@ import math
 import numpy as np
 
 from estimator._numba.caching import njit
+from estimator.augmented.change import test_for_jump
 from estimator.augmented.filtering import learn
+from estimator.augmented.holding import SAFETY, may_slide
+from estimator.augmented.load import at_load
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
 from estimator.augmented.timing import LAST, correlate
@@ -31,9 +34,6 @@ RECENT = 3
 BEFORE = 8
 """Samples before a motion whose forces count: the velocity is late."""
 
-SAFETY = 1.5
-"""Compliance that is assumed, over that with which the pad sprang back."""
-
 RANGE = 3.0
 """Range of some samples of noise, over its standard deviation."""
 
@@ -43,9 +43,8 @@ ALIKE = 10.0
 
 @njit(error_model="numpy")
 def _range(p, j, change, r):
-    """Range of force j, or of the torque over r, less that of noise: what can have sprung the pad [N]."""
-    noise, scale = (p.sd_force, 1.0) if j < 2 else (p.sd_torque, r)
-    return max(change - RANGE * noise, 0.0) / scale
+    """Range of force j less that of noise, or of the torque over r: what can have sprung the pad [N]."""
+    return max(change - RANGE * p.sd_force, 0.0) if j < 2 else change / r
 
 
 @njit(error_model="numpy")
@@ -91,7 +90,8 @@ def _shear(state, p, moves, elapsed):
         else:  # against the force: it springs back
             state.spring = min(SAFETY * math.sqrt(square / max(spring, 1e-9)), p.compliance_max)
             beyond = False
-    state.beyond = state.beyond + 1 if beyond and _goes_on(state, p, r, elapsed) else 0
+    slips = beyond and _goes_on(state, p, r, elapsed) and may_slide(state, p)
+    state.beyond = state.beyond + 1 if slips else 0
 
 
 @njit(error_model="numpy")
@@ -131,8 +131,6 @@ def _direct(state, p, power):
     sign = 1.0 if power > 0.0 else -1.0
     if sign != state.sign:
         state.products[:] = 0.0
-    if sign != state.sign or not state.signed:
-        state.spring = p.compliance
     state.sign, state.signed = sign, True
 
 
@@ -168,17 +166,6 @@ def store(state, p, wrench, twist, moves, elapsed):
     correlate(state, p)
     if abs(state.delay - delay) > 1 and state.slides > 0:
         restart(state, p)
-
-
-@njit(error_model="numpy")
-def test_for_jump(state, p, score):
-    """Cumulative sums of the innovations (Page, Biometrika 41, 1954); a jump widens the variance of mu_c."""
-    z = min(max(score, -3.0), 3.0)
-    state.rise = max(state.rise + z - p.jump_slack, 0.0)
-    state.fall = max(state.fall - z - p.jump_slack, 0.0)
-    if state.rise > p.jump_limit or state.fall > p.jump_limit:
-        state.rise, state.fall = 0.0, 0.0
-        state.covariance[MU, MU] += p.sd_jump * p.sd_jump
 
 
 @njit(error_model="numpy")
@@ -239,6 +226,7 @@ def slide(state, p):
     state.covariance[R, R] = min(state.covariance[R, R] + walk, p.sd_log_r0**2)
     for j in range(ZERO, SHAPE):
         state.covariance[j, j] += (p.error_drift * state.x[j]) ** 2
+    at_load(state, p, wrench[2])
     learned, squared, score = learn(state, p, state.sign, wrench, twist, of_speed, of_spin)
     for j in range(3):
         state.smooth[j] += SMOOTHING * (twist[j] - state.smooth[j])

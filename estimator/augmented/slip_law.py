@@ -17,11 +17,12 @@ import numpy as np
 from estimator._numba.caching import njit
 from estimator.limit_surface.disc import DISC_RADIUS, disc_friction
 
-MU, R, SIGMA, ZERO, TILT, COP, SHAPE = 0, 1, 2, 3, 5, 7, 9
-"""Index of ln mu_c, ln r, sigma_2 [s/m], zero error (2) [N], tilt (2) [rad], centre of pressure (2) [mm] and
-shape of the limit surface (0: uniform disc, 1: ellipsoid) in the state vector."""
+MU, R, SIGMA, ZERO, TILT, COP, SHAPE, FALLS, GROWS = 0, 1, 2, 3, 5, 7, 9, 10, 11
+"""Index of ln mu_c, ln r, sigma_2 [s/m], zero error (2) [N], tilt (2) [rad], centre of pressure (2) [mm],
+shape of the limit surface (0: uniform disc, 1: ellipsoid) and the exponents of the normal force with which
+mu_c falls and r grows in the state vector."""
 
-STATES = 10
+STATES = 12
 MILLIMETRE = 1e-3
 MEAN_SQUARE_RADIUS = 1.125
 """Mean squared radius of a uniform disc in units of r^2, r = 2/3 of its radius."""
@@ -73,7 +74,7 @@ def predict_at(x, mu, r, sign, f_n, v_x, v_y, omega, complete, by_state, by_twis
     """Measured (f_x, f_y, tau) [N, N, N m] that the states explain.
 
     Args:
-        x: (10,) states.
+        x: (12,) states.
         mu: mu_c of the states.
         r: r of the states [m].
         sign: 1 if the wrench is that on the finger, -1 if on the object.
@@ -82,7 +83,7 @@ def predict_at(x, mu, r, sign, f_n, v_x, v_y, omega, complete, by_state, by_twis
         v_y: As v_x.
         omega: Slip rate [rad/s].
         complete: Whether all of `by_state` is wanted, or the derivative by ln mu_c alone.
-        by_state: Output (3, 10), derivatives by x.
+        by_state: Output (3, 12), derivatives by x. Those by the exponents are 0 and not written.
         by_twist: Output (3, 3), derivatives by v_x, v_y, omega.
 
     Returns:

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
-from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R
+from estimator.augmented.load import MOST_FALL, MOST_GROWTH
+from estimator.augmented.slip_law import COP, FALLS, GROWS, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R
 from estimator.augmented.timing import CANDIDATES, NEWEST, RING
 from estimator.stick_slip import EVENT_STATE, STICK_SLIP_STATE, start
 
@@ -30,6 +31,9 @@ _IN_CONTACT: list[tuple[Any, ...]] = [
     ("variance_mu_s", np.float64),
     ("common_mu_s", np.float64),
     ("above", np.int64),
+    ("load", np.float64),
+    ("held", np.float64),
+    ("held_load", np.float64),
     ("x", np.float64, (STATES,)),
     ("products", np.float64, (CANDIDATES,)),
     ("energies", np.float64, (2,)),
@@ -48,10 +52,10 @@ _IN_MOTION: list[tuple[Any, ...]] = [
     ("slid", np.int64),
     ("misfit", np.float64),
     ("leverage", np.float64),
-    ("rise", np.float64),
-    ("fall", np.float64),
+    ("runs", np.float64, (2, 3)),
+    ("scatter", np.float64),
     ("smooth", np.float64, (4,)),
-    ("limits", np.float64, (4,)),
+    ("limits", np.float64, (8,)),
     ("covariance", np.float64, (STATES, STATES)),
 ]
 """Used while the contact moves."""
@@ -66,25 +70,31 @@ STATE = np.dtype(
         ("fallen", np.int64),
         ("variance_normal", np.float64),
         ("variance_torque", np.float64),
+        ("event", np.float64),
+        ("event_load", np.float64),
         *EVENT_STATE,
     ],
     align=True,
 )
-"""`x`, `covariance`: the filter; `limits`: of ln mu_c and ln r; `delay`: of the velocity [samples];
-`timing`: its correlation; `offset`: its fraction of a sample; `sign`: 1 if the wrench is that on the
-finger, once `signed`; `unloaded`: whether the sensor was seen without load; `touched`: whether there was
-contact; `zero_normal`, `zero_torque`: zero errors of f_n and tau [N, N m], with their variances; `moved`:
-velocities in a row that moved; `repeated`: 1 if two were the same; `moved_by`: how far [m, m, rad];
-`lowest`, `highest`: f_x, f_y, tau meanwhile; `before`: the same before it; `spring`: compliance of the pad
-[m/N]; `beyond`: samples in a row that the motion was longer than the pad can spring; `slid`: number of the
-newest sample of sliding; `first`: number of the first sample of a short slip, -1 for none; `quiet`: samples
-since it moved; `fallen`: number of the sample after its break-away; `slides`: instants of sliding learned
-from since the delay is as it is; `misfit`: mean squared normalised innovation; `rise`, `fall`: sums of the
-jump test."""
+"""`x`, `covariance`: the filter; `limits`: of ln mu_c, ln r and both exponents; `delay`: of the velocity
+[samples]; `timing`: its correlation; `offset`: its fraction of a sample; `sign`: 1 if the wrench is that
+on the finger, once `signed`; `unloaded`: whether the sensor was seen without load; `touched`: whether
+there was contact; `zero_normal`, `zero_torque`: zero errors of f_n and tau [N, N m], with their
+variances; `moved`: velocities in a row that moved; `repeated`: 1 if two were the same; `moved_by`: how
+far [m, m, rad]; `lowest`, `highest`: f_x, f_y, tau meanwhile; `before`: the same before it; `spring`:
+compliance of the pad [m/N]; `beyond`: samples in a row that the motion was longer than the pad can
+spring; `slid`: number of the newest sample of sliding; `first`: number of the first sample of a short
+slip, -1 for none; `quiet`: samples since it moved; `fallen`: number of the sample after its break-away;
+`slides`: instants of sliding learned from since the delay is as it is; `misfit`: mean squared normalised
+innovation; `runs`: of the jump test, for a rise and a fall: sum of the excess, number and sum of
+innovations; `scatter`: mean square of all; `load`: normal force at which ln mu_c and ln r are [N];
+`held`, `held_load`: largest ratio that was carried, and its normal force [-, N]; `event`, `event_load`:
+mu_s of the last events, and its normal force [-, N]."""
 
 
 _SPREADS = {MU: "log_mu_c0", R: "log_r0", SIGMA: "viscosity", ZERO: "zero", ZERO + 1: "zero"}
 _SPREADS |= {TILT: "tilt", TILT + 1: "tilt", COP: "cop", COP + 1: "cop", SHAPE: "shape"}
+_SPREADS |= {FALLS: "load_exponent", GROWS: "radius_exponent"}
 """State -> parameter `sd_...` that is its spread."""
 
 
@@ -101,10 +111,13 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
     states["x"][:, MU], states["x"][:, R] = np.log(parameters["mu_c0"]), np.log(parameters["r0"])
     states["x"][:, SIGMA] = parameters["viscosity0"]
     for at, name in _SPREADS.items():
-        assumed = parameters["caution"] if at > SIGMA else 1.0
+        assumed = parameters["caution"] if SIGMA < at <= SHAPE else 1.0
         states["covariance"][:, at, at] = (assumed * parameters[f"sd_{name}"]) ** 2
+    states["x"][:, FALLS] = parameters["load_exponent0"]
+    states["x"][:, GROWS] = parameters["radius_exponent0"]
     for at, name in enumerate(("mu_min", "mu_max", "r_min", "r_max")):
         states["limits"][:, at] = np.log(parameters[name])
+    states["limits"][:, 4:] = 0.0, MOST_FALL, 0.0, MOST_GROWTH
     states["variance_normal"] = parameters["sd_zero"] ** 2
     states["variance_torque"] = parameters["sd_zero_torque"] ** 2
     states["delay"], states["spring"] = parameters["nominal_delay"], parameters["compliance_max"]
@@ -124,10 +137,21 @@ def restart(state, p):
         for k in range(STATES):
             covariance[j, k] = 0.0
         if j >= SIGMA and not kept:
-            x[j] = p.viscosity0 if j == SIGMA else 0.0
+            x[j] = _expected(p, j)
         spread = _spread(p, j)
-        covariance[j, j] = variance if kept else (spread if j <= SIGMA else p.caution * spread) ** 2
-    state.misfit, state.rise, state.fall, state.slides = 1.0, 0.0, 0.0, 0
+        assumed = p.caution if SIGMA < j <= SHAPE else 1.0
+        covariance[j, j] = variance if kept else (assumed * spread) ** 2
+    state.misfit, state.slides = 1.0, 0
+    state.runs[:] = 0.0
+    state.spring = p.compliance_max
+
+
+@njit
+def _expected(p, j):
+    """Start value of a state after ln r."""
+    if j == SIGMA:
+        return p.viscosity0
+    return p.load_exponent0 if j == FALLS else p.radius_exponent0 if j == GROWS else 0.0
 
 
 @njit
@@ -137,4 +161,6 @@ def _spread(p, j):
         return p.sd_log_mu_c0 if j == MU else p.sd_log_r0 if j == R else p.sd_viscosity
     if j < COP:
         return p.sd_zero if j < TILT else p.sd_tilt
-    return p.sd_cop if j < SHAPE else p.sd_shape
+    if j <= SHAPE:
+        return p.sd_cop if j < SHAPE else p.sd_shape
+    return p.sd_load_exponent if j == FALLS else p.sd_radius_exponent

@@ -9,11 +9,16 @@ the stated deviation.
 
 import math
 
+import numpy as np
+
 from estimator._numba.caching import njit
+from estimator.augmented.load import static_at_load
+from estimator.augmented.short_slips import load_of
 from estimator.augmented.slip_law import TILT, ZERO, R
+from estimator.augmented.timing import LAST
 from estimator.limit_surface.inverse import load_size
 from estimator.sample import direction_cosines
-from estimator.stick_slip import append, clear_buffer, take_event, transition
+from estimator.stick_slip import SCATTER_GAIN, append, clear_buffer, take_event, transition
 
 SAMPLING = 0.03
 """Relative deviation of an event: the load rises between samples, and the largest of noisy values counts."""
@@ -34,20 +39,37 @@ def _event(state, p, value, f_n, torque_share):
     """
     noise = (p.sd_normal / f_n) ** 2 + (p.sd_force / (value * f_n)) ** 2 + SAMPLING * SAMPLING
     noise += torque_share * torque_share * state.covariance[R, R]
-    change = math.log(value / state.mu_s)
-    prior = state.variance_mu_s + p.drift_mu_s * p.drift_mu_s
+    present, of_exponent = static_at_load(state, f_n) if state.events_mu_s > 0 else (state.mu_s, 0.0)
+    change = math.log(value / present)
+    prior = state.variance_mu_s + p.drift_mu_s * p.drift_mu_s + of_exponent
+    if state.events_mu_s > 0:
+        excess = min(change * change, 1.0) - prior - noise
+        state.scatter_mu_s += SCATTER_GAIN * (excess - state.scatter_mu_s)
     if state.events_mu_s == 0 or abs(change) > max(p.jump_mu_s, 3.0 * math.sqrt(prior + noise)):
         gain = 1.0
         state.variance_mu_s = noise
     else:
         gain = prior / (prior + noise)
         state.variance_mu_s = (1.0 - gain) * prior
-    state.mu_s = min(max(state.mu_s * math.exp(gain * change), p.mu_min), p.mu_max)
+    state.event = min(max(present * math.exp(gain * change), p.mu_min), p.mu_max)
+    state.event_load = f_n
     zero, tilt = state.covariance[ZERO, ZERO], state.covariance[TILT, TILT]
-    known = 1.0 / (p.caution * state.mu_s) ** 2
+    known = 1.0 / (p.caution * state.event) ** 2
     state.common_mu_s = known * (zero / (f_n * f_n) + tilt) + state.variance_normal / (f_n * f_n)
     state.common_mu_s += p.sd_gain * p.sd_gain
     state.events_mu_s += 1
+
+
+@njit(error_model="numpy")
+def _heaviest(state, p, f_n):
+    """Normal force [N] of that of the newest samples with the largest load over it; f_n if there is none."""
+    largest = 0.0
+    for i in range(state.samples - min(LAST, state.in_a_row - 1), state.samples + 1):
+        _, _, _, _, ratio = load_of(state, i)
+        normal = state.wrenches[i & LAST, 2]
+        if ratio > largest and normal >= p.eps_fn:
+            largest, f_n = ratio, np.float64(normal)
+    return f_n
 
 
 @njit(error_model="numpy")
@@ -79,7 +101,7 @@ def learn_static_friction(state, p, f_t, f_n, tau, still, moves, halted):
             state.above = 0
     starts, stops = transition(state, p, still, moves)
     if starts and not halted and state.buffer_size >= p.n_a:
-        _event(state, p, take_event(state, p), f_n, direction_cosines(f_t, rim)[1] ** 2)
+        _event(state, p, take_event(state, p), _heaviest(state, p, f_n), direction_cosines(f_t, rim)[1] ** 2)
     if starts or stops:
         clear_buffer(state)
 
@@ -97,3 +119,4 @@ def order(state):
     weight = of_mu_s / max(of_mu_c + of_mu_s, 1e-300)
     mean = weight * state.mu_c + (1.0 - weight) * state.mu_s
     state.mu_c, state.mu_s = mean, mean
+    state.event, state.event_load = mean, state.load

@@ -6,6 +6,7 @@ Those of normal force and torque are averaged here, and subtracted from every sa
 """
 
 from estimator._numba.caching import njit
+from estimator.augmented.load import limit
 from estimator.augmented.slip_law import STATES, ZERO
 
 HEDGE = 2.0
@@ -54,7 +55,7 @@ def learn_zero(state, p, wrench):
         state.unloaded = True
         for j in range(STATES):
             x[j] += covariance[j, at] * gain * innovation
-            x[j] = min(max(x[j], state.limits[2 * j]), state.limits[2 * j + 1]) if j < 2 else x[j]
+        limit(x, state.limits)
         for j in range(STATES):
             for k in range(STATES):
                 if j != at and k != at:

@@ -75,14 +75,15 @@ def calibration(state: np.void, parameters: Any, correlation: float, f_n: Array)
     spreads = np.ones(STATES)
     spreads[SIGMA], spreads[ZERO:TILT], spreads[TILT:COP] = p.sd_viscosity, p.sd_zero, p.sd_tilt
     spreads[COP:SHAPE], spreads[SHAPE] = p.sd_cop, p.sd_shape
-    assumed = p.caution * spreads[ZERO:]
-    beyond = np.sqrt(1.0 - p.caution**2) * spreads[ZERO:] / assumed**2
+    hidden = slice(ZERO, SHAPE + 1)
+    assumed = p.caution * spreads[hidden]
+    beyond = np.sqrt(1.0 - p.caution**2) * spreads[hidden] / assumed**2
 
     def add(name: str, unit: str, weights: dict[int, float]) -> None:
         a = np.zeros(STATES)
         a[list(weights)] = list(weights.values())
         along = covariance @ a  # over a prior variance: what an error of that prior's mean does
-        variance = a @ along + np.square(beyond * along[ZERO:]).sum()
+        variance = a @ along + np.square(beyond * along[hidden]).sum()
         spread = math.sqrt(np.square(a * spreads).sum())
         errors.append(Found(name, unit, float(a @ x), math.sqrt(variance), spread))
 

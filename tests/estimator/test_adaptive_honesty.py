@@ -66,7 +66,8 @@ def test_data_that_fit_no_law_widen_the_deviation(planar_slip):
     rng = np.random.default_rng(0)
     factor = 1.0 + 0.3 * rng.standard_normal((8, len(good.t), 1))
     poor = dataclasses.replace(good, wrenches=good.wrenches * np.where(np.arange(4) == 2, 1.0, factor))
-    assert np.median(last(poor)["sd_mu_c"]) > 1.5 * np.median(last(good)["sd_mu_c"])
+    rigid = {"compliance": 0.0, "compliance_max": 0.0}  # a soft pad may spring as far as these forces vary
+    assert np.median(last(poor, **rigid)["sd_mu_c"]) > 1.5 * np.median(last(good, **rigid)["sd_mu_c"])
 
 
 @pytest.mark.parametrize("mu_c0", [0.2, 0.6, 1.3])

@@ -39,6 +39,13 @@ WITHOUT: dict[str, dict[str, object]] = {
     "noise for outliers": {"outlier": NEVER},
     "short slips": {"short_slips": False},
     "compliance of the pad": {"compliance": 0.0, "compliance_max": 0.0},
+    "dependence on the load": {
+        "load_exponent0": 0.0,
+        "sd_load_exponent": NONE,
+        "radius_exponent0": 0.0,
+        "sd_radius_exponent": NONE,
+    },
+    "evidence of jumps": {"jump_evidence": 0.0},
     "drift of mu_s": {"drift_mu_s": 0.0},
     "new start of mu_s": {"jump_mu_s": float("inf")},
 }

@@ -1,0 +1,73 @@
+"""Friction and radius of a pad of rubber depend on the normal force: the states are those at one force.
+
+mu_c and mu_s fall with the normal force to the power n, r grows with it to the power b (`slip_law.FALLS`,
+`slip_law.GROWS`). For a soft sphere b is between 0 and 1/3 (Xydas & Kao, Modeling of contact mechanics and
+friction limit surfaces for soft fingers, IJRR 18(9), 1999); friction in proportion to the area of contact
+gives n of 1/3, silicone on PLA 0.31. ln mu_c and ln r of the filter are those at the normal force
+`state.load`, which follows the measured one. The step from one force to another is linear in the states, so
+the covariance with the exponents carries their uncertainty to the new force, and back without a loss.
+"""
+
+import math
+
+from estimator._numba.caching import njit
+from estimator.augmented.slip_law import FALLS, GROWS, MU, STATES, R
+
+BAND = 3.0
+"""Deviations of the noise that the normal force must change before the states follow it."""
+MOST_FALL, MOST_GROWTH = 0.5, 1.0 / 3.0
+"""Largest exponents of mu_c and of r."""
+
+
+@njit(error_model="numpy")
+def limit(x, limits):
+    """Keeps ln mu_c, ln r and the exponents in their bounds."""
+    x[MU] = min(max(x[MU], limits[0]), limits[1])
+    x[R] = min(max(x[R], limits[2]), limits[3])
+    x[FALLS] = min(max(x[FALLS], limits[4]), limits[5])
+    x[GROWS] = min(max(x[GROWS], limits[6]), limits[7])
+
+
+@njit(error_model="numpy")
+def move(state, f_n):
+    """Moves ln mu_c and ln r, with their covariance, to a normal force [N]; a start value stays.
+
+    Args:
+        state: Record with `x`, `covariance` and `load`; changed in place.
+        f_n: Normal force > 0 [N].
+    """
+    step = math.log(f_n / state.load)
+    fall = step if state.updates_mu_c > 0 else 0.0
+    grow = step if state.updates_r > 0 else 0.0
+    x, covariance = state.x, state.covariance
+    x[MU] -= fall * x[FALLS]
+    x[R] += grow * x[GROWS]
+    mu, r, falls, grows = covariance[MU], covariance[R], covariance[FALLS], covariance[GROWS]
+    for j in range(STATES):
+        mu[j] -= fall * falls[j]
+        r[j] += grow * grows[j]
+    mu[MU] -= fall * mu[FALLS]
+    mu[R] += grow * mu[GROWS]
+    r[R] += grow * r[GROWS]
+    r[MU] = mu[R]
+    for j in range(R + 1, STATES):
+        covariance[j, MU], covariance[j, R] = mu[j], r[j]
+    state.load = f_n
+
+
+@njit(error_model="numpy")
+def at_load(state, p, f_n):
+    """Moves the states to the normal force [N] of a measurement, if it is another one; whether it is."""
+    if state.load == 0.0:
+        state.load = f_n
+    if abs(f_n - state.load) <= BAND * p.sd_normal or f_n < p.eps_fn:
+        return False
+    move(state, f_n)
+    return True
+
+
+@njit(error_model="numpy")
+def static_at_load(state, f_n):
+    """mu_s of the last events at a normal force [N], and the variance of its logarithm by the exponent."""
+    step = math.log(f_n / state.event_load)
+    return state.event * math.exp(-state.x[FALLS] * step), step * step * state.covariance[FALLS, FALLS]

@@ -1,0 +1,110 @@
+"""Friction and radius that depend on the load, pads that spring in torsion, and scatter that is no jump."""
+
+import numpy as np
+import pytest
+
+import estimator
+from policies.research.leaderboard.rubber import LOAD, swinging
+from policies.research.leaderboard.scenarios import patch
+from slipgym.synthetic import sense
+from slipgym.validation.records import RATE
+
+FALLS, GROWS = 10, 11
+CONSTANT = {"load_exponent0": 0.0, "sd_load_exponent": 1e-6}
+CONSTANT |= {"radius_exponent0": 0.0, "sd_radius_exponent": 1e-6}
+NOISE = 0.02, 0.02, 0.04, 5e-4
+
+
+def slide(est, start, samples, f_n, mu_c, seed=0):
+    """Slip along y under a steady load; the estimates."""
+    rng = np.random.default_rng(seed)
+    for k in range(start, start + samples):
+        wrench = np.array([0.0, mu_c * f_n, f_n, 0.0]) + rng.normal(size=4) * NOISE
+        est.update((k + 1) / RATE, wrench, (0.0, 0.02, 0.0))
+    return est.estimate
+
+
+@pytest.mark.parametrize(("friction", "radius"), [(0.0, 0.0), (0.15, 0.0), (0.31, 1.0 / 3.0)])
+def test_it_follows_a_load_that_swings(friction, radius):
+    """A factor of 3 in the load; 1.5 % of mu_c and r (rms) in the last swing, and the exponents."""
+    record = sense(patch(swinging(friction, radius), 21), 8, 0)
+    batch = estimator.make_batch("adaptive", 8)
+    plain = estimator.make_batch("adaptive", 8, **CONSTANT)
+    errors = {(which, field): [] for which in (batch, plain) for field in ("mu_c", "r")}
+    for k, t in enumerate(record.t.tolist()):
+        sample = np.ascontiguousarray(record.wrenches[:, k]), np.ascontiguousarray(record.twists[:, k])
+        for which in (batch, plain):
+            which.update(t, *sample)
+            for field in ("mu_c", "r"):
+                if t > record.t[-1] - 1.5:
+                    errors[which, field].append(which.estimates[field] / getattr(record, field)[k] - 1.0)
+    for field in ("mu_c", "r"):
+        assert np.sqrt(np.square(errors[batch, field]).mean()) < 0.015, field
+    np.testing.assert_allclose(batch.states["x"][:, FALLS], friction, atol=0.04)
+    np.testing.assert_allclose(batch.states["x"][:, GROWS], radius, atol=0.06)
+    if friction > 0.2:
+        assert np.sqrt(np.square(errors[plain, "mu_c"]).mean()) > 0.03
+
+
+def test_the_deviation_grows_with_another_load_and_holds_both_kinds_of_pads():
+    """A slip at 3 N, then the object is held at 9 N: friction may be the same, or fall by an exponent 0.3."""
+    est = estimator.make("adaptive")
+    before = slide(est, 0, 120, 3.0, 0.4)
+    for k in range(120, 240):
+        held = est.update((k + 1) / RATE, (0.0, 1.2, 9.0, 0.0), (0.0, 0.0, 0.0))
+    assert before.mu_c == pytest.approx(0.4, rel=0.02)
+    assert held.sd_mu_c / held.mu_c > before.sd_mu_c / before.mu_c + 0.02
+    for exponent in (0.0, 0.3):
+        assert abs(held.mu_c - 0.4 * 3.0**-exponent) < 1.5 * held.sd_mu_c
+    for k in range(240, 360):
+        back = est.update((k + 1) / RATE, (0.0, 1.2, 3.0, 0.0), (0.0, 0.0, 0.0))
+    assert back.mu_c == pytest.approx(before.mu_c, rel=0.01)
+    assert back.sd_mu_c / back.mu_c == pytest.approx(before.sd_mu_c / before.mu_c, rel=0.05)
+
+
+def test_two_loads_show_the_exponent():
+    for exponent in (0.0, 0.3):
+        est = estimator.make("adaptive")
+        slide(est, 0, 120, 3.0, 0.4 * (3.0 / LOAD) ** -exponent)
+        slide(est, 120, 120, 9.0, 0.4 * (9.0 / LOAD) ** -exponent)
+        for k in range(240, 360):
+            held = est.update((k + 1) / RATE, (0.0, 1.2, 6.0, 0.0), (0.0, 0.0, 0.0))
+        assert held.mu_c == pytest.approx(0.4 * (6.0 / LOAD) ** -exponent, rel=0.04)
+
+
+def test_mu_s_follows_the_load_with_the_same_exponent():
+    """A break-away at 3 N, slips at two loads that show the exponent of 0.3, then a firm hold."""
+    est, k = estimator.make("adaptive"), 0
+    for _ in range(30):
+        est.update((k := k + 1) / RATE, (0.0, 1.5, 3.0, 0.0), (0.0, 0.0, 0.0))
+    slide(est, k, 90, 3.0, 0.4)
+    slide(est, k + 90, 90, 9.0, 0.4 * 3.0**-0.3)
+    for i in range(k + 180, k + 240):
+        held = est.update((i + 1) / RATE, (0.0, 1.0, 9.0, 0.0), (0.0, 0.0, 0.0))
+    assert held.mu_s == pytest.approx(0.5 * 3.0**-0.3, rel=0.06)
+
+
+def test_a_pad_that_springs_in_torsion_does_not_slip():
+    """A firm grip turns to and fro by 0.05 rad; the torque of the spring is lost in its noise."""
+    rng, est = np.random.default_rng(1), estimator.make("adaptive")
+    for k in range(90):  # it has held a third of the normal force, and is gripped firmly then
+        est.update((k + 1) / RATE, (0.0, 1.0, np.interp(k, (60, 80), (3, 20)), 0.0), (0.0, 0.0, 0.0))
+    for k in range(90, 690):
+        phase = 2 * np.pi * 2.0 * k / RATE
+        wrench = np.array([0.0, 1.0, 20.0, 5e-4 * np.sin(phase)]) + rng.normal(size=4) * NOISE
+        e = est.update((k + 1) / RATE, wrench, (0.0, 0.0, 0.6 * np.cos(phase)))
+    assert (e.updates_mu_c, e.events_mu_s) == (0, 0)
+
+
+def test_scatter_is_no_jump():
+    """Friction of 0.4 that scatters by 20 % from one pair of samples to the next keeps a steady estimate."""
+    spread = {}
+    for evidence in (0.0, 12.0):
+        rng, seen = np.random.default_rng(3), []
+        rigid = {"compliance": 0.0, "compliance_max": 0.0}
+        est = estimator.make("adaptive", jump_evidence=evidence, **rigid)
+        for pair in range(300):
+            slide(est, 2 * pair, 2, 5.0, 0.4 * (1.0 + 0.2 * rng.standard_normal()), seed=pair)
+            seen.append(est.estimate.mu_c)
+        spread[evidence] = np.std(np.log(seen[50:]))
+    assert spread[12.0] < 0.5 * spread[0.0]
