@@ -57,6 +57,11 @@ class HoldPolicy(GainPolicy[HoldGains]):
     (`policies.controllers.exploration`), and then holds with the new estimate. The task does not poke the
     object at first, and the earlier friction is known, the longer force is saved. With full confidence in the
     observed friction it never explores.
+    The object may slip in a grip that should hold it, since its friction has fallen. The grip then closes as
+    fast as it can, and friction is taken to be no more than was measured in that slip
+    (`policies.controllers.friction_fall`), whatever the estimator makes of it. Such slips mostly begin with a
+    push; so for one control step after any push, a fast rise of the load, the grip is braced.
+
     Exploration suits estimators whose first update gives the answer, "adaptive", "disc" and "joint". "rls"
     and "ukf" converge step by step from a start value; after a slip or two their estimate holds less than the
     load.

@@ -16,6 +16,7 @@ break-away, and `brake` is adjusted until a leap is as long as wanted.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +26,8 @@ from slipgym.config.base import Frozen, NonNegative, Positive
 
 BEGUN = 1.5
 """Control steps that a leap lasts beyond those it is given: until it is noticed, and until it is caught."""
+RATE = 120.0
+"""Control rate at which the gains that count control steps are given [Hz]."""
 LEAST_LOAD = 1.0
 """Load below which the fall that marks a break-away does not get smaller [N]."""
 
@@ -53,7 +56,7 @@ class LeapState(NamedTuple):
 
 
 class LeapGains(Frozen):
-    """Gains of the leaps."""
+    """Gains of the leaps; those that count control steps do so at 120 Hz (`at_rate`)."""
 
     start: Positive = Field(
         default=1.3, description="Grip from which it falls to the first break-away, over f_slip [-]"
@@ -77,6 +80,21 @@ class LeapGains(Frozen):
         default=9, ge=1, description="Control steps of rest after a leap; cover the latency of the sensor [-]"
     )
     firm: int = Field(default=3, ge=0, description="The first of them, in which the grip is doubled [-]")
+
+
+def at_rate(gains: LeapGains, rate: float) -> LeapGains:
+    """Gains for another control rate [Hz]: the same times in its control steps, at least one of rest."""
+    longer = RATE / rate
+    return gains.model_copy(
+        update={
+            "keep": gains.keep**longer,
+            "reach": gains.reach * longer**2,
+            "slide_steps": round(gains.slide_steps / longer),
+            "turn_steps": round(gains.turn_steps / longer),
+            "rest": math.ceil(gains.rest / longer),
+            "firm": math.ceil(gains.firm / longer),
+        }
+    )
 
 
 class Slip(NamedTuple):
@@ -133,7 +151,7 @@ def leap(state: LeapState, slip: Slip, gains: LeapGains, force_max: float) -> tu
     clock = np.where(caught, -float(gains.rest), np.where(runs, ran + 1.0, clock))
     reach, brake = _learned(state, slip, gains, measured)
     new = np.where(falls & ~lost, gains.keep * ratio, np.where(measured, gains.again * ratio, ratio))
-    calm = (falls & ~lost) | (rests & (state.clock > -4.0)) | ~(slip.wanted | runs)
+    calm = (falls & ~lost) | (rests & (state.clock > -0.4 * gains.rest)) | ~(slip.wanted | runs)
     change = np.minimum(np.abs(slip.load - state.last) / 1.13, gains.quiet * load)  # 1.13: mean of |x1 - x2|
     steady = (state.last > 0.0) & (state.clock == 0.0) & ~lost
     memory = LeapState(

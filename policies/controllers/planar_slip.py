@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from pydantic import Field
 
@@ -9,7 +11,8 @@ from policies.controllers import leaps
 from policies.controllers.base import Columns
 from policies.controllers.leaps import LeapGains, LeapState, Slip
 from policies.controllers.planar_plan import Motion, Pair, PlanarPlanPolicy, PlanGains, PlanState
-from policies.controllers.sensing import scaled_load, scaled_speed
+from policies.controllers.sensing import ConservativePrior, scaled_load, scaled_speed
+from slipgym.config import Overrides
 from slipgym.config.base import NonNegative
 
 
@@ -47,10 +50,20 @@ class PlanarSlipPolicy(PlanarPlanPolicy[PlanarSlipGains]):
     Gains = PlanarSlipGains
     Slips = LeapState
 
+    def __init__(
+        self,
+        gains: PlanarSlipGains | None = None,
+        prior: ConservativePrior | None = None,
+        config: Overrides | None = None,
+        **parameters: Any,
+    ) -> None:
+        super().__init__(gains, prior, config, **parameters)
+        self._leaps = leaps.at_rate(self.gains, self.config.physics.control_rate)
+
     def initial_state(self, n: int) -> np.ndarray:
         """Columns of `PlanState` and `LeapState`, (n, 18)."""
         plan = np.zeros((n, len(PlanState._fields)))
-        return np.column_stack((plan, *leaps.begin(n, self.gains)))
+        return np.column_stack((plan, *leaps.begin(n, self._leaps)))
 
     def creep(self, left: np.ndarray, r: np.ndarray) -> np.ndarray:
         """See `PlanarPlanPolicy.creep`."""
@@ -74,4 +87,4 @@ class PlanarSlipPolicy(PlanarPlanPolicy[PlanarSlipGains]):
             f_slip=1.0 / self.prior.blend(columns, "mu_c"),
             held=motion.held,
         )
-        return leaps.leap(slips, asked, self.gains, self.config.gripper.force_max)
+        return leaps.leap(slips, asked, self._leaps, self.config.gripper.force_max)

@@ -24,9 +24,10 @@ def noticed(ratios, speeds, slip=0.0, known=True, assumed=0.4):
     state, bounds, catches, moved = friction_fall.begin(1), [], [], False
     for ratio, speed in zip(ratios, speeds, strict=True):
         moved |= speed > 0.0
-        values = [np.array([value]) for value in (5.0 * ratio, 5.0, speed)]
+        load, grip, pace = (np.array([value]) for value in (5.0 * ratio, 5.0, speed))
         at = np.array([slip if moved else 0.0]), np.zeros(1)
-        catch, state = friction_fall.notice(state, *values, at, np.array([assumed]), np.array([known]))
+        limits = np.array([assumed]), np.array([known])
+        catch, state = friction_fall.notice(state, load, grip, pace, at, *limits)
         bounds.append(state.bound[0])
         catches.append(catch[0])
     return np.array(bounds), np.array(catches)
@@ -78,7 +79,7 @@ def test_without_doubt_the_memory_is_that_of_the_exploration():
 
 @pytest.mark.slow
 def test_after_a_fall_of_friction_it_holds_more_often_than_without_doubt(play_batch):
-    """At no more than 1.15 times the grip of the truth. 95 % would be wished for; docs/evaluation.md."""
+    """At no more than 1.15 times the grip of the truth; docs/evaluation.md says why not in 95 %."""
     keywords = {"randomization": JUMP, "friction_source": "estimated"}
     hold = "slipgym/Hold-v0"
     found = play_batch(hold, HoldPolicy(), 300, 50_000, **keywords)

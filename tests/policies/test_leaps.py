@@ -89,6 +89,14 @@ def test_turns_get_more_grip_if_they_were_long_and_less_if_short():
     assert after_leap(0.1, True).brake[0] > GAINS.start > after_leap(0.0, True).brake[0]
 
 
+def test_at_half_the_rate_it_takes_half_the_steps():
+    half = leaps.at_rate(GAINS, 60.0)
+    assert half.keep == pytest.approx(GAINS.keep**2)
+    assert half.turn_steps == GAINS.turn_steps // 2
+    assert half.reach == pytest.approx(4.0 * GAINS.reach)
+    assert leaps.at_rate(GAINS, leaps.RATE) == GAINS
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("latency", [0, 2, 4])
 def test_planar_slip_is_solved_however_late_the_velocity_is(latency, play_batch):
