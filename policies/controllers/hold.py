@@ -8,10 +8,12 @@ from typing import Any, ClassVar
 import numpy as np
 from pydantic import Field
 
+from policies.controllers import friction_fall
 from policies.controllers.base import Columns, State
 from policies.controllers.exploration import ActiveExploration, ExplorationState
+from policies.controllers.friction_fall import FallState
 from policies.controllers.gains import Fraction, GainPolicy, renamed
-from policies.controllers.sensing import ConservativePrior, scaled_load, scaled_speed
+from policies.controllers.sensing import ConservativePrior, both, scaled_load, scaled_speed
 from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
 
@@ -27,6 +29,17 @@ class HoldGains(Frozen):
     k_v: NonNegative = Field(default=100.0, description="Force per scaled slip speed [N s/m]")
     decay: Fraction = Field(
         default=0.95, description="Fraction of the force that is left a control step later when it falls [-]"
+    )
+    doubt: NonNegative = Field(
+        default=0.95,
+        description="Load over grip in a slip, over mu_c, below which friction has fallen; 0: never [-]",
+    )
+    jolt: NonNegative = Field(
+        default=0.08,
+        description="Rise of the load in a control step that is a push [N]; without `doubt` none is",
+    )
+    brace: Positive = Field(
+        default=6.0, description="Grip in the control step after a push, over the usual [-]"
     )
 
 
@@ -44,6 +57,11 @@ class HoldPolicy(GainPolicy[HoldGains]):
     (`policies.controllers.exploration`), and then holds with the new estimate. The task does not poke the
     object at first, and the earlier friction is known, the longer force is saved. With full confidence in the
     observed friction it never explores.
+    The object may slip in a grip that should hold it, since its friction has fallen. The grip then closes as
+    fast as it can, and friction is taken to be no more than was measured in that slip
+    (`policies.controllers.friction_fall`), whatever the estimator makes of it. Such slips mostly begin with a
+    push; so for one control step after any push, a fast rise of the load, the grip is braced.
+
     Exploration suits estimators whose first update gives the answer, "adaptive", "disc" and "joint". "rls"
     and "ukf" converge step by step from a start value; after a slip or two their estimate holds less than the
     load.
@@ -77,27 +95,50 @@ class HoldPolicy(GainPolicy[HoldGains]):
         super().__init__(gains, parameters.pop("prior", prior) or own, config, **parameters)
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Last level of the grip [N], 0 before the first, and the columns of `ExplorationState`, (n, 5)."""
+        """Last level of the grip [N], 0 before the first, then `ExplorationState` and `FallState`, (n, 14).
+
+        Without `doubt` the last is left out, (n, 5).
+        """
         state = np.zeros((n, 1 + len(ExplorationState._fields)))
         state[:, -1] = 1.0
-        return state
+        return np.column_stack((state, *friction_fall.begin(n))) if self.gains.doubt > 0.0 else state
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
-        g = self.gains
+        memory = np.asarray(state).T
+        own = 1 + len(ExplorationState._fields)
         mu_c, r = self.prior.hold(columns, "mu_c"), self.prior.hold(columns, "r")
         load, speed = scaled_load(columns, r), scaled_speed(columns, r)
-        level, *rest = np.asarray(state).T
+        if self.gains.doubt == 0.0:
+            command, kept = self._hold(columns, memory, mu_c, load, speed)
+            return command, np.column_stack(kept)
+        past = FallState(*memory[own:])
+        settled = (memory[0] > 0.0) & (columns["confidence_mu_c"] >= self.prior.confidence)
+        known = settled & (ExplorationState(*memory[1:own]).rest == 0.0)
+        assumed = self.gains.doubt * mu_c
+        slip = columns["measured_slip_x"], columns["measured_slip_y"]
+        catch, fall = friction_fall.notice(past, load, both(columns, "f_n"), speed, slip, assumed, known)
+        command, kept = self._hold(columns, memory[:own], np.minimum(mu_c, fall.bound), load, speed)
+        pushed = known & (load - past.load > self.gains.jolt)
+        command = np.where(pushed, self.gains.brace * command, command)
+        return np.where(catch, self.config.gripper.force_max, command), np.column_stack((*kept, *fall))
+
+    def _hold(
+        self, columns: Columns, memory: np.ndarray, mu_c: np.ndarray, load: np.ndarray, speed: np.ndarray
+    ) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Grip (n,) [N], with exploration, and the memory but for that of falls."""
+        g = self.gains
+        level, *rest = memory
         force = g.margin * (load + g.reserve) / mu_c + g.k_v * speed
         force = np.maximum(force, g.decay * level)
         if self.exploration is None:
-            return force, np.column_stack([force, *rest])
-        begun, memory = level > 0.0, ExplorationState(*rest)
-        memory = memory._replace(load=np.where(begun, memory.load, load))
+            return force, [force, *rest]
+        begun, seen = level > 0.0, ExplorationState(*rest)
+        seen = seen._replace(load=np.where(begun, seen.load, load))
         wanted = begun & (columns["confidence_mu_c"] < self.prior.confidence)
-        slips = self.exploration.slipping(memory, load, speed)
+        slips = self.exploration.slipping(seen, load, speed)
         limits = self.config.gripper.force_min, self.config.gripper.force_max
-        probes, command, lower, memory = self.exploration.act(memory, level, slips, wanted, limits)
-        memory = memory._replace(load=memory.load + self.exploration.smoothing * (load - memory.load))
+        probes, command, lower, seen = self.exploration.act(seen, level, slips, wanted, limits)
+        seen = seen._replace(load=seen.load + self.exploration.smoothing * (load - seen.load))
         level = np.where(probes, lower, force)
-        return np.where(probes, command, force), np.column_stack([level, *memory])
+        return np.where(probes, command, force), [level, *seen]

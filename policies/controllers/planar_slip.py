@@ -2,111 +2,41 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, NamedTuple, TypeAlias
+from typing import Any
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from policies.controllers.base import Columns, State
-from policies.controllers.gains import Fraction, GainPolicy
-from policies.controllers.sensing import ConservativePrior, both, scaled_load, tangential
+from policies.controllers import leaps
+from policies.controllers.base import Columns
+from policies.controllers.leaps import LeapGains, LeapState, Slip
+from policies.controllers.planar_plan import Motion, Pair, PlanarPlanPolicy, PlanGains, PlanState
+from policies.controllers.sensing import ConservativePrior, scaled_load, scaled_speed
 from slipgym.config import Overrides
-from slipgym.config.base import Frozen, NonNegative, Positive, as_tuple
-
-APPROACH, TURN, FINISH, TRIM, DONE = range(5)
-"""Stages: slide, turn, slide the rest, turn the rest, hold."""
-
-Point: TypeAlias = tuple[np.ndarray, np.ndarray]
-Pair = Annotated[tuple[NonNegative, NonNegative], BeforeValidator(as_tuple)]
+from slipgym.config.base import NonNegative
 
 
-class Memory(NamedTuple):
-    """What the controller remembers, (n,) each; all 0 at the start."""
+class PlanarSlipGains(PlanGains, LeapGains):
+    """Gains of `PlanarSlipPolicy`, those of the leaps among them; pairs are of slide and turn."""
 
-    x: np.ndarray
-    """Slip displacement along the pads' x axis [m]."""
-    y: np.ndarray
-    """The same along their y axis [m]."""
-    measured_slip_x: np.ndarray
-    """Measured slip at the last control step [m]."""
-    measured_slip_y: np.ndarray
-    """The same along y [m]."""
-    measured_slip_theta: np.ndarray
-    """The same about the grip axis [rad]."""
-    weight: np.ndarray
-    """Filtered tangential force per finger [N]."""
-    stage: np.ndarray
-    """One of the stages."""
-    slipping: np.ndarray
-    """1 while the object is let slip, 0 while it is held and the wrist turns."""
-    moving: np.ndarray
-    """1 while it moves."""
-    error: np.ndarray
-    """Integral of the missing speed [m or rad]."""
-    broken: np.ndarray
-    """The integral at the last break-away [m or rad]."""
-    side: np.ndarray
-    """Sign of the turn."""
-    leaps: np.ndarray
-    """Break-aways in this slip so far."""
-
-
-class PlanarSlipGains(Frozen):
-    """Gains of `PlanarSlipPolicy`; pairs are of slide and turn."""
-
-    speeds: Pair = Field(
-        default=(0.006, 0.2), description="Largest speed of a slide [m/s] and rate of a turn [rad/s]"
-    )
-    gain: NonNegative = Field(
-        default=2.0, description="Speed wanted per distance left, down to a quarter of the largest [1/s]"
-    )
-    k_e: Pair = Field(default=(150.0, 10.0), description="Gains on the integral, over f_slip [1/m, 1/rad]")
-    k_v: Pair = Field(default=(50.0, 0.5), description="Gains on the speed, over f_slip [s/m, s/rad]")
-    k_m: NonNegative = Field(
-        default=0.15, description="Rate of the integral while the object moves, over that while it sticks [-]"
-    )
-    keep: Fraction = Field(
-        default=0.6,
-        description="Fraction of the integral at a break-away with which the next is looked for [-]",
-    )
-    leaps: int = Field(default=8, ge=0, description="Break-aways after which a slip is braked less [-]")
     least: Pair = Field(
-        default=(0.0013, 0.03), description="Least slide [m] and turn [rad] to begin; it stops at half"
+        default=(0.0009, 0.02), description="Least slide [m] and turn [rad] to begin; it stops at half"
     )
-    short: NonNegative = Field(default=0.0015, description="How far before its goal the first slide ends [m]")
-    lean: float = Field(
-        default=1.5, description="Angle of the centre of mass to straight down, in the middle of a turn [rad]"
-    )
-    ready: Positive = Field(
-        default=0.02, description="Error of the wrist's angle at which the box may slip [rad]"
-    )
-    hold_margin: Positive = Field(default=1.4, description="Grip while holding, over the largest need [-]")
-    wrist_rate: Positive = Field(default=2.0, description="Largest pitch rate of the wrist [rad/s]")
-    wrist_acceleration: Positive = Field(
-        default=12.0, description="Its largest change; the held box has to follow [rad/s^2]"
+    creep: NonNegative = Field(
+        default=4.8e-5,
+        description="Creep of the pads per radian of a turn, times the lever of the centre of mass [m^2]",
     )
 
 
-class PlanarSlipPolicy(GainPolicy[PlanarSlipGains]):
-    """Slide, turn, slide the rest, turn the rest; in between hold firmly and point gravity with the wrist.
+class PlanarSlipPolicy(PlanarPlanPolicy[PlanarSlipGains]):
+    """The plan of `PlanarPlanPolicy` in leaps that the force begins and ends (`policies.controllers.leaps`).
 
-    All is planned on the box: b, the pads' place on it, has to go to the place that the target gives them,
-    along the upward direction. The box slides without turning while its centre of mass hangs under the
-    pads, at any pitch of the wrist; with its centre of mass to the side it turns, and the pads creep
-    r^2 / |b| per radian along the arc (docs/environments/planar_slip.md). So the first slide goes to where
-    that creep will begin, a little short; the turn follows with the centre of mass about level with the
-    pads; then the box hangs again and slides the rest. Every stage uses the measured slip, so that
-    each one corrects what the one before has left over.
+    A leap needs no prompt velocity, so the slip sensor may be late by an unknown number of samples; after
+    each leap the object rests until the sensor has shown it. Friction of the observation sets the grip that
+    holds and the one from which the first break-away is looked for; then the last break-away counts.
 
-    A slip is let go by what balances the load at Coulomb friction, f_slip, as in "rotational_slip": v is the
-    speed of the slide or the rate of the turn, v_cmd the one wanted,
-
-        sticking:  e' = v_cmd - v,           f = f_slip (1 - k_e e)
-        moving:    e' = k_m (v_cmd - v),     f = f_slip (1 - k_e e + k_v (v - v_cmd))
-
-    e begins at 0 at a break-away. When the object sticks again, it begins at a fraction of its value there.
-    After `leaps` break-aways in a slip, which then must be small ones, e keeps more at each. A slip that
-    static friction has held back leaps; what is less than half a leap is left as it is.
+    The creep of a turn is larger in leaps than r^2 per radian over |b|, as in steady slip; `creep` is the
+    mean of what was found in simulation with contact radii of 4 to 5 mm.
 
     Args:
         gains: See `PlanarSlipGains`; each is a keyword argument of its own, too.
@@ -117,11 +47,8 @@ class PlanarSlipPolicy(GainPolicy[PlanarSlipGains]):
         ValueError: A parameter or the configuration is not valid.
     """
 
-    task = "PlanarSlip"
-    action_mode = "grip_force_pitch"
-
     Gains = PlanarSlipGains
-    prior_default = ConservativePrior(r=0.004)
+    Slips = LeapState
 
     def __init__(
         self,
@@ -131,133 +58,33 @@ class PlanarSlipPolicy(GainPolicy[PlanarSlipGains]):
         **parameters: Any,
     ) -> None:
         super().__init__(gains, prior, config, **parameters)
-        self._dt = 1.0 / self.config.physics.control_rate
+        self._leaps = leaps.at_rate(self.gains, self.config.physics.control_rate)
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Columns of `Memory`, (n, 13)."""
-        return np.zeros((n, len(Memory._fields)))
+        """Columns of `PlanState` and `LeapState`, (n, 18)."""
+        plan = np.zeros((n, len(PlanState._fields)))
+        return np.column_stack((plan, *leaps.begin(n, self._leaps)))
 
-    def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
-        """Grip force per finger and wrist velocity, (n, 4) [N, m/s, m/s, rad/s]."""
-        past = _followed(columns, Memory(*np.asarray(state).T))
-        mu_c, r = self.prior.blend(columns, "mu_c"), self.prior.blend(columns, "r")
-        turning = (past.stage == TURN) | (past.stage == TRIM)
-        left = columns["target_theta"] - columns["measured_slip_theta"]
-        side = np.where(past.slipping > 0.0, past.side, np.sign(left))
-        attitude = columns["wrist_pitch"] + columns["measured_slip_theta"]
-        place = turned((-past.x, -past.y), -columns["measured_slip_theta"])
-        under = np.arctan2(*place)  # attitude in which the box hangs
-        way = self._way(columns, place, past.stage, left * r**2)
-        # how far to go, and the attitude in which to go there
-        along = np.where(past.stage == FINISH, under, attitude)
-        distance = np.where(turning, side * left, way[0] * np.sin(along) + way[1] * np.cos(along))
-        near = np.hypot(*way) < 2.0 * self.gains.short
-        steer = np.where(near, attitude, np.arctan2(*way))
-        wanted = np.where(past.stage == APPROACH, steer, under)
-        wanted = np.where(turning, under - side * (self.gains.lean + 0.5 * np.abs(left)), wanted)
-        fixed = (past.stage == DONE) | ((past.slipping > 0.0) & (past.stage != APPROACH))
-        off = np.where(fixed, 0.0, wrapped(wanted - attitude))
-        speed = np.where(turning, side * both(columns, "omega"), _falling(columns))
-        stage, slipping = self._decide(past, turning, distance, speed, off, columns["wrist_pitch_rate"])
-        load = scaled_load(columns, r) / mu_c
-        motion, share = self._let_slip(past, turning, distance, speed, slipping)
-        lever = np.hypot(*place) + self.gains.short
-        need = np.hypot(1.0, lever / self.prior.hold(columns, "r")) / self.prior.hold(columns, "mu_c")
-        firm = self.gains.hold_margin * past.weight * need
-        loose = np.minimum(load * share, firm)
-        force = np.where(slipping, loose, firm)
-        rate, still = self._pitch(off, columns["wrist_pitch_rate"]), np.zeros(len(columns))
-        memory = past._replace(stage=stage, slipping=slipping, side=side, **motion)
-        return np.column_stack((force, still, still, rate)), np.column_stack(memory)
+    def creep(self, left: np.ndarray, r: np.ndarray) -> np.ndarray:
+        """See `PlanarPlanPolicy.creep`."""
+        return self.gains.creep * left
 
-    def _way(self, columns: Columns, place: Point, stage: np.ndarray, creep: np.ndarray) -> Point:
-        """From the pads' place to the next goal, on the box [m]; creep over |b| is the coming arc [m^2]."""
-        goal = turned((-columns["target_x"], -columns["target_y"]), -columns["target_theta"])
-        reach, bearing = np.hypot(*goal), np.arctan2(*goal)
-        short = np.where(stage == APPROACH, self.gains.short, 0.0)
-        arc = np.where(stage == APPROACH, creep / np.maximum(reach, self.gains.short), 0.0)
-        sin, cos = np.sin(bearing), np.cos(bearing)
-        return goal[0] - short * sin + arc * cos - place[0], goal[1] - short * cos - arc * sin - place[1]
+    def interruptible(self, slips: LeapState) -> np.ndarray:
+        """Between leaps, once they have been measured."""
+        return slips.clock == 0.0
 
-    def _decide(
-        self,
-        past: Memory,
-        turning: np.ndarray,
-        distance: np.ndarray,
-        speed: np.ndarray,
-        off: np.ndarray,
-        rate: np.ndarray,
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The stage, and whether the object is let slip."""
-        slipping = past.slipping > 0.0
-        least = np.where(turning, self.gains.least[1], self.gains.least[0])
-        arrived = distance <= np.where(slipping, 0.5, 1.0) * least
-        rests = np.abs(speed) < 0.1 * np.where(turning, self.gains.speeds[1], self.gains.speeds[0])
-        goes_on = ~slipping & arrived & rests & (past.stage < DONE)
-        ready = (np.abs(off) < self.gains.ready) & (np.abs(rate) < 0.1) & (past.stage < DONE)
-        return np.where(goes_on, past.stage + 1, past.stage), ~arrived & (slipping | ready)
-
-    def _let_slip(
-        self,
-        past: Memory,
-        turning: np.ndarray,
-        distance: np.ndarray,
-        speed: np.ndarray,
-        slipping: np.ndarray,
-    ) -> tuple[dict[str, np.ndarray], np.ndarray]:
-        """What changes in the memory, and the grip over f_slip."""
-        k_e, k_v, top = (
-            np.where(turning, b, a) for a, b in (self.gains.k_e, self.gains.k_v, self.gains.speeds)
+    def slip(
+        self, columns: Columns, slips: LeapState, motion: Motion, begins: np.ndarray, r: np.ndarray
+    ) -> tuple[np.ndarray, LeapState]:
+        """See `PlanarPlanPolicy.slip`."""
+        asked = Slip(
+            wanted=motion.wanted,
+            begins=begins,
+            turning=motion.turning,
+            distance=motion.distance,
+            load=scaled_load(columns, r),
+            speed=scaled_speed(columns, r),
+            f_slip=1.0 / self.prior.blend(columns, "mu_c"),
+            held=motion.held,
         )
-        ahead = np.clip(self.gains.gain * distance, 0.25 * top, top) - speed
-        moving, moved = speed > 0.15 * top, past.moving > 0.0
-        breaks, sticks = moving & ~moved, moved & ~moving
-        leaps = np.where(slipping, past.leaps + breaks, 0.0)
-        broken = np.where(breaks, past.error, past.broken)
-        left_over = np.clip(0.05 * (leaps - self.gains.leaps), 0.0, self.gains.keep) * broken
-        error = np.where(breaks, left_over, np.where(sticks, self.gains.keep * broken, past.error))
-        error = np.where(slipping, error + np.where(moving, self.gains.k_m, 1.0) * ahead * self._dt, 0.0)
-        share = 1.0 - k_e * error - np.where(moving, k_v * ahead, 0.0)
-        return {"moving": moving, "error": error, "broken": broken, "leaps": leaps}, share
-
-    def _pitch(self, off: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """Pitch rate that turns the wrist by `off` and then rests [rad/s]."""
-        braking = np.minimum(np.sqrt(1.4 * self.gains.wrist_acceleration * np.abs(off)), 8.0 * np.abs(off))
-        change = np.sign(off) * np.minimum(braking, self.gains.wrist_rate) - rate
-        most = self.gains.wrist_acceleration * self._dt
-        return rate + np.clip(change, -most, most)
-
-
-def turned(point: Point, angle: np.ndarray) -> Point:
-    """A point turned about the origin by an angle [rad]."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    return cos * point[0] - sin * point[1], sin * point[0] + cos * point[1]
-
-
-def wrapped(angle: np.ndarray) -> np.ndarray:
-    """An angle between -pi and pi [rad]."""
-    return (angle + np.pi) % (2.0 * np.pi) - np.pi
-
-
-def _falling(columns: Columns) -> np.ndarray:
-    """Slip velocity along gravity [m/s]."""
-    pitch = columns["wrist_pitch"]
-    return -np.sin(pitch) * both(columns, "v_x") - np.cos(pitch) * both(columns, "v_y")
-
-
-def _followed(columns: Columns, past: Memory) -> Memory:
-    """The memory with the slip displacement and the weight as they are now.
-
-    Measured slip is the sum of velocities at the pad centre; a turn carries the grasped point along.
-    """
-    x, y, theta = (columns[f"measured_slip_{axis}"] for axis in ("x", "y", "theta"))
-    dx, dy, turn = x - past.measured_slip_x, y - past.measured_slip_y, theta - past.measured_slip_theta
-    load = tangential(columns)
-    return past._replace(
-        x=past.x + dx - turn * (past.y + 0.5 * dy),
-        y=past.y + dy + turn * (past.x + 0.5 * dx),
-        measured_slip_x=x,
-        measured_slip_y=y,
-        measured_slip_theta=theta,
-        weight=np.where(past.weight == 0.0, load, 0.98 * past.weight + 0.02 * load),
-    )
+        return leaps.leap(slips, asked, self._leaps, self.config.gripper.force_max)

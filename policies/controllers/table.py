@@ -14,6 +14,7 @@ CLASSES = {
     "hinge": "policies.controllers.hinge:HingePolicy",
     "constant_force": "policies.controllers.constant_force:ConstantForcePolicy",
     "planar_slip": "policies.controllers.planar_slip:PlanarSlipPolicy",
+    "planar_slip_continuous": "policies.controllers.planar_slip_continuous:ContinuousPlanarSlipPolicy",
     "hold": "policies.controllers.hold:HoldPolicy",
     "linear_slip": "policies.controllers.linear_slip:LinearSlipPolicy",
 }

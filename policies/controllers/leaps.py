@@ -1,0 +1,196 @@
+"""Motion by leaps: the object breaks away, slips a little, is caught, and rests until it has been measured.
+
+The slip velocity arrives late, and by how much nobody knows. The tangential force does not: when the object
+breaks away, friction carries less than its load, and the force falls at once. So a leap begins when the force
+falls and ends after a planned time; the late velocity only says afterwards how long the leap was. The grip at
+which the object broke away, over the load, is where the next break-away is looked for. That follows friction
+which changes, without an estimate.
+
+**Slides.** The object falls at the grip at which it broke away. The length of a leap grows with the square of
+its time, `reach` (n + 1.5)^2 for n control steps; `reach` is learned from the leaps that were measured.
+
+**Turns.** A box that is let go falls and does not turn: while friction carries its weight and part of the
+torque, it turns. So a turn lasts `turn_steps` at a grip closer to balance, `brake` times that of the
+break-away, and `brake` is adjusted until a leap is as long as wanted.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from slipgym.config.base import Frozen, NonNegative, Positive
+
+BEGUN = 1.5
+"""Control steps that a leap lasts beyond those it is given: until it is noticed, and until it is caught."""
+RATE = 120.0
+"""Control rate at which the gains that count control steps are given [Hz]."""
+LEAST_LOAD = 1.0
+"""Load below which the fall that marks a break-away does not get smaller [N]."""
+
+
+class LeapState(NamedTuple):
+    """Memory of the leaps, arrays (n,)."""
+
+    load: np.ndarray
+    """Smoothed load per finger while the object rests [N]."""
+    last: np.ndarray
+    """Load at the last control step [N]."""
+    noise: np.ndarray
+    """Standard deviation of the measured load [N]."""
+    ratio: np.ndarray
+    """Grip over load at which the object is about to break away [-]."""
+    clock: np.ndarray
+    """Control steps that a leap has run, minus those that the object still rests; 0: the grip falls."""
+    steps: np.ndarray
+    """Control steps that the present leap is given."""
+    left: np.ndarray
+    """Distance left when the last leap had been measured [m or rad]."""
+    reach: np.ndarray
+    """Length of a slide over the squared number of its control steps [m]."""
+    brake: np.ndarray
+    """Grip in a turn over that of the break-away [-]."""
+
+
+class LeapGains(Frozen):
+    """Gains of the leaps; those that count control steps do so at 120 Hz (`at_rate`)."""
+
+    start: Positive = Field(
+        default=1.3, description="Grip from which it falls to the first break-away, over f_slip [-]"
+    )
+    keep: Positive = Field(
+        default=0.96, lt=1, description="Fraction of the grip left a control step later [-]"
+    )
+    again: Positive = Field(default=1.12, description="Grip after a leap, over that of the break-away [-]")
+    fall: Positive = Field(default=0.1, description="Fall of the load that is a break-away [-]")
+    deviations: NonNegative = Field(default=2.5, description="And over the noise of the load, at least [-]")
+    quiet: NonNegative = Field(default=0.05, description="Largest noise allowed for, over the load [-]")
+    speed: Positive = Field(default=0.012, description="Scaled slip speed that is a break-away [m/s]")
+    slide: Positive = Field(default=0.0012, description="Longest leap of a slide [m]")
+    turn: Positive = Field(default=0.02, description="Longest leap of a turn [rad]")
+    share: Positive = Field(default=0.6, description="Length of a leap over the distance left, at most [-]")
+    reach: Positive = Field(default=1.5e-4, description="Length of a slide over squared steps, at first [m]")
+    slide_steps: int = Field(default=5, ge=0, description="Control steps of a slide, at most [-]")
+    turn_steps: int = Field(default=8, ge=0, description="Control steps of a turn [-]")
+    learn: NonNegative = Field(default=0.1, description="Exponent with which the grip of a turn adapts [-]")
+    rest: int = Field(
+        default=9, ge=1, description="Control steps of rest after a leap; cover the latency of the sensor [-]"
+    )
+    firm: int = Field(default=3, ge=0, description="The first of them, in which the grip is doubled [-]")
+
+
+def at_rate(gains: LeapGains, rate: float) -> LeapGains:
+    """Gains for another control rate [Hz]: the same times in its control steps, at least one of rest."""
+    longer = RATE / rate
+    return gains.model_copy(
+        update={
+            "keep": gains.keep**longer,
+            "reach": gains.reach * longer**2,
+            "slide_steps": round(gains.slide_steps / longer),
+            "turn_steps": round(gains.turn_steps / longer),
+            "rest": math.ceil(gains.rest / longer),
+            "firm": math.ceil(gains.firm / longer),
+        }
+    )
+
+
+class Slip(NamedTuple):
+    """What the leaps are to do, arrays (n,)."""
+
+    wanted: np.ndarray
+    """Whether the object is to slip."""
+    begins: np.ndarray
+    """Whether that is new."""
+    turning: np.ndarray
+    """Whether it is to turn; else it is to slide."""
+    distance: np.ndarray
+    """Distance left [m or rad]."""
+    load: np.ndarray
+    """Measured load per finger, scaled as on the limit surface [N]."""
+    speed: np.ndarray
+    """Measured scaled slip speed [m/s]."""
+    f_slip: np.ndarray
+    """Grip over load that balances at the Coulomb friction of the observation [-]."""
+    held: np.ndarray
+    """Grip that holds the object [N]."""
+
+
+def begin(n: int, gains: LeapGains) -> LeapState:
+    """Memory of n rows before their first leap."""
+    zero = np.zeros(n)
+    first = {"reach": np.full(n, gains.reach), "brake": np.full(n, gains.start)}
+    return LeapState(**dict.fromkeys(LeapState._fields, zero) | first)
+
+
+def leap(state: LeapState, slip: Slip, gains: LeapGains, force_max: float) -> tuple[np.ndarray, LeapState]:
+    """One control step of the leaps, and of holding where no slip is wanted.
+
+    Args:
+        state: Memory of n rows.
+        slip: What is wanted and measured.
+        gains: The gains.
+        force_max: Largest command [N].
+
+    Returns:
+        Grip per finger (n,) [N], and the new memory.
+    """
+    ratio = np.where(slip.begins, gains.start * slip.f_slip, state.ratio)
+    load = np.where(slip.begins | (state.load == 0.0), slip.load, state.load)
+    falls, rests, measured = slip.wanted & (state.clock == 0.0), state.clock < 0.0, state.clock == -1.0
+    loose = np.maximum(gains.fall * np.maximum(load, LEAST_LOAD), gains.deviations * state.noise)
+    lost = (load - slip.load > loose) | (slip.speed > gains.speed)
+    breaks = falls & lost
+    runs = (state.clock > 0.0) | breaks
+    steps = np.where(breaks, _steps(state, slip, gains), state.steps)
+    ran = np.where(breaks, 0.0, state.clock)
+    caught = runs & (ran >= steps)
+    clock = np.where(rests, state.clock + 1.0, 0.0)
+    clock = np.where(caught, -float(gains.rest), np.where(runs, ran + 1.0, clock))
+    reach, brake = _learned(state, slip, gains, measured)
+    new = np.where(falls & ~lost, gains.keep * ratio, np.where(measured, gains.again * ratio, ratio))
+    calm = (falls & ~lost) | (rests & (state.clock > -0.4 * gains.rest)) | ~(slip.wanted | runs)
+    change = np.minimum(np.abs(slip.load - state.last) / 1.13, gains.quiet * load)  # 1.13: mean of |x1 - x2|
+    steady = (state.last > 0.0) & (state.clock == 0.0) & ~lost
+    memory = LeapState(
+        load=np.where(calm, load + 0.3 * (slip.load - load), load),
+        last=slip.load,
+        noise=np.where(steady, state.noise + 0.05 * (change - state.noise), state.noise),
+        ratio=new,
+        clock=clock,
+        steps=steps,
+        left=np.where(slip.begins | measured, slip.distance, state.left),
+        reach=reach,
+        brake=brake,
+    )
+    resting = gains.start * ratio * memory.load
+    doubled = 2.0 * gains.start * np.maximum(ratio, slip.f_slip) * memory.load
+    force = np.where(falls | runs, np.minimum(new * memory.load, slip.held), slip.held)
+    force = np.where(rests, np.where(state.clock < gains.firm - gains.rest, doubled, resting), force)
+    force = np.where(runs & slip.turning, state.brake * ratio * memory.load, force)
+    return np.where(caught, force_max, force), memory
+
+
+def _steps(state: LeapState, slip: Slip, gains: LeapGains) -> np.ndarray:
+    """Control steps to give a leap, (n,)."""
+    length = np.clip(gains.share * slip.distance, 0.0, gains.slide)
+    steps = np.clip(np.floor(np.sqrt(length / state.reach) - BEGUN), 0, gains.slide_steps)
+    return np.where(slip.turning, gains.turn_steps, steps)
+
+
+def _learned(
+    state: LeapState, slip: Slip, gains: LeapGains, measured: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Reach of a slide and brake of a turn after a leap that is measured now; each (n,)."""
+    length = np.maximum(state.left - slip.distance, 0.0)
+    seen = length / (state.steps + BEGUN) ** 2
+    reach = np.maximum(0.7 * state.reach, 0.5 * (state.reach + seen))  # not less: it may have been no leap
+    asked = np.clip(gains.share * state.left, 0.0, gains.turn)
+    over = np.clip((length + 0.2 * asked + 1e-6) / (1.2 * asked + 1e-6), 0.2, 5.0)
+    brake = np.clip(state.brake * over**gains.learn, 0.5 * gains.start, 1.25 * gains.start)
+    return (
+        np.where(measured & ~slip.turning, reach, state.reach),
+        np.where(measured & slip.turning, brake, state.brake),
+    )

@@ -1,0 +1,105 @@
+"""Brings the object to a pose (x, y, theta) in the grip in slips of a regulated speed."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from policies.controllers.base import Columns
+from policies.controllers.gains import Fraction
+from policies.controllers.planar_plan import Motion, Pair, PlanarPlanPolicy, PlanGains, PlanState
+from policies.controllers.sensing import scaled_load
+from slipgym.config.base import NonNegative
+
+
+class SlipState(NamedTuple):
+    """Memory of the slips, (n,) each; all 0 at the start."""
+
+    moving: np.ndarray
+    """1 while it moves."""
+    error: np.ndarray
+    """Integral of the missing speed [m or rad]."""
+    broken: np.ndarray
+    """The integral at the last break-away [m or rad]."""
+    leaps: np.ndarray
+    """Break-aways in this slip so far."""
+
+
+class ContinuousPlanarSlipGains(PlanGains):
+    """Gains of `ContinuousPlanarSlipPolicy`; pairs are of slide and turn."""
+
+    speeds: Pair = Field(
+        default=(0.006, 0.2), description="Largest speed of a slide [m/s] and rate of a turn [rad/s]"
+    )
+    gain: NonNegative = Field(
+        default=2.0, description="Speed wanted per distance left, down to a quarter of the largest [1/s]"
+    )
+    k_e: Pair = Field(default=(150.0, 10.0), description="Gains on the integral, over f_slip [1/m, 1/rad]")
+    k_v: Pair = Field(default=(50.0, 0.5), description="Gains on the speed, over f_slip [s/m, s/rad]")
+    k_m: NonNegative = Field(
+        default=0.15, description="Rate of the integral while the object moves, over that while it sticks [-]"
+    )
+    keep: Fraction = Field(
+        default=0.6,
+        description="Fraction of the integral at a break-away with which the next is looked for [-]",
+    )
+    leaps: int = Field(default=8, ge=0, description="Break-aways after which a slip is braked less [-]")
+
+
+class ContinuousPlanarSlipPolicy(PlanarPlanPolicy[ContinuousPlanarSlipGains]):
+    """The plan of `PlanarPlanPolicy` in slips of a regulated speed.
+
+    It needs a slip velocity that is at most one or two samples old; "planar_slip" does not. The pretrained
+    residual policies of PlanarSlip change the actions of this controller.
+
+    A slip is let go by what balances the load at Coulomb friction, f_slip, as in "rotational_slip": v is the
+    speed of the slide or the rate of the turn, v_cmd the one wanted,
+
+        sticking:  e' = v_cmd - v,           f = f_slip (1 - k_e e)
+        moving:    e' = k_m (v_cmd - v),     f = f_slip (1 - k_e e + k_v (v - v_cmd))
+
+    e begins at 0 at a break-away. When the object sticks again, it begins at a fraction of its value there.
+    After `leaps` break-aways in a slip, which then must be small ones, e keeps more at each. A slip that
+    static friction has held back leaps; what is less than half a leap is left as it is.
+
+    Args:
+        gains: See `ContinuousPlanarSlipGains`; each is a keyword argument of its own, too.
+        prior: Friction assumed until the estimate has confidence.
+        config: Overrides of the environment's configuration.
+
+    Raises:
+        ValueError: A parameter or the configuration is not valid.
+    """
+
+    Gains = ContinuousPlanarSlipGains
+    Slips = SlipState
+
+    def initial_state(self, n: int) -> np.ndarray:
+        """Columns of `PlanState` and `SlipState`, (n, 13)."""
+        return np.zeros((n, len(PlanState._fields) + len(SlipState._fields)))
+
+    def creep(self, left: np.ndarray, r: np.ndarray) -> np.ndarray:
+        """That of steady slip on the limit surface."""
+        return left * r**2
+
+    def slip(
+        self, columns: Columns, slips: SlipState, motion: Motion, begins: np.ndarray, r: np.ndarray
+    ) -> tuple[np.ndarray, SlipState]:
+        """See `PlanarPlanPolicy.slip`."""
+        k_e, k_v, top = (
+            np.where(motion.turning, b, a) for a, b in (self.gains.k_e, self.gains.k_v, self.gains.speeds)
+        )
+        load = scaled_load(columns, r) / self.prior.blend(columns, "mu_c")
+        ahead = np.clip(self.gains.gain * motion.distance, 0.25 * top, top) - motion.speed
+        moving, moved = motion.speed > 0.15 * top, slips.moving > 0.0
+        breaks, sticks = moving & ~moved, moved & ~moving
+        leaps = np.where(motion.wanted, slips.leaps + breaks, 0.0)
+        broken = np.where(breaks, slips.error, slips.broken)
+        left_over = np.clip(0.05 * (leaps - self.gains.leaps), 0.0, self.gains.keep) * broken
+        error = np.where(breaks, left_over, np.where(sticks, self.gains.keep * broken, slips.error))
+        error = np.where(motion.wanted, error + np.where(moving, self.gains.k_m, 1.0) * ahead * self._dt, 0.0)
+        share = 1.0 - k_e * error - np.where(moving, k_v * ahead, 0.0)
+        force = np.where(motion.wanted, np.minimum(load * share, motion.held), motion.held)
+        return force, SlipState(moving, error, broken, leaps)
