@@ -11,6 +11,7 @@ TASK_MODULES = {
     "slipgym/Hinge-v0": "slipgym.tasks.hinge",
     "slipgym/PlanarSlip-v0": "slipgym.tasks.planar_slip",
     "slipgym/Hold-v0": "slipgym.tasks.hold",
+    "slipgym/FragileHold-v0": "slipgym.tasks.fragile_hold",
 }
 """Id -> module that holds its TASK. A task that comes with slipgym is one such module and its row here."""
 

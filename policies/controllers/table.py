@@ -15,6 +15,7 @@ CLASSES = {
     "constant_force": "policies.controllers.constant_force:ConstantForcePolicy",
     "planar_slip": "policies.controllers.planar_slip:PlanarSlipPolicy",
     "hold": "policies.controllers.hold:HoldPolicy",
+    "fragile_hold": "policies.controllers.fragile_hold:FragileHoldPolicy",
     "linear_slip": "policies.controllers.linear_slip:LinearSlipPolicy",
 }
 """Name -> module:class; imported on first use."""

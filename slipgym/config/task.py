@@ -61,6 +61,14 @@ MassRange = Annotated[
     ends_within(1e-3, 1e3),
     setting("The object's mass is sampled from this range; null: the object's own", "kg"),
 ]
+FrictionRange = Annotated[
+    PositiveInterval | None,
+    ends_within(1e-2, 5.0),
+    setting(
+        "mu_c is sampled from this range, log-uniformly, unless a material is given or the randomization "
+        "samples it; the material gives mu_s / mu_c then; null: the material's own", "-"
+    ),
+]
 TaskRadius = Annotated[
     Positive | None,
     setting("Radius r of the equivalent rim contact in this task, also nominal; null: the common", "m"),
@@ -79,6 +87,7 @@ class TaskConfig(Frozen):
     initial_force: InitialForce = 15.0
     object: TaskObject = None
     mass_range: MassRange = None
+    friction_range: FrictionRange = None
     radius: TaskRadius = None
     reward: Annotated[Mapping[str, Scale], setting("Scales of the reward terms, by their names")] = {}
 

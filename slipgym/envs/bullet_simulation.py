@@ -21,7 +21,7 @@ from slipgym.envs.simulation_state import SimulationState
 from slipgym.envs.state_checks import check_engine
 from slipgym.sensors.force_torque import roomier
 from slipgym.tasks import Task
-from slipgym.tasks.disturbance import shake_tilt
+from slipgym.tasks.disturbance import bear_all, shake_tilt
 from slipgym.world.bullet_engine import BulletWorld
 
 _NO_ACTION = np.zeros((1, 0)), np.zeros(0, COMPONENT), np.ones(1, dtype=bool)
@@ -137,6 +137,7 @@ class BulletSimulation(Simulation):
         )
         x, z, pitch = episode["wrist_start"][0].tolist()
         self.world.reset(self.boxes[0], force, (x, z, pitch), episode["wrist_roll"].item())
+        bear_all(episode, self.plant.world)
         self._guard.reset()
         for _ in range(WARM_UP_STEPS):
             self._settle(force)

@@ -24,6 +24,7 @@ GIVEN = np.dtype(
         # the object of configuration or options
         ("mass", "f8"),
         ("mass_range", "f8", 2),  # NaN: it has `mass`
+        ("friction_range", "f8", 2),  # of mu_c; NaN: the material's
         ("size", "f8", 3),
         ("com_offset", "f8", 2),
         ("grasp_offset", "f8", 2),
@@ -37,12 +38,13 @@ _box_inertia = compiled(hardware.box_inertia)
 
 
 @compiled
-def compose(picked, mass_shares, given, materials, radii, values, starts, episodes, blank):
+def compose(picked, mass_shares, friction_shares, given, materials, radii, values, starts, episodes, blank):
     """Fill in the sampled initial conditions of episodes, and what the episodes of all tasks have in common.
 
     Args:
         picked: A material for each, sampled from all, (m,).
         mass_shares: Uniform random numbers in [0, 1) for a mass from `mass_range`, (m,).
+        friction_shares: The same for mu_c from `friction_range`.
         given: GIVEN (1,).
         materials: mu_s and mu_c of each material, (p, 2).
         radii: Radius r by pressure profile [m].
@@ -60,7 +62,7 @@ def compose(picked, mass_shares, given, materials, radii, values, starts, episod
         value.slip_latency = np.rint(value.slip_latency)
         start.force = own.force
         start.pressure = np.int64(value.pressure)
-        set_friction(start, own, value, materials, picked[k])
+        set_friction(start, own, value, materials, picked[k], friction_shares[k])
         start.friction[2] = value.radius_scale * radii[start.pressure] if math.isnan(own.r) else own.r
         set_object(start, own, value, mass_shares[k])
         valid &= inside(start.com_offset, start.size, 0.0)
@@ -71,10 +73,11 @@ def compose(picked, mass_shares, given, materials, radii, values, starts, episod
 
 
 @compiled
-def set_friction(start, own, value, materials, picked):
+def set_friction(start, own, value, materials, picked, share):
     """Set the material, mu_s and mu_c: the options' values, else sampled ones, else the material's.
 
-    If a material is given, friction is not sampled. Options that fix only mu_s or only mu_c keep the sampled
+    If a material is given, friction is not sampled. A range of the task takes the place of the material's
+    mu_c, with the material's ratio of the two. Options that fix only mu_s or only mu_c keep the sampled
     ratio of the two.
     """
     start.material = own.material
@@ -82,8 +85,14 @@ def set_friction(start, own, value, materials, picked):
     if free:
         start.material = picked if value.materials < 0.0 else np.int64(value.materials)
     mu_s, mu_c = materials[start.material, 0], materials[start.material, 1]
+    least, most = own.friction_range[0], own.friction_range[1]
+    ranged = free and not math.isnan(least)
+    if ranged:
+        scale = least * (most / least) ** share / mu_c
+        mu_s, mu_c = scale * mu_s, scale * mu_c
     drawn_s, drawn_c = math.nan, value.mu_c
-    if free and not (math.isnan(value.mu_c) and math.isnan(value.mu_s) and math.isnan(value.friction_ratio)):
+    given = not (math.isnan(value.mu_c) and math.isnan(value.mu_s) and math.isnan(value.friction_ratio))
+    if ranged or (free and given):
         drawn_c = mu_c if math.isnan(value.mu_c) else value.mu_c
         ratio = mu_s / mu_c if math.isnan(value.friction_ratio) else value.friction_ratio
         drawn_s = ratio * drawn_c if math.isnan(value.mu_s) else value.mu_s
@@ -132,6 +141,7 @@ def begin_episode(episode, start, value):
     """Fill in the fields of an EPISODE record that all tasks have in common, from START and VALUES."""
     episode.mass, episode.inertia = start.mass, start.inertia
     episode.mu_s, episode.mu_c, episode.drift = start.friction[0], start.friction[1], value.friction_drift
+    episode.r = 0.5 * (value.finger_radius[0] + value.finger_radius[1]) * start.friction[2]
     for a in range(2):
         episode.reach[a], episode.object_centre[a] = start.reach[a], start.object_centre[a]
         episode.finger_friction[a] = value.finger_friction[a]

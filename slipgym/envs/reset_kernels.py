@@ -9,6 +9,7 @@ from slipgym.contact.anisotropy import friction_axes, stretch
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
 from slipgym.sensors.unloaded import READINGS, read_unloaded
+from slipgym.tasks.disturbance import bear
 from slipgym.world.placing import PATCHES_OF_WORLDS, place_world
 
 WARM_UP_STEPS = 6
@@ -69,6 +70,7 @@ def grip(starts, episodes, worlds, pads, cells, fingers):
         grasp = start.grasp_point
         body = start.mass, start.inertia, start.half_thickness, grasp[0], grasp[1]
         place_world(worlds, pads, cells, fingers, i, body, start.force, (wrist[0], wrist[1], wrist[2]))
+        bear(episodes[i], worlds[i])
 
 
 @compiled

@@ -30,6 +30,7 @@ FIELDS = [
     ("mass_factor", "f8"),  # after over before [-]
     ("mu_s", "f8"),  # at reset [-]
     ("mu_c", "f8"),
+    ("r", "f8"),  # at reset, mean of both pads [m]
     ("finger_friction", "f8", 2),  # of either pad over these [-]
     ("drift", "f8"),  # relative rate of both [1/s]
     ("jump_step", "i8"),  # control step at which both change
@@ -99,6 +100,50 @@ def friction_factor(episode, world):
 
 
 @compiled
+def support_share(episode):
+    """Share of the weight that a support below the object bears [-]; 0 in tasks without one.
+
+    It falls from 1 to 0 linearly at lift-off, and rises again at touch-down.
+    """
+    time, times = episode.step * episode.step_time, episode.support
+    lifting = (times[1] - time) / max(times[1] - times[0], 1e-9)
+    landing = (time - times[2]) / max(times[3] - times[2], 1e-9) if times[3] > 0.0 else 0.0
+    return min(max(lifting, landing, 0.0), 1.0)
+
+
+@compiled
+def bear(episode, world):
+    """Add the support's force to the load on the object, at its centre of mass."""
+    if episode.support[1] > 0.0:
+        world.external[1] += support_share(episode) * world.mass * world.gravity
+
+
+@compiled
+def bear_all(episodes, worlds):
+    """`bear` for n environments.
+
+    Args:
+        episodes: EPISODE (n,).
+        worlds: WORLD (n,).
+    """
+    for i in range(episodes.shape[0]):
+        bear(episodes[i], worlds[i])
+
+
+@compiled
+def load(episode, world):
+    """Set the load on the object and its mass at the episode's step: support, pushes, change of mass."""
+    world.external[:] = 0.0
+    for k in range(episode.pushes):  # if pushes overlap, the last one in the list acts
+        if episode.push_start[k] <= episode.step < episode.push_end[k]:
+            for a in range(3):
+                world.external[a] = episode.push_wrench[k, a]
+    heavier = episode.mass_factor if episode.step >= episode.mass_step else 1.0
+    world.mass, world.inertia = heavier * episode.mass, heavier * episode.inertia
+    bear(episode, world)
+
+
+@compiled
 def disturb(episodes, worlds, pads, friction):
     """Before a control step, set the load on the object, its mass, and the friction.
 
@@ -110,13 +155,7 @@ def disturb(episodes, worlds, pads, friction):
     """
     for i in range(episodes.shape[0]):
         episode, world = episodes[i], worlds[i]
-        world.external[:] = 0.0
-        for k in range(episode.pushes):  # if pushes overlap, the last one in the list acts
-            if episode.push_start[k] <= episode.step < episode.push_end[k]:
-                for a in range(3):
-                    world.external[a] = episode.push_wrench[k, a]
-        heavier = episode.mass_factor if episode.step >= episode.mass_step else 1.0
-        world.mass, world.inertia = heavier * episode.mass, heavier * episode.inertia
+        load(episode, world)
         factor = friction_factor(episode, world)
         for f in range(2):
             own = factor * episode.finger_friction[f]

@@ -14,6 +14,8 @@ from slipgym.world.wrist import ramp_wrist
 
 TERMS_MAX = 12
 """Largest number of reward terms of a task."""
+MOVES_MAX = 8
+"""Largest number of moves in a plan of the wrist."""
 OWN_MAX = 8
 """Number of values that a task can keep besides the fields of all tasks."""
 
@@ -70,6 +72,9 @@ EPISODE = np.dtype(
         ("goal", "f8"),  # where it ends [m or rad]
         ("duration", "f8"),  # [s]
         ("settle", "f8"),  # [s]
+        # tasks with a support and a planned motion of the wrist
+        ("support", "f8", 4),  # times: lift-off begins and ends, touch-down begins and ends [s]
+        ("moves", "f8", (MOVES_MAX, 5)),  # start, duration [s], and way in x, z, pitch [m, m, rad]
         ("own", "f8", OWN_MAX),  # what else a task keeps, named by `scratch`; zero before its start
         *FIELDS,
     ],

@@ -46,6 +46,22 @@ def acceleration_at_rest(world: World, x: float, z: float) -> Vector:
 
 
 @compiled
+def wrench_at_rest(world: World) -> Vector:
+    """Wrench about the pads' centre, in the pad frame, that keeps an object at rest on them [N, N, N m].
+
+    Disturbance and wrist acceleration change between control steps, and the wrench of the last sub-step does
+    not contain the change: a poke may break the contact away.
+    """
+    x, z = world.com[0] - world.wrist[0], world.com[1] - world.wrist[1]
+    ax, az, alpha = acceleration_at_rest(world, x, z)
+    fx = world.mass * ax - world.external[0]
+    fz = world.mass * (az + world.gravity) - world.external[1]
+    torque = world.inertia * alpha - world.external[2] + x * fz - z * fx
+    cos, sin = pad_axes(world)
+    return cos * fx + sin * fz, cos * fz - sin * fx, torque
+
+
+@compiled
 def drift_on_pads(world: World, h: float) -> Vector:
     """Motion over h at the present velocity relative to the pads, in the pad frame, before the wrist moves.
 

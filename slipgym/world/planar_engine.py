@@ -21,7 +21,7 @@ from slipgym.world.actuator import (
     queue_command,
     ticks_to_next_command,
 )
-from slipgym.world.object_motion import acceleration_at_rest, pad_axes
+from slipgym.world.object_motion import wrench_at_rest
 from slipgym.world.records import Finger, Records, World
 from slipgym.world.substep import HOLDING, advance_object, resolved_ticks, update_slip
 from slipgym.world.substep_length import longest_common_substep
@@ -159,22 +159,6 @@ def advance_substeps(
         fingers[f].contact_force = normal
     update_slip(world)
     return done
-
-
-@compiled
-def wrench_at_rest(world: World) -> Vector:
-    """Wrench about the pads' centre, in the pad frame, that keeps an object at rest on them [N, N, N m].
-
-    Disturbance and wrist acceleration change between control steps, and the wrench of the last sub-step does
-    not contain the change: a poke may break the contact away.
-    """
-    x, z = world.com[0] - world.wrist[0], world.com[1] - world.wrist[1]
-    ax, az, alpha = acceleration_at_rest(world, x, z)
-    fx = world.mass * ax - world.external[0]
-    fz = world.mass * (az + world.gravity) - world.external[1]
-    torque = world.inertia * alpha - world.external[2] + x * fz - z * fx
-    cos, sin = pad_axes(world)
-    return cos * fx + sin * fz, cos * fz - sin * fx, torque
 
 
 @compiled
