@@ -111,6 +111,19 @@ def measure_hold(recording: Recording) -> dict[str, Any]:
     }
 
 
+def measure_fragile_hold(recording: Recording) -> dict[str, Any]:
+    """How far the object slipped, and how the grip compares with what holds it and what breaks it."""
+    limit, least = recording.reference[-1, 0].item(), recording.reference[-1, 1].item()
+    force = recording.grip_force.mean(axis=1)
+    return {
+        "largest_slip_mm": largest_slip(recording),
+        "breaking_force_N": limit,
+        "least_force_N": least,
+        "peak_force_ratio": force.max().item() / limit,
+        "force_ratio": force.mean().item() / least,
+    }
+
+
 _FINAL = Metric("final_error_abs_mm", "final error, size [mm]", brief=True)
 _FINAL_ANGLE = Metric("final_error_abs_deg", "final error, size [°]", brief=True)
 _DISTANCE = Metric("final_error_mm", "final distance to the target [mm]", brief=True)
@@ -181,6 +194,20 @@ MEASURES: dict[str, Measures] = {
             Metric("force_ratio", "grip / least needed"),
         ),
         FORCE,
+    ),
+    "FragileHold": Measures(
+        measure_fragile_hold,
+        (Tolerance("tolerance", "tolerance_mm", 1e3),),
+        (
+            SUCCESS,
+            DROPPED,
+            SLIP,
+            Metric("peak_force_ratio", "largest grip / breaking force", brief=True),
+            FORCE,
+            Metric("least_force_N", "least force [N]"),
+            Metric("force_ratio", "grip / least force"),
+        ),
+        SLIP,
     ),
 }
 """Task -> its measures, where they are more than `measures` finds by itself."""

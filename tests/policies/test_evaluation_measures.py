@@ -119,6 +119,14 @@ def test_hold_measures():
     assert row["force_ratio"] == pytest.approx(5.0 / 2.2)
 
 
+def test_fragile_hold_measures():
+    """A grip of 5 N where 4 N hold and 8 N break."""
+    row = measure(recording(reference=np.tile([8.0, 4.0, 0.0], (10, 1))), "FragileHold")
+    assert (row["breaking_force_N"], row["least_force_N"]) == (8.0, 4.0)
+    assert row["peak_force_ratio"] == pytest.approx(5.0 / 8.0)
+    assert row["force_ratio"] == pytest.approx(5.0 / 4.0)
+
+
 def test_needed_force_lies_on_the_ellipsoid():
     mu_s, r = 0.6, 0.010
     wrench = np.array([[[1.0, -2.0, 0.012], [3.0, -4.0, 0.004]]])
