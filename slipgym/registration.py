@@ -12,6 +12,7 @@ TASK_MODULES = {
     "slipgym/PlanarSlip-v0": "slipgym.tasks.planar_slip",
     "slipgym/Hold-v0": "slipgym.tasks.hold",
     "slipgym/FragileHold-v0": "slipgym.tasks.fragile_hold",
+    "slipgym/Carry-v0": "slipgym.tasks.carry",
 }
 """Id -> module that holds its TASK. A task that comes with slipgym is one such module and its row here."""
 

@@ -8,7 +8,7 @@ import typer
 from typer.core import TyperCommand
 
 TASK_HELP = (
-    "Task: linear_slip, rotational_slip, hinge, planar_slip, hold or fragile_hold; "
+    "Task: linear_slip, rotational_slip, hinge, planar_slip, hold, fragile_hold or carry; "
     "LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
 )
 

@@ -16,6 +16,7 @@ CLASSES = {
     "planar_slip": "policies.controllers.planar_slip:PlanarSlipPolicy",
     "hold": "policies.controllers.hold:HoldPolicy",
     "fragile_hold": "policies.controllers.fragile_hold:FragileHoldPolicy",
+    "carry": "policies.controllers.carry:CarryPolicy",
     "linear_slip": "policies.controllers.linear_slip:LinearSlipPolicy",
 }
 """Name -> module:class; imported on first use."""

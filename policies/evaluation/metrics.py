@@ -124,6 +124,19 @@ def measure_fragile_hold(recording: Recording) -> dict[str, Any]:
     }
 
 
+def measure_carry(recording: Recording) -> dict[str, Any]:
+    """How far the object slipped, and how the mean grip compares with the least and the allowed one."""
+    allowed, least, peak = recording.reference[-1].tolist()
+    force = recording.grip_force.mean().item()
+    return {
+        "largest_slip_mm": largest_slip(recording),
+        "allowed_force_N": allowed,
+        "least_force_mean_N": least,
+        "least_force_peak_N": peak,
+        "force_ratio": force / least,
+    }
+
+
 _FINAL = Metric("final_error_abs_mm", "final error, size [mm]", brief=True)
 _FINAL_ANGLE = Metric("final_error_abs_deg", "final error, size [°]", brief=True)
 _DISTANCE = Metric("final_error_mm", "final distance to the target [mm]", brief=True)
@@ -206,6 +219,20 @@ MEASURES: dict[str, Measures] = {
             FORCE,
             Metric("least_force_N", "least force [N]"),
             Metric("force_ratio", "grip / least force"),
+        ),
+        SLIP,
+    ),
+    "Carry": Measures(
+        measure_carry,
+        (Tolerance("tolerance", "tolerance_mm", 1e3),),
+        (
+            SUCCESS,
+            DROPPED,
+            SLIP,
+            Metric("force_ratio", "mean grip / mean least", brief=True),
+            FORCE,
+            Metric("least_force_mean_N", "least force, mean [N]"),
+            Metric("least_force_peak_N", "least force, peak [N]"),
         ),
         SLIP,
     ),

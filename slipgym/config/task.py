@@ -69,6 +69,10 @@ FrictionRange = Annotated[
         "samples it; the material gives mu_s / mu_c then; null: the material's own", "-"
     ),
 ]
+WristSpeed = Annotated[
+    Positive | None,
+    setting("Largest speed of the wrist in this task; null: gripper.wrist_speed_max", "m/s", le=100.0),
+]
 TaskRadius = Annotated[
     Positive | None,
     setting("Radius r of the equivalent rim contact in this task, also nominal; null: the common", "m"),
@@ -89,6 +93,7 @@ class TaskConfig(Frozen):
     mass_range: MassRange = None
     friction_range: FrictionRange = None
     radius: TaskRadius = None
+    wrist_speed: WristSpeed = None
     reward: Annotated[Mapping[str, Scale], setting("Scales of the reward terms, by their names")] = {}
 
     def check(self, config: Config, name: str) -> None:

@@ -201,6 +201,8 @@ def _blank_episode(config: Config, settings: TaskConfig, task: Task) -> np.ndarr
     episode["step_time"] = 1.0 / config.physics.control_rate
     for field in ("force_min", "force_max", "wrist_speed_max", "wrist_pitch_rate_max", "pad_radius"):
         episode[field] = getattr(config.gripper, field)
+    if settings.wrist_speed is not None:
+        episode["wrist_speed_max"] = settings.wrist_speed
     scales = [settings.reward[term] for term in task.term_names]
     episode["scales"][0, : len(scales)] = scales
     episode["mass_factor"] = episode["jump_factor"] = episode["region_factor"] = 1.0

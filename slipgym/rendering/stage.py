@@ -66,12 +66,13 @@ def assemble(view: View) -> tuple[np.ndarray, np.ndarray]:
     return corners, np.concatenate([body_colours, palm[1], finger[1], glass])
 
 
-def footprint(view: View, swing: float) -> np.ndarray:
+def footprint(view: View, swing: float, ways: np.ndarray) -> np.ndarray:
     """Points around gripper and object, and around the space they will move through, (n, 3) [m].
 
     Args:
         view: The start of an episode.
         swing: Angle by which the wrist is going to pitch [rad].
+        ways: Ends of the wrist's planned moves (x, z) from where it is, (k, 2) [m].
     """
     half, at = np.array(view.box.size) / 2, -np.array(view.box.grasp_offset)
     face = np.array([(x, 0.0, z) for x in (-half[0], half[0]) for z in (-half[2], half[2])])
@@ -81,7 +82,10 @@ def footprint(view: View, swing: float) -> np.ndarray:
     palm = np.array([(view.side * (REACH + 0.07), 0.0, z) for z in (-0.03, 0.03)])
     pitched = replace(view, wrist=(view.wrist[0], view.wrist[1], view.wrist[2] + swing))
     ends = pitched.place(np.concatenate([grasped, palm]))
-    return np.concatenate([held, lowered, view.place(palm), ends])
+    points = np.concatenate([held, lowered, view.place(palm), ends])
+    low, high = np.zeros(3), np.zeros(3)
+    low[[0, 2]], high[[0, 2]] = np.minimum(ways.min(axis=0), 0.0), np.maximum(ways.max(axis=0), 0.0)
+    return np.concatenate([points + low, points + high])
 
 
 def grid() -> tuple[np.ndarray, np.ndarray]:

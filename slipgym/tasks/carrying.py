@@ -23,6 +23,9 @@ ACCELERATION = 10.0 / math.sqrt(3.0)
 VELOCITY = 15.0 / 8.0
 """Largest velocity of it, times T / d."""
 
+PAUSE = 0.15
+"""Rest between lift-off and the first move [s]."""
+
 
 def move_time(way: float, acceleration: float, speed: float) -> float:
     """Least duration of a minimum-jerk move within an acceleration and a speed [s].
@@ -83,7 +86,7 @@ def rehearse(episode, world):
         world: WORLD record; it is not changed.
 
     Returns:
-        Largest and mean least grip [N], and the largest acceleration of the wrist less gravity [m/s^2].
+        Largest and mean least grip [N], which is at least the gripper's smallest in the mean, and the largest acceleration of the wrist less gravity [m/s^2].
     """
     worlds = np.empty(1, WORLD)
     worlds[0] = world
@@ -105,7 +108,7 @@ def rehearse(episode, world):
         f_x, f_z, tau = wrench_at_rest(plan)
         need = 0.5 * math.sqrt(f_x**2 + f_z**2 + (tau / episode.r) ** 2)
         need /= friction * friction_factor(episode, plan)
-        peak, total = max(peak, need), total + need
+        peak, total = max(peak, need), total + max(need, episode.force_min)
         along = math.hypot(plan.wrist_acceleration[0], plan.wrist_acceleration[1] + plan.gravity)
         fastest = max(fastest, along)
         for a in range(3):

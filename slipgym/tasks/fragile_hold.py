@@ -24,7 +24,7 @@ the plan of the wrist and from the disturbances, for a box that never slips.
 
 The box (0.2 to 0.5 kg) stands on the support, in a grip of `tasks.fragile_hold.initial_force` (1 N), which is
 below every breaking force. For `settle` (0.4 s) the support bears all of its weight, a share that falls to 0
-linearly in `lift_off` (0.8 s). Then the wrist rises by `lift`, moves sideways by `travel` while it pitches by
+linearly in `lift_off` (0.8 s). After 0.15 s the wrist rises by `lift`, moves sideways by `travel` while it pitches by
 up to `sway` and back, and makes three strokes of `stroke`, each as a minimum-jerk move. Sampled at random are
 mass, friction, `allowance`, the ways and directions, the largest acceleration of the moves, the material, if
 `material` is "random", the sensors' biases, and the fractions of a count in the slip sensors. Grip and
@@ -59,8 +59,9 @@ import numpy as np
 
 from slipgym.config.base import NonNegative, Positive, PositiveInterval, ends_within
 from slipgym.config.task import FrictionRange, InitialForce, MassRange, Option, TaskConfig, setting
-from slipgym.tasks.carrying import WRIST_COLUMNS, move_time, rehearse, wrist_velocity
+from slipgym.tasks.carrying import PAUSE, WRIST_COLUMNS, move_time, rehearse, wrist_velocity
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
+from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
 from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
@@ -122,6 +123,7 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     episode["own"][SCRATCH.allowance] = between(settings.allowance, shares[0]) if fixed is None else fixed
     time = settings.settle + settings.lift_off
     episode["support"][:2] = settings.settle, time
+    time += PAUSE
     acceleration, speed = between(settings.acceleration, shares[1]), episode["wrist_speed_max"].item()
     side = 1.0 if shares[2] < 0.5 else -1.0
     pitch, heading = between((-settings.sway, settings.sway), shares[5]), math.pi * shares[6]
@@ -188,5 +190,6 @@ TASK = Task(
         TIME_LEFT,
         VIOLATED,
     ),
+    motion=Motion(sign=0.0),
     page=__doc__,
 )  # fmt: skip

@@ -127,6 +127,13 @@ def test_fragile_hold_measures():
     assert row["force_ratio"] == pytest.approx(5.0 / 4.0)
 
 
+def test_carry_measures():
+    """A grip of 5 N where 4 N are the mean of the least and 6.4 N are allowed."""
+    row = measure(recording(reference=np.tile([6.4, 4.0, 7.0], (10, 1))), "Carry")
+    assert (row["allowed_force_N"], row["least_force_mean_N"], row["least_force_peak_N"]) == (6.4, 4.0, 7.0)
+    assert row["force_ratio"] == pytest.approx(5.0 / 4.0)
+
+
 def test_needed_force_lies_on_the_ellipsoid():
     mu_s, r = 0.6, 0.010
     wrench = np.array([[[1.0, -2.0, 0.012], [3.0, -4.0, 0.004]]])

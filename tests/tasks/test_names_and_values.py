@@ -23,7 +23,7 @@ def evaluated(task):
         episodes[field] = 0.01
     for field in ("force_max", "wrist_speed_max", "wrist_pitch_rate_max", "goal"):
         episodes[field] = 3.0
-    episodes["command"] = 2.5
+    episodes["command"], episodes["step"] = 2.5, 1
     fingers["force"] = fingers["contact_force"] = 2.0
     columns = np.zeros((1, len(task.columns)))
     task.evaluate_step(episodes, worlds, fingers, columns)

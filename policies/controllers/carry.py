@@ -1,0 +1,53 @@
+"""Swings an object with a grip that follows the planned load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from policies.controllers.base import Columns
+from policies.controllers.lifting import LiftingGains, LiftingPolicy
+from slipgym.config.base import Positive
+from slipgym.tasks.carry import AHEAD
+
+_NEAR = tuple(f"{1e3 * time:.0f}" for time in AHEAD if time <= 0.1)
+
+
+class CarryGains(LiftingGains):
+    """Gains of `CarryPolicy`."""
+
+    margin: Positive = Field(default=1.2, description="Grip over the least for the planned load [-]")
+
+
+class CarryPolicy(LiftingPolicy[CarryGains]):
+    """Grip as hard as the planned motion needs, with a margin.
+
+        f = margin W (a / g) / mu_s
+
+    a is the largest acceleration less gravity that the plan has from now to 100 ms ahead: the force follows a
+    command within about 30 ms, and acceleration changes between the times at which it is observed. For W and
+    friction see `LiftingPolicy`. Without friction in the observation mu_s stays at a guess.
+
+    Args:
+        gains: See `CarryGains`; each is a keyword argument of its own, too.
+        prior: As in the other controllers; here r alone is used.
+        config: Overrides of the environment's configuration.
+
+    Raises:
+        ValueError: A parameter or the configuration is not valid.
+    """
+
+    task = "Carry"
+    Gains = CarryGains
+    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.4}
+
+    def share(self, columns: Columns) -> np.ndarray:
+        """See `LiftingPolicy.share`."""
+        gravity, most = self.config.physics.gravity, np.zeros(len(columns))
+        for ahead in _NEAR:
+            x, z = (columns[f"planned_acceleration_{axis}_{ahead}"] for axis in "xz")
+            most = np.maximum(most, np.hypot(x, z + gravity))
+        return self.gains.margin * most / gravity

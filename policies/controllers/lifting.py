@@ -1,0 +1,108 @@
+"""Lifts an object of unknown friction from a support: the base of the controllers that carry."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+
+import numpy as np
+from pydantic import Field
+
+from policies.controllers.base import Columns, State
+from policies.controllers.gains import Fraction, G, GainPolicy
+from policies.controllers.sensing import relative_deviation, scaled_load, scaled_speed, tangential
+from slipgym.config.base import Frozen, NonNegative, Positive
+
+_STILL = 3
+"""Control steps after which a wrist without velocity rests, and is not just between two moves."""
+
+_RISE = 6.0
+"""The lightest object is allowed for once this many times the load is its load."""
+
+
+class LiftingGains(Frozen):
+    """Gains of `LiftingPolicy`."""
+
+    guess: Positive = Field(default=2.0, description="mu_s assumed before the first slip [-]")
+    confidence: Positive = Field(default=0.05, description="Confidence from which mu_s is taken as it is [-]")
+    deviations: NonNegative = Field(
+        default=0.3, description="Standard deviations by which mu_s is taken below its estimate [-]"
+    )
+    least: NonNegative = Field(default=0.8, description="Least grip [N]")
+    lead: NonNegative = Field(default=0.05, description="Time by which the grip leads a rising load [s]")
+    smoothing: Fraction = Field(
+        default=0.8, description="Weight of the old load in each control step while the wrist rests [-]"
+    )
+    lightest: NonNegative = Field(default=1.0, description="Load per finger of the lightest object [N]")
+    fall: NonNegative = Field(default=0.12, description="Fall of the load that is a slip, over the load [-]")
+    noise: NonNegative = Field(default=0.08, description="Fall of the load that is always noise [N]")
+    speed: Positive = Field(default=2e-3, description="Scaled slip speed that is a slip [m/s]")
+    catch: Positive = Field(default=1.5, description="Least factor by which the grip rises then [-]")
+    jump: NonNegative = Field(default=1.5, description="Least share in that rise [-]")
+    rest: NonNegative = Field(default=5, description="Control steps after a slip without another catch [-]")
+    decay: Fraction = Field(
+        default=0.97, description="Fraction of the grip after a slip that is left a control step later [-]"
+    )
+
+
+class LiftingPolicy(GainPolicy[G]):
+    """Grip in proportion to the load from lift-off on, and find friction out while the load is small.
+
+        f = share W / mu_s
+
+    W is the load per finger in the scaled norm of the limit surface while the wrist rests, filtered, and led by
+    its rate while it rises; `share` is what the motion needs on top. While the object slips, mu_c takes the
+    place of mu_s.
+
+    Before the first slip mu_s is taken as `guess`, more than what may come. The object then slips while the
+    load is still small, which shows in the load at the next control step: the grip jumps to what the lightest
+    object needs at load / grip before the slip, the estimator learns friction, and the law takes over.
+    """
+
+    @abstractmethod
+    def share(self, columns: Columns) -> np.ndarray:
+        """Grip wanted over the least grip that holds the weight, (n,) [-]."""
+
+    def initial_state(self, n: int) -> np.ndarray:
+        """Filtered load and last tangential force (negative: none yet), last grip and the one kept [N].
+
+        Then the control steps left without another catch, and those since the wrist moved. Shape (n, 6).
+        """
+        return np.tile([-1.0, -1.0, 0.0, 0.0, 0.0, 0.0], (n, 1))
+
+    def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
+        """Grip force per finger, (n,) [N]."""
+        g, share = self.gains, self.share(columns)
+        old, before, gripped, kept, rest, still = np.asarray(state).T
+        r, pulled = self.prior.hold(columns, "r"), tangential(columns)
+        slides = scaled_speed(columns, r) > g.speed
+        moves = sum(np.abs(columns[f"wrist_{name}"]) for name in ("velocity_x", "velocity_z", "pitch_rate"))
+        still = np.where(np.asarray(moves) == 0.0, still + 1.0, 0.0)
+        rests = still > _STILL
+        weight, ahead = self._weight(scaled_load(columns, r), old, rests, slides, rest)
+        trust = np.minimum(1.0, columns["confidence_mu_s"] / g.confidence)
+        cautious = columns["mu_s"] * np.exp(-g.deviations * relative_deviation(columns, "mu_s", columns["mu_s"]))
+        mu = np.where(slides, columns["mu_c"], cautious)
+        known = np.maximum(ahead, np.minimum(g.lightest, _RISE * ahead)) / np.maximum(mu, 1e-3)
+        force = np.maximum(share * (trust * known + (1.0 - trust) * ahead / g.guess), g.least)
+        slips = slides | (before - pulled > np.maximum(g.fall * before, g.noise))
+        caught = slips & rests & (rest <= 0.0) & (trust < 1.0)
+        raised = np.maximum(share, g.jump) * gripped * np.maximum(g.lightest / np.maximum(before, 2.0 * g.noise), g.catch)
+        kept = np.where(caught, raised, g.decay * kept)
+        rest = np.where(caught | slides, g.rest, rest - 1.0)
+        force = np.maximum(force, kept)
+        return force, np.column_stack((weight, pulled, force, kept, rest, still))
+
+    def _weight(
+        self, load: np.ndarray, old: np.ndarray, rests: np.ndarray, slides: np.ndarray, rest: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Filtered load at rest, and what it will be when the grip follows, (n,) each [N].
+
+        While the object slips, friction carries less than the load: then the old value counts.
+        """
+        s = self.gains.smoothing
+        weight = np.where(rests, s * old + (1.0 - s) * load, old)
+        weight = np.where(slides, np.maximum(weight, old), weight)
+        weight = np.where(old < 0.0, load, weight)
+        delay = self.gains.lead * self.config.physics.control_rate * (1.0 - s) / s + 1.0
+        rises = rests & ~slides & (rest <= 0.0)
+        return weight, weight + np.where(rises, np.maximum(delay * (load - weight), 0.0), 0.0)
