@@ -17,7 +17,8 @@ Examples:\n
   slipgym evaluate my_experiment.yaml --seed 1 --output /tmp/runs
 \n
 An experiment is a YAML file; configs/experiments/ holds those that come with slipgym (linear_slip,
-rotational_slip, hinge, planar_slip, hold, fragile_hold, carry, demo), and docs/evaluation.md says what their keys mean and what
+rotational_slip, hinge, planar_slip, hold,
+fragile_hold, carry, demo), and docs/evaluation.md says what their keys mean and what
 a run writes.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)

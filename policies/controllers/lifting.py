@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from typing import TypeVar
 
 import numpy as np
 from pydantic import Field
 
 from policies.controllers.base import Columns, State
-from policies.controllers.gains import Fraction, G, GainPolicy
+from policies.controllers.gains import Fraction, GainPolicy
 from policies.controllers.sensing import relative_deviation, scaled_load, scaled_speed, tangential
 from slipgym.config.base import Frozen, NonNegative, Positive
 
@@ -44,14 +45,17 @@ class LiftingGains(Frozen):
     )
 
 
-class LiftingPolicy(GainPolicy[G]):
+L = TypeVar("L", bound=LiftingGains)
+
+
+class LiftingPolicy(GainPolicy[L]):
     """Grip in proportion to the load from lift-off on, and find friction out while the load is small.
 
         f = share W / mu_s
 
-    W is the load per finger in the scaled norm of the limit surface while the wrist rests, filtered, and led by
-    its rate while it rises; `share` is what the motion needs on top. While the object slips, mu_c takes the
-    place of mu_s.
+    W is the load per finger in the scaled norm of the limit surface while the wrist rests, filtered, and led
+    by its rate while it rises; `share` is what the motion needs on top. mu_s is taken some deviations below
+    its estimate. While the object slips, mu_c takes its place.
 
     Before the first slip mu_s is taken as `guess`, more than what may come. The object then slips while the
     load is still small, which shows in the load at the next control step: the grip jumps to what the lightest
@@ -80,13 +84,19 @@ class LiftingPolicy(GainPolicy[G]):
         rests = still > _STILL
         weight, ahead = self._weight(scaled_load(columns, r), old, rests, slides, rest)
         trust = np.minimum(1.0, columns["confidence_mu_s"] / g.confidence)
-        cautious = columns["mu_s"] * np.exp(-g.deviations * relative_deviation(columns, "mu_s", columns["mu_s"]))
+        cautious = columns["mu_s"] * np.exp(
+            -g.deviations * relative_deviation(columns, "mu_s", columns["mu_s"])
+        )
         mu = np.where(slides, columns["mu_c"], cautious)
         known = np.maximum(ahead, np.minimum(g.lightest, _RISE * ahead)) / np.maximum(mu, 1e-3)
         force = np.maximum(share * (trust * known + (1.0 - trust) * ahead / g.guess), g.least)
         slips = slides | (before - pulled > np.maximum(g.fall * before, g.noise))
         caught = slips & rests & (rest <= 0.0) & (trust < 1.0)
-        raised = np.maximum(share, g.jump) * gripped * np.maximum(g.lightest / np.maximum(before, 2.0 * g.noise), g.catch)
+        raised = (
+            np.maximum(share, g.jump)
+            * gripped
+            * np.maximum(g.lightest / np.maximum(before, 2.0 * g.noise), g.catch)
+        )
         kept = np.where(caught, raised, g.decay * kept)
         rest = np.where(caught | slides, g.rest, rest - 1.0)
         force = np.maximum(force, kept)

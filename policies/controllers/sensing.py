@@ -96,7 +96,9 @@ class ConservativePrior:
     def hold_lever(self, columns: Columns) -> np.ndarray:
         """As `blend_lever`, with the quantile in place of the estimate, (n,) [m]."""
         value = columns["mu_c"] * columns["r"]
-        return self._lever(columns, value * np.exp(-self.deviations * relative_deviation(columns, "lever", value)))
+        return self._lever(
+            columns, value * np.exp(-self.deviations * relative_deviation(columns, "lever", value))
+        )
 
     def _lever(self, columns: Columns, value: np.ndarray) -> np.ndarray:
         weight, least = self.confidence_weight(columns, "r"), self.mu_c * self.r

@@ -66,7 +66,8 @@ FrictionRange = Annotated[
     ends_within(1e-2, 5.0),
     setting(
         "mu_c is sampled from this range, log-uniformly, unless a material is given or the randomization "
-        "samples it; the material gives mu_s / mu_c then; null: the material's own", "-"
+        "samples it; the material gives mu_s / mu_c then; null: the material's own",
+        "-",
     ),
 ]
 WristSpeed = Annotated[

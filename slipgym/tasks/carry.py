@@ -2,18 +2,19 @@
 
 ## Description
 
-A parallel gripper holds a box that stands on a support. The support gives way, the wrist lifts the box, swings
-it sideways and half of the way back, lowers it, and a support takes it over again. The wrist pitches while it
-swings. The box must not slip, and the grip must be economical: its mean over the episode may be at most
-`economy` (1.6) times the mean of the least grip that holds the box. A constant grip that holds the largest
-load is too firm on average, and so is one that allows for every friction: the grip has to follow the load,
-which the plan of the wrist announces (its acceleration now and in 50, 100 and 200 ms is observed), by a factor
-that depends on friction. Mass and friction are unknown: the mass shows in the load when the support gives
-way; an estimator computes friction from force, torque and slip velocity when the box slips.
+A parallel gripper holds a box that stands on a support. The support gives way, the wrist lifts the box,
+swings it sideways and half of the way back, lowers it, and a support takes it over again. The wrist pitches
+while it swings. The box must not slip, and the grip must be economical: its mean over the episode may be at
+most `economy` (1.6) times the mean of the least grip that holds the box. A constant grip that holds the
+largest load is too firm on average, and so is one that allows for every friction: the grip has to follow
+the load, which the plan of the wrist announces (its acceleration now and in 50, 100 and 200 ms is
+observed), by a factor that depends on friction. Mass and friction are unknown: the mass shows in the load
+when the support gives way; an estimator computes friction from force, torque and slip velocity when the box
+slips.
 
-The swing reaches 5 to 10 m/s^2 and 1.7 m/s, as a light arm does: Franka Emika states 13 m/s^2 and 1.7 m/s as the
-limits of its arm's hand (Franka Control Interface, "Robot and interface specifications"). mu_c is drawn from
-0.15 to 0.8, log-uniformly (`tasks.carry.friction_range`).
+The swing reaches 5 to 10 m/s^2 and 1.7 m/s, as a light arm does: Franka Emika states 13 m/s^2 and 1.7 m/s
+as the limits of its arm's hand (Franka Control Interface, "Robot and interface specifications"). mu_c is
+drawn from 0.15 to 0.8, log-uniformly (`tasks.carry.friction_range`).
 
 The least grip is that with which both pads stick, by the ellipsoidal limit surface:
 sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s for the load per finger, and at least `gripper.force_min`. The load
@@ -27,13 +28,13 @@ The economy is an allowance for the whole episode. It is used up when the sum of
 ## Starting State
 
 The box (0.2 to 0.4 kg) stands on the support, in a grip of `tasks.carry.initial_force` (1 N). For `settle`
-(0.3 s) the support bears all of its weight, a share that falls to 0 linearly in `lift_off` (0.8 s). After 0.15 s the
-wrist rises by `lift`, swings by `swing` and back by half of it while it pitches by up to `pitch` and back, and
-sinks by `lift`, each as a minimum-jerk move. After a short rest the support takes the box over, again in
-`lift_off`. Sampled at random are mass, friction, ways and directions, the largest acceleration of the swing, the
-material, if `material` is "random", the sensors' biases, and the fractions of a count in the slip sensors.
-Grip and sensors run for six control steps before time 0. A wrist velocity that the agent commands is added to
-the plan; the limit `wrist_speed` applies to the sum.
+(0.3 s) the support bears all of its weight, a share that falls to 0 linearly in `lift_off` (0.8 s). After
+0.15 s the wrist rises by `lift`, swings by `swing` and back by half of it while it pitches by up to `pitch`
+and back, and sinks by `lift`, each as a minimum-jerk move. After a short rest the support takes the box
+over, again in `lift_off`. Sampled at random are mass, friction, ways and directions, the largest
+acceleration of the swing, the material, if `material` is "random", the sensors' biases, and the fractions
+of a count in the slip sensors. Grip and sensors run for six control steps before time 0. A wrist velocity
+that the agent commands is added to the plan; the limit `wrist_speed` applies to the sum.
 
 ## Episode End
 
@@ -42,8 +43,8 @@ the plan; the limit `wrist_speed` applies to the sum.
   truncates by itself; no `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never
-slipped further than `tolerance` (2 mm), and the mean grip was at most `economy` times the mean least grip. A
-further slip and a larger sum of the grip are the violations that `violated` reports.
+slipped further than `tolerance` (2 mm), and the mean grip was at most `economy` times the mean least grip.
+A further slip and a larger sum of the grip are the violations that `violated` reports.
 
 ## Info
 
@@ -63,7 +64,14 @@ import numpy as np
 
 from slipgym.config.base import NonNegative, Positive, PositiveInterval, ends_within
 from slipgym.config.task import FrictionRange, InitialForce, MassRange, TaskConfig, WristSpeed, setting
-from slipgym.tasks.carrying import PAUSE, WRIST_COLUMNS, move_time, planned_acceleration, rehearse, wrist_velocity
+from slipgym.tasks.carrying import (
+    PAUSE,
+    WRIST_COLUMNS,
+    move_time,
+    planned_acceleration,
+    rehearse,
+    wrist_velocity,
+)
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
@@ -72,9 +80,9 @@ from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, smoothness
 from slipgym.world.actuator import mean_force
 
 SCRATCH = scratch(economy=1, allowed=1, mean=1, peak=1, spent=1, counted=1)
-"""`economy`: mean grip allowed over the mean least grip [-]; `allowed`, `mean`, `peak`: mean grip allowed, mean
-and largest least grip [N]; `spent`: sum of the grip over the control steps so far [N]; `counted`: the step up
-to which it goes."""
+"""`economy`: mean grip allowed over the mean least grip [-]; `allowed`, `mean`, `peak`: mean grip allowed,
+mean and largest least grip [N]; `spent`: sum of the grip over the control steps so far [N]; `counted`: the
+step up to which it goes."""
 AHEAD = (0.0, 0.05, 0.1, 0.2)
 """Times ahead at which the plan is observed [s]."""
 _REST = 0.2  # [s] between the last move and touch-down, and after it
@@ -85,7 +93,8 @@ class Settings(TaskConfig):
 
     tolerance: Annotated[Positive, setting("Largest slip for success", "m", reset=True)] = 0.002
     economy: Annotated[
-        Positive, setting("Mean grip allowed for success, over the mean least grip", "-", reset=True, le=100.0)
+        Positive,
+        setting("Mean grip allowed for success, over the mean least grip", "-", reset=True, le=100.0),
     ] = 1.6
     settle: Annotated[
         NonNegative, setting("Time in which the support bears the weight", "s", reset=True, le=60.0)
@@ -96,7 +105,9 @@ class Settings(TaskConfig):
     lift: Annotated[
         PositiveInterval, ends_within(1e-4, 1.0), setting("Height of the lift, sampled from this range", "m")
     ] = (0.05, 0.1)
-    lift_acceleration: Annotated[Positive, setting("Largest acceleration of the lift", "m/s^2", le=100.0)] = 3.0
+    lift_acceleration: Annotated[Positive, setting("Largest acceleration of the lift", "m/s^2", le=100.0)] = (
+        3.0
+    )
     swing: Annotated[
         PositiveInterval,
         ends_within(1e-4, 2.0),
@@ -160,7 +171,9 @@ def violated(episode, world, fingers):
     if episode.step > own[SCRATCH.counted]:
         own[SCRATCH.counted] = episode.step
         own[SCRATCH.spent] += mean_force(fingers)
-    return episode.largest_slip > episode.tolerance or own[SCRATCH.spent] > episode.steps * own[SCRATCH.allowed]
+    return (
+        episode.largest_slip > episode.tolerance or own[SCRATCH.spent] > episode.steps * own[SCRATCH.allowed]
+    )
 
 
 @term(scale=0.5)

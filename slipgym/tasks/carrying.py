@@ -86,7 +86,8 @@ def rehearse(episode, world):
         world: WORLD record; it is not changed.
 
     Returns:
-        Largest and mean least grip [N], which is at least the gripper's smallest in the mean, and the largest acceleration of the wrist less gravity [m/s^2].
+        Largest and mean least grip [N], where the mean counts each step with at least the gripper's smallest
+        force, and the largest acceleration of the wrist less gravity [m/s^2].
     """
     worlds = np.empty(1, WORLD)
     worlds[0] = world

@@ -9,27 +9,27 @@ episode: the ratio is known (`allowance`), the force itself is not. It follows f
 are unknown: the mass shows in the load when the support gives way, and friction has to be found out. An
 estimator computes it from force, torque and slip velocity when the box slips.
 
-Friction decides this task. mu_c is drawn from 0.15 to 0.8, log-uniformly (`tasks.fragile_hold.friction_range`),
-so that a grip which suits one end of the range breaks or drops the box at the other. Rubber-like fingertips
-meet such a range between wet or dusty plastic and clean rubber. The force that breaks the box is not observed,
-since a grip just below it would always be right. People solve this task: they lift with 10 to 40 % more grip
-than friction needs (Johansson and Westling, Exp. Brain Res. 56, 1984), and find friction out in the first
-tenths of a second.
+Friction decides this task. mu_c is drawn from 0.15 to 0.8, log-uniformly
+(`tasks.fragile_hold.friction_range`), so that a grip which suits one end of the range breaks or drops the
+box at the other. Rubber-like fingertips meet such a range between wet or dusty plastic and clean rubber.
+The force that breaks the box is not observed, since a grip just below it would always be right. People
+solve this task: they lift with 10 to 40 % more grip than friction needs (Johansson and Westling, Exp. Brain
+Res. 56, 1984), and find friction out in the first tenths of a second.
 
-The least grip is that with which both pads stick, by the ellipsoidal limit surface:
-sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s, at the largest load per finger of the episode. The load follows from
-the plan of the wrist and from the disturbances, for a box that never slips.
+The least grip is that with which both pads stick, by the ellipsoidal limit surface: sqrt(f_x^2 + f_y^2 +
+(tau / r)^2) / mu_s, at the largest load per finger of the episode. The load follows from the plan of the
+wrist and from the disturbances, for a box that never slips.
 
 ## Starting State
 
-The box (0.2 to 0.5 kg) stands on the support, in a grip of `tasks.fragile_hold.initial_force` (1 N), which is
-below every breaking force. For `settle` (0.4 s) the support bears all of its weight, a share that falls to 0
-linearly in `lift_off` (0.8 s). After 0.15 s the wrist rises by `lift`, moves sideways by `travel` while it pitches by
-up to `sway` and back, and makes three strokes of `stroke`, each as a minimum-jerk move. Sampled at random are
-mass, friction, `allowance`, the ways and directions, the largest acceleration of the moves, the material, if
-`material` is "random", the sensors' biases, and the fractions of a count in the slip sensors. Grip and
-sensors run for six control steps before time 0. A wrist velocity that the agent commands is added to the
-plan; the gripper's limits apply to the sum.
+The box (0.2 to 0.5 kg) stands on the support, in a grip of `tasks.fragile_hold.initial_force` (1 N), which
+is below every breaking force. For `settle` (0.4 s) the support bears all of its weight, a share that falls
+to 0 linearly in `lift_off` (0.8 s). After 0.15 s the wrist rises by `lift`, moves sideways by `travel`
+while it pitches by up to `sway` and back, and makes three strokes of `stroke`, each as a minimum-jerk move.
+Sampled at random are mass, friction, `allowance`, the ways and directions, the largest acceleration of the
+moves, the material, if `material` is "random", the sensors' biases, and the fractions of a count in the
+slip sensors. Grip and sensors run for six control steps before time 0. A wrist velocity that the agent
+commands is added to the plan; the gripper's limits apply to the sum.
 
 ## Episode End
 
@@ -38,8 +38,9 @@ plan; the gripper's limits apply to the sum.
   `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never
-slipped further than `tolerance` (1 mm) and never broke: the mean actuator force of both fingers stayed below
-`allowance` times the least grip. A slip or a grip beyond that is the violation that `violated` reports.
+slipped further than `tolerance` (1 mm) and never broke: the mean actuator force of both fingers stayed
+below `allowance` times the least grip. A slip or a grip beyond that is the violation that `violated`
+reports.
 
 ## Info
 
@@ -84,7 +85,8 @@ class Settings(TaskConfig):
         PositiveInterval,
         ends_within(1.0, 100.0),
         setting(
-            "Breaking force over the least grip that holds the object, sampled from this range", "-",
+            "Breaking force over the least grip that holds the object, sampled from this range",
+            "-",
             reset=_ALLOWANCE,
         ),
     ] = (1.5, 2.5)
@@ -119,8 +121,8 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     shares = rng.random(7).tolist()  # drawn always, so that options do not shift later draws
     episode["tolerance"] = settings.tolerance
     episode["steps"] = max(1, round(settings.duration / episode["step_time"].item()))
-    fixed = options.allowance
-    episode["own"][SCRATCH.allowance] = between(settings.allowance, shares[0]) if fixed is None else fixed
+    allowance = dict(options)["allowance"]
+    episode["own"][SCRATCH.allowance] = allowance or between(settings.allowance, shares[0])
     time = settings.settle + settings.lift_off
     episode["support"][:2] = settings.settle, time
     time += PAUSE
@@ -179,7 +181,7 @@ TASK = Task(
     columns=(
         *WRIST_COLUMNS,
         Column(
-            "allowance", 0.0, 100.0, "-", "force at which the object breaks, over the least grip that holds it",
+            "allowance", 0.0, 100.0, "-", "breaking force over the least grip that holds the object",
             f"episode.own[{SCRATCH.allowance}]",
         ),
         Column(

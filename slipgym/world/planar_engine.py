@@ -11,7 +11,7 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym._numba.rows import row_of
 from slipgym.contact.kinds import PATCHES, set_normal
-from slipgym.contact.records import Pad, Pair, Vector
+from slipgym.contact.records import Pad, Pair
 from slipgym.contact.soft_pad import load_pad
 from slipgym.sensors.force_torque import next_sample_read, sample_force_torque
 from slipgym.world.actuator import (

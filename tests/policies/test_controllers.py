@@ -7,7 +7,15 @@ import policies
 from policies.controllers.base import Columns, ObservationIndex
 from policies.controllers.sensing import ConservativePrior
 from slipgym.config import load
-from slipgym.envs import CarryEnv, FragileHoldEnv, HingeEnv, HoldEnv, LinearSlipEnv, PlanarSlipEnv, RotationalSlipEnv
+from slipgym.envs import (
+    CarryEnv,
+    FragileHoldEnv,
+    HingeEnv,
+    HoldEnv,
+    LinearSlipEnv,
+    PlanarSlipEnv,
+    RotationalSlipEnv,
+)
 from slipgym.tasks import find
 
 SOURCES = ("estimated", "true", "nominal")

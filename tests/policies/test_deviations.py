@@ -91,7 +91,9 @@ def test_the_environment_shows_what_the_estimators_state(source):
         assert low * (1 - 1e-6) <= value <= high * (1 + 1e-6) if source == "estimated" else value == 0.0
 
 
-@pytest.mark.parametrize("name", ["hold", "fragile_hold", "carry", "linear_slip", "planar_slip", "rotational_slip", "hinge"])
+@pytest.mark.parametrize(
+    "name", ["hold", "fragile_hold", "carry", "linear_slip", "planar_slip", "rotational_slip", "hinge"]
+)
 def test_controllers_ask_for_them(name):
     policy = policies.make(name)
     env = gym.make(f"slipgym:slipgym/{policy.task}-v0", engine="planar", **policies.modes(policy))
