@@ -10,7 +10,7 @@ from pydantic import Field
 
 from policies.controllers.base import Columns
 from policies.controllers.lifting import LiftingGains, LiftingPolicy
-from slipgym.config.base import Positive
+from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.carry import AHEAD
 
 _NEAR = tuple(f"{1e3 * time:.0f}" for time in AHEAD if time <= 0.1)
@@ -19,7 +19,10 @@ _NEAR = tuple(f"{1e3 * time:.0f}" for time in AHEAD if time <= 0.1)
 class CarryGains(LiftingGains):
     """Gains of `CarryPolicy`."""
 
-    margin: Positive = Field(default=1.2, description="Grip over the least for the planned load [-]")
+    margin: Positive = Field(default=1.15, description="Grip over the least for the planned load [-]")
+    deviations: NonNegative = Field(
+        default=0.5, description="Standard deviations by which mu_s is taken below its estimate [-]"
+    )
 
 
 class CarryPolicy(LiftingPolicy[CarryGains]):
