@@ -13,6 +13,8 @@ ROOM = {  # from pad centre to edge, less the pad's radius [m]
     "slipgym/Hinge-v0": 0.010,
     "slipgym/PlanarSlip-v0": 0.065,
     "slipgym/Hold-v0": 0.065,
+    "slipgym/FragileHold-v0": 0.065,
+    "slipgym/Carry-v0": 0.065,
 }
 SHAPES = {
     "true": (3,),
