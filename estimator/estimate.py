@@ -11,6 +11,11 @@ def confidence_of(square: Any) -> Any:
     return 1.0 / (1.0 + 100.0 * square)
 
 
+def deviation_of(confidence: Any) -> Any:
+    """Relative standard deviation behind a confidence in (0, 1], the inverse of `confidence_of` [-]."""
+    return 0.1 * np.sqrt(1.0 / confidence - 1.0)
+
+
 class Estimate(NamedTuple):
     """Contact properties of one finger after the newest sample.
 

@@ -8,9 +8,10 @@ from typing import TypeVar
 import numpy as np
 from pydantic import Field
 
+from estimator.estimate import deviation_of
 from policies.controllers.base import Columns, State
 from policies.controllers.gains import Fraction, GainPolicy
-from policies.controllers.sensing import relative_deviation, scaled_load, scaled_speed, tangential
+from policies.controllers.sensing import scaled_load, scaled_speed, tangential
 from slipgym.config.base import Frozen, NonNegative, Positive
 
 _STILL = 3
@@ -83,10 +84,10 @@ class LiftingPolicy(GainPolicy[L]):
         still = np.where(np.asarray(moves) == 0.0, still + 1.0, 0.0)
         rests = still > _STILL
         weight, ahead = self._weight(scaled_load(columns, r), old, rests, slides, rest)
-        trust = np.minimum(1.0, columns["confidence_mu_s"] / g.confidence)
-        cautious = columns["mu_s"] * np.exp(
-            -g.deviations * relative_deviation(columns, "mu_s", columns["mu_s"])
-        )
+        confidence = columns["confidence_mu_s"]
+        trust = np.minimum(1.0, confidence / g.confidence)
+        spread = deviation_of(np.clip(confidence, g.confidence, 1.0))
+        cautious = columns["mu_s"] * np.exp(-g.deviations * spread)
         mu = np.where(slides, columns["mu_c"], cautious)
         known = np.maximum(ahead, np.minimum(g.lightest, _RISE * ahead)) / np.maximum(mu, 1e-3)
         force = np.maximum(share * (trust * known + (1.0 - trust) * ahead / g.guess), g.least)

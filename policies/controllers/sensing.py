@@ -96,14 +96,12 @@ class ConservativePrior:
     def hold_lever(self, columns: Columns) -> np.ndarray:
         """As `blend_lever`, with the quantile in place of the estimate, (n,) [m]."""
         value = columns["mu_c"] * columns["r"]
-        return self._lever(
-            columns, value * np.exp(-self.deviations * relative_deviation(columns, "lever", value))
-        )
+        return self._lever(columns, value * np.exp(-self.deviations * _relative(columns, "lever", value)))
 
     def _lever(self, columns: Columns, value: np.ndarray) -> np.ndarray:
         weight, least = self.confidence_weight(columns, "r"), self.mu_c * self.r
         if columns.has("sd_lever"):
-            square = relative_deviation(columns, "lever", columns["mu_c"] * columns["r"]) ** 2
+            square = _relative(columns, "lever", columns["mu_c"] * columns["r"]) ** 2
             known = np.minimum(1.0, confidence_of(square) / self.confidence)
             weight = np.maximum(weight, np.where(columns["confidence_mu_c"] > 0.0, known, 0.0))
         return np.maximum(least, weight * value + (1.0 - weight) * least)
@@ -111,11 +109,11 @@ class ConservativePrior:
     def _quantile(self, columns: Columns, name: str, least: float) -> np.ndarray:
         """The estimate less some of its deviations; not below `least`, unless the estimate is."""
         value = columns[name]
-        cautious = value * np.exp(-self.deviations * relative_deviation(columns, name, value))
+        cautious = value * np.exp(-self.deviations * _relative(columns, name, value))
         return np.maximum(cautious, np.minimum(value, least))
 
 
-def relative_deviation(columns: Columns, name: str, value: np.ndarray) -> np.ndarray:
+def _relative(columns: Columns, name: str, value: np.ndarray) -> np.ndarray:
     """Deviation of a value over the value, (n,); 0 if the environment does not show it."""
     if not columns.has(f"sd_{name}"):
         return np.zeros(len(columns))
