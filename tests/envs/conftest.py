@@ -15,7 +15,11 @@ IDS = tuple(ENVIRONMENTS)
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.fixture(params=IDS)
+SLOW = {"slipgym/FragileHold-v0"}
+"""Tasks that are tested with the slow tests, since Carry's mechanics are the same."""
+
+
+@pytest.fixture(params=[pytest.param(each, marks=[pytest.mark.slow] * (each in SLOW)) for each in IDS])
 def env_id(request) -> str:
     return request.param
 

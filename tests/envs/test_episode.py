@@ -69,7 +69,7 @@ def test_the_smallest_force_drops_the_object(make, env_id):
     assert info["dropped"] is True
     assert info["is_success"] is False
     assert np.hypot(*info["slip"][:2]) > ROOM[env_id]  # a pad has reached an edge
-    assert info["reward_terms"]["drop"] == -100.0
+    assert info["reward_terms"]["drop"] == -1.0
     assert all(step[4]["reward_terms"]["drop"] == 0.0 for step in steps[:-1])
 
 
@@ -97,7 +97,7 @@ def test_info_keeps_its_contract(make, env_id):
     env = make(env_id)
     for info in (env.reset(seed=0)[1], env.step(HARDEST)[4]):
         assert {name: value.shape for name, value in info.items() if name in SHAPES} == SHAPES
-        assert set(info) == {*SHAPES, "reward_terms", "time", "is_success", "dropped"}
+        assert set(info) == {*SHAPES, "reward_terms", "time", "is_success", "violated", "dropped"}
         assert tuple(info["reward_terms"]) == env.task.term_names
         assert type(info["is_success"]) is type(info["dropped"]) is bool
         assert type(info["time"]) is float
@@ -158,11 +158,13 @@ def test_frame_skip_repeats_single_steps(make, env_id):
 def test_frame_skip_stops_at_a_drop(make, env_id):
     env = make(env_id, frame_skip=50)
     env.reset(seed=0)
-    _, reward, terminated, _, info = env.step(LIGHTEST)
-    assert terminated
-    assert info["reward_terms"]["drop"] == -100.0
-    assert info["time"] < 49 / 120
-    assert reward > -200.0  # one drop, not two
+    terminated, info = False, {}
+    while not terminated:  # a support may bear the object at first
+        begun = info.get("time", 0.0)
+        _, reward, terminated, _, info = env.step(LIGHTEST)
+    assert info["reward_terms"]["drop"] == -1.0
+    assert info["time"] - begun < 49 / 120
+    assert reward > -4.0  # one violation and one drop
 
 
 def test_the_friction_source_fills_the_last_columns(make, env_id):

@@ -1,0 +1,58 @@
+"""The controllers that lift and carry: what friction is worth to them, closed loop."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import policies
+from estimator.estimate import confidence_of, deviation_of
+from policies.controllers.no_friction_info import NoFrictionInfo
+from policies.evaluation.batch import play
+from slipgym.tasks import find
+
+N = 60
+
+
+def solved(task, policy, source, **arguments):
+    made = {"friction_source": source, "action_mode": "grip_force", **arguments}
+    envs = gym.make_vec(f"slipgym:{find(task).id}", N, "vector_entry_point", **made)
+    found = play(envs, policy, range(N))
+    envs.close()
+    return found.success.mean(), found.dropped.mean()
+
+
+@pytest.mark.parametrize("task", ["carry", pytest.param("fragile_hold", marks=pytest.mark.slow)])
+def test_friction_decides(task):
+    true, drops = solved(task, policies.make(task), "true")
+    assert true >= 0.95
+    assert drops == 0.0
+    estimated, drops = solved(task, policies.make(task), "estimated")
+    assert estimated >= 0.85
+    assert drops == 0.0
+    assert solved(task, NoFrictionInfo(task), "none")[0] <= 0.6
+    assert solved(task, policies.make(task), "nominal")[0] <= 0.6
+    for force in (3.0, 6.0, 12.0):
+        assert solved(task, policies.make("constant_force", force=force), "none")[0] <= 0.6
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("task", ["carry", "fragile_hold"])
+def test_it_is_so_with_pybullet(task):
+    """Ten episodes with true friction on the other engine."""
+    policy, successes = policies.make(task), 0
+    env = gym.make(f"slipgym:{find(task).id}", friction_source="true")
+    for seed in range(10):
+        observation, info = env.reset(seed=seed)
+        state, over = None, False
+        while not over:
+            action, state = policy.predict(observation, state)
+            observation, _, terminated, truncated, info = env.step(action)
+            over = terminated or truncated
+        successes += info["is_success"]
+    env.close()
+    assert successes == 10
+
+
+def test_a_confidence_is_worth_its_deviation():
+    sizes = np.array([0.0, 0.05, 0.1, 0.7])
+    np.testing.assert_allclose(deviation_of(confidence_of(sizes**2)), sizes, atol=1e-9)
