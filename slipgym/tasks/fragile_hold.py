@@ -10,10 +10,11 @@ are unknown: the mass shows in the load when the support gives way, and friction
 estimator computes it from force, torque and slip velocity when the box slips.
 
 Friction decides this task. mu_c is drawn from 0.15 to 0.8, log-uniformly
-(`tasks.fragile_hold.friction_range`; assumed, from slippery to rubber-like pairs), so that a grip which suits
-one end of the range breaks or drops the box at the other. The force that breaks the box is not observed, since
-a grip just below it would always be right. People solve this task: their grip follows the load from lift-off
-on, in proportion to it and by a factor that suits friction (Johansson and Westling, Exp. Brain Res. 56, 1984).
+(`tasks.fragile_hold.friction_range`; assumed, from slippery to rubber-like pairs), so that a grip which
+suits one end of the range breaks or drops the box at the other. The force that breaks the box is not
+observed, since a grip just below it would always be right. People solve this task: their grip follows the
+load from lift-off on, in proportion to it and by a factor that suits friction (Johansson and Westling, Exp.
+Brain Res. 56, 1984).
 
 The least grip is that with which both pads stick, by the ellipsoidal limit surface: sqrt(f_x^2 + f_y^2 +
 (tau / r)^2) / mu_s, at the largest load per finger of the episode. The load follows from the plan of the
