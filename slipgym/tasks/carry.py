@@ -20,8 +20,6 @@ The least grip is that with which both pads stick, by the ellipsoidal limit surf
 sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s for the load per finger, and at least `gripper.force_min`. The load
 follows from the plan of the wrist and from the disturbances, for a box that never slips.
 
-<<<<<<< HEAD
-=======
 Episodes solved [%] by the best of nine constant grips and by the classic controller without friction in the
 observation, with nominal, estimated and true friction, 200 each on the planar engine
 (`slipgym rank carry --levels`; docs/levels.md says what a level is):
@@ -35,7 +33,6 @@ observation, with nominal, estimated and true friction, 200 each on the planar e
 The controller without friction keeps one guess for all episodes. A policy with a memory could find friction
 out from the slips that it sees, as the estimator does.
 
->>>>>>> tasks
 ## Rewards
 
 The economy is an allowance for the whole episode. It is used up when the sum of the grip force reaches

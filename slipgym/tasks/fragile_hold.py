@@ -10,26 +10,16 @@ are unknown: the mass shows in the load when the support gives way, and friction
 estimator computes it from force, torque and slip velocity when the box slips.
 
 Friction decides this task. mu_c is drawn from 0.15 to 0.8, log-uniformly
-<<<<<<< HEAD
-(`tasks.fragile_hold.friction_range`), so that a grip which suits one end of the range breaks or drops the
-box at the other. Rubber-like fingertips meet such a range between wet or dusty plastic and clean rubber.
-The force that breaks the box is not observed, since a grip just below it would always be right. People
-solve this task: they lift with 10 to 40 % more grip than friction needs (Johansson and Westling, Exp. Brain
-Res. 56, 1984), and find friction out in the first tenths of a second.
-=======
 (`tasks.fragile_hold.friction_range`; assumed, from slippery to rubber-like pairs), so that a grip which
 suits one end of the range breaks or drops the box at the other. The force that breaks the box is not
 observed, since a grip just below it would always be right. People solve this task: their grip follows the
 load from lift-off on, in proportion to it and by a factor that suits friction (Johansson and Westling, Exp.
 Brain Res. 56, 1984).
->>>>>>> tasks
 
 The least grip is that with which both pads stick, by the ellipsoidal limit surface: sqrt(f_x^2 + f_y^2 +
 (tau / r)^2) / mu_s, at the largest load per finger of the episode. The load follows from the plan of the
 wrist and from the disturbances, for a box that never slips.
 
-<<<<<<< HEAD
-=======
 Episodes solved [%] by the best of nine constant grips and by the classic controller without friction in the
 observation, with nominal, estimated and true friction, 200 each on the planar engine
 (`slipgym rank fragile_hold --levels`; docs/levels.md says what a level is):
@@ -43,7 +33,6 @@ observation, with nominal, estimated and true friction, 200 each on the planar e
 The controller without friction keeps one guess for all episodes. A policy with a memory could find friction
 out from the slips that it sees, as the estimator does.
 
->>>>>>> tasks
 ## Starting State
 
 The box (0.2 to 0.5 kg) stands on the support, in a grip of `tasks.fragile_hold.initial_force` (1 N), which
