@@ -50,11 +50,11 @@ class AdaptiveParameters(NoiseParameters):
         0.1, "Spread of the limit surface's shape: 0 is a uniform disc's, 1 the ellipsoid.", "(0, inf)"
     )
     load_exponent0: float = parameter(
-        0.1, "Exponent of the normal force with which mu_c and mu_s are expected to fall.", "[0, 0.5]"
+        0.0, "Exponent of the normal force with which mu_c and mu_s are expected to fall.", "[0, 0.5]"
     )
     sd_load_exponent: float = parameter(0.15, "Spread of this exponent before it is seen.", "(0, 1]")
     radius_exponent0: float = parameter(
-        0.1, "Exponent of the normal force with which r is expected to grow.", "[0, 0.34]"
+        0.0, "Exponent of the normal force with which r is expected to grow.", "[0, 0.34]"
     )
     sd_radius_exponent: float = parameter(0.1, "Spread of this exponent before it is seen.", "(0, 1]")
     sd_gain: float = parameter(
