@@ -17,7 +17,7 @@ COMMANDS = {
     "train": "Train slip-control policies.",
     "evaluate": "Compare policies by the friction they know; test one.",
     "study": "Study what friction information is worth.",
-    "imitate": "Train a network to imitate the controller that knows friction.",
+    "imitate": "Train a network that imitates a controller.",
     "train-estimator": 'Train the network of the estimator "gru".',
     "leaderboard": "Rank the estimators on the same records.",
     "estimate": "Run an estimator on a record of your gripper.",

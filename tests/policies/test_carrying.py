@@ -7,7 +7,7 @@ import pytest
 import policies
 from estimator.estimate import confidence_of, deviation_of
 from policies.controllers.no_friction_info import NoFrictionInfo
-from policies.evaluation.batch import play
+from policies.evaluation.play import play
 from slipgym.tasks import find
 
 N = 60

@@ -217,7 +217,7 @@ def test_planar_slip_follows_the_grasped_point():
     policy = policies.make("planar_slip")
     state = policy.initial_state(1)
     for travel in [(0.0, -0.01, 0.0), *((0.0, -0.01, angle) for angle in np.linspace(0.0, 0.5, 200))]:
-        row = np.zeros((1, 30))
+        row = np.zeros((1, index["confidence_r"] + 1))
         for name, value in zip(
             ("measured_slip_x", "measured_slip_y", "measured_slip_theta"), travel, strict=True
         ):

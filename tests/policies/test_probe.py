@@ -102,7 +102,7 @@ def test_what_the_smallest_grip_holds_is_probed_no_further():
 
 
 def columns(policy, **of_both):
-    row = np.zeros((1, 18 + 4 + 6))
+    row = np.zeros((1, policy.index["confidence_r"] + 1))
     for name, value in of_both.items():
         for finger in (1, 2):
             row[0, policy.index[f"{name}_{finger}"]] = value

@@ -6,6 +6,7 @@ import pytest
 
 import policies
 import slipgym  # noqa: F401
+from policies.controllers.hold import HoldPolicy
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import run_trial, run_trials
 from policies.learned import LearnedPolicy, pretrained
@@ -147,9 +148,12 @@ def described():
     return [column_of(column).model_dump() for column in columns(load(), TASKS["Hold"], "estimated")]
 
 
+MEMORY = len(HoldPolicy().initial_state(1)[0])
+
+
 @pytest.mark.parametrize("history", [0, 2])
 @pytest.mark.parametrize(
-    "residual", [None, {"controller": "hold", "parameters": {}, "reach": 0.3, "memory": 5}]
+    "residual", [None, {"controller": "hold", "parameters": {}, "reach": 0.3, "memory": MEMORY}]
 )
 def test_a_policy_reads_its_columns_by_name_and_ignores_later_ones(policy_folder, history, residual):
     """As one that was trained before the observation had `violated`."""

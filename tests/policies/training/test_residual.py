@@ -102,7 +102,7 @@ def test_a_crafted_file_is_refused(small, tmp_path, monkeypatch):
     run.train(tmp_path / "run", progress=False)
     file = tmp_path / "run" / "policy" / "policy.json"
     for key, value, match in (
-        ("memory", 3, r"is float64 \(32,\), policy.json needs float64 \(33,\)"),
+        ("memory", 3, r"is float64 \(33,\), policy.json needs float64 \(34,\)"),
         ("controller", "os:system", "unknown controller 'os:system'"),
         ("parameters", {"k_x": "rm"}, "parameters.k_x"),
         ("reach", 0.0, "reach"),

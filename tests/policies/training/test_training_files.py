@@ -43,7 +43,7 @@ def test_every_sweep_tries_keys_that_exist():
         (["environment.randomization=trian"], r"did you mean 'train'"),
         (["environment.material=wod"], r"did you mean 'wood'"),
         (["environment.action_mode=grip"], r"action_mode = 'grip': must be one of 'grip_force'"),
-        (["task=Linear"], r"unknown task 'Linear'; valid: hinge"),
+        (["task=Linear"], r"unknown task 'Linear'; valid: carry"),
         (["algorithm=pppo"], r"one of 'ppo', 'recurrent_ppo', 'sac', 'tqc'"),
         (["budget"], r"must be key=value"),
         (["budget={"], r"--set budget"),
