@@ -71,7 +71,8 @@ def test_graph_and_policy_remember_alike(policy_folder, lstm, tmp_path):
 
 
 def test_graph_changes_a_controller_as_the_policy_does(policy_folder, tmp_path):
-    residual = {"controller": "hold", "parameters": {}, "reach": 0.3, "memory": 5}
+    memory = len(policies.make("hold").initial_state(1)[0])
+    residual = {"controller": "hold", "parameters": {}, "reach": 0.3, "memory": memory}
     policy = LearnedPolicy(folder := policy_folder(residual=residual))
     graph, controller = session(folder, tmp_path / "policy.onnx"), policies.make("hold")
     state, own, rng, changes = None, None, np.random.default_rng(0), []
