@@ -15,12 +15,21 @@ IDS = tuple(ENVIRONMENTS)
 ROOT = Path(__file__).resolve().parents[2]
 
 
-SLOW = {"slipgym/FragileHold-v0"}
-"""Tasks that are tested with the slow tests, since Carry's mechanics are the same."""
+CARRYING = {"slipgym/FragileHold-v0", "slipgym/Carry-v0"}
+"""Tasks whose object begins on a support, whose wrist moves, and which draw their friction from a range.
+
+What is tested for every task is tested for these with the slow tests; tests/tasks has their own.
+"""
 
 
-@pytest.fixture(params=[pytest.param(each, marks=[pytest.mark.slow] * (each in SLOW)) for each in IDS])
+@pytest.fixture(params=[pytest.param(each, marks=[pytest.mark.slow] * (each in CARRYING)) for each in IDS])
 def env_id(request) -> str:
+    return request.param
+
+
+@pytest.fixture(params=[each for each in IDS if each not in CARRYING])
+def hanging_id(request) -> str:
+    """Ids of tasks whose object hangs in the grip from the start and is of a material."""
     return request.param
 
 

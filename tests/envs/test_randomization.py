@@ -52,8 +52,8 @@ def test_same_bits_in_another_process_and_after_other_episodes(python):
     assert python(*arguments) == python(*arguments, "--disturbed")
 
 
-def test_scale_goes_from_the_configuration_to_the_full_ranges(make, env_id):
-    env, plain = make(env_id, randomization="eval_ood"), make(env_id)
+def test_scale_goes_from_the_configuration_to_the_full_ranges(make, hanging_id):
+    env, plain = make(hanging_id, randomization="eval_ood"), make(hanging_id)
     plain.reset(seed=0)
     drawn = {}
     for scale in (1.0, 0.5, 0.0, None):
@@ -97,8 +97,8 @@ def test_options_win_and_shift_no_other_draw(make, env_id, option):
         assert info["drawn"]["mass"] == value
 
 
-def test_draws_spread_over_the_ranges(make, env_id):
-    env = make(env_id, randomization="train")
+def test_draws_spread_over_the_ranges(make, hanging_id):
+    env = make(hanging_id, randomization="train")
     ranges = env.randomization.of(env.task.key)
     drawn = [env.reset(seed=seed)[1]["drawn"] for seed in range(60)]
     for name in ("mu_c", "lag", "slip_latency", "bias_scale", "radius_scale", "com_z"):
@@ -192,10 +192,10 @@ def test_a_patch_of_other_friction_lies_where_it_was_drawn(make):
     assert {True, False} == set(inside)
 
 
-def test_a_heavier_object_is_carried_and_weighs_so_in_the_engine(make, env_id):
+def test_a_heavier_object_is_carried_and_weighs_so_in_the_engine(make, hanging_id):
     values = sure("mass_change", time=0.5, factor=1.5)
-    env = make(env_id, randomization=values, sensors="ideal")
-    quiet = {} if "Hold" not in env_id else {"shake_amplitude": 0.0, "shake_pitch": 0.0}
+    env = make(hanging_id, randomization=values, sensors="ideal")
+    quiet = {} if "Hold" not in hanging_id else {"shake_amplitude": 0.0, "shake_pitch": 0.0}
     env.reset(seed=0, options={"object_mass": 0.1, "initial_force": 20.0, **quiet})
     loads, masses = [], []
     for _ in range(85):
@@ -204,17 +204,17 @@ def test_a_heavier_object_is_carried_and_weighs_so_in_the_engine(make, env_id):
         world = env.simulation.world
         masses.append(pybullet.getDynamicsInfo(world.body, -1, world.client)[0])
     assert masses == [0.1] * 60 + [pytest.approx(0.15)] * 25
-    if "Hinge" not in env_id:
+    if "Hinge" not in hanging_id:
         assert loads[55] == pytest.approx(0.981, rel=0.02)
         assert loads[-1] == pytest.approx(1.5 * 0.981, rel=0.02)
     env.reset(seed=0, options={"object_mass": 0.1})
     assert pybullet.getDynamicsInfo(env.simulation.world.body, -1, env.simulation.world.client)[0] == 0.1
 
 
-def test_a_push_carries_its_impulse_in_its_direction(make, env_id):
+def test_a_push_carries_its_impulse_in_its_direction(make, hanging_id):
     values = sure("push", time=0.2, duration=0.05, impulse=0.01, direction=math.pi / 2, lever=0.02)
-    env = make(env_id, randomization=values)
-    env.reset(seed=0, options={"poke_impulse": (0.0, 0.0)} if "Hold" in env_id else None)
+    env = make(hanging_id, randomization=values)
+    env.reset(seed=0, options={"poke_impulse": (0.0, 0.0)} if "Hold" in hanging_id else None)
     impulse = np.zeros(3)
     for _ in range(60):
         env.step(FIRM)
@@ -222,18 +222,18 @@ def test_a_push_carries_its_impulse_in_its_direction(make, env_id):
     np.testing.assert_allclose(impulse, [0.0, 0.01, 0.0002], atol=1e-12)
 
 
-def test_a_drawn_shake_moves_the_wrist_as_far_as_it_says(make, env_id):
-    env = make(env_id, randomization=sure("shake", amplitude=0.002, pitch=0.01, frequency=2.0))
-    quiet = {"shake_amplitude": 0.0, "shake_pitch": 0.0} if "Hold" in env_id else {}
-    env.reset(seed=0, options=quiet | ({"turn": 0.01} if "Hinge" in env_id else {}))
+def test_a_drawn_shake_moves_the_wrist_as_far_as_it_says(make, hanging_id):
+    env = make(hanging_id, randomization=sure("shake", amplitude=0.002, pitch=0.01, frequency=2.0))
+    quiet = {"shake_amplitude": 0.0, "shake_pitch": 0.0} if "Hold" in hanging_id else {}
+    env.reset(seed=0, options=quiet | ({"turn": 0.01} if "Hinge" in hanging_id else {}))
     wrist = []
     for _ in range(300):
         env.step(np.float32([0.5]))
         wrist.append(env.simulation.plant.world["wrist"][0].copy())
     swing = np.ptp(wrist[60:], axis=0)
     np.testing.assert_allclose(swing[:2], 0.004, rtol=0.05)
-    assert swing[2] == pytest.approx(0.02, rel=0.05 if "Hinge" not in env_id else 0.6)
-    if "Hinge" in env_id:  # a drawn shake is not the agent straying from the script
+    assert swing[2] == pytest.approx(0.02, rel=0.05 if "Hinge" not in hanging_id else 0.6)
+    if "Hinge" in hanging_id:  # a drawn shake is not the agent straying from the script
         assert env.simulation.episode["own"][0, 0] == pytest.approx(wrist[-1][2], abs=1e-3)
 
 

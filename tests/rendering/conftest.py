@@ -11,7 +11,13 @@ from slipgym.registration import ENVIRONMENTS
 SLIDE = "slipgym/LinearSlip-v0"
 
 
-@pytest.fixture(params=ENVIRONMENTS)
+CARRYING = {"slipgym/FragileHold-v0", "slipgym/Carry-v0"}
+"""Tasks that are drawn in the slow tests: they look like Hold."""
+
+
+@pytest.fixture(
+    params=[pytest.param(each, marks=[pytest.mark.slow] * (each in CARRYING)) for each in ENVIRONMENTS]
+)
 def env_id(request) -> str:
     return request.param
 

@@ -44,7 +44,7 @@ def test_pictures_repeat(make, env_id):
 
 @pytest.mark.parametrize(
     ("mode", "env_id"),
-    [("rgb_array", name) for name in IDS] + [("depth_array", IDS[0]), ("human", IDS[0])],
+    [("rgb_array", name) for name in IDS[:5]] + [("depth_array", IDS[0]), ("human", IDS[0])],
 )
 def test_rendering_does_not_change_the_simulation(make, env_id, mode, hidden_screen):
     def play(mode: str | None) -> list[str]:
