@@ -44,11 +44,18 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval, ends_within
 from slipgym.config.task import MassRange, TaskConfig, setting
+from slipgym.tasks.carrying import rehearse, spend
 from slipgym.tasks.disturbance import POKES_MAX
-from slipgym.tasks.episode import between, slip_distance, track_slip, whole_steps
+from slipgym.tasks.episode import between, scratch, slip_distance, track_slip, whole_steps
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
 from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
+
+SCRATCH = scratch(ratio=1, begin=1, least=1, allowed=1, spent=1, counted=1)
+"""`ratio`: mean grip allowed over the least grip, 0: any is allowed [-]; `begin`: control steps before it
+counts; `least`: least grip that holds the object through the episode [N]; `allowed`: mean grip allowed [N];
+`spent`: sum of the grip over the control steps that count, so far [N]; `counted`: the step up to which it
+goes."""
 
 
 class Settings(TaskConfig):
@@ -82,11 +89,25 @@ class Settings(TaskConfig):
         setting("The time between pokes is sampled from this range", "s", reset=True),
     ] = (0.8, 1.6)
     poke_duration: Annotated[Positive, setting("Length of a poke", "s", le=10.0)] = 0.02
+    grip_limit: Annotated[
+        Positive | None,
+        setting(
+            "Mean grip allowed for success, over the least grip that holds the object; null: any",
+            "-",
+            reset=True,
+            ge=1.0,
+            le=100.0,
+        ),
+    ] = None
+    grip_limit_start: Annotated[
+        NonNegative, setting("Time from which the grip counts for `grip_limit`", "s", reset=True, le=600.0)
+    ] = 1.0
 
 
 def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
     """Fill one EPISODE row: sample the shaking and the pokes."""
     episode["tolerance"] = settings.tolerance
+    episode["own"][SCRATCH.ratio] = settings.grip_limit or 0.0
     amplitudes = settings.shake_amplitude, settings.shake_amplitude, settings.shake_pitch
     offsets, times = (
         (-settings.poke_offset, settings.poke_offset),
@@ -94,6 +115,8 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     )
     ranges = settings.shake_frequency, settings.poke_interval, settings.poke_impulse, offsets
     disturb_hold(rng.random(6 + 4 * POKES_MAX), amplitudes, ranges, times, episode)
+    begin = round(settings.grip_limit_start / episode["step_time"].item())
+    episode["own"][SCRATCH.begin] = min(begin, episode["steps"].item())
 
 
 @compiled
@@ -131,9 +154,25 @@ def disturb_hold(shares, amplitudes, ranges, times, episode):
         episode.pushes = k + 1
 
 
+def track(episode, world):
+    """Compute the least grip at the start, and store the largest slip."""
+    own = episode.own
+    if episode.step == 0 and own[SCRATCH.ratio] > 0.0:
+        own[SCRATCH.least], _, _ = rehearse(episode, world)
+        own[SCRATCH.allowed] = own[SCRATCH.ratio] * own[SCRATCH.least]
+        own[SCRATCH.spent], own[SCRATCH.counted] = 0.0, own[SCRATCH.begin]
+    episode.reference[0], episode.reference[1] = own[SCRATCH.allowed], own[SCRATCH.least]
+    track_slip(episode, world)
+
+
 def violated(episode, world, fingers):
-    """Whether the object slid far."""
-    return episode.largest_slip > episode.tolerance
+    """Whether the object slid far, or the grip has used up what `grip_limit` allows."""
+    own = episode.own
+    far = episode.largest_slip > episode.tolerance
+    if own[SCRATCH.ratio] == 0.0:
+        return far
+    spend(episode, fingers, SCRATCH.spent, SCRATCH.counted)
+    return far or own[SCRATCH.spent] > (episode.steps - own[SCRATCH.begin]) * own[SCRATCH.allowed]
 
 
 @term(scale=0.5)
@@ -146,7 +185,7 @@ TASK = Task(
     id="slipgym/Hold-v0",
     settings=Settings,
     start=start,
-    track=track_slip,
+    track=track,
     violated=violated,
     terms=(still, effort._replace(scale=0.5), smoothness, *OUTCOME),
     columns=(
