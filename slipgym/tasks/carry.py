@@ -83,6 +83,7 @@ from slipgym.tasks.carrying import (
     move_time,
     planned_acceleration,
     rehearse,
+    spend,
     wrist_velocity,
 )
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
@@ -182,9 +183,7 @@ def track(episode, world):
 def violated(episode, world, fingers):
     """Whether the object slid far, or the grip has used up what the economy allows."""
     own = episode.own
-    if episode.step > own[SCRATCH.counted]:
-        own[SCRATCH.counted] = episode.step
-        own[SCRATCH.spent] += mean_force(fingers)
+    spend(episode, fingers, SCRATCH.spent, SCRATCH.counted)
     return (
         episode.largest_slip > episode.tolerance or own[SCRATCH.spent] > episode.steps * own[SCRATCH.allowed]
     )

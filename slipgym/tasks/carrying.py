@@ -15,6 +15,7 @@ from slipgym._numba.compiled import compiled
 from slipgym.tasks.disturbance import friction_factor, load
 from slipgym.tasks.episode import drive_wrist
 from slipgym.tasks.task import Column
+from slipgym.world.actuator import mean_force
 from slipgym.world.object_motion import wrench_at_rest
 from slipgym.world.records import WORLD
 
@@ -117,6 +118,21 @@ def rehearse(episode, world):
             plan.wrist_velocity[a] += 0.5 * dt * plan.wrist_acceleration[a]
     episode.step = 0
     return peak, total / episode.steps, fastest
+
+
+@compiled
+def spend(episode, fingers, spent, counted):
+    """Add the grip of this control step, once, to a sum over the steps so far.
+
+    Args:
+        episode: EPISODE record.
+        fingers: FINGER (2,).
+        spent: Index in `episode.own` of the sum [N].
+        counted: Index in `episode.own` of the step up to which it goes.
+    """
+    if episode.step > episode.own[counted]:
+        episode.own[counted] = episode.step
+        episode.own[spent] += mean_force(fingers)
 
 
 WRIST_COLUMNS = (

@@ -7,6 +7,14 @@ pushes act on the box. The box must not slip, and the grip force should be as sm
 friction are unknown: an estimator computes friction from force, torque and slip velocity when the box slips.
 The task follows the holding task of Waltersson and Karayiannidis (arXiv 2410.19660).
 
+By default a firm grip solves every episode. With `grip_limit` success asks for an economical grip, too: the
+mean grip may be at most `grip_limit` times the least grip, the smallest constant one with which both pads
+stick, sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s by the ellipsoidal limit surface. It counts the whole episode:
+shaking, pushes, and falls of friction and changes of mass within it; friction that varies over the surface is
+left out. `grip_limit_start` leaves the beginning out of the mean, so that a policy can find friction out. The
+mean counts, and not the peak, so that the grip may answer a push for a moment. Neither the least grip nor
+the mean allowed is observed. The levels "standard" and "hard" set `grip_limit`, to 1.75 and 1.5.
+
 ## Starting State
 
 The box hangs at rest in a grip of `tasks.hold.initial_force` (15 N), its grasp point between the pads.
@@ -23,11 +31,14 @@ the gripper's limits apply to the sum.
   `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped and never
-slipped further than `tolerance` (2 mm). A slip further than that is the violation that `violated` reports.
+slipped further than `tolerance` (2 mm); with `grip_limit`, the mean actuator force of both fingers from
+`grip_limit_start` (1 s) to the end was also at most `grip_limit` times the least grip. A slip further than
+the tolerance is the violation that `violated` reports, and so is a grip whose sum over the control steps
+exceeds what the whole episode allows.
 
 ## Info
 
-| `reference` | zeros, (3,) |
+| `reference` | with `grip_limit` the mean grip allowed, least grip, and 0, (3,) [N]; else zeros |
 
 ## Version History
 
@@ -44,11 +55,19 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval, ends_within
 from slipgym.config.task import MassRange, TaskConfig, setting
+from slipgym.tasks.carrying import rehearse, spend
 from slipgym.tasks.disturbance import POKES_MAX
-from slipgym.tasks.episode import between, slip_distance, track_slip, whole_steps
+from slipgym.tasks.episode import between, scratch, slip_distance, track_slip, whole_steps
+from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
 from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
+
+SCRATCH = scratch(ratio=1, begin=1, least=1, allowed=1, spent=1, counted=1)
+"""`ratio`: mean grip allowed over the least grip, 0: any is allowed [-]; `begin`: control steps before it
+counts; `least`: least grip that holds the object through the episode [N]; `allowed`: mean grip allowed [N];
+`spent`: sum of the grip over the control steps that count, so far [N]; `counted`: the step up to which it
+goes."""
 
 
 class Settings(TaskConfig):
@@ -82,11 +101,25 @@ class Settings(TaskConfig):
         setting("The time between pokes is sampled from this range", "s", reset=True),
     ] = (0.8, 1.6)
     poke_duration: Annotated[Positive, setting("Length of a poke", "s", le=10.0)] = 0.02
+    grip_limit: Annotated[
+        Positive | None,
+        setting(
+            "Mean grip allowed for success, over the least grip that holds the object; null: any",
+            "-",
+            reset=True,
+            ge=1.0,
+            le=100.0,
+        ),
+    ] = None
+    grip_limit_start: Annotated[
+        NonNegative, setting("Time from which the grip counts for `grip_limit`", "s", reset=True, le=600.0)
+    ] = 1.0
 
 
 def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
     """Fill one EPISODE row: sample the shaking and the pokes."""
     episode["tolerance"] = settings.tolerance
+    episode["own"][SCRATCH.ratio] = settings.grip_limit or 0.0
     amplitudes = settings.shake_amplitude, settings.shake_amplitude, settings.shake_pitch
     offsets, times = (
         (-settings.poke_offset, settings.poke_offset),
@@ -94,6 +127,8 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     )
     ranges = settings.shake_frequency, settings.poke_interval, settings.poke_impulse, offsets
     disturb_hold(rng.random(6 + 4 * POKES_MAX), amplitudes, ranges, times, episode)
+    begin = round(settings.grip_limit_start / episode["step_time"].item())
+    episode["own"][[SCRATCH.begin, SCRATCH.counted]] = min(begin, episode["steps"].item())
 
 
 @compiled
@@ -131,9 +166,24 @@ def disturb_hold(shares, amplitudes, ranges, times, episode):
         episode.pushes = k + 1
 
 
+def track(episode, world):
+    """Compute the least grip at the start, and store the largest slip."""
+    own = episode.own
+    if episode.step == 0 and own[SCRATCH.ratio] > 0.0:
+        own[SCRATCH.least], _, _ = rehearse(episode, world)
+        own[SCRATCH.allowed] = own[SCRATCH.ratio] * own[SCRATCH.least]
+    episode.reference[0], episode.reference[1] = own[SCRATCH.allowed], own[SCRATCH.least]
+    track_slip(episode, world)
+
+
 def violated(episode, world, fingers):
-    """Whether the object slid far."""
-    return episode.largest_slip > episode.tolerance
+    """Whether the object slid far, or the grip has used up what `grip_limit` allows."""
+    own = episode.own
+    far = episode.largest_slip > episode.tolerance
+    if own[SCRATCH.ratio] == 0.0:
+        return far
+    spend(episode, fingers, SCRATCH.spent, SCRATCH.counted)
+    return far or own[SCRATCH.spent] > (episode.steps - own[SCRATCH.begin]) * own[SCRATCH.allowed]
 
 
 @term(scale=0.5)
@@ -146,7 +196,7 @@ TASK = Task(
     id="slipgym/Hold-v0",
     settings=Settings,
     start=start,
-    track=track_slip,
+    track=track,
     violated=violated,
     terms=(still, effort._replace(scale=0.5), smoothness, *OUTCOME),
     columns=(
@@ -164,5 +214,6 @@ TASK = Task(
         TIME_LEFT,
         VIOLATED,
     ),
+    motion=Motion(sign=0.0),
     page=__doc__,
 )  # fmt: skip
