@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from policies.evaluation.frames import groups
-from policies.evaluation.plots.allowed import plot_allowed
+from policies.evaluation.plots.allowed import Limited, plot_allowed
 from policies.evaluation.plots.errors import plot_errors
 from policies.evaluation.plots.grip import plot_grip
 from policies.evaluation.plots.style import STYLE, styled
@@ -30,19 +30,27 @@ _OUTCOME: dict[str, tuple[str, Callable[[pd.DataFrame], Figure]]] = {
         "outcome",
         partial(
             plot_allowed,
-            across=("largest_slip_mm", "largest slip [mm]"),
-            up=("largest_tilt_deg", "largest tilt [°]"),
+            across=Limited("largest_slip_mm", "largest slip [mm]", "tolerance_mm"),
+            up=Limited("largest_tilt_deg", "largest tilt [°]", "tolerance_deg"),
         ),
     ),
     "PlanarSlip": (
         "outcome",
         partial(
             plot_allowed,
-            across=("final_error_mm", "final distance to the target [mm]"),
-            up=("final_error_abs_deg", "final error in theta, size [°]"),
+            across=Limited("final_error_mm", "final distance to the target [mm]", "tolerance_mm"),
+            up=Limited("final_error_abs_deg", "final error in theta, size [°]", "tolerance_deg"),
         ),
     ),
     "Hold": ("grip", plot_grip),
+    "FragileHold": (
+        "outcome",
+        partial(
+            plot_allowed,
+            across=Limited("largest_slip_mm", "largest slip [mm]", "tolerance_mm"),
+            up=Limited("peak_force_ratio", "largest grip / breaking force", 1.0),
+        ),
+    ),
 }
 """Task -> name and figure of how its trials ended, where it is not the final error alone."""
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -15,29 +17,44 @@ _FARTHEST = 4.0
 """End of an axis, in what is allowed; what lies beyond is drawn there."""
 
 
-def plot_allowed(trials: pd.DataFrame, across: tuple[str, str], up: tuple[str, str]) -> Figure:
+class Limited(NamedTuple):
+    """A measure that has to stay within what is allowed."""
+
+    column: str
+    """Its column in the table of trials."""
+    label: str
+    """Its label."""
+    allowed: str | float
+    """What is allowed: a column, or a number."""
+
+    def most(self, trials: pd.DataFrame) -> float:
+        """What is allowed in the trials."""
+        return float(values(trials, self.allowed).max()) if isinstance(self.allowed, str) else self.allowed
+
+
+def plot_allowed(trials: pd.DataFrame, across: Limited, up: Limited) -> Figure:
     """A panel for each friction choice: a measure over another, and the box of what is allowed.
 
     Trials beyond `_FARTHEST` times what is allowed are drawn at the edge.
 
     Args:
         trials: The table of trials of one policy.
-        across: Column of the measure in mm, and its label.
-        up: Column of the measure in degrees, and its label.
+        across: Measure along the horizontal axis.
+        up: Measure along the vertical axis.
     """
     choices = distinct(trials, "friction")
     figure = Figure(figsize=(max(4.0, 2.7 * len(choices)), 3.2))
     panels = figure.subplots(1, len(choices), sharex=True, sharey=True, squeeze=False)[0]
-    slide, tilt = (values(trials, f"tolerance_{unit}").max() for unit in ("mm", "deg"))
-    ends = _end(trials, across[0], slide), _end(trials, up[0], tilt)
+    width, height = across.most(trials), up.most(trials)
+    ends = _end(trials, across.column, width), _end(trials, up.column, height)
     for axes, choice in zip(panels, choices, strict=True):
-        axes.add_patch(Rectangle((0.0, 0.0), slide, tilt, color=STYLE.band, linewidth=0))
+        axes.add_patch(Rectangle((0.0, 0.0), width, height, color=STYLE.band, linewidth=0))
         group = where(trials, friction=choice)
         for success, colour, marker in ((True, _GOOD, "o"), (False, _BAD, "X")):
             some = where(group, success=success)
             axes.scatter(
-                np.minimum(values(some, across[0]), ends[0]),
-                np.minimum(values(some, up[0]), ends[1]),
+                np.minimum(values(some, across.column), ends[0]),
+                np.minimum(values(some, up.column), ends[1]),
                 s=18,
                 clip_on=False,
                 color=colour,
@@ -52,10 +69,10 @@ def plot_allowed(trials: pd.DataFrame, across: tuple[str, str], up: tuple[str, s
         axes.set_title(f"friction: {choice}")
     panels[0].set_xlim(0.0, ends[0])
     panels[0].set_ylim(0.0, ends[1])
-    panels[0].set_ylabel(up[1])
-    note(panels[0], slide, tilt, "allowed ", STYLE.muted, ha="right", va="bottom")
-    beyond = values(trials, across[0]).max() > ends[0] or values(trials, up[0]).max() > ends[1]
-    figure.supxlabel(across[1] + ("; at the edge: beyond" if beyond else ""), fontsize=9.0)
+    panels[0].set_ylabel(up.label)
+    note(panels[0], width, height, "allowed ", STYLE.muted, ha="right", va="bottom")
+    beyond = values(trials, across.column).max() > ends[0] or values(trials, up.column).max() > ends[1]
+    figure.supxlabel(across.label + ("; at the edge: beyond" if beyond else ""), fontsize=9.0)
     return figure
 
 
