@@ -39,6 +39,8 @@ CHANGES = {
     "poke_impulse": (0.2, 0.3),
     "poke_interval": (0.01, 0.02),
     "economy": 1.2,
+    "grip_limit": 1.5,
+    "grip_limit_start": 0.5,
     "allowance": (1.1, 1.2),
     "lift_off": 0.5,
     "acceleration": (1.0, 2.0),
@@ -56,11 +58,14 @@ def test_an_option_changes_its_episode_and_no_other(make, env_id, play, name):
     env = make(env_id, randomization="train" if name == "randomization_scale" else "none")
     if name not in env.task.options.model_fields:
         pytest.skip("not an option of this task")
-    late = name.startswith(("poke", "tilt")) or "Carry" in env_id  # no tilt or slip before the wrist moves
-    steps = 200 if late else 20
-    plain = play(env, steps=steps)
-    assert play(env, steps=steps, options={name: CHANGES[name]}) != plain
-    assert play(env, steps=steps) == plain
+    late = (
+        name.startswith(("poke", "tilt", "grip_limit")) or "Carry" in env_id
+    )  # no tilt or slip before the wrist moves
+    steps = 900 if name == "grip_limit_start" else 200 if late else 20
+    others = {"grip_limit": 1.5} if name == "grip_limit_start" else {}
+    plain = play(env, steps=steps, options=others)
+    assert play(env, steps=steps, options={**others, name: CHANGES[name]}) != plain
+    assert play(env, steps=steps, options=others) == plain
 
 
 @pytest.mark.parametrize(("name", "column"), [("mu_s", 0), ("mu_c", 1), ("r", 2)])

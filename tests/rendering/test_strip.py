@@ -65,7 +65,7 @@ SLIP = np.array([0.003, -0.004, 0.5])
         ("LinearSlip", "slid down [mm]", 4.0, 500.0),
         ("RotationalSlip", "turned by gravity [°]", -np.degrees(0.5), np.degrees(0.5)),
         ("Hinge", "turned in the grip [°]", np.degrees(0.5), -np.degrees(0.5)),
-        ("Hold", "slid [mm]", 5.0, 500.0),
+        ("Hold", "slid [mm]", 5.0, 0.0),
     ],
 )
 def test_the_motion_of_each_task(task, title, path, target):
