@@ -55,12 +55,12 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval, ends_within
 from slipgym.config.task import MassRange, TaskConfig, setting
-from slipgym.tasks.carrying import rehearse, spend
+from slipgym.tasks.carrying import WRIST_COLUMNS, rehearse, spend
 from slipgym.tasks.disturbance import POKES_MAX
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip, whole_steps
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
-from slipgym.tasks.task import Column, Task, term
+from slipgym.tasks.task import Task, term
 from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
 
 SCRATCH = scratch(ratio=1, begin=1, least=1, allowed=1, spent=1, counted=1)
@@ -200,17 +200,7 @@ TASK = Task(
     violated=violated,
     terms=(still, effort._replace(scale=0.5), smoothness, *OUTCOME),
     columns=(
-        Column(
-            "wrist_velocity_x", -2.0, 2.0, "m/s", "commanded wrist velocity along world x",
-            "world.wrist_velocity[0]",
-        ),
-        Column(
-            "wrist_velocity_z", -2.0, 2.0, "m/s", "commanded wrist velocity along world z",
-            "world.wrist_velocity[1]",
-        ),
-        Column(
-            "wrist_pitch_rate", -10.0, 10.0, "rad/s", "commanded wrist pitch rate", "world.wrist_velocity[2]"
-        ),
+        *WRIST_COLUMNS,
         TIME_LEFT,
         VIOLATED,
     ),
