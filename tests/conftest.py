@@ -9,6 +9,14 @@ MANY = 1000
 """Tests from which it pays: a few may need none of it."""
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        for mark in item.iter_markers("quick_cases"):
+            if not any(item.name.endswith(f"[{case}]") for case in mark.args):
+                item.add_marker("slow")
+
+
 def pytest_collection_finish(session: pytest.Session) -> None:
     worker = getattr(session.config, "workerinput", {}).get("workerid")
     if len(session.items) < MANY or worker not in ("gw0", "gw1"):

@@ -12,7 +12,7 @@ Examples:\n
 \b
   slipgym evaluate --demo
   slipgym evaluate linear_slip hold --jobs 2
-  slipgym evaluate hold --trials 20 --friction-source estimated --friction-source true
+  slipgym evaluate hold --trials 20 --level hard --friction-source estimated --friction-source true
   slipgym evaluate --policy hold --trials 20 --set friction_source=true engine=planar
   slipgym evaluate my_experiment.yaml --seed 1 --output /tmp/runs
 \n
@@ -41,6 +41,9 @@ def main(
     ] = None,
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     seed: Annotated[int | None, typer.Option(help="Seed instead of the experiment's.")] = None,
+    level: Annotated[
+        str | None, typer.Option(help="Level of difficulty instead of the experiment's.", show_default=False)
+    ] = None,
     policy: Annotated[
         str | None,
         typer.Option(
@@ -64,6 +67,8 @@ def main(
     if policy is not None:
         if demo or experiments:
             raise typer.BadParameter("give experiments or --policy")
+        if level is not None:
+            raise typer.BadParameter(f"with --policy: --set level={level}")
         typer.echo(_outcome(policy, trials or 100, seed, task, set_ or []))
         return
     from policies import evaluation
@@ -73,7 +78,7 @@ def main(
         raise typer.BadParameter(f"give experiments ({known}, or YAML files) or --demo")
     try:
         chosen = [
-            evaluation.narrowed(evaluation.load_experiment(name), trials, seed, friction_source or ())
+            evaluation.narrowed(evaluation.load_experiment(name), trials, seed, friction_source or (), level)
             for name in experiments or ["demo"]
         ]
     except (ValueError, FileNotFoundError) as error:

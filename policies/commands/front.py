@@ -20,6 +20,7 @@ COMMANDS = {
     "imitate": "Train a network that imitates a controller.",
     "train-estimator": 'Train the network of the estimator "gru".',
     "leaderboard": "Rank the estimators on the same records.",
+    "policy-leaderboard": "Rank policies on the same episodes.",
     "estimate": "Run an estimator on a record of your gripper.",
     "record": "Write what a finger's sensors read in an episode.",
     "reproduce": "Reproduce the paper's analyses.",

@@ -7,8 +7,7 @@ is tuned to the distribution of episodes, which nobody could do for a single new
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import gymnasium as gym
 import numpy as np
@@ -17,7 +16,7 @@ from tqdm import tqdm
 from policies.controllers.constant_force import ConstantForcePolicy
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.plan import seed
-from policies.evaluation.play import play
+from policies.evaluation.play import Played, play
 from slipgym.tasks import find
 
 CANDIDATES = 24
@@ -26,18 +25,13 @@ _SELECTION_SEED = 1000
 """Added to the seed of an experiment: the force is chosen on other episodes than those it is evaluated on."""
 
 
-@dataclass(frozen=True)
-class Outcomes:
-    """How n episodes with a constant force went; arrays (n,)."""
+class Outcomes(NamedTuple):
+    """How episodes with a constant force went."""
 
     force: float
     """The command, per finger [N]."""
-    success: np.ndarray
-    """Whether the task succeeded."""
-    dropped: np.ndarray
-    """Whether the object was dropped."""
-    reward: np.ndarray
-    """Sum of rewards."""
+    played: Played
+    """The episodes."""
 
 
 def best_force(experiment: Experiment, candidates: int = CANDIDATES, progress: bool = True) -> float:
@@ -56,7 +50,7 @@ def best_force(experiment: Experiment, candidates: int = CANDIDATES, progress: b
     gripper = experiment.environment_config().gripper
     forces = np.geomspace(gripper.force_min, gripper.force_max, candidates).round(2)
     found = run_constant(chosen, forces.tolist(), progress)
-    return max(found, key=lambda one: (one.success.mean(), one.reward.mean())).force
+    return max(found, key=lambda one: (one.played.success.mean(), one.played.reward.mean())).force
 
 
 def run_constant(experiment: Experiment, forces: Sequence[float], progress: bool = True) -> list[Outcomes]:
@@ -81,6 +75,7 @@ def run_constant(experiment: Experiment, forces: Sequence[float], progress: bool
         friction_source="none",
         sensors=experiment.sensors,
         randomization=experiment.randomization,
+        level=experiment.level,
         config=dict(experiment.config),
     )
     try:
@@ -95,7 +90,7 @@ def _run(
 ) -> Outcomes:
     policy = ConstantForcePolicy(force, dict(experiment.config))
     seeds, options = zip(*rows, strict=True)
-    return Outcomes(force, *play(envs, policy, seeds, options))
+    return Outcomes(force, play(envs, policy, seeds, options))
 
 
 def _options(material: str, options: Mapping[str, Any]) -> dict[str, Any]:

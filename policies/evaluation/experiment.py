@@ -16,6 +16,8 @@ from policies.task_names import canonical
 from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen, as_tuple
 from slipgym.config.errors import unknown
+from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
+from slipgym.config.level import load_level
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR, ENGINES, FRICTION_SOURCES, one_of
 from slipgym.tasks import configure, find
 from slipgym.tasks.configure import recorded
@@ -93,6 +95,9 @@ class Experiment(Frozen):
     randomization: str | Mapping[str, Any] = Field(
         default="none", description="What is drawn per episode: a preset, a file or a mapping [-]"
     )
+    level: str | Mapping[str, Any] = Field(
+        default=DEFAULT_LEVEL, description="Level of difficulty: a name, a file or a mapping [-]"
+    )
     frame_skip: Count | None = Field(
         default=None,
         description="Control steps per action; null: as of the learned policies, or 1 [-]",
@@ -116,6 +121,7 @@ class Experiment(Frozen):
             if len(set(titles)) < len(titles):
                 raise ValueError(f"{kind} needs distinct labels, got {', '.join(titles)}")
         configuration.load_randomization(self.randomization)
+        load_level(self.level, find(self.task).key)
         known = self.environment_config().materials
         for material in self.materials:
             if material not in ("random", *known):
@@ -143,7 +149,8 @@ class Experiment(Frozen):
     def recorded(self) -> dict[str, Any]:
         """Configuration and settings of the environment as plain data, in the shape of overrides."""
         task = find(self.task)
-        return recorded(*configure(task, self.config, self.sensors), task.key)
+        level = load_level(self.level, task.key)
+        return recorded(*configure(task, self.config, self.sensors, level=level), task.key)
 
     def combinations(self) -> list[dict[str, Any]]:
         """Options of reset of each cell."""

@@ -37,14 +37,16 @@ def narrowed(
     trials: int | None = None,
     seed: int | None = None,
     friction: Sequence[str] = (),
+    level: str | None = None,
 ) -> Experiment:
-    """The experiment with another number of trials, another seed, or fewer friction choices.
+    """The experiment with another number of trials, another seed or level, or fewer friction choices.
 
     Args:
         experiment: The experiment.
         trials: Trials per condition; None leaves them.
         seed: Its seed; None leaves it.
         friction: Labels or sources to keep; none given keeps all.
+        level: Its level of difficulty; None leaves it.
 
     Raises:
         ValueError: A value is not allowed, or the experiment has no such friction.
@@ -57,5 +59,6 @@ def narrowed(
     if friction:
         kept = tuple(choice for choice in kept if {choice.title, choice.source} & set(friction))
     values = {**dict(experiment), "friction": kept}
-    values.update({key: value for key, value in (("trials", trials), ("seed", seed)) if value is not None})
+    changes = {"trials": trials, "seed": seed, "level": level}
+    values.update({key: value for key, value in changes.items() if value is not None})
     return validate(values, Experiment, experiment.name)

@@ -151,6 +151,7 @@ def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:
         "engine": experiment.engine,
         "material": trial.material,
         "randomization": experiment.randomization,
+        "level": experiment.level,
         "frame_skip": experiment.steps_per_action,
         "config": dict(experiment.config),
     }

@@ -37,6 +37,7 @@ VECTORS = {
 
 
 @pytest.mark.parametrize("vector", VECTORS.values(), ids=VECTORS)
+@pytest.mark.quick_cases("forkserver")
 def test_vector_environments_equal_single_ones(make, vector):
     env_id = "slipgym/Hinge-v0"
     envs = vector([partial(gym.make, f"slipgym:{env_id}", **FULL) for _ in range(2)])

@@ -237,6 +237,7 @@ def test_a_drawn_shake_moves_the_wrist_as_far_as_it_says(make, hanging_id):
         assert env.simulation.episode["own"][0, 0] == pytest.approx(wrist[-1][2], abs=1e-3)
 
 
+@pytest.mark.quick_cases("slipgym/LinearSlip-v0")
 def test_a_state_goes_on_through_what_happens(make, env_id, play):
     env, other = (make(env_id, randomization="eval_ood", estimator="joint") for _ in range(2))
     actions = np.random.default_rng(0).uniform(-0.5, 1.0, (200, 1))

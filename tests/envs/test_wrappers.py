@@ -62,6 +62,7 @@ def test_episode_statistics(env_id):
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
+@pytest.mark.quick_cases("slipgym/LinearSlip-v0")
 def test_record_video_writes_a_film(env_id, tmp_path):
     pytest.importorskip("moviepy")
     bare = gym.make(env_id, render_mode="rgb_array", frame_skip=4, action_mode="grip_force")

@@ -5,8 +5,6 @@ import subprocess
 import tomllib
 from pathlib import Path
 
-import pytest
-
 import slipgym
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,11 +37,12 @@ def test_the_changelog_opens_with_this_version():
     assert next(version for version in versions if version != "Unreleased") == slipgym.__version__
 
 
-@pytest.mark.parametrize("target", ["demo", "test", "test-all", "lint", "types", "wheel-smoke", "check"])
-def test_make_knows_the_target_and_lists_it(target):
-    subprocess.run(["make", "--dry-run", target], cwd=ROOT, check=True, capture_output=True)
+def test_make_knows_its_targets_and_lists_them():
+    targets = ["demo", "test", "test-all", "lint", "types", "wheel-smoke", "check"]
+    subprocess.run(["make", "--dry-run", *targets], cwd=ROOT, check=True, capture_output=True)
     listed = subprocess.run(["make", "help"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    assert re.search(rf"^  {target} ", listed, re.MULTILINE)
+    for target in targets:
+        assert re.search(rf"^  {target} ", listed, re.MULTILINE)
 
 
 def test_make_says_so_when_python_is_too_old(tmp_path):

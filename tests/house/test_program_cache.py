@@ -97,6 +97,7 @@ def edited(folder: Path, file: str, old: str, new: str) -> list[str]:
         ("table.py", "OFFSET", "UNUSED = 5.0\nOFFSET"),
     ],
 )
+@pytest.mark.quick_cases("law.py-# comment-# another comment")
 def test_text_that_is_not_compiled_may_change(folder, file, old, new):
     assert edited(folder, file, old, new) == [BEFORE, "1"]
 
@@ -113,6 +114,7 @@ def test_text_that_is_not_compiled_may_change(folder, file, old, new):
         ("table.py", "4.0", "5.0", "22.5"),
     ],
 )
+@pytest.mark.quick_cases("law.py-16.0 +-32.0 +-37.5")
 def test_what_is_compiled_may_not_change(folder, file, old, new, value):
     assert edited(folder, file, old, new) == [value, "0"]
     assert run(folder) == [BEFORE, "1"]

@@ -59,6 +59,7 @@ def test_outcomes_have_a_row_for_each_source():
     assert list(found["grip force [N]"]) == ["5.0 (5.0 to 5.0)"] * 3
 
 
+@pytest.mark.slow
 def test_the_controller_runs_in_the_experiments_episodes():
     trials = compare_learned.trials_of("hold", 2, "planar", progress=False)
     controller = trials[trials["policy"] == compare_learned.CONTROLLER]

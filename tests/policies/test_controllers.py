@@ -204,6 +204,7 @@ def test_hinge_lets_go_with_the_tilt_while_friction_is_unknown(support, tilt, k)
 
 @pytest.mark.parametrize("source", ["estimated", "true"])
 @pytest.mark.parametrize(("heading", "turn"), [(0.8, 0.5), (-0.3, -0.25)])
+@pytest.mark.quick_cases("0.8-0.5-estimated")
 def test_planar_slip_arrives(source, heading, turn):
     env = PlanarSlipEnv(friction_source=source, material="case")
     info, _ = play(env, policies.make("planar_slip"), 4, slide=0.014, heading=heading, turn=turn)

@@ -28,6 +28,7 @@ def means_in_slip(material, estimator):
 
 
 @pytest.mark.parametrize("material", ["wood", "case", "plastic", "cardboard"])
+@pytest.mark.quick_cases("wood")
 def test_stick_slip_keeps_its_estimates_true(material):
     mu_s, mu_c = means_in_slip(material, {"name": "joint"})
     assert mu_c == pytest.approx(1.0, abs=0.03)

@@ -171,6 +171,7 @@ def test_an_open_gripper_shows_zero_errors_and_the_ablation_what_that_is_worth()
     assert found["loses most"].tolist()[::2] == ["–", "–"]
 
 
+@pytest.mark.slow
 def test_every_group_gives_scenarios_that_judge_something():
     scenarios = [scenario for group in GROUPS for scenario in group(QUICK)]
     assert len({(scenario.group, scenario.name) for scenario in scenarios}) == len(scenarios)
@@ -222,6 +223,7 @@ def test_stick_slip_tells_the_estimators_apart():
     pd.testing.assert_frame_equal(pd.DataFrame(evaluate(scenario)), pd.DataFrame(found.values()))
 
 
+@pytest.mark.slow
 def test_the_command_writes_what_it_names(tmp_path):
     folder = run_leaderboard(tmp_path, quick=True, progress=False)
     names = {"versions.json", "leaderboard.md", "ranking.csv", "scenarios.csv", "leaderboard.png"}

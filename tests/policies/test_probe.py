@@ -137,6 +137,7 @@ def test_memory_goes_by_rows():
     envs.close()
 
 
+@pytest.mark.slow
 def test_the_probe_saves_most_of_the_force_that_the_truth_saves():
     """Random objects, noisy sensors of unknown latency; at the same success, with the paper's estimator.
 

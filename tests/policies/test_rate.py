@@ -50,11 +50,11 @@ def test_constant_grips_run_in_the_episodes_of_the_experiment():
         "constant_force", task="Hold", options={"duration": 0.5}, trials=3, randomization="train"
     )
     (weak, firm) = run_constant(each, [0.6, 20.0], progress=False)
-    assert weak.dropped.all()
-    assert firm.success.all()
+    assert weak.played.dropped.all()
+    assert firm.played.success.all()
     force = best_force(each, 4, progress=False)
     assert 0.6 < force <= 25.0
     choice = {"name": "constant_force", "parameters": {"force": 20.0}}
     same = validate({**dict(each), "policies": [choice]}, Experiment, "test")
     rewards = [run_trial(same, trial).row["return"] for trial in plan(same)]
-    np.testing.assert_allclose(firm.reward, rewards, rtol=1e-6)
+    np.testing.assert_allclose(firm.played.reward, rewards, rtol=1e-6)

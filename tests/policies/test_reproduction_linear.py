@@ -153,6 +153,7 @@ def test_the_published_tables_cover_the_materials():
     assert TABLES["linear"]["cardboard"][1][3] == 0.5819
 
 
+@pytest.mark.slow
 def test_a_run_writes_what_it_names(tmp_path, monkeypatch):
     monkeypatch.setattr("policies.research.reproduction.linear.DISTANCES", (0.04,))
     monkeypatch.setattr("policies.research.reproduction.linear.DURATIONS", (5.0,))

@@ -32,6 +32,7 @@ def evaluated(task):
 
 
 @pytest.mark.parametrize("task", TASKS.values(), ids=list(TASKS))
+@pytest.mark.quick_cases("LinearSlip")
 def test_names_follow_values_when_rows_change_places(task):
     terms, columns = evaluated(task)
     dense = [terms[term.name] for term in task.terms if not term.event]

@@ -72,17 +72,44 @@ def zoo(task: str) -> list[Member]:
     gripper, width = load().gripper, len(components(mode, load()))
     members = [Member("random actions", Disturbed(None, 0.0, width), {"friction_source": "none"})]
     for force in np.geomspace(gripper.force_min, gripper.force_max, GRIPS).round(2).tolist():
-        arguments = {"friction_source": "none", "action_mode": "grip_force"}
-        members.append(Member(f"constant {force:g} N", ConstantForcePolicy(force), arguments))
-    for source in ("estimated", "true", "nominal"):
-        members.append(Member(f"controller, {source}", registry.make(key), {"friction_source": source}))
-    members.append(Member("controller, none", NoFrictionInfo(key), {"friction_source": "none"}))
+        members.append(constant(force))
+    members += controllers(key)
     for size in NOISES:
-        noisy = Disturbed(registry.make(key), size, width)
-        members.append(Member(f"controller, true, noise {size:g}", noisy, {"friction_source": "true"}))
+        made = registry.make(key)
+        arguments = {**registry.modes(made), "friction_source": "true"}
+        members.append(Member(f"controller, true, noise {size:g}", Disturbed(made, size, width), arguments))
+    return [*members, *learned(key)]
+
+
+def constant(force: float) -> Member:
+    """A constant grip force [N]."""
+    arguments = {"friction_source": "none", "action_mode": "grip_force"}
+    return Member(f"constant {force:g} N", ConstantForcePolicy(force), arguments)
+
+
+def controllers(key: str) -> list[Member]:
+    """The controller of a task with every friction source.
+
+    Args:
+        key: Of the task.
+    """
+    made, blind = registry.make(key), NoFrictionInfo(key)
+    members = [Member("controller, none", blind, {**registry.modes(blind), "friction_source": "none"})]
+    for source in ("nominal", "estimated", "true"):
+        arguments = {**registry.modes(made), "friction_source": source}
+        members.append(Member(f"controller, {source}", made, arguments))
+    return members
+
+
+def learned(key: str) -> list[Member]:
+    """The policies of a task that come with slipgym.
+
+    Args:
+        key: Of the task.
+    """
+    members = []
     for source in ("estimated", "true", "none"):
         if (name := f"{key}_{source}") in pretrained.folders():
-            learned = LearnedPolicy(pretrained.folders()[name])
-            arguments = {"friction_source": source, **learned.modes}
-            members.append(Member(f"learned, {source}", learned, arguments))
+            policy = LearnedPolicy(pretrained.folders()[name])
+            members.append(Member(f"learned, {source}", policy, {"friction_source": source, **policy.modes}))
     return members

@@ -72,6 +72,7 @@ class Condition:
             "engine": self.world.engine,
             "frame_skip": self.frame_skip,
             "randomization": self.change.of(self.preset, self.task),
+            "level": study.level,
             "config": {**study.config, "contact": contact},
         }
         return validate(values, Experiment, self.name)

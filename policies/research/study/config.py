@@ -12,7 +12,10 @@ from policies.task_names import canonical
 from slipgym.config import load_randomization
 from slipgym.config.base import Count, Frozen, Positive, PositiveInterval, as_tuple
 from slipgym.config.errors import unknown
+from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
+from slipgym.config.level import load_level
 from slipgym.config.physics import ContactModel
+from slipgym.tasks import find
 
 Kind: TypeAlias = Literal["classic", "learned", "imitation"]
 Source: TypeAlias = Literal["none", "nominal", "estimated", "true"]
@@ -69,6 +72,7 @@ class Study(Frozen):
     presets: Annotated[Names, Field(min_length=1)] = Field(
         default=("train", "eval_ood"), description="Presets of randomization; the first is the main one [-]"
     )
+    level: str = Field(default=DEFAULT_LEVEL, description="Level of difficulty [-]")
     worlds: Annotated[tuple[World, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
         description="Worlds; the first is the main one [-]"
     )
@@ -86,6 +90,8 @@ class Study(Frozen):
     def _fits_together(self) -> Self:
         for preset in self.presets:
             load_randomization(preset)
+        for task in self.tasks:
+            load_level(self.level, find(task).key)
         for name in self.estimators:
             FrictionChoice(source="estimated", estimator={"name": name})
         for kind in ("tasks", "kinds", "estimators", "presets", "videos"):

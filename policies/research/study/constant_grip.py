@@ -60,6 +60,7 @@ def _experiment(study: Study, task: str) -> Experiment:
         "friction": [{"source": "none"}],
         "engine": "planar",
         "randomization": study.presets[0],
+        "level": study.level,
         "config": {**study.config, "contact": contact},
     }
     return validate(values, Experiment, study.name)
@@ -67,7 +68,7 @@ def _experiment(study: Study, task: str) -> Experiment:
 
 def _outcomes(experiment: Experiment, candidates: int, progress: bool) -> dict[str, Any]:
     force = best_force(experiment, candidates, progress)
-    (found,) = run_constant(experiment, [force], progress=False)
+    found = run_constant(experiment, [force], progress=False)[0].played
     n = len(found.success)
     figures = {
         "success": share_interval(int(found.success.sum()), n),

@@ -23,7 +23,7 @@ _SOURCES = (
     "policies/evaluation/*.py",
     "policies/learned/*.py",
 )
-_CONFIGS = ("*.yaml", "sensors/*.yaml", "randomization/*.yaml")
+_CONFIGS = ("*.yaml", "sensors/*.yaml", "randomization/*.yaml", "levels/*.yaml")
 _TABLE = "episodes.parquet"
 
 

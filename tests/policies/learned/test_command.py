@@ -88,6 +88,7 @@ def test_it_needs_nothing_but_the_base_installation(policy_folder):
 
 
 @pytest.mark.parametrize("name", pretrained.folders())
+@pytest.mark.quick_cases("hold_estimated", "linear_slip_none", "planar_slip_true")
 def test_what_comes_with_slipgym_acts_in_the_environment_of_its_training(name):
     (outcome,) = episodes(name, 1)
     assert outcome.time > 0.0

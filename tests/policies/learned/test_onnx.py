@@ -100,6 +100,7 @@ def test_the_file_says_what_the_numbers_mean(policy_folder, tmp_path):
     assert {entry.name for entry in tmp_path.iterdir()} == {"policy", "policy.onnx"}
 
 
+@pytest.mark.slow
 def test_the_command_line(policy_folder, tmp_path):
     def call(policy):
         command = [sys.executable, ROOT / "scripts" / "export_policy.py", policy, "--onnx", "policy.onnx"]

@@ -39,6 +39,7 @@ def test_there_is_one_for_every_friction_source():
 
 
 @pytest.mark.parametrize("name", [name for name in SHIPPED if name.endswith("_estimated")])
+@pytest.mark.quick_cases("hold_estimated")
 def test_it_solves_most_episodes(name):
     policy, n = policies.load(name), 24
     where = policy.description.environment

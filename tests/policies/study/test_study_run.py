@@ -56,6 +56,7 @@ def test_the_folder_holds_everything(run, small):
     assert list(by_seed) == [1, 1]
 
 
+@pytest.mark.slow
 def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
     before = (run / "episodes.parquet").read_bytes()
 
@@ -69,6 +70,7 @@ def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
         run_study(small(estimators=["joint"]), output, 1, progress=False)
 
 
+@pytest.mark.slow
 def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monkeypatch):
     from policies.research.study import episodes
 

@@ -25,6 +25,7 @@ def curve_of(rows, seed):
     return [Row(**{name: float(row[name]) for name in names}) for row in rows if row["seed"] == seed]
 
 
+@pytest.mark.slow
 def test_the_best_seed_goes_to_the_shelf_and_all_curves_to_the_pages(configured, tmp_path):
     begun = run_set.begin(configured, [0, 1], ["estimated", "none"], tmp_path / "runs")
     with pytest.raises(ValueError, match="is not finished"):

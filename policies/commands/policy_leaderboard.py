@@ -1,0 +1,73 @@
+"""Plays the same episodes with every policy: each task, each level, opponents and entries."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from slipgym.registration import TASK_MODULES
+
+TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
+EPILOG = """
+Examples:\n
+\b
+  slipgym policy-leaderboard
+  slipgym policy-leaderboard hold --level hard --sensors lab
+  slipgym policy-leaderboard hold --policy grips:Catch
+  slipgym policy-leaderboard hold --engine bullet --episodes 50
+\n
+docs/policy_leaderboard.md explains the table and how to enter a policy.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG)
+def main(
+    tasks: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help=f"Of {', '.join(TASKS)} (also LinearSlip or ids); all if none.", show_default=False
+        ),
+    ] = None,
+    episodes: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
+    level: Annotated[
+        list[str] | None, typer.Option(help="Only this level; repeatable.", show_default=False)
+    ] = None,
+    sensors: Annotated[str, typer.Option(help="Sensor preset.")] = "realistic",
+    randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "none",
+    engine: Annotated[str, typer.Option(help="planar or bullet.")] = "planar",
+    policy: Annotated[
+        list[str] | None,
+        typer.Option(help="A policy to enter: module:class or a folder; repeatable.", show_default=False),
+    ] = None,
+    friction_source: Annotated[str, typer.Option(help="Of the entered policies.")] = "estimated",
+    imitation: Annotated[
+        Path | None, typer.Option(help="Folder of the runs of slipgym imitate.", show_default=False)
+    ] = None,
+    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
+) -> None:
+    """Print a table of policies by success, and write it with a picture."""
+    import pandas as pd
+
+    from policies.research.leaderboard.tables import markdown
+    from policies.research.policy_leaderboard.entries import entered, opponents
+    from policies.research.policy_leaderboard.folder import write
+    from policies.research.policy_leaderboard.run import outcomes
+    from slipgym.config.level import level_names
+    from slipgym.envs.arguments import ENGINES, FRICTION_SOURCES, one_of
+    from slipgym.tasks import find
+
+    arguments = {"sensors": sensors, "randomization": randomization}
+    try:
+        one_of("engine", engine, ENGINES)
+        mine = entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
+        found = []
+        for task in tasks or TASKS:
+            for name in level or level_names(find(task).key):
+                others = opponents(task, {**arguments, "level": name}, max(episodes // 2, 1), imitation)
+                found.append(outcomes(task, name, [*mine, *others], episodes, arguments, engine))
+                typer.echo(markdown(found[-1], 1))
+    except (ValueError, FileNotFoundError) as error:
+        raise typer.BadParameter(str(error)) from error
+    folder = write(pd.concat(found, ignore_index=True), output)
+    typer.echo(f"Look at:\n  {folder / 'policies.png'}")

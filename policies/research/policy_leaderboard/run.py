@@ -1,0 +1,87 @@
+"""Plays the same episodes with every policy, and says how they went."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pandas as pd
+from tqdm import tqdm
+
+from policies.evaluation.play import Played, play
+from policies.evaluation.statistics import share_interval
+from policies.research.reward_order.zoo import Member
+from slipgym.tasks import find
+
+ROWS = {"planar": 1000, "bullet": 50}
+"""Most environments side by side; one of PyBullet takes 28 MB."""
+COLUMNS = (
+    "task", "level", "policy", "solved [%]", "low", "high", "mean return", "dropped [%]", "grip [N]",
+    "slid [mm]",
+)  # fmt: skip
+"""Of the table: `low` and `high` bound the interval of 95 % of what was solved [%]."""
+
+
+def episodes_of(
+    task: str, member: Member, episodes: int, arguments: Mapping[str, Any], engine: str = "planar"
+) -> Played:
+    """Plays episodes with a policy; episode i has the seed i.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        member: The policy.
+        episodes: How many.
+        arguments: Further arguments of the environments, such as `level`.
+        engine: "planar" or "bullet".
+    """
+    made, parts = {**arguments, **member.arguments}, []
+    for first in range(0, episodes, ROWS[engine]):
+        seeds = range(first, min(first + ROWS[engine], episodes))
+        if engine == "planar":
+            envs = gym.make_vec(f"slipgym:{find(task).id}", len(seeds), "vector_entry_point", **made)
+        else:
+            kind = {"engine": engine, "disable_env_checker": True}
+            envs = gym.make_vec(f"slipgym:{find(task).id}", len(seeds), "sync", **kind, **made)
+        try:
+            parts.append(play(envs, member.policy, seeds))
+        finally:
+            envs.close()
+    return Played(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+
+
+def outcomes(
+    task: str,
+    level: str,
+    members: Sequence[Member],
+    episodes: int,
+    arguments: Mapping[str, Any],
+    engine: str = "planar",
+    progress: bool = True,
+) -> pd.DataFrame:
+    """Plays the same episodes with every policy.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        level: Level of difficulty.
+        members: The policies.
+        episodes: How many for each.
+        arguments: Further arguments of the environments.
+        engine: "planar" or "bullet".
+        progress: Whether to show a progress bar.
+
+    Returns:
+        A row for each policy, best first, with the columns COLUMNS: solved with its interval of 95 %, drops,
+        mean grip of both fingers over the episodes, length of the way that the object slid.
+    """
+    rows = []
+    for member in tqdm(members, desc=f"{find(task).key}, {level}", unit="policy", disable=not progress):
+        played = episodes_of(task, member, episodes, {**arguments, "level": level}, engine)
+        share = share_interval(int(played.success.sum()), episodes)
+        measured = played.reward.mean(), 100.0 * played.dropped.mean()
+        spent = played.grip.mean(), 1e3 * played.slip.mean()
+        solved = (100.0 * value for value in share)
+        rows.append((find(task).name, level, member.name, *solved, *measured, *spent))
+    table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
+    return table.sort_values(["solved [%]", "mean return"], ascending=False, ignore_index=True)

@@ -1,0 +1,89 @@
+"""The leaderboard of policies: outcomes, entries, table and picture."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+from policies.commands.policy_leaderboard import app
+from policies.evaluation.plots.style import styled
+from policies.research.policy_leaderboard.entries import best_constant, entered, opponents
+from policies.research.policy_leaderboard.folder import write
+from policies.research.policy_leaderboard.picture import plot_policies
+from policies.research.policy_leaderboard.run import COLUMNS, ROWS, episodes_of, outcomes
+from policies.research.reward_order.zoo import constant
+
+SHORT = {"config": {"tasks": {"hold": {"duration": 0.5}}}}
+
+
+def test_firm_grips_win_and_the_table_says_how():
+    table = outcomes("hold", "easy", [constant(0.6), constant(20.0)], 6, SHORT, progress=False)
+    assert list(table.columns) == list(COLUMNS)
+    firm, weak = table.iloc[0], table.iloc[1]
+    assert (firm["policy"], weak["policy"]) == ("constant 20 N", "constant 0.6 N")
+    assert firm["solved [%]"] == 100.0 > firm["low"] > 50.0
+    assert weak["dropped [%]"] == 100.0
+    assert firm["grip [N]"] == pytest.approx(20.0, abs=3.0)  # rises from the initial force
+    assert weak["slid [mm]"] > 10.0 > 1.0 > firm["slid [mm]"]
+
+
+def test_blocks_of_rows_play_the_same_episodes(monkeypatch):
+    whole = episodes_of("hold", constant(3.0), 5, SHORT)
+    monkeypatch.setitem(ROWS, "planar", 2)
+    parts = episodes_of("hold", constant(3.0), 5, SHORT)
+    for one, other in zip(whole, parts, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_pybullet_plays_the_same_task():
+    found = episodes_of("hold", constant(20.0), 2, SHORT, "bullet")
+    assert found.success.all()
+    assert found.grip == pytest.approx(episodes_of("hold", constant(20.0), 2, SHORT).grip, rel=0.02)
+
+
+def test_the_constant_grip_is_chosen_on_other_episodes():
+    best = best_constant("hold", SHORT, 4)
+    assert best.name.startswith("best constant (")
+    own, weak = episodes_of("hold", best, 8, SHORT), episodes_of("hold", constant(0.6), 8, SHORT)
+    assert own.success.sum() > weak.success.sum()
+
+
+def test_opponents_and_entries():
+    names = [member.name.partition(" (")[0] for member in opponents("hold", SHORT, 2)]
+    assert names[0] == "best constant"
+    assert {f"controller, {source}" for source in ("none", "nominal", "estimated", "true")} < set(names)
+    (mine,) = entered(["policies.controllers.hold:HoldPolicy"], "true")
+    assert mine.arguments["friction_source"] == "true"
+    assert mine.arguments["observation_mode"] == "deviations"
+    with pytest.raises(FileNotFoundError, match="no policy at 'nowhere'"):
+        entered(["nowhere"], "true")
+
+
+def test_a_folder_has_table_and_picture(tmp_path):
+    rows = [
+        ("Hold", level, name, solved, 0.0, 100.0, 1.0, 0.0, 5.0, 0.1)
+        for level in ("easy", "hard")
+        for name, solved in (("best constant (5 N)", 20.0), ("controller, true", 100.0))
+    ]
+    table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
+    folder = write(table, tmp_path)
+    assert {path.name for path in folder.iterdir()} == {"policies.csv", "policies.png", "versions.json"}
+    with styled():
+        (axes,) = plot_policies(table).axes
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["controller, true", "best constant"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["hld"], "hold"),
+        (["hold", "--engine", "mujoco"], "mujoco"),
+        (["hold", "--policy", "nowhere"], "nowhere"),
+        (["hold", "--level", "hardest"], "hardest"),
+    ],
+)
+def test_wrong_arguments_are_named(arguments, said, tmp_path):
+    result = CliRunner().invoke(app, [*arguments, "--output", str(tmp_path)])
+    assert result.exit_code == 2
+    assert said in result.output
+    assert not list(tmp_path.iterdir())
