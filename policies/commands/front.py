@@ -31,6 +31,7 @@ COMMANDS = {
     "compare-learned": "Compare pretrained policies with controllers.",
     "rank": "Compare the order of returns with that of success.",
     "export-policy": "Write a learned policy as an ONNX graph.",
+    "import-policy": "Read a zip of Stable-Baselines3 safely.",
     "pushes": "Compare the estimators on real pushes of a block.",
     "ship": "Add trained policies to the pretrained ones.",
 }

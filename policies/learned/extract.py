@@ -18,7 +18,7 @@ ALGORITHMS = {
 }
 """Class -> package."""
 _ACTIVATIONS = {"Tanh": "tanh", "ReLU": "relu", "ELU": "elu"}
-_LSTM = {
+LSTM = {
     "input_weight": "weight_ih_l",
     "hidden_weight": "weight_hh_l",
     "input_bias": "bias_ih_l",
@@ -88,7 +88,7 @@ def acting_tensors(model: Any) -> dict[str, np.ndarray]:
     found = {}
     if hasattr(model.policy, "lstm_actor"):
         for k in range(model.policy.lstm_actor.num_layers):
-            for ours, theirs in _LSTM.items():
+            for ours, theirs in LSTM.items():
                 found[f"memory.{k}.{ours}"] = array(getattr(model.policy.lstm_actor, f"{theirs}{k}"))
     for k, layer in enumerate(_actor(model)):
         found[f"layers.{k}.weight"], found[f"layers.{k}.bias"] = array(layer.weight), array(layer.bias)

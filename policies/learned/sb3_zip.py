@@ -1,0 +1,182 @@
+"""A zip of Stable-Baselines3 as a policy's folder, without executing anything that lies in it.
+
+`model.save` writes pickles beside the tensors, and `PPO.load` executes them. Here only the tensors of
+`policy.pth` are read, by torch's reader of plain tensors (`weights_only=True`), and three plain values of
+`data`: the number of steps, whether exploration was state-dependent, and the name of the activation. Needs
+the extra `train`.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import re
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from estimator.plain_files import check_regular
+from policies.learned import files
+from policies.learned.export import described
+from policies.learned.extract import LSTM, array
+from policies.versions import versions
+from slipgym.config.errors import unknown
+
+LIMIT = 2**28
+"""Most bytes of a member of the zip."""
+_WEIGHTS, _DATA = "policy.pth", "data"
+_ACTIVATION = re.compile(r"<class 'torch\.nn\.modules\.activation\.(\w+)'>")
+_ACTIVATIONS = {"Tanh": "tanh", "ReLU": "relu", "ELU": "elu"}
+_ACTORS = {"PPO": ("mlp_extractor.policy_net", "action_net"), "SAC": ("actor.latent_pi", "actor.mu")}
+
+
+def import_zip(
+    source: str | os.PathLike[str],
+    path: str | os.PathLike[str],
+    environment: str,
+    arguments: Mapping[str, Any],
+) -> Path:
+    """Writes the folder of a policy from a zip that `model.save` of PPO, SAC, TQC or RecurrentPPO wrote.
+
+    A `VecNormalize` is not part of such a zip: a policy that was trained with one does not act well without
+    it. `policies.learned.export.save`, called where it was trained, keeps it.
+
+    Args:
+        source: The zip.
+        path: Where the folder shall appear.
+        environment: Id of the environment it was trained in, such as "slipgym/Hold-v0".
+        arguments: Keyword arguments of that environment.
+
+    Returns:
+        The folder.
+
+    Raises:
+        FileNotFoundError: There is no zip.
+        FileExistsError: Something is at `path` already.
+        ValueError: It is no such zip, its network is none that a file can hold, or not of this environment.
+    """
+    source = Path(source)
+    check_regular(source)
+    try:
+        with zipfile.ZipFile(source) as archive:
+            data, tensors = _plain(_member(archive, _DATA)), _tensors(_member(archive, _WEIGHTS))
+    except zipfile.BadZipFile as error:
+        raise ValueError(f"{source}: is no zip of Stable-Baselines3: {error}") from error
+    except ValueError as error:
+        raise ValueError(f"{source}: {error}") from error
+    kind = "PPO" if "action_net.weight" in tensors else "SAC"
+    if kind == "SAC" and data["use_sde"]:
+        raise ValueError(f"{source}: use_sde = True: what SAC then acts with has no file format")
+    weights, layers = _dense(tensors, kind, source)
+    memory = _memory(tensors, weights)
+    where = described(environment, arguments)
+    reads, acts = (where["history"] + 1) * len(where["observation"]), len(where["action"])
+    first = "memory.0.input_weight" if memory else "layers.0.weight"
+    for what, found, wanted in (
+        ("observation", weights[first].shape[1], reads),
+        ("action", layers[-1], acts),
+    ):
+        if found != wanted:
+            message = f"the model's {what} has {found} numbers, that of {environment} {wanted}"
+            raise ValueError(f"{source}: {message}")
+    description = {
+        "environment": where,
+        "network": {
+            "kind": "lstm" if memory else "mlp",
+            "memory": memory,
+            "layers": layers[:-1],
+            "activation": data["activation"] or {"PPO": "tanh", "SAC": "relu"}[kind],
+            "squash": kind == "SAC",
+        },
+        "normalisation": None,
+        "residual": None,
+        "origin": {
+            "algorithm": "RecurrentPPO" if memory else kind,
+            "command": f"imported from {source.name}",
+            "steps": data["steps"],
+            "seeds": [],
+            "versions": versions(),
+            "critic": None,
+        },
+    }
+    return files.write(path, description, weights)
+
+
+def _member(archive: zipfile.ZipFile, name: str) -> bytes:
+    """A member of bearable size."""
+    if name not in archive.namelist():
+        raise ValueError(f"holds no {name!r}; it is none of Stable-Baselines3's zips")
+    with archive.open(name) as stream:
+        found = stream.read(LIMIT + 1)
+    if len(found) > LIMIT:
+        raise ValueError(f"{name!r} is larger than the {LIMIT} bytes allowed")
+    return found
+
+
+def _plain(text: bytes) -> dict[str, Any]:
+    """The plain values of `data` that are needed."""
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"'data' is no JSON: {error}") from error
+    if not isinstance(found, dict):
+        raise ValueError("'data' is no mapping")
+    steps, keywords = found.get("num_timesteps"), found.get("policy_kwargs")
+    if type(steps) is not int or steps < 0:
+        raise ValueError(f"num_timesteps = {steps!r} of 'data' must be a whole number >= 0")
+    activation = keywords.get("activation_fn") if isinstance(keywords, dict) else None
+    if activation is not None:
+        match = _ACTIVATION.fullmatch(activation) if isinstance(activation, str) else None
+        if match is None or match[1] not in _ACTIVATIONS:
+            raise ValueError(unknown("activation", str(activation), _ACTIVATIONS))
+        activation = _ACTIVATIONS[match[1]]
+    return {"steps": steps, "use_sde": found.get("use_sde") is True, "activation": activation}
+
+
+def _tensors(data: bytes) -> dict[str, np.ndarray]:
+    """The tensors of `policy.pth`; torch refuses whatever is none."""
+    import torch
+
+    try:
+        found = torch.load(io.BytesIO(data), map_location="cpu", weights_only=True)
+    except Exception as error:
+        raise ValueError(f"{_WEIGHTS!r} holds no plain tensors: {str(error).splitlines()[0]}") from error
+    if not isinstance(found, dict) or not all(isinstance(value, torch.Tensor) for value in found.values()):
+        raise ValueError(f"{_WEIGHTS!r} holds no mapping of tensors")
+    return {str(name): array(value) for name, value in found.items()}
+
+
+def _dense(
+    tensors: Mapping[str, np.ndarray], kind: str, source: Path
+) -> tuple[dict[str, np.ndarray], list[int]]:
+    """The dense layers from observation to action by their names in the file, and their widths."""
+    hidden, last = _ACTORS[kind]
+    numbers = sorted(
+        int(match[1]) for name in tensors if (match := re.fullmatch(rf"{hidden}\.(\d+)\.weight", name))
+    )
+    names = [*(f"{hidden}.{number}" for number in numbers), last]
+    weights: dict[str, np.ndarray] = {}
+    for k, name in enumerate(names):
+        for part, axes in (("weight", 2), ("bias", 1)):
+            value = tensors.get(f"{name}.{part}")
+            if value is None or value.ndim != axes:
+                raise ValueError(f"{source}: {_WEIGHTS!r} has no {name}.{part} of {axes} axes")
+            weights[f"layers.{k}.{part}"] = value
+    return weights, [weights[f"layers.{k}.bias"].shape[0] for k in range(len(names))]
+
+
+def _memory(tensors: Mapping[str, np.ndarray], weights: dict[str, np.ndarray]) -> dict[str, int] | None:
+    """Adds the LSTM layers, if there are some; their size and number."""
+    count = 0
+    while f"lstm_actor.weight_hh_l{count}" in tensors:
+        for ours, theirs in LSTM.items():
+            name = f"lstm_actor.{theirs}{count}"
+            if name not in tensors:
+                raise ValueError(f"{_WEIGHTS!r} has no {name}")
+            weights[f"memory.{count}.{ours}"] = tensors[name]
+        count += 1
+    return {"size": int(weights["memory.0.hidden_weight"].shape[1]), "layers": count} if count else None
