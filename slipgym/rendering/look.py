@@ -23,4 +23,5 @@ def look(simulation: Source, row: int) -> View:
     x, z, pitch = world["wrist"].tolist()
     centre = np.array([world["com"][0], 0.0, world["com"][1]])
     pad = simulation.config.gripper.pad_radius
-    return View(simulation.boxes[row], simulation.materials[row], centre, rotation, (x, z, pitch), pad)
+    box, material, body = simulation.boxes[row], simulation.materials[row], simulation.task.motion.body
+    return View(box, material, centre, rotation, (x, z, pitch), pad, body)

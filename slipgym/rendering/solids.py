@@ -25,6 +25,20 @@ def box(half: tuple[float, float, float], centre: tuple[float, float, float] = (
     return np.concatenate([quad(corners[list(side)]) for side in _SIDES])
 
 
+def frustum(along: np.ndarray, across: np.ndarray, thick: float) -> Triangles:
+    """A solid along z that is symmetric in x and as thick everywhere.
+
+    Args:
+        along: Its two ends, lower first (2,) [m].
+        across: Half width there (2,) [m].
+        thick: Half thickness along y [m].
+    """
+    corners = np.array(
+        [(sign * across[end], y, along[end]) for sign in (-1, 1) for y in (-thick, thick) for end in range(2)]
+    )
+    return np.concatenate([quad(corners[list(side)]) for side in _SIDES])
+
+
 def disc(radius: float, y: float, sides: int = 24) -> Triangles:
     """A disc in the plane of that y, seen from -y."""
     angles = 2.0 * math.pi * np.arange(sides) / sides

@@ -7,7 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from slipgym.rendering import materials, solids
+from slipgym.rendering import solids
+from slipgym.rendering.bodies import draw_body
 from slipgym.rendering.materials import Part
 from slipgym.world.scene import PAD_THICKNESS, Box
 
@@ -35,6 +36,8 @@ class View:
     """Pad centre (x, z) and pitch [m, m, rad]."""
     pad_radius: float
     """[m]."""
+    body: str = "box"
+    """What the object is drawn as, see `slipgym.rendering.bodies`."""
 
     def place(self, points: np.ndarray) -> np.ndarray:
         """Points (..., 3) of the pad frame in the world; y stays."""
@@ -55,7 +58,7 @@ class View:
 
 def assemble(view: View) -> tuple[np.ndarray, np.ndarray]:
     """All triangles (n, 3, 3) in the world [m] and their colours (n, 4), the see-through ones last."""
-    body, body_colours = _object(view.box, view.material)
+    body, body_colours = _object(view.box, view.material, view.body)
     palm, finger = _gripper(view.pad_radius, view.side)
     offset = view.box.size[1] / 2 + PAD_THICKNESS / 2
     far = finger[0] + [0.0, offset, 0.0]
@@ -105,22 +108,28 @@ def _painted(parts: list[Part]) -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=64)
-def _object(box: Box, material: str) -> tuple[np.ndarray, np.ndarray]:
-    """The box with a ruler of 10 mm and a dot where it was grasped, from its geometric centre."""
+def _object(box: Box, material: str, body: str) -> tuple[np.ndarray, np.ndarray]:
+    """The body, a box with a ruler of 10 mm, and a dot where it was grasped; from its geometric centre."""
     half = box.size[0] / 2, box.size[1] / 2, box.size[2] / 2
     face = -half[1] - _LIFT
-    parts = [(solids.box(half), materials.BASE.get(material, materials.OTHER))]
-    parts += materials.printed(material, box, face)
+    parts = draw_body(body, box, material, face)
     face -= _LIFT
-    height = min(half[2] - 0.005, 0.5)
-    for k in range(-int(height / 0.01), int(height / 0.01) + 1):
-        length, thick = (0.011, 4e-4) if k % 5 == 0 else (0.006, 2.5e-4)
-        z = 0.01 * k
-        parts.append((solids.patch((half[0] - length, half[0]), (z - thick, z + thick), face), _INK))
+    if body == "box":
+        parts += _ruler(half[0], half[2], face)
     grasp = np.array([box.grasp_offset[0], 0.0, box.grasp_offset[1]])
     parts.append((solids.disc(0.005, face) + grasp, _MARK))
     parts.append((solids.disc(0.0033, face - _LIFT) + grasp, _INK))
     return _painted(parts)
+
+
+def _ruler(half: float, height: float, face: float) -> list[Part]:
+    """Marks of 10 mm along the edge of a face, longer ones every 50 mm."""
+    parts, last = [], int((min(height - 0.005, 0.5)) / 0.01)
+    for k in range(-last, last + 1):
+        length, thick = (0.011, 4e-4) if k % 5 == 0 else (0.006, 2.5e-4)
+        z = 0.01 * k
+        parts.append((solids.patch((half - length, half), (z - thick, z + thick), face), _INK))
+    return parts
 
 
 @lru_cache(maxsize=8)

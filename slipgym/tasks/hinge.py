@@ -180,7 +180,13 @@ TASK = Task(
         VIOLATED,
     ),
     motion=Motion(
-        "turned in the grip", "rad", (0.0, 0.0, 1.0), sign=-1.0, goal="wrist_pitch_goal", end=hanging
+        "turned in the grip",
+        "rad",
+        (0.0, 0.0, 1.0),
+        sign=-1.0,
+        goal="wrist_pitch_goal",
+        body="tool",
+        end=hanging,
     ),
     page=__doc__,
 )

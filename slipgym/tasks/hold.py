@@ -204,6 +204,6 @@ TASK = Task(
         TIME_LEFT,
         VIOLATED,
     ),
-    motion=Motion(sign=0.0),
+    motion=Motion(sign=0.0, body="bottle"),
     page=__doc__,
 )  # fmt: skip

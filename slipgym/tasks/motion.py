@@ -27,6 +27,8 @@ class Motion:
     goal: str = ""
     """Column of the task's observation with the end of the reference; none if the reference is 0."""
 
+    body: Literal["box", "bottle", "tool"] = "box"
+    """What the object is drawn as, within the box that is simulated."""
     end: Callable[[Any], tuple[float, float, float]] | None = None
     """Slip displacement (x, y, theta) that the task asks for [m, m, rad], of an EPISODE record, as pictures
     show it; None: none but that at the grasp."""

@@ -142,6 +142,8 @@ TASK = Task(
         TIME_LEFT,
         VIOLATED,
     ),
-    motion=Motion("turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle", end=turned),
+    motion=Motion(
+        "turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle", body="tool", end=turned
+    ),
     page=__doc__,
 )  # fmt: skip
