@@ -9,7 +9,7 @@ PIP := $(RUN) -m pip install --quiet --constraint constraints.txt
 PYTEST := OMP_NUM_THREADS=1 $(RUN) -m pytest -n $(JOBS)
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all lint types wheel-smoke check benchmark validate torture audit matrix site clean
+.PHONY: help demo test test-all lint types wheel-smoke check benchmark validate torture audit matrix site release clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -54,6 +54,10 @@ matrix: $(VENV)/.eval ## tests with every Python and several versions of the dep
 site: $(VENV)/.dev ## the documentation as a site in build/site, links checked
 	$(PIP) --editable '.[site]'
 	NO_MKDOCS_2_WARNING=1 $(RUN) -m mkdocs build
+
+release: check site ## everything above but the benchmark, then wheel and sdist in dist/; uploads nothing
+	rm -rf dist
+	$(RUN) -m build
 
 clean: ## remove the environment and everything built
 	rm -rf $(VENV) build dist .pytest_cache .ruff_cache .hypothesis
