@@ -1,6 +1,7 @@
 """Runs the notebooks of examples/ in place, with their output; needs nbclient and ipykernel."""
 
 import sys
+from importlib import import_module
 from pathlib import Path
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
@@ -8,12 +9,12 @@ EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 
 def main() -> None:
     """Run each notebook and keep text and pictures, without times and counters of the run."""
-    import nbformat
-    from nbclient import NotebookClient
-
+    nbformat, client = import_module("nbformat"), import_module("nbclient")
     for path in sorted(EXAMPLES.glob("*.ipynb")):
         notebook = nbformat.read(path, as_version=4)
-        NotebookClient(notebook, timeout=900, resources={"metadata": {"path": str(EXAMPLES)}}).execute()
+        client.NotebookClient(
+            notebook, timeout=900, resources={"metadata": {"path": str(EXAMPLES)}}
+        ).execute()
         notebook.metadata = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
         for k, cell in enumerate(notebook.cells):
             cell.id, cell.metadata = f"cell-{k}", {}
