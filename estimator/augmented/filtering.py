@@ -15,8 +15,8 @@ from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZE
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
 
-ENOUGH = 1e-4
-"""Step, over the standard deviation of the state, after which no further linearisation is made."""
+ENOUGH = 0.01
+"""Error of a linearisation, over the standard deviation of the state, after which no further one is made."""
 
 ABSURD = 1e6
 """Size of a state, in its unit, from which a step is refused."""
@@ -140,13 +140,15 @@ def _shifted(y_1, y_2, y_3, h, f_n, x, proposed):
 
 
 @njit(error_model="numpy")
-def _close(before, proposed, covariance):
-    """Whether a linearisation moved every state by less than `ENOUGH` of its standard deviation."""
-    close = True
-    for j in range(STATES):
-        step = proposed[j] - before[j]
-        close &= step * step <= ENOUGH * ENOUGH * covariance[j, j]
-    return close
+def _settled(step, variance):
+    """Whether another linearisation would move ln mu_c or ln r by less than `ENOUGH` of its deviation.
+
+    Args:
+        step: Step of ln mu_c or ln r by the last one; the law is off by half its square there.
+        variance: Of ln mu_c or ln r before the measurement.
+    """
+    change = 0.5 * step * step
+    return change * change <= ENOUGH * ENOUGH * variance
 
 
 @njit(error_model="numpy")
@@ -176,12 +178,9 @@ def _reduce(x, covariance, m, crossed, proposed):
     if not sound:
         return False
     for k in range(STATES):
-        for j in range(STATES):
-            covariance[j, k] -= (
-                weighted[0, j] * crossed[0, k]
-                + weighted[1, j] * crossed[1, k]
-                + weighted[2, j] * crossed[2, k]
-            )
+        a, b, c = weighted[0, k], weighted[1, k], weighted[2, k]
+        for j in range(STATES):  # along a row, so that several columns are computed at once
+            covariance[k, j] -= a * crossed[0, j] + b * crossed[1, j] + c * crossed[2, j]
     for j in range(1, STATES):
         for k in range(j):
             covariance[j, k] = covariance[k, j]
@@ -211,7 +210,7 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
     """
     x, covariance = state.x, state.covariance
     h, crossed, by_twist = matrix(3, STATES), matrix(3, STATES), matrix(3, 3)
-    proposed, before = matrix(1, STATES)[0], matrix(1, STATES)[0]
+    proposed = matrix(1, STATES)[0]
     f_n = wrench[2]
     uncertain = covariance[0, 0] > KNOWN or covariance[1, 1] > KNOWN
     for j in range(STATES):
@@ -250,11 +249,12 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
                 s_33 + excess * n_33,
             )
         z_1, z_2, z_3 = _times(m, y_1, y_2, y_3)
+        before_mu, before_r = proposed[MU], proposed[R]
         for j in range(STATES):
-            before[j] = proposed[j]
             proposed[j] = x[j] + crossed[0, j] * z_1 + crossed[1, j] * z_2 + crossed[2, j] * z_3
         limit(proposed, state.limits)
-        if uncertain and _close(before, proposed, covariance):
+        settled = _settled(proposed[MU] - before_mu, covariance[MU, MU])
+        if settled and _settled(proposed[R] - before_r, covariance[R, R]):
             break
     if not (math.isfinite(squared) and math.isfinite(score)):
         return False, 0.0, 0.0
