@@ -145,9 +145,24 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
         compare(partial(twins.both, block), partial(twins.alone, block), 2)
         result = compare(partial(twins.both, block), partial(twins.alone, block), pairs)
     figures += _scaling("the same: two processes / one", result)
-    few = VectorPlayer(env_id, CACHED, threads=1)
-    figures += parts(few, pairs)
-    few.env.close()
+    return figures + _split(env_id, pairs)
+
+
+def headline_and_parts(env_id: str, pairs: int) -> list[Figure]:
+    """The headline, and how the time of a step divides among its stages.
+
+    Args:
+        env_id: Id of the environment.
+        pairs: Pairs of blocks of the parts.
+    """
+    return headline(env_id) + _split(env_id, pairs)
+
+
+def _split(env_id: str, pairs: int) -> list[Figure]:
+    """`slipgym.benchmarking.split.parts` of a vector environment that fits into the cache."""
+    player = VectorPlayer(env_id, CACHED, threads=1)
+    figures = parts(player, pairs)
+    player.env.close()
     return figures
 
 
