@@ -15,8 +15,8 @@ from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZE
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
 
-ENOUGH = 1e-4
-"""Step, over the standard deviation of the state, after which no further linearisation is made."""
+ENOUGH = 0.01
+"""Error of a linearisation, over the standard deviation of the state, after which no further one is made."""
 
 ABSURD = 1e6
 """Size of a state, in its unit, from which a step is refused."""
@@ -58,24 +58,30 @@ def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin):
 
 
 @njit(error_model="numpy")
-def _inverse(a, b, c, d, e, f):
-    """Inverse (11, 12, 13, 22, 23, 33) of a symmetric matrix that is given in the same way."""
-    i, j, k = d * f - e * e, c * e - b * f, b * e - c * d
-    scale = 1.0 / (a * i + b * j + c * k)
-    return (
-        i * scale,
-        j * scale,
-        k * scale,
-        (a * f - c * c) * scale,
-        (b * c - a * e) * scale,
-        (a * d - b * b) * scale,
-    )
+def _whitening(a, b, c, d, e, f):
+    """Inverse (11, 21, 22, 31, 32, 33) of the Cholesky factor of a symmetric matrix (11, 12, 13, 22, 23, 33).
+
+    It makes a vector with that covariance one with the covariance 1; NaN if the matrix is not positive.
+    """
+    x = 1.0 / math.sqrt(a)
+    below, last = b * x, c * x
+    y = 1.0 / math.sqrt(d - below * below)
+    middle = (e - last * below) * y
+    z = 1.0 / math.sqrt(f - last * last - middle * middle)
+    turned = -below * x * y
+    return x, turned, y, -(last * x + middle * turned) * z, -middle * y * z, z
 
 
 @njit(error_model="numpy")
-def _quadratic(m, x, y, z):
-    """The vector (x, y, z) in the quadratic form of m."""
-    return x * (m[0] * x + 2.0 * (m[1] * y + m[2] * z)) + y * (m[3] * y + 2.0 * m[4] * z) + m[5] * z * z
+def _whitened(w, x, y, z):
+    """The vector (x, y, z) times w from `_whitening`."""
+    return w[0] * x, w[1] * x + w[2] * y, w[3] * x + w[4] * y + w[5] * z
+
+
+@njit(error_model="numpy")
+def _weighted(w, x, y, z):
+    """The vector (x, y, z) times the transpose of w from `_whitening`."""
+    return w[0] * x + w[1] * y + w[3] * z, w[2] * y + w[4] * z, w[5] * z
 
 
 @njit(error_model="numpy")
@@ -140,51 +146,40 @@ def _shifted(y_1, y_2, y_3, h, f_n, x, proposed):
 
 
 @njit(error_model="numpy")
-def _close(before, proposed, covariance):
-    """Whether a linearisation moved every state by less than `ENOUGH` of its standard deviation."""
-    close = True
-    for j in range(STATES):
-        step = proposed[j] - before[j]
-        close &= step * step <= ENOUGH * ENOUGH * covariance[j, j]
-    return close
+def _settled(step, variance):
+    """Whether another linearisation would move ln mu_c or ln r by less than `ENOUGH` of its deviation.
+
+    Args:
+        step: Step of ln mu_c or ln r by the last one; the law is off by half its square there.
+        variance: Of ln mu_c or ln r before the measurement.
+    """
+    change = 0.5 * step * step
+    return change * change <= ENOUGH * ENOUGH * variance
 
 
 @njit(error_model="numpy")
-def _times(m, x, y, z):
-    """The symmetric matrix m, given as in `_inverse`, times the vector (x, y, z)."""
-    return m[0] * x + m[1] * y + m[2] * z, m[1] * x + m[3] * y + m[4] * z, m[2] * x + m[4] * y + m[5] * z
-
-
-@njit(error_model="numpy")
-def _reduce(x, covariance, m, crossed, proposed):
+def _reduce(x, covariance, w, crossed, proposed):
     """Takes the proposed states and their covariance, unless a number is absurd; whether it did.
 
     Args:
         x: (12,) states, changed in place.
         covariance: (12, 12), changed in place; it stays symmetric bit for bit.
-        m: Inverse of the innovations' covariance.
+        w: `_whitening` of the innovations' covariance.
         crossed: (3, 12), covariances of states and innovations.
         proposed: (12,) new states.
     """
-    weighted, sound = matrix(3, STATES), True
+    white, sound = matrix(3, STATES), True
     for j in range(STATES):
-        a, b, c = crossed[0, j], crossed[1, j], crossed[2, j]
-        z_1, z_2, z_3 = _times(m, a, b, c)
-        removed = a * z_1 + b * z_2 + c * z_3
-        sound &= (abs(proposed[j]) < ABSURD) & (removed >= 0.0) & (removed < MOST * covariance[j, j])
-        weighted[0, j], weighted[1, j], weighted[2, j] = z_1, z_2, z_3
+        a, b, c = _whitened(w, crossed[0, j], crossed[1, j], crossed[2, j])
+        removed = a * a + b * b + c * c
+        sound &= (abs(proposed[j]) < ABSURD) & (removed < MOST * covariance[j, j])
+        white[0, j], white[1, j], white[2, j] = a, b, c
     if not sound:
         return False
     for k in range(STATES):
-        for j in range(STATES):
-            covariance[j, k] -= (
-                weighted[0, j] * crossed[0, k]
-                + weighted[1, j] * crossed[1, k]
-                + weighted[2, j] * crossed[2, k]
-            )
-    for j in range(1, STATES):
-        for k in range(j):
-            covariance[j, k] = covariance[k, j]
+        a, b, c = white[0, k], white[1, k], white[2, k]
+        for j in range(STATES):  # along a row, so that several columns are computed at once
+            covariance[k, j] -= a * white[0, j] + b * white[1, j] + c * white[2, j]
     for j in range(STATES):
         x[j] = proposed[j]
     return True
@@ -211,7 +206,7 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
     """
     x, covariance = state.x, state.covariance
     h, crossed, by_twist = matrix(3, STATES), matrix(3, STATES), matrix(3, 3)
-    proposed, before = matrix(1, STATES)[0], matrix(1, STATES)[0]
+    proposed = matrix(1, STATES)[0]
     f_n = wrench[2]
     uncertain = covariance[0, 0] > KNOWN or covariance[1, 1] > KNOWN
     for j in range(STATES):
@@ -231,17 +226,16 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
         y_1, y_2, y_3 = _shifted(y_1, y_2, y_3, h, smooth[3], x, proposed)
         _cross(covariance, h, smooth[3], crossed)
         s_11, s_12, s_13, s_22, s_23, s_33 = _spread(h, crossed, smooth[3])
-        m = _inverse(s_11 + n_11, s_12 + n_12, s_13 + n_13, s_22 + n_22, s_23 + n_23, s_33 + n_33)
-        current = _quadratic(m, y_1, y_2, y_3)
+        w = _whitening(s_11 + n_11, s_12 + n_12, s_13 + n_13, s_22 + n_22, s_23 + n_23, s_33 + n_33)
+        a, b, c = _whitened(w, y_1, y_2, y_3)
+        current = a * a + b * b + c * c
         if iteration == 0:
             squared = current
-            z_1, z_2, z_3 = _times(m, y_1, y_2, y_3)
-            score = (h[0, MU] * z_1 + h[1, MU] * z_2 + h[2, MU] * z_3) / math.sqrt(
-                _quadratic(m, h[0, MU], h[1, MU], h[2, MU])
-            )
+            u, v, z = _whitened(w, h[0, MU], h[1, MU], h[2, MU])
+            score = (u * a + v * b + z * c) / math.sqrt(u * u + v * v + z * z)
         if current > p.outlier:
             excess = current / p.outlier
-            m = _inverse(
+            w = _whitening(
                 s_11 + excess * n_11,
                 s_12 + excess * n_12,
                 s_13 + excess * n_13,
@@ -249,15 +243,17 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
                 s_23 + excess * n_23,
                 s_33 + excess * n_33,
             )
-        z_1, z_2, z_3 = _times(m, y_1, y_2, y_3)
+            a, b, c = _whitened(w, y_1, y_2, y_3)
+        z_1, z_2, z_3 = _weighted(w, a, b, c)
+        before_mu, before_r = proposed[MU], proposed[R]
         for j in range(STATES):
-            before[j] = proposed[j]
             proposed[j] = x[j] + crossed[0, j] * z_1 + crossed[1, j] * z_2 + crossed[2, j] * z_3
         limit(proposed, state.limits)
-        if uncertain and _close(before, proposed, covariance):
+        settled = _settled(proposed[MU] - before_mu, covariance[MU, MU])
+        if settled and _settled(proposed[R] - before_r, covariance[R, R]):
             break
     if not (math.isfinite(squared) and math.isfinite(score)):
         return False, 0.0, 0.0
-    if not _reduce(x, covariance, m, crossed, proposed):
+    if not _reduce(x, covariance, w, crossed, proposed):
         return False, 0.0, 0.0
     return True, squared, score

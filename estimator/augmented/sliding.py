@@ -90,18 +90,25 @@ def _shear(state, p, moves, elapsed):
         else:  # against the force: it springs back
             state.spring = min(SAFETY * math.sqrt(square / max(spring, 1e-9)), p.compliance_max)
             beyond = False
-    slips = beyond and _goes_on(state, p, r, elapsed) and may_slide(state, p)
+    slips = beyond and _goes_on(state, p, r, elapsed, spring) and may_slide(state, p)
     state.beyond = state.beyond + 1 if slips else 0
 
 
 @njit(error_model="numpy")
-def _goes_on(state, p, r, elapsed):
+def _goes_on(state, p, r, elapsed, longest):
     """Whether the newest samples alone are further than the pad springs by the forces since shortly before.
 
     Otherwise the slip has ended and the object swings on the pad. Where it swings back against the force, it
     shows how soft the pad is.
+
+    Args:
+        state: Changed in place.
+        p: Parameters.
+        r: Radius that makes torque and rotation comparable with force and displacement [m].
+        elapsed: Time of a sample [s].
+        longest: What `_spring` is for all forces since shortly before the motion, which is no less [N^2].
     """
-    k, square, spring, power = state.samples, 0.0, 0.0, 0.0
+    k, square, power = state.samples, 0.0, 0.0
     count = min(state.moved, RECENT)
     for j in range(3):
         scale, axis = (1.0, j) if j < 2 else (r, 3)
@@ -109,20 +116,31 @@ def _goes_on(state, p, r, elapsed):
         for i in range(k - count + 1, k + 1):
             moved += state.twists[i & LAST, j] * elapsed
             force += state.wrenches[i & LAST, axis]
-        lowest, highest = math.inf, -math.inf
-        for i in range(k - min(count + BEFORE, state.in_a_row) + 1, k + 1):
-            value = state.wrenches[i & LAST, axis]
-            lowest, highest = min(lowest, value), max(highest, value)
         square += (moved * scale) ** 2
-        spring += _range(p, j, highest - lowest, r) ** 2
         power += moved * force
+    along = power * state.sign >= 0.0
+    if along and square > state.spring * state.spring * longest:
+        return True
+    spring = _spring(state, p, r, min(count + BEFORE, state.in_a_row))
     if square <= state.spring * state.spring * spring:
         return False
-    if power * state.sign >= 0.0:
-        return True
-    if square <= p.compliance_max * p.compliance_max * spring:
+    if not along and square <= p.compliance_max * p.compliance_max * spring:
         state.spring = min(SAFETY * math.sqrt(square / max(spring, 1e-9)), p.compliance_max)
-    return False
+    return along
+
+
+@njit(error_model="numpy")
+def _spring(state, p, r, count):
+    """Squared range of the newest forces, less that of noise: what can have sprung the pad [N^2]."""
+    k, spring = state.samples, 0.0
+    for j in range(3):
+        axis = j if j < 2 else 3
+        lowest, highest = math.inf, -math.inf
+        for i in range(k - count + 1, k + 1):
+            value = state.wrenches[i & LAST, axis]
+            lowest, highest = min(lowest, value), max(highest, value)
+        spring += _range(p, j, highest - lowest, r) ** 2
+    return spring
 
 
 @njit(error_model="numpy")

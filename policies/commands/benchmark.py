@@ -11,6 +11,7 @@ Examples:\n
   slipgym benchmark
   slipgym benchmark --env hold --pairs 100 --json figures.json
   slipgym benchmark --workloads
+  slipgym benchmark --split
 \n
 docs/performance.md explains the figures.
 """
@@ -34,6 +35,10 @@ def main(
             help="Every task instead: held firmly, about the slip limit, its controller, a learned policy.",
         ),
     ] = False,
+    split: Annotated[
+        bool,
+        typer.Option("--split", help="The headline and the parts of a step of the vector environment alone."),
+    ] = False,
     optimisations: Annotated[
         bool, typer.Option("--optimisations", help="The benefit of each optimisation instead.")
     ] = False,
@@ -51,6 +56,12 @@ def main(
 
         typer.echo(line(machine()))
         publish(measured(env_id, max(3, pairs // 20)), json)
+    elif split:
+        from slipgym.benchmarking.batch import headline_and_parts
+        from slipgym.benchmarking.report import line, machine, publish
+
+        typer.echo(line(machine()))
+        publish(headline_and_parts(env_id, max(3, pairs // 5)), json)
     elif workloads:
         from policies.evaluation.workloads import benchmark as all_tasks
 

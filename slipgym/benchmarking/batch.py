@@ -10,23 +10,15 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-from slipgym._numba.compiled import unlocked
-from slipgym._numba.rows import row_of
 from slipgym.benchmarking.measure import Player
 from slipgym.benchmarking.processors import on_either
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.timing import Comparison, compare, per_call
+from slipgym.benchmarking.split import parts
+from slipgym.benchmarking.timing import Comparison, compare
 from slipgym.benchmarking.twins import Twins
 from slipgym.config.hardware import GripperConfig
-from slipgym.contact.coupled import step_pads
-from slipgym.envs.actions import interpret
-from slipgym.envs.observation import combine, observe
 from slipgym.envs.threads import Threads
 from slipgym.envs.vector_env import SlipVectorEnv
-from slipgym.sensors.measure import measure
-from slipgym.tasks.disturbance import disturb
-from slipgym.tasks.episode import begin_step
-from slipgym.world.planar_engine import step_world
 
 SIZES = 1, 16, 256, 4096
 SLIP_LIMIT = 1.0, 4.0
@@ -153,81 +145,25 @@ def batch(player: Player, env_id: str, pairs: int) -> list[Figure]:
         compare(partial(twins.both, block), partial(twins.alone, block), 2)
         result = compare(partial(twins.both, block), partial(twins.alone, block), pairs)
     figures += _scaling("the same: two processes / one", result)
-    few = VectorPlayer(env_id, CACHED, threads=1)
-    figures += parts(few)
-    few.env.close()
+    return figures + _split(env_id, pairs)
+
+
+def headline_and_parts(env_id: str, pairs: int) -> list[Figure]:
+    """The headline, and how the time of a step divides among its stages.
+
+    Args:
+        env_id: Id of the environment.
+        pairs: Pairs of blocks of the parts.
+    """
+    return headline(env_id) + _split(env_id, pairs)
+
+
+def _split(env_id: str, pairs: int) -> list[Figure]:
+    """`slipgym.benchmarking.split.parts` of a vector environment that fits into the cache."""
+    player = VectorPlayer(env_id, CACHED, threads=1)
+    figures = parts(player, pairs)
+    player.env.close()
     return figures
-
-
-def parts(player: VectorPlayer, steps: int = 400) -> list[Figure]:
-    """Time of the parts of a step, taken one after the other over all environments, in one thread."""
-    env = player.env
-    simulation, look = env.simulation, env._observer.buffers
-    plant, n = simulation.plant, player.n
-    bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
-    actions = np.random.default_rng(0).uniform(*player.actions, (steps, n, 1))
-    time, counted = simulation.episode["step"].max() * simulation.step_time, 0
-
-    def task(k: int) -> None:
-        interpret(actions[k], env._actions.table, simulation.episode, simulation.commands)
-        begin_step(simulation.episode, simulation.commands)
-        disturb(simulation.episode, plant.world, plant.pads, simulation.ground_truth)
-        simulation.task.script_wrist(simulation.episode, plant.world)
-
-    def advance(_: int) -> None:
-        nonlocal counted
-        counted += _advance(*bodies, simulation.commands)
-
-    def sense(_: int) -> None:
-        measure(plant.world, plant.force_torque, plant.slip_sensors, simulation.wrenches, simulation.twists)
-
-    def learn(k: int) -> None:
-        simulation.estimator.update(time + (k + 1) * simulation.step_time, *rows)
-        combine(simulation.estimator.estimates, simulation.per_finger, simulation.estimated)
-
-    def evaluate(_: int) -> None:
-        simulation.episode["step"] += 1
-        simulation.task.evaluate_step(simulation.episode, plant.world, plant.fingers, simulation.task_part)
-
-    def see(_: int) -> None:
-        arrays = (
-            simulation.wrenches,
-            simulation.twists,
-            plant.slip_sensors,
-            simulation.episode,
-            simulation.task_part,
-            plant.world,
-        )
-        observe(*arrays, *look)
-
-    rows = simulation.wrenches.reshape(-1, 4), simulation.twists.reshape(-1, 3)
-    stages = [
-        ("actions, plan", task),
-        ("world, contact and force loop", advance),
-        ("sensors", sense),
-        ("estimators", learn),
-        ("reward, success, drops", evaluate),
-        ("observation", see),
-    ]
-    whole = min(player.block(20 * n)[0] / 20 for _ in range(5)) / n
-    spent = dict.fromkeys((name for name, _ in stages), 0.0)
-    _advance(*bodies, simulation.commands)
-    for k in range(steps):
-        for name, stage in stages:
-            start = perf_counter()
-            stage(k)
-            spent[name] += perf_counter() - start
-    spent = {name: seconds / (steps * n) for name, seconds in spent.items()}
-    contact = per_call(partial(_contacts, *bodies[:4]), 20) / n
-    floor = contact * counted / (steps * n)
-    return [
-        Figure("batch step, one thread, environments in the cache", 1e9 * whole, "ns"),
-        *(Figure(f"batch step: {name}", 1e9 * seconds, "ns") for name, seconds in spent.items()),
-        Figure("batch step: resets, infos, Gymnasium", 1e9 * (whole - sum(spent.values())), "ns"),
-        Figure("sub-steps per step", counted / (steps * n), "-"),
-        Figure("their contact kernel alone", 1e9 * floor, "ns"),
-        Figure("batch step / its contact kernel", whole / floor, "-"),
-    ]
 
 
 def _scaling(name: str, result: Comparison, required: str = "") -> list[Figure]:
@@ -246,28 +182,3 @@ def _single(env_id: str) -> VectorPlayer:
 def _samples(player: Player) -> tuple[float, int]:
     seconds, steps = player.block()
     return seconds, steps // player.env.config.physics.engine_steps
-
-
-@unlocked
-def _advance(worlds, pads, cells, fingers, force_torque, slip_sensors, commands):
-    """A control step of all worlds; sub-steps that it took."""
-    done = 0
-    for i in range(worlds.shape[0]):
-        done += step_world(worlds, pads, cells, fingers, force_torque, slip_sensors, commands[i, 0], i)
-    return done
-
-
-@unlocked
-def _contacts(worlds, pads, cells, fingers):
-    """A contact step of all worlds, of the length that calm contacts have."""
-    for i in range(worlds.shape[0]):
-        world = worlds[i]
-        h = world.calm_ticks * world.tick_length
-        vx, vy, omega = world.relative_velocity
-        motion = (h * vx, h * vy, h * omega)
-        free = (motion[0], motion[1] - h * h * world.gravity, motion[2])
-        pads[i, 0].normal = fingers[i, 0].force
-        centre = (world.relative[0], world.relative[1])
-        patch = row_of(cells, i)
-        half = 0.5 * world.mass, 0.5 * world.inertia  # pads that are alike are solved as one
-        step_pads((pads[i, 0],), patch, half, centre, free, motion, h)

@@ -132,6 +132,7 @@ class Stages:
     Attributes:
         linked: Pointers to them, for programs.
         kind: Type of `linked`.
+        calls: The programs by name, called from Python with all their arguments.
         evaluate: From Python: `slipgym.envs.control_step.evaluate` without its first argument.
         look_at: Likewise `look_at`.
         report: `slipgym.envs.control_step.report`.
@@ -158,6 +159,7 @@ class Stages:
         }
         with patience(f"the control step of {task.name}"):
             programs = {name: Program(*each) for name, each in signatures.items()}
+            self.calls = {name: program.call for name, program in programs.items()}
             task.script_wrist.compile(SCRIPT_WRIST)
             task.evaluate_step.compile(EVALUATE_STEP)
             self.linked = Linked(

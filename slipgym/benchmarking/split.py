@@ -1,0 +1,155 @@
+"""Splits the time of a step of the vector environment among its stages.
+
+The stages are the programs of the step itself, called one after the other for all environments. What else the
+machine does changes their speed, so every figure is CPU time, and a median over pairs of short blocks: some
+steps of the environment, then as many stage by stage from where these have ended. Few episodes end in so few
+steps, so the contacts of both are alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from statistics import median, quantiles
+from time import process_time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from slipgym._numba.compiled import unlocked
+from slipgym._numba.rows import row_of
+from slipgym.benchmarking.report import Figure
+from slipgym.contact.coupled import step_pads
+from slipgym.world.planar_engine import step_world
+
+if TYPE_CHECKING:
+    from slipgym.benchmarking.batch import VectorPlayer
+
+STEPS = 16
+"""Steps of all environments in a block."""
+WORLD = "world, contact and force loop"
+STAGES = {
+    "actions, plan": "begin",
+    WORLD: "",
+    "sensors": "measure",
+    "estimators": "estimate",
+    "reward, success, drops": "evaluate",
+    "observation": "look",
+    "infos": "report",
+}
+"""Part of a step -> its program in `slipgym.envs.stages.Stages.calls`; that of the world counts sub-steps."""
+REST = "resets, Gymnasium"
+FLOOR = "their contact kernel alone"
+
+
+class Split:
+    """Steps a vector environment stage by stage.
+
+    Args:
+        player: Plays the environment in one thread.
+    """
+
+    def __init__(self, player: VectorPlayer) -> None:
+        self._player, self._rng = player, np.random.default_rng(0)
+        simulation, n = player.env.simulation, player.n
+        stages, state, rows = simulation.stages, simulation.state, (0, n)
+        linked, calls = stages.linked, stages.calls
+        self.counted = 0
+        self._action = np.empty((n, 1)), player.env._actions.table, np.ones(n, dtype=bool)
+        sensors, buffers, infos = (
+            simulation.plant.force_torque,
+            player.env._observer.buffers,
+            simulation.infos,
+        )
+        self._run: dict[str, Callable[[], None]] = {
+            "begin": partial(calls["begin"], linked.script_wrist, state, self._action, *rows),
+            "": self._advance,
+            "measure": partial(calls["measure"], state, sensors, *rows),
+            "estimate": partial(calls["estimate"], linked.update, state, *rows),
+            "evaluate": partial(calls["evaluate"], linked.evaluate_step, state, *rows),
+            "look": partial(calls["look"], state, buffers, *rows),
+            "report": partial(calls["report"], state, infos.numbers, infos.flags, *rows),
+        }
+
+    def pair(self) -> dict[str, float]:
+        """CPU time of a step and of its parts, per environment [s], and the number of its sub-steps."""
+        n, player = self._player.n, self._player
+        start = process_time()
+        _, steps = player.block(STEPS * n)
+        spent = dict.fromkeys(STAGES, 0.0)
+        whole, self.counted = (process_time() - start) / steps, 0
+        for _ in range(STEPS):
+            self._action[0][:] = self._rng.uniform(*player.actions, (n, 1))
+            for part, program in STAGES.items():
+                start = process_time()
+                self._run[program]()
+                spent[part] += (process_time() - start) / (STEPS * n)
+        substeps = self.counted / (STEPS * n)
+        floor = substeps * self._contact_step()
+        return {"": whole, **spent, REST: whole - sum(spent.values()), "sub-steps": substeps, FLOOR: floor}
+
+    def _advance(self) -> None:
+        simulation = self._player.env.simulation
+        plant = simulation.plant
+        bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
+        self.counted += _advance(*bodies, simulation.commands)
+
+    def _contact_step(self, repeats: int = 4) -> float:
+        """CPU time of a contact step of an environment [s], the median of some; the state stays as it is."""
+        plant, times = self._player.env.simulation.plant, []
+        for _ in range(repeats):
+            cells = None if plant.cells is None else plant.cells.copy()
+            pads = plant.pads.copy()
+            start = process_time()
+            _contacts(plant.world, pads, cells, plant.fingers)
+            times.append((process_time() - start) / self._player.n)
+        return median(times)
+
+
+def parts(player: VectorPlayer, pairs: int) -> list[Figure]:
+    """CPU time of the parts of a step in one thread, and of the contact kernel alone.
+
+    Args:
+        player: Plays the environment, in one thread.
+        pairs: Pairs of blocks.
+    """
+    split = Split(player)
+    for _ in range(3):  # the first compiles; the next ones bring the environments about the slip limit
+        split.pair()
+    rows = [split.pair() for _ in range(max(pairs, 3))]
+    middle = {name: median(row[name] for row in rows) for name in rows[0]}
+    ratios = quantiles((row[""] / row[FLOOR] for row in rows), method="inclusive")
+    ends = zip(("lower quartile", "upper quartile"), (ratios[0], ratios[2]), strict=True)
+    return [
+        Figure("batch step, one thread, environments in the cache", 1e9 * middle[""], "ns"),
+        *(Figure(f"batch step: {name}", 1e9 * middle[name], "ns") for name in (*STAGES, REST)),
+        Figure("sub-steps per step", middle["sub-steps"], "-"),
+        Figure(FLOOR, 1e9 * middle[FLOOR], "ns"),
+        Figure("batch step / its contact kernel", ratios[1], "-"),
+        *(Figure(f"batch step / its contact kernel, {name}", ratio, "-") for name, ratio in ends),
+    ]
+
+
+@unlocked
+def _advance(worlds, pads, cells, fingers, force_torque, slip_sensors, commands):
+    """A control step of all worlds; sub-steps that it took."""
+    done = 0
+    for i in range(worlds.shape[0]):
+        done += step_world(worlds, pads, cells, fingers, force_torque, slip_sensors, commands[i, 0], i)
+    return done
+
+
+@unlocked
+def _contacts(worlds, pads, cells, fingers):
+    """A contact step of all worlds, of the length that calm contacts have."""
+    for i in range(worlds.shape[0]):
+        world = worlds[i]
+        h = world.calm_ticks * world.tick_length
+        vx, vy, omega = world.relative_velocity
+        motion = (h * vx, h * vy, h * omega)
+        free = (motion[0], motion[1] - h * h * world.gravity, motion[2])
+        pads[i, 0].normal = fingers[i, 0].force
+        centre = (world.relative[0], world.relative[1])
+        patch = row_of(cells, i)
+        half = 0.5 * world.mass, 0.5 * world.inertia  # pads that are alike are solved as one
+        step_pads((pads[i, 0],), patch, half, centre, free, motion, h)
