@@ -17,15 +17,15 @@ from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
-from estimator.augmented.change import test_for_jump
+from estimator.augmented.change import test_for_jump, widen
 from estimator.augmented.deviation import EVERY, deviate
 from estimator.augmented.holding import hold, stiffen
-from estimator.augmented.load import at_load
+from estimator.augmented.load import at_load, bound_exponent
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.prefetching import prefetch
 from estimator.augmented.short_slips import learn_short_slip
 from estimator.augmented.sliding import slide, store
-from estimator.augmented.slip_law import COP, MILLIMETRE, MU, TILT, ZERO
+from estimator.augmented.slip_law import COP, MILLIMETRE, TILT, ZERO
 from estimator.augmented.state import STATE, initial_states
 from estimator.augmented.static_friction import learn_static_friction
 from estimator.augmented.unloaded import drift_zero, learn_zero, without_load
@@ -73,8 +73,9 @@ def _update(state, p, t, read, twist, estimate):
         stiffen(state, p)
         if state.samples % EVERY == 0:
             rest = EVERY * p.drift_at_rest * p.drift_at_rest
-            state.covariance[MU, MU] = min(state.covariance[MU, MU] + rest, p.sd_log_mu_c0**2)
+            widen(state, rest, p.sd_log_mu_c0**2)
             hold(state, p, f_t, f_n)
+            bound_exponent(state, p, f_t, f_n)
         if not halted and slide(state, p):
             saw_mu_c = True
             state.updates_mu_c += 1

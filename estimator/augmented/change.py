@@ -1,13 +1,20 @@
-"""Tests whether mu_c has changed at once, by the innovations in its direction.
+"""Tests whether mu_c has changed at once, by the innovations in its direction; mu_s follows its changes.
 
 Two cumulative sums (Page, Biometrika 41, 1954), one for each direction, find the samples that speak for a
 change. Innovations of a rough support or of rubber scatter more than the noise of the sensors explains, and
 some large ones in a row are no change. So their mean must also exceed what the scatter of all innovations
 explains, as in a t test.
+
+A change of friction is one of both mu_c and mu_s: another place, dust or wear change the surface. So the
+random walk of ln mu_c is one of ln mu_s, too. `state.shared` is the covariance of both by the changes since
+the last events: a measurement of mu_c moves mu_s by this over the variance of ln mu_c.
 """
+
+import math
 
 from estimator._numba.caching import njit
 from estimator.augmented.slip_law import MU
+from estimator.sample import clamped
 
 CLIPPED = 3.0
 """Size to which an innovation is clipped in the sums: one sample is no change."""
@@ -36,4 +43,29 @@ def test_for_jump(state, p, score):
     state.scatter += MEMORY * (size * size - state.scatter)
     if found:
         state.runs[:] = 0.0
-        state.covariance[MU, MU] += p.sd_jump * p.sd_jump
+        widen(state, p.sd_jump * p.sd_jump, math.inf)
+
+
+@njit(error_model="numpy")
+def widen(state, variance, largest):
+    """Adds the variance of a change of friction to that of ln mu_c, as far as it stays below the largest."""
+    added = max(min(variance, largest - state.covariance[MU, MU]), 0.0)
+    state.covariance[MU, MU] += added
+    state.shared += added
+
+
+@njit(error_model="numpy")
+def follow(state, p, value, variance):
+    """Moves mu_s of the last events after a measurement of mu_c.
+
+    Args:
+        state: Changed in place.
+        p: Parameters.
+        value: ln mu_c before the measurement.
+        variance: Its variance then.
+    """
+    fraction = min(state.shared / variance, 1.0)
+    state.shared = fraction * state.covariance[MU, MU]
+    if state.events_mu_s > 0:
+        moved = state.event * math.exp(fraction * (state.x[MU] - value))
+        state.event = clamped(moved, p.mu_min, p.mu_max)

@@ -11,12 +11,15 @@ the covariance with the exponents carries their uncertainty to the new force, an
 import math
 
 from estimator._numba.caching import njit
+from estimator._numba.memory import matrix
 from estimator.augmented.slip_law import FALLS, GROWS, MU, STATES, R
 
 BAND = 3.0
 """Deviations of the noise that the normal force must change before the states follow it."""
 MOST_FALL, MOST_GROWTH = 0.5, 1.0 / 3.0
 """Largest exponents of mu_c and of r."""
+HEAVIER = 0.25
+"""Change of the logarithm of the normal force from which a held load says something about the exponent."""
 
 
 @njit(error_model="numpy")
@@ -71,3 +74,43 @@ def static_at_load(state, f_n):
     """mu_s of the last events at a normal force [N], and the variance of its logarithm by the exponent."""
     step = math.log(f_n / state.event_load)
     return state.event * math.exp(-state.x[FALLS] * step), step * step * state.covariance[FALLS, FALLS]
+
+
+@njit(error_model="numpy")
+def bound_exponent(state, p, f_t, f_n):
+    """Narrows the exponent by a load that the contact holds at a larger normal force than that of the events.
+
+    Static friction is at least what the contact holds. So the exponent exceeds its estimate by no more than
+    the margin that is left, over the change of ln f_n. Its variance is at most that of an even distribution
+    up to there, to which the uncertainty of the events adds.
+
+    Args:
+        state: Changed in place.
+        p: Parameters.
+        f_t: Tangential force that the contact holds [N].
+        f_n: Normal force [N].
+    """
+    held = f_t - BAND * p.sd_force
+    if state.events_mu_s == 0 or not held > 0.0 or f_n < state.event_load:
+        return
+    step = math.log(f_n / state.event_load)
+    if step < HEAVIER:
+        return
+    expected = state.event * math.exp(-state.x[FALLS] * step)
+    margin = max(math.log(expected * (f_n + BAND * p.sd_normal) / held), 0.0)
+    square = margin * margin + state.variance_mu_s + state.common_mu_s
+    _narrow(state.covariance, FALLS, square / (3.0 * step * step))
+
+
+@njit(error_model="numpy")
+def _narrow(covariance, j, variance):
+    """Lowers the variance of state j, and what the others share with it; a larger one changes nothing."""
+    before = covariance[j, j]
+    if not variance < before:
+        return
+    row, factor = matrix(1, STATES)[0], (before - variance) / (before * before)
+    for k in range(STATES):
+        row[k] = covariance[j, k]
+    for i in range(STATES):
+        for k in range(STATES):
+            covariance[i, k] -= row[i] * row[k] * factor

@@ -11,6 +11,7 @@ import math
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
+from estimator.augmented.change import follow
 from estimator.augmented.filtering import MOST
 from estimator.augmented.holding import least_friction
 from estimator.augmented.load import at_load, limit
@@ -111,11 +112,13 @@ def _take(state, p, i, speed):
     for j in range(STATES):
         if not crossed[j] * crossed[j] * gain < MOST * covariance[j, j]:
             return math.nan
+    value, before = x[MU], covariance[MU, MU]
     for j in range(STATES):
         x[j] += crossed[j] * gain * innovation
         for k in range(STATES):
             covariance[j, k] -= crossed[j] * crossed[k] * gain
     limit(x, state.limits)
+    follow(state, p, value, before)
     if state.updates_mu_c == 0:
         state.smooth[3] = f_n
     if share > TURNS:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from estimator._numba.caching import njit
-from estimator.augmented.change import test_for_jump
+from estimator.augmented.change import follow, test_for_jump, widen
 from estimator.augmented.filtering import learn
 from estimator.augmented.holding import SAFETY, may_slide
 from estimator.augmented.load import at_load
@@ -240,17 +240,19 @@ def slide(state, p):
     unknown *= (MILLIMETRE * twist[2] / p.caution) ** 2
     of_speed += ALIKE * unknown * min(unknown / (square + p.sd_speed * p.sd_speed), 1.0) ** 2
     walk = p.drift * p.drift
-    state.covariance[MU, MU] = min(state.covariance[MU, MU] + walk, p.sd_log_mu_c0**2)
-    state.covariance[R, R] = min(state.covariance[R, R] + walk, p.sd_log_r0**2)
+    widen(state, walk, p.sd_log_mu_c0**2)
+    state.covariance[R, R] += max(min(walk, p.sd_log_r0**2 - state.covariance[R, R]), 0.0)
     for j in range(ZERO, SHAPE):
         state.covariance[j, j] += (p.error_drift * state.x[j]) ** 2
     at_load(state, p, wrench[2])
+    value, variance = state.x[MU], state.covariance[MU, MU]
     learned, squared, score = learn(state, p, state.sign, wrench, twist, of_speed, of_spin)
     for j in range(3):
         state.smooth[j] += SMOOTHING * (twist[j] - state.smooth[j])
     state.smooth[3] += SMOOTHING * (wrench[2] - state.smooth[3])
     if not learned:
         return False
+    follow(state, p, value, variance)
     state.slides += 1
     state.first = -1
     state.misfit += 0.05 * (min(squared, p.outlier) / 3.0 - state.misfit)

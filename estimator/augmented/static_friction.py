@@ -24,6 +24,10 @@ SAMPLING = 0.03
 """Relative deviation of an event: the load rises between samples, and the largest of noisy values counts."""
 HELD = 5
 """Samples in a row that must carry more than the static limit to refute it."""
+SURE = 2.0
+"""Deviations of what the sensors may be off between two loads, which must not explain it."""
+LEFT = 0.2
+"""Fraction of a variance that is left above a bound of one deviation: truncated normal distribution."""
 
 
 @njit(error_model="numpy")
@@ -53,11 +57,43 @@ def _event(state, p, value, f_n, torque_share):
         state.variance_mu_s = (1.0 - gain) * prior
     state.event = min(max(present * math.exp(gain * change), p.mu_min), p.mu_max)
     state.event_load = f_n
+    state.shared *= 1.0 - gain
+    _common(state, p, f_n)
+    state.events_mu_s += 1
+
+
+@njit(error_model="numpy")
+def _held(state, p, value, f_n, torque_share):
+    """Raises mu_s to a load that a stick carries, if errors of the sensors do not explain it.
+
+    Args:
+        state: Changed in place.
+        p: Parameters.
+        value: Smallest of `HELD` loads over f_n in a row.
+        f_n: Normal force there [N].
+        torque_share: Fraction of the squared load that is torque.
+    """
+    present, of_exponent = static_at_load(state, f_n)
+    noise = (p.sd_normal / f_n) ** 2 + (p.sd_force / (value * f_n)) ** 2
+    noise += torque_share * torque_share * state.covariance[R, R]
+    change = 1.0 / f_n - 1.0 / state.event_load
+    noise += state.covariance[ZERO, ZERO] * (change / (p.caution * value)) ** 2
+    if not value > present * (1.0 + SURE * math.sqrt(noise)):
+        return
+    prior = state.variance_mu_s + of_exponent
+    state.event, state.event_load, state.shared = value, f_n, 0.0
+    state.variance_mu_s = min(prior, max(noise + SAMPLING * SAMPLING, LEFT * prior))
+    _common(state, p, f_n)
+    state.events_mu_s += 1
+
+
+@njit(error_model="numpy")
+def _common(state, p, f_n):
+    """Variance of ln mu_s by the errors that all events share, at a normal force [N]."""
     zero, tilt = state.covariance[ZERO, ZERO], state.covariance[TILT, TILT]
     known = 1.0 / (p.caution * state.event) ** 2
     state.common_mu_s = known * (zero / (f_n * f_n) + tilt) + state.variance_normal / (f_n * f_n)
     state.common_mu_s += p.sd_gain * p.sd_gain
-    state.events_mu_s += 1
 
 
 @njit(error_model="numpy")
@@ -89,15 +125,16 @@ def learn_static_friction(state, p, f_t, f_n, tau, still, moves, halted):
     rim = tau / state.r
     if not state.slipping and not halted:
         ratio = load_size(True, f_t, rim) / f_n
-        if direction_cosines(f_t, rim)[0] > p.eps_t:
+        torque_share = direction_cosines(f_t, rim)[1] ** 2
+        if 1.0 - torque_share > p.eps_t * p.eps_t:
             append(state, p, ratio)
         else:
             clear_buffer(state)
-        limit = state.mu_s * (1.0 + 3.0 * math.sqrt(state.variance_mu_s + state.common_mu_s) + 3.0 * SAMPLING)
-        above = still and state.events_mu_s > 0 and ratio > limit
+        state.least = min(state.least, ratio) if state.above > 0 else ratio
+        above = still and state.events_mu_s > 0 and ratio > state.mu_s
         state.above = state.above + 1 if above else 0
         if state.above >= HELD:
-            _event(state, p, min(ratio, p.mu_max), f_n, direction_cosines(f_t, rim)[1] ** 2)
+            _held(state, p, min(state.least, p.mu_max), f_n, torque_share)
             state.above = 0
     starts, stops = transition(state, p, still, moves)
     if starts and not halted and state.buffer_size >= p.n_a:

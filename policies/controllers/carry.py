@@ -21,7 +21,7 @@ class CarryGains(LiftingGains):
 
     margin: Positive = Field(default=1.15, description="Grip over the least for the planned load [-]")
     deviations: NonNegative = Field(
-        default=0.5, description="Standard deviations by which mu_s is taken below its estimate [-]"
+        default=0.3, description="Standard deviations by which mu_s is taken below its estimate [-]"
     )
 
 

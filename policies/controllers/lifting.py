@@ -27,7 +27,7 @@ class LiftingGains(Frozen):
     guess: Positive = Field(default=2.0, description="mu_s assumed before the first slip [-]")
     confidence: Positive = Field(default=0.05, description="Confidence from which mu_s is taken as it is [-]")
     deviations: NonNegative = Field(
-        default=0.3, description="Standard deviations by which mu_s is taken below its estimate [-]"
+        default=0.2, description="Standard deviations by which mu_s is taken below its estimate [-]"
     )
     least: NonNegative = Field(default=0.8, description="Least grip [N]")
     lead: NonNegative = Field(default=0.05, description="Time by which the grip leads a rising load [s]")

@@ -84,6 +84,52 @@ def test_mu_s_follows_the_load_with_the_same_exponent():
     assert held.mu_s == pytest.approx(0.5 * 3.0**-0.3, rel=0.06)
 
 
+def stick(est, k, samples, f_t, f_n):
+    """A load that the contact holds; the number of the next sample and the estimates."""
+    for i in range(k, k + samples):
+        estimates = est.update((i + 1) / RATE, (0.0, f_t, f_n, 0.0), (0.0, 0.0, 0.0))
+    return k + samples, estimates
+
+
+def broken_away():
+    """A break-away at 3 N with mu_s = 0.5 and a slip with mu_c = 0.4; the next sample's number."""
+    est = estimator.make("adaptive")
+    k, _ = stick(est, 0, 30, 1.5, 3.0)
+    slide(est, k, 90, 3.0, 0.4)
+    return est, k + 90
+
+
+def test_a_held_load_narrows_the_exponent():
+    """At 12 N the contact holds 0.45: then mu_s has not fallen far, and its deviation says so."""
+    sd = {}
+    for ratio in (0.1, 0.45):
+        est, k = broken_away()
+        _, held = stick(est, k, 120, ratio * 12.0, 12.0)
+        sd[ratio] = held.sd_mu_s / held.mu_s
+        assert np.linalg.eigvalsh(est.batch.states["covariance"][0]).min() > 0.0
+        assert abs(held.mu_s - 0.5) < held.sd_mu_s
+    assert sd[0.45] < 0.75 * sd[0.1]
+
+
+def test_a_stick_that_carries_more_raises_mu_s():
+    """What errors of the sensors explain changes nothing."""
+    for ratio, expected in ((0.502, 0.5), (0.56, 0.56)):
+        est, k = broken_away()
+        before = est.estimate.mu_s
+        _, held = stick(est, k, 24, ratio * 3.0, 3.0)
+        assert before == pytest.approx(0.5, rel=0.02)
+        assert held.mu_s == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.parametrize("factor", [0.7, 1.35])
+def test_mu_s_follows_a_jump_of_mu_c(factor):
+    """The surface changes while the object slides: friction as a whole does."""
+    est, k = broken_away()
+    after = slide(est, k, 90, 3.0, factor * 0.4)
+    assert after.mu_c == pytest.approx(factor * 0.4, rel=0.03)
+    assert after.mu_s == pytest.approx(factor * 0.5, rel=0.06)
+
+
 def test_a_pad_that_springs_in_torsion_does_not_slip():
     """A firm grip turns to and fro by 0.05 rad; the torque of the spring is lost in its noise."""
     rng, est = np.random.default_rng(1), estimator.make("adaptive")
