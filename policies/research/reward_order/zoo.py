@@ -13,7 +13,7 @@ from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.learned import LearnedPolicy, pretrained
 from policies.registry import Policy
 from slipgym.config import load
-from slipgym.envs.actions import components
+from slipgym.envs.actions import ACTION_MODES, GUESS, components
 from slipgym.tasks import find
 
 GRIPS = 9
@@ -70,16 +70,22 @@ def zoo(task: str) -> list[Member]:
     """
     key, mode = find(task).key, find(task).action_mode
     gripper, width = load().gripper, len(components(mode, load()))
+    stated = GUESS[-1] in ACTION_MODES[mode]  # a guess has deviations, so its controller observes them
+    shown = {"observation_mode": "deviations"} if stated else {}
     members = [Member("random actions", Disturbed(None, 0.0, width), {"friction_source": "none"})]
     for force in np.geomspace(gripper.force_min, gripper.force_max, GRIPS).round(2).tolist():
         arguments = {"friction_source": "none", "action_mode": "grip_force"}
         members.append(Member(f"constant {force:g} N", ConstantForcePolicy(force), arguments))
     for source in ("estimated", "true", "nominal"):
-        members.append(Member(f"controller, {source}", registry.make(key), {"friction_source": source}))
+        members.append(
+            Member(f"controller, {source}", registry.make(key), {"friction_source": source, **shown})
+        )
     members.append(Member("controller, none", NoFrictionInfo(key), {"friction_source": "none"}))
     for size in NOISES:
         noisy = Disturbed(registry.make(key), size, width)
-        members.append(Member(f"controller, true, noise {size:g}", noisy, {"friction_source": "true"}))
+        members.append(
+            Member(f"controller, true, noise {size:g}", noisy, {"friction_source": "true", **shown})
+        )
     for source in ("estimated", "true", "none"):
         if (name := f"{key}_{source}") in pretrained.folders():
             learned = LearnedPolicy(pretrained.folders()[name])
