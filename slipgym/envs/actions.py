@@ -68,23 +68,20 @@ def components(mode: str, config: Config) -> tuple[Column, ...]:
 
 def _guess(pad_radius: float) -> tuple[Column, ...]:
     """Components of a guess of friction, on pads of a radius [m]."""
-    friction, deviation = np.log(GUESSED_FRICTION).tolist(), np.log(GUESSED_DEVIATION).tolist()
-    radius = np.log([GUESSED_RADIUS * pad_radius, pad_radius]).tolist()
-    meanings = {"mu_s": "static friction", "mu_c": "Coulomb friction", "r": "contact radius in metres"}
-    ranges = {"mu_s": friction, "mu_c": friction, "r": radius}
-    values = (
-        Column(f"ln_{name}", *ranges[name], "-", f"logarithm of the {meaning}, as guessed")
-        for name, meaning in meanings.items()
-    )
-    deviations = (
-        Column(
-            f"ln_sd_{name}",
-            *deviation,
-            "-",
-            f"logarithm of the relative standard deviation of {name}, as guessed",
-        )
-        for name in meanings
-    )
+    friction, radius = GUESSED_FRICTION, (GUESSED_RADIUS * pad_radius, pad_radius)
+    meanings = {
+        "mu_s": ("static friction", friction),
+        "mu_c": ("Coulomb friction", friction),
+        "r": ("contact radius in metres", radius),
+    }
+    values, deviations = [], []
+    for name, (meaning, (low, high)) in meanings.items():
+        ends = math.log(low), math.log(high)
+        text = f"logarithm of the {meaning}, as guessed"
+        values.append(Column(f"ln_{name}", ends[0], ends[1], "-", text))
+        low, high = GUESSED_DEVIATION
+        text = f"logarithm of the relative standard deviation of {name}, as guessed"
+        deviations.append(Column(f"ln_sd_{name}", math.log(low), math.log(high), "-", text))
     return *values, *deviations
 
 

@@ -3,7 +3,7 @@
 ## Description
 
 A parallel gripper holds a box of unknown mass, friction and contact radius. The agent finds out mu_s, mu_c
-and r, to `tolerance` (5 %) each, as fast as it can, and it may let the box slip by 2 mm and 5 degrees
+and r, to `accuracy` (5 %) each, as fast as it can, and it may let the box slip by 2 mm and 5 degrees
 meanwhile. Its action includes a guess: the logarithms of mu_s, mu_c and r and of their relative standard
 deviations. It commits itself by stating deviations of at most `commitment` (2.5 %) for all three, which
 ends the episode.
@@ -38,11 +38,15 @@ sensors that these do not have. They are too large for a commitment.
 
 ## Action Space
 
-`Box(-1, 1, (10,), float32)`: grip force, wrist velocity along world x and z, pitch rate of the wrist, and
-the guess ln mu_s, ln mu_c, ln r and the logarithms of their relative deviations, each scaled linearly to
-[-1, 1] (`env.unwrapped.action_columns` has the ranges; docs/modes.md). This is "grip_force_wrist_guess",
-the `action_mode` of this task. In the other modes, which have no guess, the estimator's merged estimate and
-its deviations are the guess.
+`Box(-1, 1, (10,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` (0.6 N)
+and +1 is `gripper.force_max` (25 N). Then the wrist's velocity along world x and z and its pitch rate, from
+-0.5 to 0.5 m/s (`gripper.wrist_speed_max`) and from -3 to 3 rad/s (`gripper.wrist_pitch_rate_max`). Then the
+guess: ln mu_s, ln mu_c, ln r, and the logarithms of their relative standard deviations, in the ranges of
+docs/modes.md. Values outside [-1, 1] are clipped; NaN and infinity are errors. The actuator force follows the
+command with a dead time (4 ms) and a first-order lag (12 ms), the wrist within a control step.
+
+This is "grip_force_wrist_guess", the `action_mode` of this task. In the other modes (see docs/modes.md) there
+is no guess, and the estimator's merged estimate and its deviations take its place.
 
 ## Rewards
 
@@ -70,8 +74,8 @@ steps before time 0. The wrist moves as the agent commands.
   `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode has ended without a drop, mu_s, mu_c and r of the guess are
-within `tolerance` of the truth, and the budget of slip was kept: the path of the slip at the pad centre is
-at most `slide_tolerance` (2 mm), the path of the turn in the grip at most `tilt_tolerance` (0.0873 rad).
+within `accuracy` of the truth, and the budget of slip was kept: the path of the slip at the pad centre is
+at most `slide_tolerance` (2 mm), the path of the turn in the grip at most `tilt_tolerance` (5 deg).
 The paths add up, so that slipping back gains nothing. Using up the budget is the violation that `violated`
 reports. The truth is the mean of both pads, with jumps and drifts of the randomization, at the normal force
 at which the values hold on soft pads.
@@ -124,7 +128,7 @@ class Settings(TaskConfig):
     """Settings of the exploration: friction is to be found within a budget of slip."""
 
     duration: Annotated[Positive, setting("Length of an episode", "s", reset=True, le=600.0)] = 3.0
-    tolerance: Annotated[
+    accuracy: Annotated[
         Positive, setting("Largest relative error of mu_s, mu_c and r for success", "-", reset=True)
     ] = 0.05
     commitment: Annotated[
@@ -145,7 +149,7 @@ class Settings(TaskConfig):
 
 def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator, episode: np.void) -> None:
     """Fill one EPISODE row."""
-    episode["tolerance"], episode["own"][SCRATCH.commitment] = settings.tolerance, settings.commitment
+    episode["tolerance"], episode["own"][SCRATCH.commitment] = settings.accuracy, settings.commitment
     episode["slide_tolerance"], episode["tilt_tolerance"] = settings.slide_tolerance, settings.tilt_tolerance
     episode["steps"] = max(1, round(settings.duration / episode["step_time"].item()))
 
