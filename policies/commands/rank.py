@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from estimator.registry import DEFAULT
 from slipgym.registration import TASK_MODULES
 
 TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
@@ -31,6 +32,7 @@ def main(
     episodes: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
     randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "train",
     level: Annotated[str, typer.Option(help="A level or a YAML file.")] = "easy",
+    estimator: Annotated[str, typer.Option(help="Estimator of the environments.")] = DEFAULT,
     levels: Annotated[
         bool, typer.Option("--levels", help="Success by level instead, without randomization.")
     ] = False,
@@ -47,11 +49,12 @@ def main(
     try:
         if levels:
             keys = [find(task).key for task in tasks or TASKS]
-            found = [by_level(key, level_names(key), zoo(key), episodes) for key in keys]
+            found = [by_level(key, level_names(key), zoo(key), episodes, estimator=estimator) for key in keys]
             typer.echo(markdown(pd.concat(found), 1))
             return
         for task in tasks or TASKS:
-            table = played(task, zoo(task), episodes, {"randomization": randomization, "level": level})
+            made = {"randomization": randomization, "level": level, "estimator": estimator}
+            table = played(task, zoo(task), episodes, made)
             typer.echo(f"\n{task}\n\n{markdown(table)}\n\n{sentence(table)}")
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error

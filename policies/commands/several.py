@@ -8,7 +8,7 @@ import typer
 from typer.core import TyperCommand
 
 TASK_HELP = (
-    "Task: linear_slip, rotational_slip, hinge, planar_slip, hold, fragile_hold or carry; "
+    "Task: linear_slip, rotational_slip, hinge, planar_slip, hold, fragile_hold, carry or explore; "
     "LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
 )
 

@@ -11,7 +11,7 @@ import numpy as np
 from slipgym.config import Config, Overrides, load
 from slipgym.config.errors import unknown
 from slipgym.envs import observation as layout
-from slipgym.envs.actions import COMMANDS, Actions
+from slipgym.envs.actions import COMMANDS, PLACES, Actions
 from slipgym.tasks import find
 
 State: TypeAlias = np.ndarray | tuple[np.ndarray, ...]
@@ -143,7 +143,8 @@ class ForcePolicy(ABC):
 
         Returns:
             Force (n,) [N], or force and wrist velocity along x, along z and in pitch (n, 4) [N, m/s, m/s,
-            rad/s], clipped to the action's range by the caller; and the new memory.
+            rad/s], or these and a guess of friction as `slipgym.envs.actions.GUESS` (n, 10); the caller clips
+            them to the action's range. And the new memory.
         """
 
     def initial_state(self, n: int) -> State:
@@ -207,11 +208,12 @@ class ForcePolicy(ABC):
 
     def _action(self, commands: np.ndarray, columns: Columns) -> np.ndarray:
         """What `control` returned to actions (n, m), clipped to [-1, 1]."""
-        n, table = len(columns), self._components
+        n, table, own = len(columns), self._components, len(COMMANDS)
         given = commands.reshape(n, -1)
-        wanted = np.zeros((n, len(COMMANDS) + 1))
-        wanted[:, : given.shape[1]] = given
-        wanted[:, -1] = given[:, 0] - columns["commanded_force"]
+        wanted = np.zeros((n, len(PLACES)))
+        wanted[:, : min(given.shape[1], own)] = given[:, :own]
+        wanted[:, own + 1 :][:, : max(given.shape[1] - own, 0)] = given[:, own:]
+        wanted[:, own] = given[:, 0] - columns["commanded_force"]
         low, high = table["low"], table["high"]
         scaled = 2.0 * (wanted[:, table["command"]] - low) / (high - low) - 1.0
         return np.clip(scaled, -1.0, 1.0).astype(np.float32)

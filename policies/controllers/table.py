@@ -18,6 +18,7 @@ CLASSES = {
     "hold": "policies.controllers.hold:HoldPolicy",
     "fragile_hold": "policies.controllers.fragile_hold:FragileHoldPolicy",
     "carry": "policies.controllers.carry:CarryPolicy",
+    "explore": "policies.controllers.explore:ExplorePolicy",
     "linear_slip": "policies.controllers.linear_slip:LinearSlipPolicy",
 }
 """Name -> module:class; imported on first use."""

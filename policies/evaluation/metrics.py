@@ -137,6 +137,18 @@ def measure_carry(recording: Recording) -> dict[str, Any]:
     }
 
 
+def measure_explore(recording: Recording) -> dict[str, Any]:
+    """When the episode ended, how much of the budget of slip was used, and what the guess is worth."""
+    score, regret, used = recording.reference[-1].tolist()
+    return {
+        "time_s": recording.time[-1].item(),
+        "largest_slip_mm": largest_slip(recording),
+        "budget_used": used,
+        "log_score": score,
+        "regret": regret,
+    }
+
+
 _FINAL = Metric("final_error_abs_mm", "final error, size [mm]", brief=True)
 _FINAL_ANGLE = Metric("final_error_abs_deg", "final error, size [°]", brief=True)
 _DISTANCE = Metric("final_error_mm", "final distance to the target [mm]", brief=True)
@@ -235,6 +247,19 @@ MEASURES: dict[str, Measures] = {
             Metric("least_force_peak_N", "least force, peak [N]"),
         ),
         SLIP,
+    ),
+    "Explore": Measures(
+        measure_explore,
+        (),
+        (
+            SUCCESS,
+            DROPPED,
+            Metric("time_s", "time [s]", brief=True),
+            Metric("budget_used", "used share of the budget of slip"),
+            Metric("log_score", "log score"),
+            Metric("regret", "regret"),
+        ),
+        Metric("time_s", "time [s]", brief=True),
     ),
 }
 """Task -> its measures, where they are more than `measures` finds by itself."""

@@ -103,12 +103,12 @@ class _Tap:
         buffers: ObservationBuffers,
     ) -> None:
         """The loop's `step`, one sample after the other."""
-        episode, total = self.simulation.episode[0], np.zeros_like(self.simulation.infos.terms)
+        total = np.zeros_like(self.simulation.infos.terms)
         for _ in range(skip):
             self._step(actions, components, 1, active, buffers)
             self._take()
             total += self.simulation.infos.terms
-            if episode["dropped"] or episode["step"] >= episode["steps"]:
+            if self.simulation.over:
                 break
         self.simulation.infos.terms[:] = total
 

@@ -70,6 +70,14 @@ FrictionRange = Annotated[
         "-",
     ),
 ]
+RadiusRange = Annotated[
+    PositiveInterval | None,
+    setting(
+        "r is sampled from this range, unless a reset option fixes it; the randomization scales it; "
+        "null: `radius`",
+        "m",
+    ),
+]
 WristSpeed = Annotated[
     Positive | None,
     setting("Largest speed of the wrist in this task; null: gripper.wrist_speed_max", "m/s", le=100.0),
@@ -94,6 +102,7 @@ class TaskConfig(Frozen):
     mass_range: MassRange = None
     friction_range: FrictionRange = None
     radius: TaskRadius = None
+    radius_range: RadiusRange = None
     wrist_speed: WristSpeed = None
     reward: Annotated[Mapping[str, Scale], setting("Scales of the reward terms, by their names")] = {}
 
@@ -110,6 +119,8 @@ class TaskConfig(Frozen):
         """
         if self.radius is not None:
             config.check_radius(f"{name}.radius", self.radius)
+        if self.radius_range is not None:
+            config.check_radius(f"{name}.radius_range", self.radius_range[1])
         low, high = config.gripper.force_min, config.gripper.force_max
         if not low <= self.initial_force <= high:
             raise ValueError(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import gymnasium as gym
@@ -16,17 +17,29 @@ ACTION_MODES = {
     "grip_force_pitch": ("grip_force", "wrist_pitch_rate"),
     "grip_force_wrist": ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate"),
     "force_increment": ("force_increment",),
+    "grip_force_wrist_guess": (
+        *("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate"),
+        *("ln_mu_s", "ln_mu_c", "ln_r", "ln_sd_mu_s", "ln_sd_mu_c", "ln_sd_r"),
+    ),
 }
 """Mode -> names of an action's components, in order."""
 
 COMMANDS = ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate")
 """Commands to gripper and wrist in a control step."""
 _INCREMENT = len(COMMANDS)
+GUESS = ("ln_mu_s", "ln_mu_c", "ln_r", "ln_sd_mu_s", "ln_sd_mu_c", "ln_sd_r")
+"""What an agent states about friction: logarithms of `mu_s`, `mu_c`, `r` and of their relative deviations."""
+PLACES = (*COMMANDS, "force_increment", *GUESS)
+"""Components by their place in `COMPONENT.command`."""
+GUESSED_FRICTION, GUESSED_DEVIATION = (0.05, 2.0), (0.01, 1.0)
+"""Ranges of a guess: friction coefficients and relative standard deviations."""
+GUESSED_RADIUS = 0.1
+"""Smallest radius of a guess over that of the pads."""
 
 COMPONENT = np.dtype(
     [
-        ("command", "i8"),  # place in COMMANDS; after the last one, the increment of the force
-        ("low", "f8"),  # what -1 stands for [N, m/s or rad/s]
+        ("command", "i8"),  # place in PLACES
+        ("low", "f8"),  # what -1 stands for [N, m/s, rad/s, or a logarithm]
         ("high", "f8"),  # what +1 stands for
     ]
 )
@@ -49,8 +62,27 @@ def components(mode: str, config: Config) -> tuple[Column, ...]:
         Column("wrist_pitch_rate", -rate, rate, "rad/s", "pitch rate of the wrist"),
         Column("force_increment", -step, step, "N", "change of the commanded grip force per control step"),
     )
-    rows = {column.name: column for column in table}
+    rows = {column.name: column for column in (*table, *_guess(gripper.pad_radius))}
     return tuple(rows[name] for name in ACTION_MODES[mode])
+
+
+def _guess(pad_radius: float) -> tuple[Column, ...]:
+    """Components of a guess of friction, on pads of a radius [m]."""
+    friction, radius = GUESSED_FRICTION, (GUESSED_RADIUS * pad_radius, pad_radius)
+    meanings = {
+        "mu_s": ("static friction", friction),
+        "mu_c": ("Coulomb friction", friction),
+        "r": ("contact radius in metres", radius),
+    }
+    values, deviations = [], []
+    for name, (meaning, (low, high)) in meanings.items():
+        ends = math.log(low), math.log(high)
+        text = f"logarithm of the {meaning}, as guessed"
+        values.append(Column(f"ln_{name}", ends[0], ends[1], "-", text))
+        low, high = GUESSED_DEVIATION
+        text = f"logarithm of the relative standard deviation of {name}, as guessed"
+        deviations.append(Column(f"ln_sd_{name}", math.log(low), math.log(high), "-", text))
+    return *values, *deviations
 
 
 class Actions:
@@ -70,8 +102,7 @@ class Actions:
     def __init__(self, mode: str, config: Config) -> None:
         self.mode = mode
         self.columns = components(mode, config)
-        places = (*COMMANDS, "force_increment")
-        rows = [(places.index(column.name), column.low, column.high) for column in self.columns]
+        rows = [(PLACES.index(column.name), column.low, column.high) for column in self.columns]
         self.table = np.array(rows, COMPONENT)
         self.moves_wrist = any(0 < place < _INCREMENT for place, *_ in rows)
         self._shape = (len(rows),)
@@ -151,7 +182,8 @@ def interpret(actions, components, episodes, commands):
     Args:
         actions: (n, m); values outside [-1, 1] are clipped.
         components: COMPONENT (m,).
-        episodes: EPISODE (n,), for the force commanded last and the gripper's range.
+        episodes: EPISODE (n,), for the force commanded last and the gripper's range; a guess of friction is
+            written to `guess`.
         commands: Output (n, 4), see `COMMANDS` [N, m/s, m/s, rad/s]; other columns are unchanged.
     """
     for i in range(actions.shape[0]):
@@ -163,5 +195,8 @@ def interpret(actions, components, episodes, commands):
             if component.command == _INCREMENT:
                 force = episode.command + value
                 commands[i, 0] = min(max(force, episode.force_min), episode.force_max)
+            elif component.command > _INCREMENT:
+                episode.guesses = True
+                episode.guess[component.command - _INCREMENT - 1] = math.exp(value)
             else:
                 commands[i, component.command] = value

@@ -14,7 +14,7 @@ import numpy as np
 from slipgym._numba.compiled import unlocked
 from slipgym.envs.actions import interpret
 from slipgym.envs.infos import write_infos
-from slipgym.envs.observation import combine, observe
+from slipgym.envs.observation import combine, guess, observe
 from slipgym.sensors.measure import measure
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import begin_step
@@ -121,6 +121,8 @@ def estimate(update, state, lo, hi):
 def evaluate(evaluate_step, state, lo, hi):
     """Merge the estimates and evaluate the task in rows lo to hi.
 
+    Where the agent states no guess of friction, the merged estimate is the guess.
+
     Args:
         evaluate_step: Function of the task.
         state: `BatchState`.
@@ -129,6 +131,7 @@ def evaluate(evaluate_step, state, lo, hi):
     """
     rows = slice(lo, hi)
     combine(state.estimates[2 * lo : 2 * hi], state.per_finger[rows], state.estimated[rows])
+    guess(state.estimated[rows], state.episodes[rows])
     evaluate_step(state.episodes[rows], state.worlds[rows], state.fingers[rows], state.task_part[rows])
 
 

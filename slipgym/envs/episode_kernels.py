@@ -25,6 +25,7 @@ GIVEN = np.dtype(
         ("mass", "f8"),
         ("mass_range", "f8", 2),  # NaN: it has `mass`
         ("friction_range", "f8", 2),  # of mu_c; NaN: the material's
+        ("radius_range", "f8", 2),  # of r; NaN: that of the pressure
         ("size", "f8", 3),
         ("com_offset", "f8", 2),
         ("grasp_offset", "f8", 2),
@@ -38,13 +39,13 @@ _box_inertia = compiled(hardware.box_inertia)
 
 
 @compiled
-def compose(picked, mass_shares, friction_shares, given, materials, radii, values, starts, episodes, blank):
+def compose(picked, further, given, materials, radii, values, starts, episodes, blank):
     """Fill in the sampled initial conditions of episodes, and what the episodes of all tasks have in common.
 
     Args:
         picked: A material for each, sampled from all, (m,).
-        mass_shares: Uniform random numbers in [0, 1) for a mass from `mass_range`, (m,).
-        friction_shares: The same for mu_c from `friction_range`.
+        further: Uniform random numbers in [0, 1) for a mass from `mass_range`, mu_c from `friction_range`
+            and r from `radius_range`, (m, 3).
         given: GIVEN (1,).
         materials: mu_s and mu_c of each material, (p, 2).
         radii: Radius r by pressure profile [m].
@@ -62,9 +63,12 @@ def compose(picked, mass_shares, friction_shares, given, materials, radii, value
         value.slip_latency = np.rint(value.slip_latency)
         start.force = own.force
         start.pressure = np.int64(value.pressure)
-        set_friction(start, own, value, materials, picked[k], friction_shares[k])
-        start.friction[2] = value.radius_scale * radii[start.pressure] if math.isnan(own.r) else own.r
-        set_object(start, own, value, mass_shares[k])
+        set_friction(start, own, value, materials, picked[k], further[k, 1])
+        r = radii[start.pressure]
+        if not math.isnan(own.radius_range[0]):
+            r = own.radius_range[0] + (own.radius_range[1] - own.radius_range[0]) * further[k, 2]
+        start.friction[2] = value.radius_scale * r if math.isnan(own.r) else own.r
+        set_object(start, own, value, further[k, 0])
         valid &= inside(start.com_offset, start.size, 0.0)
         valid &= inside(start.grasp_offset, start.size, own.pad_radius)
         episodes[start.row] = blank[0]

@@ -102,22 +102,21 @@ class EpisodeSampler:
         chosen = self._choose(options, material)
         m, settings, scale = len(rows), chosen.settings, chosen.given["scale"].item()
         shares, picked = np.empty((m, self._randomizer.count)), np.empty(m, np.int64)
-        mass_shares, friction_shares = np.zeros((2, m))
-        weighs, rubs = settings.mass_range is not None, settings.friction_range is not None
+        further = np.zeros((m, 3))  # of mass, friction and radius
+        ranges = settings.mass_range, settings.friction_range, settings.radius_range
+        ranged = [j for j, each in enumerate(ranges) if each is not None]
         count = len(self._names)
         for k, rng in enumerate(generators):
             rng.random(out=shares[k])
             picked[k] = rng.integers(count)  # drawn always, so that options do not shift later draws
-            if weighs:
-                mass_shares[k] = rng.random()
-            if rubs:
-                friction_shares[k] = rng.random()
+            for j in ranged:
+                further[k, j] = rng.random()
         values, starts = self._randomizer.sample(shares, scale), np.zeros(m, START)
         starts["row"] = rows
         for name, numbers in chosen.fixed.items():
             values[name] = numbers
         tables = self._friction, chosen.radii, values, starts, self._episode, self.blank
-        valid = compose(picked, mass_shares, friction_shares, chosen.given, *tables)
+        valid = compose(picked, further, chosen.given, *tables)
         if not valid or any(getattr(options, name) is not None for name in _CHECKED):
             for start, value in zip(starts, values, strict=True):
                 self._check(start, value, options)
@@ -156,6 +155,7 @@ class EpisodeSampler:
             "mass": default.mass,
             "mass_range": settings.mass_range,
             "friction_range": settings.friction_range,
+            "radius_range": settings.radius_range,
             "size": options.object_size or default.size,
             "com_offset": default.com_offset,
             "grasp_offset": default.grasp_offset,

@@ -248,6 +248,23 @@ def combine(estimates, per_finger, friction):
 
 
 @compiled
+def guess(friction, episodes):
+    """Take the merged estimates as the guess of friction where the agent states none.
+
+    Args:
+        friction: Output of `combine`, (n, 11).
+        episodes: EPISODE (n,); `guess` is written.
+    """
+    deviations = len(FRICTION_COLUMNS)
+    for i in range(episodes.shape[0]):
+        episode = episodes[i]
+        if not episode.guesses:
+            for k in range(3):
+                episode.guess[k] = friction[i, k]
+                episode.guess[3 + k] = friction[i, deviations + k] / max(friction[i, k], 1e-9)
+
+
+@compiled
 def observe(wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, friction, low, high, out):
     """Write the observation, clipped to its bounds.
 

@@ -116,7 +116,7 @@ def _drive(stages, move, state, contact, buffers, action, results, skip, lo, hi)
                     i, state.worlds, state.pads, state.fingers, state.per_finger, episodes
                 ):
                     bad = i
-                over = episodes[i].dropped or episodes[i].step >= episodes[i].steps
+                over = episodes[i].dropped or episodes[i].ended or episodes[i].step >= episodes[i].steps
             if over:  # a block of several rows has a single control step anyway
                 break
         stages.look(state, buffers, start, stop)
@@ -124,7 +124,7 @@ def _drive(stages, move, state, contact, buffers, action, results, skip, lo, hi)
             rewards[i] = 0.0
             for k in range(terms.shape[1]):
                 rewards[i] += terms[i, k]
-            terminated[i] = episodes[i].dropped
+            terminated[i] = episodes[i].dropped or episodes[i].ended
             truncated[i] = episodes[i].step >= episodes[i].steps and not terminated[i]
         stages.report(state, numbers, flags, start, stop)
         start = stop

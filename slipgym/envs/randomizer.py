@@ -73,7 +73,8 @@ class Randomizer:
             farthest = max(abs(least), abs(most))
             config.check_cop_offset("randomization.cop_offset: the farthest", [(farthest, farthest)])
         for variant in self.variants.values():
-            r = self.most("radius_scale") * (settings.radius or variant.contact_radius)
+            most = settings.radius_range[1] if settings.radius_range else settings.radius
+            r = self.most("radius_scale") * (most or variant.contact_radius)
             r *= self.most("finger_radius")
             if self.active:
                 _check_radius(variant, r)

@@ -112,8 +112,8 @@ class Simulation(ABC):
         self._hardware = hardware
         self._fresh = self.state.estimator_states[:2].copy(), learned.estimates[:2].copy()
         self._choose_programs()
-        self._dropped, self._steps, self._length = (
-            self.episode[name] for name in ("dropped", "step", "steps")
+        self._dropped, self._ended, self._steps, self._length = (
+            self.episode[name] for name in ("dropped", "ended", "step", "steps")
         )
 
     def _choose_programs(self) -> None:
@@ -130,14 +130,14 @@ class Simulation(ABC):
         return self.ground_truth[:, :3]
 
     @property
-    def dropped(self) -> bool:
-        """Whether the first environment's object was dropped."""
-        return self._dropped.item(0)
+    def ended_early(self) -> bool:
+        """Whether the first environment's object was dropped, or its task ended the episode."""
+        return self._dropped.item(0) or self._ended.item(0)
 
     @property
     def over(self) -> bool:
         """Whether the first environment's episode has ended."""
-        return self._dropped.item(0) or self._steps.item(0) >= self._length.item(0)
+        return self.ended_early or self._steps.item(0) >= self._length.item(0)
 
     @property
     def time(self) -> float:

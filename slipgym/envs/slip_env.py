@@ -135,11 +135,11 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         else:
             self._step_in_pictures(actions)
         observer.next(_ONE)
-        dropped, info = simulation.dropped, self._info()
-        reward, truncated = sum(info["reward_terms"].values()), simulation.over and not dropped
+        terminated, info = simulation.ended_early, self._info()
+        reward, truncated = sum(info["reward_terms"].values()), simulation.over and not terminated
         observation = first(observer.read())
         self._ready = True
-        return observation, reward, dropped, truncated, info
+        return observation, reward, terminated, truncated, info
 
     def _step_in_pictures(self, actions: np.ndarray) -> None:
         """`Simulation.step` with every control step in the pictures' strip."""

@@ -73,7 +73,7 @@ def compile_evaluate_step(
 
     Args:
         key: The task's.
-        functions: The task's `track`, `violated` and `success`, by these names; each may be None.
+        functions: The task's `track`, `violated`, `ends` and `success`, by these names; each may be None.
         terms: The task's; what the step pays for term k is written to `episode.terms[k]`.
         columns: The task's; column k is written to `columns[i, k]`.
         file: The task's source file.
@@ -81,6 +81,7 @@ def compile_evaluate_step(
     namespace: dict[str, Any] = {"detect_drop": detect_drop, "limited": limited}
     namespace |= {name: inlined(each) for name, each in functions.items() if each is not None}
     violated = " or violated(episode, world, fingers)" if "violated" in namespace else ""
+    ends = "ends(episode, world)" if "ends" in namespace else "False"
     success = " and success(episode, world)" if "success" in namespace else ""
     body = [
         "for i in range(episodes.shape[0]):",
@@ -90,8 +91,9 @@ def compile_evaluate_step(
         "    before = episode.violated",
         f"    episode.violated = before{violated}",
         "    episode.just_violated = episode.violated and not before",
-        "    finished = episode.step >= episode.steps and not episode.dropped and not episode.violated",
-        f"    episode.success = finished{success}",
+        f"    episode.ended = not episode.dropped and {ends}",
+        "    over = episode.ended or episode.step >= episode.steps",
+        f"    episode.success = over and not episode.dropped and not episode.violated{success}",
         "    share = 1.0 / episode.steps",
     ]
     for k, term in enumerate(terms):

@@ -66,6 +66,9 @@ EPISODE = np.dtype(
         ("dropped", "?"),
         ("violated", "?"),  # whether success has become impossible; it stays true
         ("just_violated", "?"),  # whether it became impossible in the last step
+        ("ended", "?"),  # whether the task ended the episode before its length
+        ("guesses", "?"),  # whether the agent states friction
+        ("guess", "f8", 6),  # mu_s, mu_c [-], r [m], their relative deviations: the agent's or the estimate
         ("largest_slip", "f8"),  # of the pad centre since reset [m]
         ("largest_tilt", "f8"),  # of the object against its start since reset [rad]
         # tasks with a reference

@@ -81,8 +81,8 @@ def _declared(scale: float, event: bool, value: Value) -> Term:
 class Task(Generic[SettingsT]):
     """A task, for every engine and every number of environments.
 
-    The functions `track`, `success`, `violated` and `wrist_velocity`, and those of terms and columns, are
-    plain Python that is compiled by numba. They work on one environment: `episode` is an EPISODE record,
+    The functions `track`, `success`, `violated`, `ends` and `wrist_velocity`, and those of terms and columns,
+    are plain Python that is compiled by numba. They work on one environment: `episode` is an EPISODE record,
     `world` a WORLD record.
 
     Raises:
@@ -107,6 +107,9 @@ class Task(Generic[SettingsT]):
     whatever follows; `episode.violated` stays true from then on. None: never before the end."""
     track: Value | None = None
     """After each control step, first: (episode, world) updates `episode.reference` and what is kept."""
+    ends: Value | None = None
+    """After each control step: (episode, world) -> bool, whether the episode ends before its length; the
+    environment then reports it as terminated. None: it never does."""
     wrist_velocity: Value | None = None
     """Before each control step: (episode, world) -> scripted velocity (x, z, pitch) at its end; None: 0."""
     action_mode: str = "grip_force"
@@ -163,10 +166,11 @@ class Task(Generic[SettingsT]):
     def evaluate_step(self) -> Any:
         """Compiled, after a control step: (episodes, worlds, fingers, columns) evaluates it.
 
-        It writes `dropped`, `violated`, `success` and the scaled reward terms into the episodes, and the
-        task's part of the observation into `columns` (n, k).
+        It writes `dropped`, `violated`, `ended`, `success` and the scaled reward terms into the episodes, and
+        the task's part of the observation into `columns` (n, k).
         """
-        functions = {"track": self.track, "violated": self.violated, "success": self.success}
+        names = "track", "violated", "ends", "success"
+        functions = {name: getattr(self, name) for name in names}
         return compile_evaluate_step(self.key, functions, self.terms, self.columns, self._file)
 
     @property

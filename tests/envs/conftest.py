@@ -15,8 +15,8 @@ IDS = tuple(ENVIRONMENTS)
 ROOT = Path(__file__).resolve().parents[2]
 
 
-CARRYING = {"slipgym/FragileHold-v0", "slipgym/Carry-v0"}
-"""Tasks whose object begins on a support, whose wrist moves, and which draw their friction from a range.
+CARRYING = {"slipgym/FragileHold-v0", "slipgym/Carry-v0", "slipgym/Explore-v0"}
+"""Tasks that draw their friction from a range; most begin on a support, and the wrist moves.
 
 What is tested for every task is tested for these with the slow tests; tests/tasks has their own.
 """

@@ -1,5 +1,6 @@
 """What actions command in every action mode."""
 
+import math
 import re
 
 import numpy as np
@@ -19,6 +20,9 @@ ENDS = {  # what -1 and +1 stand for
     "wrist_velocity_z": (-GRIPPER.wrist_speed_max, GRIPPER.wrist_speed_max),
     "wrist_pitch_rate": (-GRIPPER.wrist_pitch_rate_max, GRIPPER.wrist_pitch_rate_max),
     "force_increment": (-GRIPPER.force_step, GRIPPER.force_step),
+    **{f"ln_{name}": (math.log(0.05), math.log(2.0)) for name in ("mu_s", "mu_c")},
+    "ln_r": (math.log(0.1 * GRIPPER.pad_radius), math.log(GRIPPER.pad_radius)),
+    **{f"ln_sd_{name}": (math.log(0.01), 0.0) for name in ("mu_s", "mu_c", "r")},
 }
 
 
@@ -36,7 +40,8 @@ def commanded(mode: str, *actions: list[float], force: float = 10.0) -> np.ndarr
 def test_the_ends_of_every_component(mode):
     columns = Actions(mode, CONFIG).columns
     assert tuple(column.name for column in columns) == ACTION_MODES[mode]
-    assert {c.name: (c.low, c.high) for c in columns} == {name: ENDS[name] for name in ACTION_MODES[mode]}
+    for column in columns:
+        assert (column.low, column.high) == pytest.approx(ENDS[column.name])
 
 
 def test_force_and_wrist_in_si_units():
@@ -51,6 +56,19 @@ def test_increments_start_from_the_last_command_and_stay_in_range():
     np.testing.assert_array_equal(rows, [[11, 0, 0, 0], [9.75, 0, 0, 0], [10, 0, 0, 0], [11, 0, 0, 0]])
     assert commanded("force_increment", [1], force=24.5)[0, 0] == GRIPPER.force_max
     assert commanded("force_increment", [-1], force=1.0)[0, 0] == GRIPPER.force_min
+
+
+def test_a_guess_is_kept_in_the_episode():
+    episodes, commands = np.zeros(2, EPISODE), np.zeros((2, len(COMMANDS)))
+    actions = np.column_stack((np.zeros((2, 4)), [[-1.0] * 6, [0.0, 1.0, 7.0, -1.0, 0.0, 1.0]]))
+    interpret(actions, Actions("grip_force_wrist_guess", CONFIG).table, episodes, commands)
+    radius = GRIPPER.pad_radius
+    expected = [[0.05, 0.05, 0.1 * radius, *[0.01] * 3], [math.sqrt(0.1), 2.0, radius, 0.01, 0.1, 1.0]]
+    np.testing.assert_allclose(episodes["guess"], expected, rtol=1e-12)
+    assert episodes["guesses"].all()
+    np.testing.assert_allclose(commands, [[12.8, 0.0, 0.0, 0.0]] * 2)
+    interpret(np.zeros((2, 1)), Actions("grip_force", CONFIG).table, before := np.zeros(2, EPISODE), commands)
+    assert not before["guesses"].any()
 
 
 def column(env, name: str) -> int:

@@ -64,7 +64,7 @@ def test_the_observation_table_is_the_observation_space(env):
 
 
 def test_the_reward_table_is_the_configuration(env):
-    events = {"solved", "violated", "drop"}
+    events = {"solved", "violated", "drop", "following"}
     expected = [
         [f"`{name}`", "event" if name in events else "dense", f"{env.settings.reward[name]:g}"]
         for name in env.task.term_names

@@ -11,8 +11,8 @@ from slipgym.registration import ENVIRONMENTS
 SLIDE = "slipgym/LinearSlip-v0"
 
 
-CARRYING = {"slipgym/FragileHold-v0", "slipgym/Carry-v0"}
-"""Tasks that are drawn in the slow tests: they look like Hold."""
+CARRYING = {"slipgym/FragileHold-v0", "slipgym/Carry-v0", "slipgym/Explore-v0"}
+"""Tasks that are drawn in the slow tests: they look like Hold or LinearSlip."""
 
 
 @pytest.fixture(

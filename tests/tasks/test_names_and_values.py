@@ -14,8 +14,9 @@ def evaluated(task):
     """Reward terms and columns of a task in some state, by their names."""
     episodes, worlds, fingers = np.zeros(1, EPISODE), np.zeros(1, WORLD), np.zeros((1, 2), FINGER)
     rng = np.random.default_rng(0)
-    for field in ("reference", "own", "wrist_command"):
+    for field in ("reference", "wrist_command"):
         episodes[field] = rng.uniform(0.1, 0.2, episodes[field].shape)
+    episodes["own"] = rng.uniform(0.001, 0.002, episodes["own"].shape)
     for field in ("slip", "slip_twist", "wrist", "wrist_velocity", "wrist_plan"):
         worlds[field] = rng.uniform(0.001, 0.002, worlds[field].shape)
     episodes["step_time"], episodes["steps"], episodes["reach"], episodes["scales"] = 0.01, 50, 1.0, 1.0

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from tqdm import tqdm
 
+from estimator.registry import DEFAULT
 from policies.evaluation.play import play
 from policies.research.reward_order.zoo import Member
 from slipgym.tasks import find
@@ -95,7 +96,12 @@ def spread(table: pd.DataFrame) -> float:
 
 
 def by_level(
-    task: str, levels: Sequence[str], members: Sequence[Member], episodes: int = 200, progress: bool = True
+    task: str,
+    levels: Sequence[str],
+    members: Sequence[Member],
+    episodes: int = 200,
+    progress: bool = True,
+    estimator: str = DEFAULT,
 ) -> pd.DataFrame:
     """Success of the best constant grip and of the controller by friction source, in each level.
 
@@ -106,6 +112,7 @@ def by_level(
             undisturbed controller are left out.
         episodes: How many.
         progress: Whether to show a progress bar.
+        estimator: Name of the estimator.
 
     Returns:
         A row for each level, success in percent. The best constant grip is chosen on these same episodes.
@@ -114,7 +121,7 @@ def by_level(
     chosen = [member for member in members if member.name in kinds or member.name.startswith("constant ")]
     rows = []
     for level in levels:
-        table = played(task, chosen, episodes, {"level": level}, progress)
+        table = played(task, chosen, episodes, {"level": level, "estimator": estimator}, progress)
         found = dict(zip(table["policy"].tolist(), table[SUCCESS].tolist(), strict=True))
         best = max((name for name in found if name.startswith("constant ")), key=lambda name: found[name])
         force = best.removeprefix("constant ") if found[best] > 0.0 else "any"

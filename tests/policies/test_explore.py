@@ -1,0 +1,68 @@
+"""The controller of Explore: with whose friction it succeeds, and how fast."""
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import policies
+from policies.controllers.explore import HOLD, ExploreState
+from policies.controllers.no_friction_info import NoFrictionInfo
+from policies.evaluation.play import play
+
+N = 60
+DEVIATIONS = {"observation_mode": "deviations"}
+
+
+def played(policy, **arguments):
+    envs = gym.make_vec("slipgym:slipgym/Explore-v0", N, "vector_entry_point", **arguments)
+    found = play(envs, policy, range(N))
+    envs.close()
+    return found
+
+
+def test_estimates_that_fit_the_contact_find_friction_out():
+    policy = policies.make("explore")
+    found = played(policy, estimator="joint", **DEVIATIONS)
+    assert found.success.mean() >= 0.9
+    assert not found.dropped.any()
+    true = played(policy, friction_source="true", **DEVIATIONS)
+    assert true.success.all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", ["standard", "hard"])
+def test_levels_are_harder(level):
+    found = played(policies.make("explore"), estimator="joint", level=level, **DEVIATIONS)
+    assert 0.6 <= found.success.mean() <= 0.97
+    assert not found.dropped.any()
+
+
+@pytest.mark.slow
+def test_without_friction_nothing_is_found_out():
+    assert played(NoFrictionInfo("explore"), friction_source="none").success.mean() <= 0.05
+    assert played(policies.make("explore"), friction_source="nominal", **DEVIATIONS).success.mean() <= 0.05
+
+
+def test_it_rests_once_it_is_sure_and_keeps_to_the_budget():
+    """Without commitments the episode goes on; the object stays as it is."""
+    policy, config = policies.make("explore"), {"tasks": {"explore": {"commitment": 1e-3}}}
+    envs = gym.make_vec(
+        "slipgym:slipgym/Explore-v0",
+        N,
+        estimator="joint",
+        config=config,
+        autoreset_mode="Disabled",
+        **DEVIATIONS,
+    )
+    observations, info = envs.reset(seed=list(range(N)))
+    state, slips = None, []
+    for _ in range(359):
+        actions, state = policy.predict(observations, state)
+        observations, _, _, _, info = envs.step(actions)
+        slips.append(info["slip"].copy())
+    envs.close()
+    memory = ExploreState(*state.T)
+    assert (memory.phase == HOLD).mean() >= 0.95
+    moved = np.abs(np.array(slips[-60:]) - slips[-1]).max(axis=(0, 2))
+    assert np.mean(moved < 1e-5) >= 0.95
+    assert info["violated"].mean() <= 0.1
