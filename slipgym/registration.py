@@ -13,6 +13,7 @@ TASK_MODULES = {
     "slipgym/Hold-v0": "slipgym.tasks.hold",
     "slipgym/FragileHold-v0": "slipgym.tasks.fragile_hold",
     "slipgym/Carry-v0": "slipgym.tasks.carry",
+    "slipgym/PivotTo-v0": "slipgym.tasks.pivot_to",
 }
 """Id -> module that holds its TASK. A task that comes with slipgym is one such module and its row here."""
 

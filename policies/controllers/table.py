@@ -18,6 +18,7 @@ CLASSES = {
     "hold": "policies.controllers.hold:HoldPolicy",
     "fragile_hold": "policies.controllers.fragile_hold:FragileHoldPolicy",
     "carry": "policies.controllers.carry:CarryPolicy",
+    "pivot_to": "policies.controllers.pivot_to:PivotToPolicy",
     "linear_slip": "policies.controllers.linear_slip:LinearSlipPolicy",
 }
 """Name -> module:class; imported on first use."""

@@ -33,7 +33,9 @@ from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
 from slipgym.config.physics import ContactModel
 
 FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
-ActionMode: TypeAlias = Literal["grip_force", "grip_force_pitch", "grip_force_wrist", "force_increment"]
+ActionMode: TypeAlias = Literal[
+    "grip_force", "grip_force_pitch", "grip_force_translation", "grip_force_wrist", "force_increment"
+]
 ObservationMode: TypeAlias = Literal["flat", "deviations", "sensor", "dict"]
 Engine: TypeAlias = Literal["bullet", "planar"]
 

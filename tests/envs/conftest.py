@@ -15,7 +15,7 @@ IDS = tuple(ENVIRONMENTS)
 ROOT = Path(__file__).resolve().parents[2]
 
 
-CARRYING = {"slipgym/FragileHold-v0", "slipgym/Carry-v0"}
+CARRYING = {"slipgym/FragileHold-v0", "slipgym/Carry-v0", "slipgym/PivotTo-v0"}
 """Tasks whose object begins on a support, whose wrist moves, and which draw their friction from a range.
 
 What is tested for every task is tested for these with the slow tests; tests/tasks has their own.
