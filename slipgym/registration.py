@@ -14,6 +14,7 @@ TASK_MODULES = {
     "slipgym/FragileHold-v0": "slipgym.tasks.fragile_hold",
     "slipgym/Carry-v0": "slipgym.tasks.carry",
     "slipgym/Explore-v0": "slipgym.tasks.explore",
+    "slipgym/PivotTo-v0": "slipgym.tasks.pivot_to",
 }
 """Id -> module that holds its TASK. A task that comes with slipgym is one such module and its row here."""
 

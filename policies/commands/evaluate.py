@@ -18,7 +18,7 @@ Examples:\n
 \n
 An experiment is a YAML file; configs/experiments/ holds those that come with slipgym (linear_slip,
 rotational_slip, hinge, planar_slip, hold,
-fragile_hold, carry, explore, demo), and docs/evaluation.md says what their keys mean and what
+fragile_hold, carry, pivot_to, explore, demo), and docs/evaluation.md says what their keys mean and what
 a run writes.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)

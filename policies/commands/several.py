@@ -8,8 +8,8 @@ import typer
 from typer.core import TyperCommand
 
 TASK_HELP = (
-    "Task: linear_slip, rotational_slip, hinge, planar_slip, hold, fragile_hold, carry or explore; "
-    "LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
+    "Task: linear_slip, rotational_slip, hinge, planar_slip, hold, fragile_hold, carry, pivot_to or "
+    "explore; LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
 )
 
 

@@ -8,11 +8,11 @@ from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
-from slipgym.config import Config, Overrides, load
+from slipgym.config import Config, Overrides, TaskConfig, load
 from slipgym.config.errors import unknown
 from slipgym.envs import observation as layout
 from slipgym.envs.actions import COMMANDS, PLACES, Actions
-from slipgym.tasks import find
+from slipgym.tasks import configure, find
 
 State: TypeAlias = np.ndarray | tuple[np.ndarray, ...]
 """A policy's memory: one or several arrays, each with a leading batch axis."""
@@ -129,9 +129,15 @@ class ForcePolicy(ABC):
     """Arguments of the controller without friction information (`policies.controllers.no_friction_info`)."""
 
     def __init__(self, config: Overrides | None = None) -> None:
-        self.config = load(config)
+        self.settings: TaskConfig | None = None
+        """The task's settings; None without a task."""
+        if self.task is None:
+            self.config = load(config)
+        else:
+            self.config, self.settings = configure(find(self.task), config)
+        speed = None if self.settings is None else self.settings.wrist_speed
         self.index = ObservationIndex(self.task, self.config, self.action_mode)
-        self._components = Actions(self.action_mode, self.config).table
+        self._components = Actions(self.action_mode, self.config, speed).table
 
     @abstractmethod
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:

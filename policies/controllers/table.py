@@ -19,6 +19,7 @@ CLASSES = {
     "fragile_hold": "policies.controllers.fragile_hold:FragileHoldPolicy",
     "carry": "policies.controllers.carry:CarryPolicy",
     "explore": "policies.controllers.explore:ExplorePolicy",
+    "pivot_to": "policies.controllers.pivot_to:PivotToPolicy",
     "linear_slip": "policies.controllers.linear_slip:LinearSlipPolicy",
 }
 """Name -> module:class; imported on first use."""

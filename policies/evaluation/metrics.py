@@ -149,6 +149,17 @@ def measure_explore(recording: Recording) -> dict[str, Any]:
     }
 
 
+def measure_pivot_to(recording: Recording) -> dict[str, Any]:
+    """How far from its angle the object ended, and how far it slid."""
+    final = math.degrees(recording.slip[-1, 2] - recording.goal)
+    return {
+        "final_error_deg": final,
+        "final_error_abs_deg": abs(final),
+        "largest_slip_mm": largest_slip(recording),
+        "target_theta_deg": math.degrees(recording.goal),
+    }
+
+
 _FINAL = Metric("final_error_abs_mm", "final error, size [mm]", brief=True)
 _FINAL_ANGLE = Metric("final_error_abs_deg", "final error, size [°]", brief=True)
 _DISTANCE = Metric("final_error_mm", "final distance to the target [mm]", brief=True)
@@ -260,6 +271,12 @@ MEASURES: dict[str, Measures] = {
             Metric("regret", "regret"),
         ),
         Metric("time_s", "time [s]", brief=True),
+    ),
+    "PivotTo": Measures(
+        measure_pivot_to,
+        (_SLIDE, Tolerance("tolerance", "tolerance_deg", math.degrees(1.0))),
+        (SUCCESS, DROPPED, _FINAL_ANGLE, SLIP, FORCE),
+        _FINAL_ANGLE,
     ),
 }
 """Task -> its measures, where they are more than `measures` finds by itself."""

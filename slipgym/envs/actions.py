@@ -15,6 +15,7 @@ from slipgym.tasks.task import Column
 ACTION_MODES = {
     "grip_force": ("grip_force",),
     "grip_force_pitch": ("grip_force", "wrist_pitch_rate"),
+    "grip_force_translation": ("grip_force", "wrist_velocity_x", "wrist_velocity_z"),
     "grip_force_wrist": ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate"),
     "force_increment": ("force_increment",),
     "grip_force_wrist_guess": (
@@ -46,15 +47,17 @@ COMPONENT = np.dtype(
 """One component of an action."""
 
 
-def components(mode: str, config: Config) -> tuple[Column, ...]:
+def components(mode: str, config: Config, wrist_speed: float | None = None) -> tuple[Column, ...]:
     """Components of an action: their names and the values of -1 and +1.
 
     Args:
         mode: One of `ACTION_MODES`.
         config: The environment's configuration.
+        wrist_speed: The task's own largest speed of the wrist; None: the gripper's [m/s].
     """
     gripper = config.gripper
-    speed, rate, step = gripper.wrist_speed_max, gripper.wrist_pitch_rate_max, gripper.force_step
+    speed = gripper.wrist_speed_max if wrist_speed is None else wrist_speed
+    rate, step = gripper.wrist_pitch_rate_max, gripper.force_step
     table = (
         Column("grip_force", gripper.force_min, gripper.force_max, "N", "grip force of either finger"),
         Column("wrist_velocity_x", -speed, speed, "m/s", "wrist velocity along world x"),
@@ -91,6 +94,7 @@ class Actions:
     Args:
         mode: One of `ACTION_MODES`.
         config: The environment's configuration.
+        wrist_speed: The task's own largest speed of the wrist; None: the gripper's [m/s].
 
     Attributes:
         columns: Components of an action, with the range that [-1, 1] stands for.
@@ -99,9 +103,9 @@ class Actions:
         space: Box(-1, 1, (m,), float32).
     """
 
-    def __init__(self, mode: str, config: Config) -> None:
+    def __init__(self, mode: str, config: Config, wrist_speed: float | None = None) -> None:
         self.mode = mode
-        self.columns = components(mode, config)
+        self.columns = components(mode, config, wrist_speed)
         rows = [(PLACES.index(column.name), column.low, column.high) for column in self.columns]
         self.table = np.array(rows, COMPONENT)
         self.moves_wrist = any(0 < place < _INCREMENT for place, *_ in rows)

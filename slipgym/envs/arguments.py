@@ -34,7 +34,12 @@ from slipgym.config.physics import ContactModel
 
 FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
 ActionMode: TypeAlias = Literal[
-    "grip_force", "grip_force_pitch", "grip_force_wrist", "force_increment", "grip_force_wrist_guess"
+    "grip_force",
+    "grip_force_pitch",
+    "grip_force_translation",
+    "grip_force_wrist",
+    "force_increment",
+    "grip_force_wrist_guess",
 ]
 ObservationMode: TypeAlias = Literal["flat", "deviations", "sensor", "dict"]
 Engine: TypeAlias = Literal["bullet", "planar"]

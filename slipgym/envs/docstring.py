@@ -46,9 +46,9 @@ and +1 is `gripper.force_max` ({high:g} N). Values outside [-1, 1] are clipped; 
 The actuator force follows the command with a dead time ({dead:g} ms) and a first-order lag ({lag:g} ms).
 
 Other values of `action_mode` add components or change their meaning (see docs/modes.md):
-"grip_force_pitch" adds the wrist's pitch rate, "grip_force_wrist" adds its velocity along world x and z and
-its pitch rate, "grip_force_wrist_guess" adds a guess of friction to that, and "force_increment" takes the
-change of the grip force per control step instead of the force."""
+"grip_force_pitch" adds the wrist's pitch rate, "grip_force_translation" adds its velocity along world x and
+z, "grip_force_wrist" adds both, "grip_force_wrist_guess" adds a guess of friction to that, and
+"force_increment" takes the change of the grip force per control step instead of the force."""
 
 _OBSERVATION = """\
 `Box(low, high, ({n},), float32)`. Forces, torques and velocities are sensor readings at the centre of

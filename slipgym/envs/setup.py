@@ -51,7 +51,7 @@ class Setup:
         self.randomization = level.level.applied_to(randomization, task.key)
         self.material = one_of("material", values["material"], ("random", *self.config.materials))
         values["action_mode"] = values["action_mode"] or task.action_mode
-        self.actions = Actions(values["action_mode"], self.config)
+        self.actions = Actions(values["action_mode"], self.config, self.settings.wrist_speed)
         self.simulation = make_simulation(
             self.config, self.settings, task, values["estimator"], self.randomization
         )

@@ -11,7 +11,10 @@ from slipgym.config.distribution import Distribution
 from slipgym.config.randomization import Ranges
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "randomization.md").read_text()
-TASKS = ("hold", "fragile_hold", "carry", "explore", "rotational_slip", "hinge", "planar_slip")
+TASKS = (
+    *("hold", "fragile_hold", "carry", "explore", "pivot_to", "rotational_slip"),
+    *("hinge", "planar_slip"),
+)
 
 
 def said(value: object) -> str:

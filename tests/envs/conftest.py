@@ -15,7 +15,7 @@ IDS = tuple(ENVIRONMENTS)
 ROOT = Path(__file__).resolve().parents[2]
 
 
-CARRYING = {"slipgym/FragileHold-v0", "slipgym/Carry-v0", "slipgym/Explore-v0"}
+CARRYING = {f"slipgym/{name}-v0" for name in ("FragileHold", "Carry", "Explore", "PivotTo")}
 """Tasks that draw their friction from a range; most begin on a support, and the wrist moves.
 
 What is tested for every task is tested for these with the slow tests; tests/tasks has their own.

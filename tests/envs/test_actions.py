@@ -101,8 +101,9 @@ def test_the_wrist_goes_where_it_is_told(make, env_id):
     env = make(env_id, action_mode=WRIST)
     start = env.reset(seed=0)[0][column(env, "wrist_pitch")]
     x, z = env.simulation.plant.world["wrist"][0, :2].copy()
+    speed = env.action_columns[1].high
     for _ in range(30):  # before anything is scripted but Hold's shaking
-        observation, *_ = env.step([1.0, 0.1, -0.04, 0.02])
+        observation, *_ = env.step([1.0, 0.05 / speed, -0.02 / speed, 0.02])
     moved = (
         *(env.simulation.plant.world["wrist"][0, :2] - (x, z)),
         observation[column(env, "wrist_pitch")] - start,

@@ -16,6 +16,7 @@ ROOM = {  # from pad centre to edge, less the pad's radius [m]
     "slipgym/FragileHold-v0": 0.065,
     "slipgym/Carry-v0": 0.065,
     "slipgym/Explore-v0": 0.065,
+    "slipgym/PivotTo-v0": 0.010,
 }
 SHAPES = {
     "true": (3,),

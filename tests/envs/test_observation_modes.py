@@ -80,6 +80,7 @@ def test_the_wrist_part_holds_what_the_task_does_not(make, env_id):
         ("grip_force", set()),
         ("force_increment", set()),
         ("grip_force_pitch", {"wrist_pitch", "wrist_pitch_rate"}),
+        ("grip_force_translation", {"wrist_velocity_x", "wrist_velocity_z", "wrist_pitch"}),
         ("grip_force_wrist", {c.name for c in WRIST_READINGS}),
     ):
         names = [c.name for c in make(env_id, action_mode=mode).columns]

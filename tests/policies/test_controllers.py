@@ -13,6 +13,7 @@ from slipgym.envs import (
     HingeEnv,
     HoldEnv,
     LinearSlipEnv,
+    PivotToEnv,
     PlanarSlipEnv,
     RotationalSlipEnv,
 )
@@ -27,6 +28,7 @@ CONTROLLERS = [
     ("hold", HoldEnv),
     ("fragile_hold", FragileHoldEnv),
     ("carry", CarryEnv),
+    ("pivot_to", PivotToEnv),
 ]
 
 

@@ -93,7 +93,10 @@ def test_the_environment_shows_what_the_estimators_state(source):
 
 @pytest.mark.parametrize(
     "name",
-    ["hold", "fragile_hold", "carry", "linear_slip", "planar_slip", "rotational_slip", "hinge", "explore"],
+    [
+        *("hold", "fragile_hold", "carry", "linear_slip", "planar_slip", "rotational_slip", "hinge"),
+        *("explore", "pivot_to"),
+    ],
 )
 def test_controllers_ask_for_them(name):
     policy = policies.make(name)

@@ -103,6 +103,18 @@ def test_planar_slip_measures():
     )
 
 
+def test_pivot_to_measures():
+    """2 degrees short of 40 in the end, 0.5 mm of slide in between."""
+    slip = np.zeros((10, 3))
+    slip[:, 2] = np.radians(np.linspace(0.0, 38.0, 10))
+    slip[4, :2] = 0.0003, -0.0004
+    row = measure(recording(slip=slip, goal=math.radians(40.0)), "PivotTo")
+    assert row["final_error_deg"] == pytest.approx(-2.0)
+    assert row["final_error_abs_deg"] == pytest.approx(2.0)
+    assert row["target_theta_deg"] == pytest.approx(40.0)
+    assert row["largest_slip_mm"] == pytest.approx(0.5)
+
+
 def test_tolerances_are_options_of_their_task():
     for name, measures in MEASURES.items():
         for limit in measures.tolerances:

@@ -11,7 +11,7 @@ from slipgym.registration import ENVIRONMENTS
 SLIDE = "slipgym/LinearSlip-v0"
 
 
-CARRYING = {"slipgym/FragileHold-v0", "slipgym/Carry-v0", "slipgym/Explore-v0"}
+CARRYING = {f"slipgym/{name}-v0" for name in ("FragileHold", "Carry", "Explore", "PivotTo")}
 """Tasks that are drawn in the slow tests: they look like Hold or LinearSlip."""
 
 

@@ -51,6 +51,14 @@ _OUTCOME: dict[str, tuple[str, Callable[[pd.DataFrame], Figure]]] = {
             up=Limited("peak_force_ratio", "largest grip / breaking force", 1.0),
         ),
     ),
+    "PivotTo": (
+        "outcome",
+        partial(
+            plot_allowed,
+            across=Limited("largest_slip_mm", "largest slip [mm]", "tolerance_mm"),
+            up=Limited("final_error_abs_deg", "final error of the angle, size [°]", "tolerance_deg"),
+        ),
+    ),
 }
 """Task -> name and figure of how its trials ended, where it is not the final error alone."""
 
