@@ -66,10 +66,16 @@ def njit(function: Any = None, **options: Any) -> Any:
 
     Args:
         function: The function, if the decorator is used without options.
-        **options: Options of `numba.njit`; those that are not given are those of the caller.
+        **options: Options of `numba.njit`; those that are not given are those of the caller, except
+            `fastmath`, which is False: what a function computes does not depend on who calls it first.
     """
-    decorate = compiler(**options)
+    decorate = compiler(**{"fastmath": False, **options})
     return decorate if function is None else decorate(function)
+
+
+fused = njit(error_model="numpy", fastmath={"contract"})
+"""`njit` for functions in which a product and the sum that takes it are one operation, rounded once, where
+the processor has it. Which of several products is taken is fixed when the function is compiled."""
 
 
 FORMAT = "3"

@@ -7,7 +7,7 @@ the covariance of the measurement by its effect on it.
 
 import math
 
-from estimator._numba.caching import njit
+from estimator._numba.caching import fused
 from estimator._numba.memory import matrix
 from estimator.augmented.load import limit
 from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict_at
@@ -15,7 +15,7 @@ from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZE
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
 
-ENOUGH = 0.01
+ENOUGH = 0.002
 """Error of a linearisation, over the standard deviation of the state, after which no further one is made."""
 
 ABSURD = 1e6
@@ -28,7 +28,7 @@ KNOWN = 0.01
 """Variance of ln mu_c and ln r from which one linearisation is enough."""
 
 
-@njit(error_model="numpy")
+@fused
 def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin):
     """Covariance (11, 12, 13, 22, 23, 33) of the measured f_x, f_y, tau about the law.
 
@@ -57,7 +57,7 @@ def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin):
     )
 
 
-@njit(error_model="numpy")
+@fused
 def _whitening(a, b, c, d, e, f):
     """Inverse (11, 21, 22, 31, 32, 33) of the Cholesky factor of a symmetric matrix (11, 12, 13, 22, 23, 33).
 
@@ -72,19 +72,19 @@ def _whitening(a, b, c, d, e, f):
     return x, turned, y, -(last * x + middle * turned) * z, -middle * y * z, z
 
 
-@njit(error_model="numpy")
+@fused
 def _whitened(w, x, y, z):
     """The vector (x, y, z) times w from `_whitening`."""
     return w[0] * x, w[1] * x + w[2] * y, w[3] * x + w[4] * y + w[5] * z
 
 
-@njit(error_model="numpy")
+@fused
 def _weighted(w, x, y, z):
     """The vector (x, y, z) times the transpose of w from `_whitening`."""
     return w[0] * x + w[1] * y + w[3] * z, w[2] * y + w[4] * z, w[5] * z
 
 
-@njit(error_model="numpy")
+@fused
 def _cross(covariance, h, f_n, crossed):
     """Covariances of the states with the measurements.
 
@@ -110,7 +110,7 @@ def _cross(covariance, h, f_n, crossed):
         crossed[0, j], crossed[1, j], crossed[2, j] = a, b, c
 
 
-@njit(error_model="numpy")
+@fused
 def _spread(h, crossed, f_n):
     """Covariance (11, 12, 13, 22, 23, 33) of the measurements by that of the states; see `_cross`."""
     s_11, s_12, s_13, s_22, s_23, s_33 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -130,7 +130,7 @@ def _spread(h, crossed, f_n):
     return s_11, s_12, s_13, s_22, s_23, s_33
 
 
-@njit(error_model="numpy")
+@fused
 def _shifted(y_1, y_2, y_3, h, f_n, x, proposed):
     """Innovations of the proposed states, as the linear model has them at the states before."""
     for j in range(SIGMA + 1):
@@ -145,7 +145,7 @@ def _shifted(y_1, y_2, y_3, h, f_n, x, proposed):
     return y_1, y_2, y_3
 
 
-@njit(error_model="numpy")
+@fused
 def _settled(step, variance):
     """Whether another linearisation would move ln mu_c or ln r by less than `ENOUGH` of its deviation.
 
@@ -157,7 +157,7 @@ def _settled(step, variance):
     return change * change <= ENOUGH * ENOUGH * variance
 
 
-@njit(error_model="numpy")
+@fused
 def _reduce(x, covariance, w, crossed, proposed):
     """Takes the proposed states and their covariance, unless a number is absurd; whether it did.
 
@@ -185,7 +185,7 @@ def _reduce(x, covariance, w, crossed, proposed):
     return True
 
 
-@njit(error_model="numpy")
+@fused
 def learn(state, p, sign, wrench, twist, of_speed, of_spin):
     """Moves the states by one measurement of a slip; a step that is not finite is refused.
 

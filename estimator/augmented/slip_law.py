@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from estimator._numba.caching import njit
+from estimator._numba.caching import fused
 from estimator.limit_surface.disc import DISC_RADIUS, disc_friction
 
 MU, R, SIGMA, ZERO, TILT, COP, SHAPE, FALLS, GROWS = 0, 1, 2, 3, 5, 7, 9, 10, 11
@@ -44,7 +44,7 @@ def _table() -> np.ndarray:
 _TABLE = _table()
 
 
-@njit(error_model="numpy")
+@fused
 def surface(s, shape):
     """Phi, its derivative by s, Psi, its derivative, and the derivatives of Phi and Psi by the shape.
 
@@ -61,7 +61,7 @@ def surface(s, shape):
     return shape + rest * phi, rest * d_phi, shape + rest * psi, rest * d_psi, 1.0 - phi, 1.0 - psi
 
 
-@njit(error_model="numpy")
+@fused
 def predict(x, sign, f_n, v_x, v_y, omega, by_state, by_twist):
     """`predict_at` with mu_c and r from the states, and all derivatives."""
     return predict_at(
@@ -69,7 +69,7 @@ def predict(x, sign, f_n, v_x, v_y, omega, by_state, by_twist):
     )
 
 
-@njit(error_model="numpy")
+@fused
 def predict_at(x, mu, r, sign, f_n, v_x, v_y, omega, complete, by_state, by_twist):
     """Measured (f_x, f_y, tau) [N, N, N m] that the states explain.
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import float64
 
+from estimator._numba.caching import fused, njit
 from slipgym._numba.compiled import compiled, compiled_sum
 
 
@@ -19,6 +20,16 @@ def total(values: np.ndarray) -> float:
     return result
 
 
+@njit
+def plain_product(a: float, b: float, c: float) -> float:
+    return a * b * c
+
+
+@fused
+def total_of_products(a: float, b: float, c: float) -> float:
+    return a * b + plain_product(a, b, c)
+
+
 def test_a_function_called_by_a_sum_keeps_the_order_of_its_operations() -> None:
     total.part.compile((float64[::1],))
     assert "reassoc" in translated(total)
@@ -30,3 +41,10 @@ def translated(kernel) -> str:
     """Code of a function as a part of another one."""
     (part,) = kernel.part.overloads.values()
     return str(part.library.own_module())
+
+
+def test_a_function_called_by_a_fused_one_rounds_as_before() -> None:
+    total_of_products.part.compile((float64, float64, float64))
+    assert "contract" in translated(total_of_products)
+    assert "fmul" in translated(plain_product)
+    assert "contract" not in translated(plain_product)
