@@ -26,9 +26,9 @@ observation, with nominal, estimated and true friction, 200 each on the planar e
 
 | level | best constant | none | nominal | estimated | true |
 |---|---|---|---|---|---|
-| easy | 0 | 21 | 17.5 | 90 | 100 |
-| standard | 0 | 16.5 | 15 | 75 | 99 |
-| hard | 0 | 16 | 13 | 64.5 | 96.5 |
+| easy | 0 | 21 | 17.5 | 94 | 100 |
+| standard | 0 | 16.5 | 15 | 89.5 | 99 |
+| hard | 0 | 16 | 13 | 82.5 | 96.5 |
 
 The controller without friction keeps one guess for all episodes. A policy with a memory could find friction
 out from the slips that it sees, as the estimator does.
