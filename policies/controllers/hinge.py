@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Self
+from collections.abc import Mapping
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from policies.controllers.base import Columns, State
-from policies.controllers.gains import Fraction, GainPolicy
-from policies.controllers.sensing import ConservativePrior, both, tangential
+from policies.controllers.exploration import ActiveExploration, ExplorationState
+from policies.controllers.gains import Fraction, GainPolicy, renamed
+from policies.controllers.sensing import ConservativePrior, both, scaled_speed, tangential
+from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
+
+_EXPLORATION = ActiveExploration()
+_UNEXPLORED = ConservativePrior(confidence=0.2)
+_REST = 0.01
+"""Pitch rate of the wrist up to which friction is explored [rad/s]."""
 
 
 class HingeGains(Frozen):
@@ -26,9 +34,12 @@ class HingeGains(Frozen):
     k_max: Positive = Field(default=3.0, description="Largest ratio k [-]")
     k_a: NonNegative = Field(default=45.0, description="Gain on the tilt [1/rad]")
     k_w: NonNegative = Field(default=6.0, description="Gain on the rate of the tilt [s/rad]")
-    target: float = Field(default=0.065, description="Tilt to hold [rad]")
+    target: float = Field(default=0.072, description="Tilt to hold [rad]")
     onset: NonNegative = Field(
         default=0.005, description="Turn from which the object counts as turning in the grip [rad]"
+    )
+    known: NonNegative = Field(
+        default=0.02, description="Confidence up to which friction is explored before the turn; 0: never [-]"
     )
     smoothing: Fraction = Field(
         default=0.9, description="Weight of the old tangential force in each control step [-]"
@@ -53,14 +64,19 @@ class HingePolicy(GainPolicy[HingeGains]):
     The gripper's public controller holds k at 1.4 (arXiv 2410.19660). Until the object first turns in the
     grip it holds by static friction, which is larger: with the same k the wrist would take it along
     beyond what is allowed, and it would swing when it breaks away. So k is then k_stick, between 1 and
-    mu_s / mu_c, and the first degrees of the turn show when friction lets go. Where friction is not known
-    yet it is k_blind, with the prior's mu_c. If friction still holds at the tilt `release`, it is larger than
-    that, and the grip falls with the tilt from there, so that it lets go in time.
+    mu_s / mu_c, and the first degrees of the turn show when friction lets go.
+
+    So friction has to be known before the turn. While the wrist still rests, the grip is lowered until the
+    object slips a little (`policies.controllers.exploration`), until the estimate has the confidence `known`.
+    That suits estimators whose first update gives the answer; with "rls" choose known=0. Where friction is
+    unknown, k is k_blind, with the prior's mu_c. If friction still holds at the tilt `release`, it is larger
+    than that, and the grip falls with the tilt from there, so that it lets go in time.
 
     Args:
         gains: See `HingeGains`; each is a keyword argument of its own, too.
-        prior: Friction assumed until the estimate has confidence; more than elsewhere, as the first
-            samples after the break-away, near static friction, say too much.
+        prior: Friction assumed until the estimate has confidence; None: for as long as friction is explored,
+            and without exploration for longer than elsewhere, as the first samples after the break-away of a
+            turn, near static friction, say too much.
         config: Overrides of the environment's configuration.
 
     Raises:
@@ -69,17 +85,38 @@ class HingePolicy(GainPolicy[HingeGains]):
 
     task = "Hinge"
     Gains = HingeGains
-    prior_default = ConservativePrior(confidence=0.2)
+    prior_default = ConservativePrior(confidence=0.02)
+    without_friction: ClassVar[Mapping[str, Any]] = {"known": 0.0}
+
+    def __init__(
+        self,
+        gains: HingeGains | None = None,
+        prior: ConservativePrior | None = None,
+        config: Overrides | None = None,
+        **parameters: Any,
+    ) -> None:
+        parameters = renamed(parameters)
+        prior = parameters.pop("prior", prior)
+        super().__init__(gains, prior, config, **parameters)
+        if prior is None and self.gains.known == 0.0:
+            self.prior = _UNEXPLORED
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Filtered tangential force, (n, 1) [N]; a negative one has no sample yet."""
-        return np.full((n, 1), -1.0)
+        """Filtered tangential force, level of the exploration [N], `ExplorationState`, (n, 6).
+
+        The first two are < 0 before the first step. Without exploration the first alone, (n, 1).
+        """
+        if self.gains.known == 0.0:
+            return np.full((n, 1), -1.0)
+        state = np.zeros((n, 2 + len(ExplorationState._fields)))
+        state[:, :2], state[:, -1] = -1.0, 1.0
+        return state
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
-        g = self.gains
-        old, load = np.asarray(state)[:, 0], tangential(columns)
-        load = np.where(old < 0.0, load, g.smoothing * old + (1.0 - g.smoothing) * load)
+        g, memory = self.gains, np.asarray(state).T
+        old, load = memory[0], tangential(columns)
+        smooth = np.where(old < 0.0, load, g.smoothing * old + (1.0 - g.smoothing) * load)
         turned, side = columns["measured_slip_theta"], np.sign(columns["wrist_pitch_goal"])
         tilt = side * (columns["wrist_pitch"] + turned)
         rate = side * (columns["wrist_pitch_rate"] + both(columns, "omega"))
@@ -89,4 +126,25 @@ class HingePolicy(GainPolicy[HingeGains]):
         blind = g.k_blind * g.release / np.maximum(np.abs(tilt), g.release)
         start = weight * g.k_stick + (1.0 - weight) * blind
         k = np.where(np.abs(turned) > g.onset, k, start)
-        return k * load / self.prior.blend(columns, "mu_c"), load[:, np.newaxis]
+        force = k * smooth / self.prior.blend(columns, "mu_c")
+        if g.known == 0.0:
+            return force, smooth[:, np.newaxis]
+        explores, command, kept = self._explore(columns, memory[1:], force, load)
+        return np.where(explores, command, force), np.column_stack((smooth, *kept))
+
+    def _explore(
+        self, columns: Columns, memory: np.ndarray, force: np.ndarray, load: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+        """Whether friction is explored (n,), the grip then (n,) [N], and the memory of it."""
+        begun, seen = memory[0] >= 0.0, ExplorationState(*memory[1:])
+        seen = seen._replace(load=np.where(begun, seen.load, load))
+        level = np.where(begun, memory[0], force)
+        rests = (np.abs(columns["wrist_pitch_rate"]) < _REST) & (
+            np.abs(columns["wrist_pitch"]) < self.gains.onset
+        )
+        wanted = begun & rests & (columns["confidence_mu_c"] < self.gains.known)
+        slips = _EXPLORATION.slipping(seen, load, scaled_speed(columns, self.prior.blend(columns, "r")))
+        limits = self.config.gripper.force_min, self.config.gripper.force_max
+        explores, command, level, seen = _EXPLORATION.act(seen, level, slips, wanted, limits)
+        seen = seen._replace(load=seen.load + _EXPLORATION.smoothing * (load - seen.load))
+        return explores, command, [level, *seen]

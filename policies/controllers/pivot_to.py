@@ -70,7 +70,7 @@ class PivotToGains(Frozen):
     hold: Positive = Field(default=0.7, description="Load while held, over the largest of friction [-]")
     age: NonNegative = Field(default=0.012, description="Age of the measured slip [s]")
     delay: NonNegative = Field(default=0.01, description="Time for which braking looks ahead [s]")
-    speed: Fraction = Field(default=0.97, description="Speed of the wrist, over the task's largest [-]")
+    speed: Fraction = Field(default=0.995, description="Speed of the wrist, over the task's largest [-]")
     guess: Positive = Field(default=0.5, description="mu_c for which the grip of the probe is [-]")
     probe_turn: Positive = Field(default=0.1, description="Turn away from the goal that ends the probe [rad]")
     wait: NonNegative = Field(default=6.0, description="Control steps between probe and stroke, at least [-]")

@@ -16,8 +16,9 @@ import numpy as np
 
 import policies
 from slipgym.benchmarking import report
-from slipgym.benchmarking.batch import EVERY_FORCE, SLIP_LIMIT, action_bounds
+from slipgym.benchmarking.batch import EVERY_FORCE
 from slipgym.benchmarking.report import Figure
+from slipgym.benchmarking.vector_player import SLIP_LIMIT, action_bounds
 from slipgym.registration import TASK_MODULES
 from slipgym.tasks import find
 

@@ -19,9 +19,9 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym._numba.switches import OPTIMISATIONS, VARIABLE
-from slipgym.benchmarking.batch import SLIP_LIMIT, VectorPlayer, action_bounds
 from slipgym.benchmarking.processors import two_processors
 from slipgym.benchmarking.report import Figure
+from slipgym.benchmarking.vector_player import SLIP_LIMIT, VectorPlayer, action_bounds
 from slipgym.benchmarking.worker import Worker
 
 BLOCK_STEPS = 4096 * 8

@@ -12,18 +12,15 @@ from collections.abc import Callable
 from functools import partial
 from statistics import median, quantiles
 from time import process_time
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from slipgym._numba.compiled import unlocked
 from slipgym._numba.rows import row_of
 from slipgym.benchmarking.report import Figure
+from slipgym.benchmarking.vector_player import VectorPlayer
 from slipgym.contact.coupled import step_pads
 from slipgym.world.planar_engine import step_world
-
-if TYPE_CHECKING:
-    from slipgym.benchmarking.batch import VectorPlayer
 
 STEPS = 16
 """Steps of all environments in a block."""

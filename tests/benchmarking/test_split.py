@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from slipgym.benchmarking import split
-from slipgym.benchmarking.batch import VectorPlayer
+from slipgym.benchmarking.vector_player import VectorPlayer
 
 
 @pytest.fixture(scope="module")

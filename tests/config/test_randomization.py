@@ -126,6 +126,10 @@ def test_train_keeps_the_tasks_feasible(task):
     aside = ends("size_scale")[1] * (abs(thing.grasp_offset[0]) + ends("com_x", 0.0)[1] * thing.size[0])
     if task == "planar_slip":  # after the longest slide the object is turned to the side
         aside += settings.slide[1]
+    if task == "pivot_to":  # at the end of the largest turn the object is beside the pads
+        deep = thing.grasp_offset[1] + ends("com_z", 0.0)[1] * thing.size[2]
+        aside += ends("size_scale")[1] * deep * math.sin(settings.angle[1])
+        mu_c *= settings.friction_range[0]
     aside += ends("cop_offset", 0.0)[1]
     needed = 0.5 * mass * config.physics.gravity * math.hypot(1.0, aside / r) / mu_c
     needed /= ends("force_gain")[0]

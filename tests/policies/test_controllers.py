@@ -204,6 +204,24 @@ def test_hinge_lets_go_with_the_tilt_while_friction_is_unknown(support, tilt, k)
     assert force == pytest.approx(k * load / (mu_c if support else policy.prior.mu_c))
 
 
+def test_hinge_knows_friction_before_the_turn():
+    """While the wrist rests it explores, unless friction is known or it is not to."""
+    for source, gains in (("estimated", {}), ("estimated", {"known": 0.0}), ("true", {})):
+        env = HingeEnv(friction_source=source, engine="planar")
+        observation, info = env.reset(seed=0, options={"mu_c": 0.7, "mu_s": 0.9})
+        policy, state = policies.make("hinge", **gains), None
+        for _ in range(59):
+            action, state = policy.predict(observation, state)
+            observation, _, _, _, info = env.step(action)
+        env.close()
+        slid = np.hypot(*info["slip"][:2])
+        if source == "estimated" and not gains:
+            assert info["estimated"][1] == pytest.approx(0.7, rel=0.15)
+            assert 1e-5 < slid < 5e-4
+        else:
+            assert slid < 1e-5
+
+
 @pytest.mark.parametrize("source", ["estimated", "true"])
 @pytest.mark.parametrize(("heading", "turn"), [(0.8, 0.5), (-0.3, -0.25)])
 @pytest.mark.quick_cases("0.8-0.5-estimated")
