@@ -132,10 +132,10 @@ def test_config_by_file_and_by_mapping_agree(make, env_id, tmp_path, play):
     path, key = tmp_path / "mine.yaml", make(env_id).task.key
     path.write_text(
         "object: {mass: 0.35}\ncontact: {radius: 0.008}\nmaterials: {glass: {mu_c: 0.2, mu_s: 0.25}}\n"
-        f"tasks: {{{key}: {{object: null, radius: null}}}}\n"
+        f"tasks: {{{key}: {{object: null, radius: null, radius_range: null}}}}\n"
     )
     mapping = {
-        "tasks": {key: {"object": None, "radius": None}},
+        "tasks": {key: {"object": None, "radius": None, "radius_range": None}},
         "object": {"mass": 0.35},
         "contact": {"radius": 0.008},
         "materials": {"glass": {"mu_c": 0.2, "mu_s": 0.25}},
