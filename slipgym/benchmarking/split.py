@@ -12,7 +12,7 @@ from collections.abc import Callable
 from functools import partial
 from statistics import median, quantiles
 from time import process_time
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
@@ -20,10 +20,8 @@ from slipgym._numba.compiled import unlocked
 from slipgym._numba.rows import row_of
 from slipgym.benchmarking.report import Figure
 from slipgym.contact.coupled import step_pads
+from slipgym.envs.vector_env import SlipVectorEnv
 from slipgym.world.planar_engine import step_world
-
-if TYPE_CHECKING:
-    from slipgym.benchmarking.batch import VectorPlayer
 
 STEPS = 16
 """Steps of all environments in a block."""
@@ -42,6 +40,18 @@ REST = "resets, Gymnasium"
 FLOOR = "their contact kernel alone"
 
 
+class Player(Protocol):
+    """Plays a vector environment, as `slipgym.benchmarking.batch.VectorPlayer`."""
+
+    env: SlipVectorEnv
+    n: int
+    actions: tuple[float, float]
+
+    def block(self, steps: int) -> tuple[float, int]:
+        """Time of some steps [s], and how many they were."""
+        ...
+
+
 class Split:
     """Steps a vector environment stage by stage.
 
@@ -49,7 +59,7 @@ class Split:
         player: Plays the environment in one thread.
     """
 
-    def __init__(self, player: VectorPlayer) -> None:
+    def __init__(self, player: Player) -> None:
         self._player, self._rng = player, np.random.default_rng(0)
         simulation, n = player.env.simulation, player.n
         stages, state, rows = simulation.stages, simulation.state, (0, n)
@@ -106,7 +116,7 @@ class Split:
         return median(times)
 
 
-def parts(player: VectorPlayer, pairs: int) -> list[Figure]:
+def parts(player: Player, pairs: int) -> list[Figure]:
     """CPU time of the parts of a step in one thread, and of the contact kernel alone.
 
     Args:
