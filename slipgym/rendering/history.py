@@ -54,6 +54,8 @@ class History:
             simulation.plant.world["slip"][i],
             simulation.episode["reference"][i, self._motion.entry],
         )
+        if self.step >= len(self.rows):  # somebody steps on beyond the end of the episode
+            self.rows = np.concatenate([self.rows, np.full_like(self.rows, math.nan)])
         row = self.rows[self.step]
         row[:2] = simulation.plant.fingers["force"][i]
         row[2], row[3] = self._motion.path(slip), self._motion.target(reference)

@@ -74,3 +74,15 @@ def test_the_motion_of_each_task(task, title, path, target):
     assert motion.path(SLIP) == pytest.approx(path)
     assert motion.target(0.5) == pytest.approx(target)
     assert motion.goal in {"", *(column.name for column in TASKS[task].columns)}
+
+
+def test_steps_beyond_the_end_of_an_episode_are_kept(make):
+    env = make(engine="planar", render_mode="rgb_array")
+    env.reset(seed=0, options={"duration": 0.1, "distance": 0.002})
+    over = False
+    while not over:
+        _, _, terminated, truncated, _ = env.step(env.action_space.high)
+        over = terminated or truncated
+    for _ in range(3):
+        env.step(env.action_space.high)
+    assert env.render().any()
