@@ -56,7 +56,7 @@ def main(
     from estimator.records import parse_settings
     from policies.play import watch
 
-    keywords = {
+    keywords: dict[str, Any] = {
         "material": material,
         "friction_source": friction_source,
         "estimator": estimator,

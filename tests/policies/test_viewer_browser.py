@@ -125,6 +125,7 @@ def test_a_button_pokes_the_object(page):
     page.until(lambda: page.viewer.session.env.simulation.plant.world["external"][0, 0] > 0.0, 1.0 / 120.0)
 
 
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # imageio_ffmpeg's own pipes
 def test_a_checkbox_records_a_video(page):
     reader = pytest.importorskip("imageio_ffmpeg")
     recording = page.viewer.recording

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
+
+import numpy as np
 
 from policies.play.viewer.history import History
 from policies.play.viewer.session import Session
@@ -41,20 +42,20 @@ class Plots:
 
     def __init__(self, gui: Any, session: Session) -> None:
         self._session, self._surface = session, SurfacePlot()
-        self._top = 1.0
         history, motion = session.history, session.env.task.motion
-        edge = {"label": "", "stroke": "rgba(0,0,0,0)", "width": 0, "points": {"show": False}}
+        edge = {"label": "", "auto": False, "stroke": "rgba(0,0,0,0)", "width": 0, "points": {"show": False}}
         self._friction = gui.add_uplot(
-            history.columns(*_FRICTION),
+            _friction(history),
             (
                 {"label": "t"},
                 *(edge, edge, edge, edge),
                 *(_line("mu_c estimated", ORANGE, 2), _line("mu_s estimated", GREEN, 2)),
                 *(_line("mu_c true", ORANGE, 1.2, [6, 4]), _line("mu_s true", GREEN, 1.2, [6, 4])),
+                *({**edge, "auto": True}, {**edge, "auto": True}),
             ),
             title="friction [-]: estimated ± one deviation, true dashed",
             bands=(_band(2, 1, "rgba(213,94,0,0.22)"), _band(4, 3, "rgba(0,158,115,0.18)")),
-            scales={**_SCALES, "y": {"auto": False, "range": (0.0, self._top)}},
+            scales=_SCALES,
             axes=_axes(),
             legend={"show": False},
             padding=(8, 16, 0, 0),
@@ -93,21 +94,27 @@ class Plots:
     def update(self) -> None:
         """Send the present rows."""
         history: History = self._session.history
-        friction = history.columns(*_FRICTION)
-        top = 0.2 * math.ceil(
-            6.0 * max(column.max() for column in friction[-2:])
-        )  # of true friction, 20 % above
-        if top != self._top:
-            self._top = top
-            self._friction.scales = {**_SCALES, "y": {"auto": False, "range": (0.0, top)}}
-        self._friction.data = friction
+        self._friction.data = _friction(history)
         self._grip.data = history.columns(*_GRIP)
         self._path.data = history.columns(*_PATH)
         self._dome.content = self._surface.draw(self._session.env.simulation, self._session.info)
 
 
+def _friction(history: History) -> tuple[np.ndarray, ...]:
+    """Columns of the plot of friction, and two that set the limits of its axis, without NaN."""
+    columns = history.columns(*_FRICTION)
+    zero = np.zeros_like(columns[0])
+    return *columns, zero, zero + 1.2 * columns[-1].max()
+
+
 def _line(label: str, colour: str, width: float, dash: list[int] | None = None) -> dict[str, Any]:
-    line = {"label": label, "stroke": colour, "width": width, "points": {"show": False}}
+    line = {
+        "label": label,
+        "auto": "estimated" not in label,
+        "stroke": colour,
+        "width": width,
+        "points": {"show": False},
+    }
     return line if dash is None else {**line, "dash": dash}
 
 

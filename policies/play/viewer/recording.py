@@ -50,7 +50,9 @@ class Recording:
     def add(self, env: Any, seconds: float) -> None:
         """Append the pictures for a stretch of watching time [s], at the video's rate."""
         self._due += seconds * self._video.rate
-        picture = env.render() if self._due >= 1.0 else None
+        if self._due < 1.0:
+            return
+        picture = env.render()
         while self._due >= 1.0:
             self._due -= 1.0
             self._video.add(picture)

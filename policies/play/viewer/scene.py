@@ -65,7 +65,7 @@ class Scene:
         self._bodies = [self._gripper, self._object]
         triangles, colours = object_triangles(view.box, view.material)
         self._add("/object/body", triangles - (x, 0.0, z), colours)
-        self._add("/gripper/palm", *palm)
+        self._add("/gripper/palm", palm[0], palm[1])
         self._add("/gripper/finger_1", finger[0] + offset, finger[1])
         self._add("/gripper/finger_2", mirrored(finger[0], 1) - offset, finger[1], SEE_THROUGH)
         self._outline("/gripper/grasp", view, (0.0, 0.0, 0.0), palette.SLIP)
