@@ -1,7 +1,7 @@
 """Watches a policy: in a window, or as a video where there is none."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -15,9 +15,11 @@ Examples:\n
   slipgym play linear_slip --policy keyboard --material wood --speed 0.5
   slipgym play linear_slip --policy linear_slip --video slide.mp4 --option distance=0.02
   slipgym play hold --policy constant_force --video hold.gif --episodes 2 --speed 2
+  slipgym play carry --viewer --engine planar
 \n
 In a window, --policy keyboard leaves the grip force to you: up grips harder, down more loosely; Escape ends.
 A window needs pygame (pip install 'slipgym[window]'). docs/rendering.md explains the picture.
+--viewer opens a page with sliders in a browser (pip install 'slipgym[viewer]', docs/viewer.md).
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
@@ -41,6 +43,11 @@ def main(
     friction_source: Annotated[str, typer.Option(help="estimated, true, nominal or none.")] = "estimated",
     estimator: Annotated[str, typer.Option(help="A name of estimator.names().")] = DEFAULT,
     sensors: Annotated[str, typer.Option(help="realistic, ideal or lab.")] = "realistic",
+    engine: Annotated[str, typer.Option(help="bullet or planar.")] = "bullet",
+    viewer: Annotated[
+        bool, typer.Option("--viewer", help="Show it in a browser, with sliders; --video is for recordings.")
+    ] = False,
+    port: Annotated[int, typer.Option(help="Of the viewer's page, on this machine only.")] = 8080,
     option: Annotated[
         list[str] | None, typer.Option(metavar="NAME=VALUE", help="Option of the episode; repeatable.")
     ] = None,
@@ -49,23 +56,45 @@ def main(
     from estimator.records import parse_settings
     from policies.play import watch
 
+    keywords: dict[str, Any] = {
+        "material": material,
+        "friction_source": friction_source,
+        "estimator": estimator,
+        "sensors": sensors,
+        "engine": engine,
+    }
     try:
-        outcomes = watch(
-            task,
-            policy,
-            video,
-            episodes,
-            seed,
-            speed,
-            parse_settings(option or (), "--option"),
-            material=material,
-            friction_source=friction_source,
-            estimator=estimator,
-            sensors=sensors,
-        )
-    except (ValueError, OSError, RuntimeError) as error:
+        options = parse_settings(option or (), "--option")
+        if viewer:
+            _view(task, policy, video, seed, options, port, keywords)
+            return
+        outcomes = watch(task, policy, video, episodes, seed, speed, options, **keywords)
+    except (ValueError, OSError, RuntimeError, ModuleNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
     for outcome in outcomes:
         typer.echo(outcome.words())
     if video is not None:
         typer.echo(f"video: {video}")
+
+
+def _view(
+    task: str,
+    policy: str | None,
+    video: Path | None,
+    seed: int,
+    options: dict[str, Any],
+    port: int,
+    keywords: dict[str, Any],
+) -> None:
+    from policies.play.viewer import open_viewer
+
+    page = open_viewer(task, policy, video, seed, options, port, **keywords)
+    typer.echo(f"open {page.url} in a browser; Ctrl-C ends")
+    try:
+        page.run()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        page.close()
+    for outcome in page.session.finished:
+        typer.echo(outcome.words())

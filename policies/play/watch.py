@@ -46,12 +46,16 @@ class Outcome:
     reward: float
     """Sum over the episode."""
 
+    @property
+    def ending(self) -> str:
+        """In words: dropped, success or no success."""
+        return "dropped" if self.dropped else "success" if self.success else "no success"
+
     def words(self) -> str:
         """One line about it."""
-        end = "dropped" if self.dropped else "success" if self.success else "no success"
         slid, turned = 1e3 * math.hypot(*self.slip[:2]), math.degrees(self.slip[2])
         return (
-            f"seed {self.seed}: {end} after {self.time:.2f} s; "
+            f"seed {self.seed}: {self.ending} after {self.time:.2f} s; "
             f"slid {slid:.1f} mm, turned {round(turned, 1) + 0.0:.1f}°; reward {self.reward:.1f}"
         )
 

@@ -14,9 +14,10 @@ from slipgym.world.scene import PAD_THICKNESS, Box
 
 REACH = 0.12
 """Length of a finger [m]."""
+SEE_THROUGH = 0.35
+"""Opacity of the finger between camera and object."""
 _PAD, _FINGER, _PALM = (0.17, 0.19, 0.23), (0.50, 0.55, 0.62), (0.33, 0.37, 0.43)
 _INK, _MARK, _GRID = (0.13, 0.12, 0.12), (0.97, 0.97, 0.95), (0.83, 0.85, 0.88)
-_SEE_THROUGH = 0.35  # opacity of the finger between camera and object
 _LIFT = 2e-4  # [m] of what is printed on a face, so that it is seen
 
 
@@ -58,12 +59,12 @@ class View:
 
 def assemble(view: View) -> tuple[np.ndarray, np.ndarray]:
     """All triangles (n, 3, 3) in the world [m] and their colours (n, 4), the see-through ones last."""
-    body, body_colours = _object(view.box, view.material, view.body)
-    palm, finger = _gripper(view.pad_radius, view.side)
+    body, body_colours = object_triangles(view.box, view.material, view.body)
+    palm, finger = gripper_triangles(view.pad_radius, view.side)
     offset = view.box.size[1] / 2 + PAD_THICKNESS / 2
     far = finger[0] + [0.0, offset, 0.0]
-    near = _mirrored(finger[0], 1) - [0.0, offset, 0.0]
-    glass = finger[1] * [1.0, 1.0, 1.0, _SEE_THROUGH]
+    near = mirrored(finger[0], 1) - [0.0, offset, 0.0]
+    glass = finger[1] * [1.0, 1.0, 1.0, SEE_THROUGH]
     held = view.place(np.concatenate([palm[0], far, near]))
     corners = np.concatenate([view.carry(body), held])
     return corners, np.concatenate([body_colours, palm[1], finger[1], glass])
@@ -108,8 +109,17 @@ def _painted(parts: list[Part]) -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=64)
-def _object(box: Box, material: str, body: str) -> tuple[np.ndarray, np.ndarray]:
-    """The body, a box with a ruler of 10 mm, and a dot where it was grasped; from its geometric centre."""
+def object_triangles(box: Box, material: str, body: str = "box") -> tuple[np.ndarray, np.ndarray]:
+    """The body, a box with a ruler of 10 mm, and a dot where it was grasped; from its geometric centre.
+
+    Args:
+        box: The object.
+        material: Name of its material.
+        body: What it is drawn as, see `slipgym.rendering.bodies`.
+
+    Returns:
+        Triangles (n, 3, 3) [m] and their colours (n, 4).
+    """
     half = box.size[0] / 2, box.size[1] / 2, box.size[2] / 2
     face = -half[1] - _LIFT
     parts = draw_body(body, box, material, face)
@@ -133,8 +143,18 @@ def _ruler(half: float, height: float, face: float) -> list[Part]:
 
 
 @lru_cache(maxsize=8)
-def _gripper(pad_radius: float, side: float) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
-    """Palm around the wrist's axis, and finger 1 around its pad's middle; it reaches in from that side."""
+def gripper_triangles(
+    pad_radius: float, side: float
+) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
+    """Palm around the wrist's axis, and finger 1 around its pad's middle; it reaches in from that side.
+
+    Args:
+        pad_radius: [m].
+        side: -1 for the left, 1 for the right.
+
+    Returns:
+        Of the palm, then of the finger: triangles (n, 3, 3) [m] and their colours (n, 4).
+    """
     pad = solids.cylinder(pad_radius, PAD_THICKNESS)
     bar = solids.box((REACH / 2, 0.005, 0.009), (-REACH / 2 + 0.008, PAD_THICKNESS / 2 + 0.005, 0.0))
     rail = solids.box((0.014, 0.062, 0.016), (-REACH - 0.004, 0.0, 0.0))
@@ -143,11 +163,11 @@ def _gripper(pad_radius: float, side: float) -> tuple[tuple[np.ndarray, ...], tu
     if side < 0.0:
         return parts
     (palm, palm_colours), (finger, finger_colours) = parts
-    return (_mirrored(palm, 0), palm_colours), (_mirrored(finger, 0), finger_colours)
+    return (mirrored(palm, 0), palm_colours), (mirrored(finger, 0), finger_colours)
 
 
-def _mirrored(corners: np.ndarray, axis: int) -> np.ndarray:
-    """Triangles mirrored along an axis, and turned so that they still face outside."""
+def mirrored(corners: np.ndarray, axis: int) -> np.ndarray:
+    """Mirror triangles (n, 3, 3) along an axis, and turn them so that they still face outside."""
     flip = np.ones(3)
     flip[axis] = -1.0
     return (corners * flip)[:, ::-1]

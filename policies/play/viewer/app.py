@@ -1,0 +1,198 @@
+"""The viewer: a server for the browser, and the loop that plays the episodes in real time."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from typing import Any
+
+import policies
+from policies.controllers import table as controllers
+from policies.learned import LearnedPolicy
+from policies.play.viewer.controls import Controls
+from policies.play.viewer.plots import Plots
+from policies.play.viewer.recording import Recording
+from policies.play.viewer.scene import Scene
+from policies.play.viewer.session import Session
+from slipgym.tasks import Task
+
+FRAME_RATE, PLOT_RATE = 30.0, 8.0
+"""Updates of the 3-D view and of the plots per second of watching."""
+PAUSE = 1.5
+"""Time that the end of an episode stays in view [s]."""
+MISSING = "the viewer needs viser: pip install 'slipgym[viewer]'"
+
+
+class Viewer:
+    """A session in a browser.
+
+    Args:
+        session: What it shows.
+        video: Path for recordings, MP4 or GIF.
+        port: Of the server; the next free one if it is taken.
+        host: Address that the server listens on. Whoever reaches it can move the sliders.
+
+    Raises:
+        ModuleNotFoundError: viser is not installed.
+        ValueError: The type of the video is unknown.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        video: str | os.PathLike[str] = "slipgym.mp4",
+        port: int = 8080,
+        host: str = "127.0.0.1",
+    ) -> None:
+        viser = _viser()
+        self.session, self.recording = session, Recording(video)
+        self._wanted = False
+        self.server = viser.ViserServer(host, port, label=f"slipgym {session.task.name}", verbose=False)
+        gui = self.server.gui
+        gui.configure_theme(show_logo=False, show_share_button=False, brand_color=(0, 114, 178))
+        self.scene = Scene(self.server.scene, self.server.initial_camera)
+        gui.main_panel.dock_left()
+        gui.main_panel.set_width(300)
+        self.controls = Controls(
+            gui,
+            session,
+            [*{session.policy: 0, **dict.fromkeys(policies_for(session.task))}],
+            self._ask_to_record,
+        )
+        panel = gui.add_panel()
+        with panel.add_tab("plots"):
+            self.plots = Plots(gui, session)
+        panel.dock_right()
+        panel.set_width(400)
+        self._history, self._ended, self._plotted = session.history, 0.0, 0.0
+        self.scene.begin(session.env.simulation)
+
+    @property
+    def url(self) -> str:
+        """Where a browser finds it."""
+        return f"http://{self.server.get_host()}:{self.server.get_port()}"
+
+    def frame(self, seconds: float) -> None:
+        """Play a stretch of watching time [s] and show what it leads to."""
+        session, controls = self.session, self.controls
+        try:
+            session.advance(0.0 if controls.paused else seconds * controls.speed)
+            self._ended = self._ended + seconds if session.outcome and not controls.paused else 0.0
+            if self._ended >= PAUSE:
+                self._ended = 0.0
+                session.restart()
+        except ValueError as error:
+            self._say("not possible", str(error), "red")
+        except FloatingPointError as error:
+            self._say("the episode cannot go on", str(error), "red")
+            session.request_restart()
+        self._record(seconds)
+        with self.server.atomic():
+            if session.history is not self._history:
+                self._history, self._ended = session.history, 0.0
+                self.scene.begin(session.env.simulation)
+                self.plots.begin()
+                controls.begin()
+            self.scene.update(session.env.simulation)
+            self._plotted += seconds
+            if self._plotted >= 1.0 / PLOT_RATE:
+                self._plotted = 0.0
+                self.plots.update()
+                controls.update()
+
+    def run(self, keep_on: Callable[[], bool] = lambda: True) -> None:
+        """Play in real time until `keep_on` returns False."""
+        last = time.monotonic()
+        while keep_on():
+            time.sleep(max(0.0, last + 1.0 / FRAME_RATE - time.monotonic()))
+            now = time.monotonic()
+            self.frame(now - last)
+            last = now
+
+    def close(self) -> None:
+        """Complete a recording, stop the server and close the environment."""
+        self.recording.end()
+        self.server.stop()
+        self.session.close()
+
+    def _ask_to_record(self, wanted: bool) -> bool:
+        self._wanted = wanted
+        return wanted
+
+    def _record(self, seconds: float) -> None:
+        """Begin, continue or end a recording, in the thread of the environment."""
+        recording = self.recording
+        if self._wanted and not recording.running:
+            try:
+                recording.begin()
+            except (OSError, ImportError) as error:
+                self._wanted = False
+                self._say("no recording", str(error), "red")
+        if recording.running:
+            recording.add(self.session.env, seconds)
+            if not self._wanted and (path := recording.end()):
+                self._say("recorded", str(path.resolve()), "green")
+
+    def _say(self, title: str, words: str, colour: str) -> None:
+        for client in self.server.get_clients().values():
+            client.add_notification(title, words, color=colour, auto_close_seconds=8.0)
+
+
+def _viser() -> Any:
+    """The package, which the extra "viewer" installs."""
+    try:
+        return import_module("viser")
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(MISSING) from error
+
+
+def policies_for(task: Task) -> list[str]:
+    """Names of the policies for a task: its controllers, and the learned ones trained in it."""
+    found = []
+    for name in policies.names():
+        if policies.is_controller(name):
+            if controllers.find(name).task in (None, task.name):
+                found.append(name)
+        else:
+            policy = policies.load(name)
+            if isinstance(policy, LearnedPolicy) and policy.description.environment.id == task.id:
+                found.append(name)
+    return found
+
+
+def open_viewer(
+    task: str,
+    policy: str | None = None,
+    video: str | os.PathLike[str] | None = None,
+    seed: int = 0,
+    options: Mapping[str, Any] | None = None,
+    port: int = 8080,
+    host: str = "127.0.0.1",
+    **keywords: Any,
+) -> Viewer:
+    """Make an environment, a policy and a viewer of both; `run` plays it.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        policy: A name of `policies.names()` or the folder of a learned policy; None for the task's own.
+        video: MP4 or GIF for recordings; None: slipgym_<task>.mp4 in the working directory.
+        seed: Of the first episode; the others' follow.
+        options: Of every reset.
+        port: See `Viewer`.
+        host: See `Viewer`.
+        **keywords: Of the environment.
+
+    Raises:
+        ModuleNotFoundError: viser or the engine is not installed.
+        ValueError: A value is unknown or not allowed.
+        FileNotFoundError: There is no policy at the path.
+    """
+    _viser()
+    session = Session(task, policy, seed, options, **keywords)
+    try:
+        return Viewer(session, video or f"slipgym_{session.task.key}.mp4", port, host)
+    except BaseException:
+        session.close()
+        raise

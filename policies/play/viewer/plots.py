@@ -1,0 +1,131 @@
+"""Plots beside the 3-D view: friction over time, grip and slip over time, the limit surface."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from policies.play.viewer.history import History
+from policies.play.viewer.session import Session
+from policies.play.viewer.surface import SurfacePlot
+
+ORANGE, GREEN, BLUE, LIGHT, GREY = "#D55E00", "#009E73", "#0072B2", "#56B4E9", "#767676"
+_FRICTION = (
+    "time",
+    "mu_c_low",
+    "mu_c_high",
+    "mu_s_low",
+    "mu_s_high",
+    "mu_c",
+    "mu_s",
+    "true_mu_c",
+    "true_mu_s",
+)
+_GRIP = ("time", "grip_1", "grip_2")
+_PATH = ("time", "path", "reference")
+_KEY = (
+    '<div style="font-size:12px;line-height:1.35;padding:0 4px 2px">'
+    f'<b style="color:{ORANGE}">estimated</b> mu_c &plusmn; one deviation; '
+    f'<b style="color:{GREY}">true</b> mu_c (solid), mu_s (dashed); <b style="color:{BLUE}">load</b>, '
+    "which slips where it reaches the surface</div>"
+)
+
+
+class Plots:
+    """The plots.
+
+    Args:
+        gui: `viser.ViserServer.gui`, inside the container that shall hold them.
+        session: What they show.
+    """
+
+    def __init__(self, gui: Any, session: Session) -> None:
+        self._session, self._surface = session, SurfacePlot()
+        history, motion = session.history, session.env.task.motion
+        edge = {"label": "", "auto": False, "stroke": "rgba(0,0,0,0)", "width": 0, "points": {"show": False}}
+        self._friction = gui.add_uplot(
+            _friction(history),
+            (
+                {"label": "t"},
+                *(edge, edge, edge, edge),
+                *(_line("mu_c estimated", ORANGE, 2), _line("mu_s estimated", GREEN, 2)),
+                *(_line("mu_c true", ORANGE, 1.2, [6, 4]), _line("mu_s true", GREEN, 1.2, [6, 4])),
+                *({**edge, "auto": True}, {**edge, "auto": True}),
+            ),
+            title="friction [-]: estimated ± one deviation, true dashed",
+            bands=(_band(2, 1, "rgba(213,94,0,0.22)"), _band(4, 3, "rgba(0,158,115,0.18)")),
+            scales=_SCALES,
+            axes=_axes(),
+            legend={"show": False},
+            padding=(8, 16, 0, 0),
+            height=165,
+        )
+        with gui.add_folder("limit surface of both pads"):
+            self._dome = gui.add_html("")
+            gui.add_html(_KEY)
+        self._grip = gui.add_uplot(
+            history.columns(*_GRIP),
+            ({"label": "t"}, _line("finger 1", GREY, 2), _line("finger 2", LIGHT, 1.5)),
+            title="grip force [N]",
+            scales=_SCALES,
+            axes=_axes(),
+            legend={"show": False},
+            padding=(8, 16, 0, 0),
+            height=115,
+        )
+        self._path = gui.add_uplot(
+            history.columns(*_PATH),
+            ({"label": "t"}, _line(motion.title, BLUE, 2), _line("reference", BLUE, 1.2, [6, 4])),
+            title=motion.title,
+            scales=_SCALES,
+            axes=_axes(),
+            legend={"show": False},
+            padding=(8, 16, 0, 0),
+            height=115,
+        )
+        self.update()
+
+    def begin(self) -> None:
+        """Begin the plots of an episode that was just reset."""
+        self._surface.begin()
+        self.update()
+
+    def update(self) -> None:
+        """Send the present rows."""
+        history: History = self._session.history
+        self._friction.data = _friction(history)
+        self._grip.data = history.columns(*_GRIP)
+        self._path.data = history.columns(*_PATH)
+        self._dome.content = self._surface.draw(self._session.env.simulation, self._session.info)
+
+
+def _friction(history: History) -> tuple[np.ndarray, ...]:
+    """Columns of the plot of friction, and two that set the limits of its axis, without NaN."""
+    columns = history.columns(*_FRICTION)
+    zero = np.zeros_like(columns[0])
+    return *columns, zero, zero + 1.2 * columns[-1].max()
+
+
+def _line(label: str, colour: str, width: float, dash: list[int] | None = None) -> dict[str, Any]:
+    line = {
+        "label": label,
+        "auto": "estimated" not in label,
+        "stroke": colour,
+        "width": width,
+        "points": {"show": False},
+    }
+    return line if dash is None else {**line, "dash": dash}
+
+
+def _band(high: int, low: int, colour: str) -> dict[str, Any]:
+    return {"series": [high, low], "fill": colour}
+
+
+def _axes() -> tuple[dict[str, Any], ...]:
+    grid = {"stroke": "rgba(136,136,136,0.25)", "width": 1}
+    axis = {"stroke": GREY, "grid": grid, "ticks": {"show": False}, "font": "11px sans-serif"}
+    return {**axis, "size": 28}, {**axis, "size": 44}
+
+
+_SCALES: dict[str, Any] = {"x": {"time": False, "auto": True}, "y": {"auto": True}}

@@ -1,0 +1,167 @@
+"""Draws object, gripper, forces and target poses in the browser's 3-D view.
+
+World frame: x to the right, z up, finger 2 towards the camera. Shapes and colours are those of
+`slipgym.rendering`; every body is sent once per episode, afterwards only its pose.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from slipgym.rendering import palette
+from slipgym.rendering.look import look
+from slipgym.rendering.stage import SEE_THROUGH, View, gripper_triangles, mirrored, object_triangles
+
+PUSH: palette.Colour = (0xAA, 0x33, 0x77)
+"""Colour of external forces."""
+PAD = 0.01
+"""Thickness of a pad [m]."""
+GRIP_LENGTH, FORCE_LENGTH = 0.004, 0.025
+"""Length of an arrow for 1 N of grip force, and of other forces [m]."""
+_LONGEST, _SHORTEST = 0.12, 0.002  # [m] of an arrow
+_FLOOR = -0.22  # [m]
+
+
+class Scene:
+    """The 3-D view.
+
+    Args:
+        scene: `viser.ViserServer.scene`.
+        camera: `viser.ViserServer.initial_camera`.
+    """
+
+    def __init__(self, scene: Any, camera: Any) -> None:
+        self._scene = scene
+        scene.set_up_direction("+z")
+        scene.configure_environment_map("studio", environment_intensity=0.5)
+        scene.add_light_directional("/lamp", intensity=0.7, position=(-0.5, -2.0, 1.0))
+        grid = {"cell_color": (214, 219, 226), "section_color": (180, 188, 198), "cell_size": 0.05}
+        scene.add_grid("/floor", 2.4, 2.4, plane="xy", section_size=0.25, position=(0.0, 0.0, _FLOOR), **grid)
+        camera.position, camera.look_at = (0.30, -0.52, 0.16), (-0.02, 0.0, -0.03)
+        camera.fov, camera.near = math.radians(34.0), 0.01
+        self._arrows = {
+            "/gravity": self._arrow("/gravity", palette.MUTED),
+            "/push": self._arrow("/push", PUSH),
+            "/gripper/friction": self._arrow("/gripper/friction", palette.FRICTION),
+            "/gripper/grip_1": self._arrow("/gripper/grip_1", palette.INK),
+            "/gripper/grip_2": self._arrow("/gripper/grip_2", palette.INK),
+        }
+        self._name = scene.add_label("/gravity_name", "g")
+        self._bodies: list[Any] = []
+
+    def begin(self, simulation: Any) -> None:
+        """Send the bodies of an episode that was just reset."""
+        for body in self._bodies:
+            body.remove()
+        view = look(simulation, 0)
+        x, z = view.box.com_offset
+        palm, finger = gripper_triangles(view.pad_radius, view.side)
+        offset = np.array([0.0, view.box.size[1] / 2 + PAD / 2, 0.0])
+        self._gripper = self._scene.add_frame("/gripper", show_axes=False)
+        self._object = self._scene.add_frame("/object", show_axes=False)
+        self._bodies = [self._gripper, self._object]
+        triangles, colours = object_triangles(view.box, view.material, view.body)
+        self._add("/object/body", triangles - (x, 0.0, z), colours)
+        self._add("/gripper/palm", palm[0], palm[1])
+        self._add("/gripper/finger_1", finger[0] + offset, finger[1])
+        self._add("/gripper/finger_2", mirrored(finger[0], 1) - offset, finger[1], SEE_THROUGH)
+        self._outline("/gripper/grasp", view, (0.0, 0.0, 0.0), palette.SLIP)
+        target = simulation.task.motion.pose(simulation.episode[0])
+        if target is not None:
+            self._outline("/gripper/target", view, target, palette.TARGET)
+        for name in ("friction", "grip_1", "grip_2"):  # they went with their parent
+            colour = palette.FRICTION if name == "friction" else palette.INK
+            self._arrows[f"/gripper/{name}"] = self._arrow(f"/gripper/{name}", colour)
+        self.update(simulation)
+
+    def update(self, simulation: Any) -> None:
+        """Move the bodies and arrows to where they are now."""
+        view, plant = look(simulation, 0), simulation.plant
+        world = plant.world[0]
+        self._object.position, self._object.wxyz = view.position, turned(float(world["angle"]))
+        self._gripper.position = (view.wrist[0], 0.0, view.wrist[1])
+        self._gripper.wxyz = turned(view.wrist[2])
+        half = view.box.size[1] / 2
+        f_x, f_z, _ = plant.pads["wrench"][0].sum(axis=0).tolist()
+        self._point("/gripper/friction", (0.0, -half - 0.002, 0.0), (f_x, 0.0, f_z), FORCE_LENGTH)
+        for side, force in zip((1.0, -1.0), plant.fingers["contact_force"][0].tolist(), strict=True):
+            back = side * (half + PAD + 0.012 + min(GRIP_LENGTH * force, _LONGEST))
+            name = "/gripper/grip_1" if side > 0.0 else "/gripper/grip_2"
+            self._point(name, (0.0, back, 0.0), (0.0, -side * force, 0.0), GRIP_LENGTH)
+        push_x, push_z, turn = world["external"].tolist()
+        start = view.position - (0.0, half + 0.004, 0.0)
+        if turn:  # a couple, as the force at its lever
+            start, push_z = np.add(start, (0.03, 0.0, 0.0)), push_z + turn / 0.03
+        self._point("/push", start, (push_x, 0.0, push_z), FORCE_LENGTH)
+        corner = np.array([-view.side * 0.11 + view.wrist[0], 0.0, view.wrist[1] + 0.10])
+        self._point("/gravity", corner, (0.0, 0.0, -0.04), 1.0)
+        self._name.position = np.add(corner, (0.008, 0.0, -0.014))
+
+    def _arrow(self, name: str, colour: palette.Colour) -> Any:
+        shape = {"shaft_radius": 0.0016, "head_radius": 0.0042, "head_length": 0.010}
+        return self._scene.add_arrows(
+            name, np.array([[(0, 0, 0), (0, 0, 0.01)]]), colour, visible=False, **shape
+        )
+
+    def _point(self, name: str, start: Any, force: Any, scale: float) -> None:
+        """Show a force as an arrow of limited length, unless it is tiny."""
+        arrow, length = self._arrows[name], scale * float(np.linalg.norm(force))
+        shown = length > _SHORTEST
+        if shown:
+            way = np.multiply(force, scale * min(1.0, _LONGEST / length))
+            arrow.points = np.array([[start, np.add(start, way)]], dtype=np.float32)
+        if arrow.visible != shown:
+            arrow.visible = shown
+
+    def _add(
+        self, name: str, triangles: np.ndarray, colours: np.ndarray, opacity: float | None = None
+    ) -> None:
+        """Add triangles (n, 3, 3) with colours (n, 4) as one mesh for each colour."""
+        kinds, which = np.unique(colours[:, :3], axis=0, return_inverse=True)
+        for k, colour in enumerate(kinds):
+            corners = triangles[which.reshape(-1) == k].reshape(-1, 3)
+            self._scene.add_mesh_simple(
+                f"{name}/{k}",
+                corners.astype(np.float32),
+                np.arange(len(corners), dtype=np.uint32).reshape(-1, 3),
+                color=tuple(round(255 * part) for part in colour),
+                opacity=opacity,
+                flat_shading=True,
+            )
+
+    def _outline(self, name: str, view: View, pose: tuple[float, float, float], colour: Any) -> None:
+        """Dashed outline of the object's front at a pose in the grip."""
+        ends = dashes(outline(view, pose))
+        self._scene.add_line_segments(name, ends.astype(np.float32), colour, thickness=0.0011)
+
+
+def turned(pitch: float) -> tuple[float, float, float, float]:
+    """Quaternion (w, x, y, z) of a rotation from x towards z [rad]."""
+    return math.cos(0.5 * pitch), 0.0, -math.sin(0.5 * pitch), 0.0
+
+
+def outline(view: View, pose: tuple[float, float, float]) -> np.ndarray:
+    """Corners of the object's front in the gripper's frame at a slip displacement, (4, 3) [m].
+
+    Args:
+        view: The object.
+        pose: Slip displacement (x, y, theta) [m, m, rad].
+    """
+    half, grasp = np.array(view.box.size) / 2, np.array(view.box.grasp_offset)
+    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half[[0, 2]] - grasp
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    moved = corners @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
+    return np.column_stack([moved[:, 0], np.full(4, -half[1] - 0.001), moved[:, 1]])
+
+
+def dashes(corners: np.ndarray, length: float = 0.006) -> np.ndarray:
+    """Dashes of a length along a closed line (n, 3), their ends (m, 2, 3) [m]."""
+    pieces = []
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        count = max(1, round(float(np.linalg.norm(end - start)) / (2.0 * length)))
+        at = (np.arange(count)[:, None] + (0.0, 0.5)) / count
+        pieces.append(start + at[..., None] * (end - start))
+    return np.concatenate(pieces)

@@ -1,0 +1,219 @@
+"""Plays episodes of one environment, while changes arrive from another thread."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from queue import Empty, SimpleQueue
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+import policies
+from policies.learned import LearnedPolicy
+from policies.play.screenshot import own_policy
+from policies.play.viewer import interventions
+from policies.play.viewer.history import History
+from policies.play.watch import Outcome
+from policies.registry import Policy
+from slipgym.config.errors import unknown
+from slipgym.config.load import merge, read_overrides
+from slipgym.tasks import find
+
+LIVE = ("grip_force", "mu_c", "mass")
+"""Values that act from the next control step on, and stay set in later episodes."""
+NEXT_EPISODE = ("policy", "latency")
+"""Values that begin with the next episode."""
+_LONGEST = 0.1  # [s] of simulation that one call makes up for
+
+
+class Session:
+    """An environment with the policy that acts in it, episode after episode.
+
+    `submit` may be called from any thread; everything else belongs to the thread that calls `advance`.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        policy: A name of `policies.names()` or the folder of a learned policy; None for the task's own.
+        seed: Of the first episode; the others' follow.
+        options: Of every reset.
+        **keywords: Of the environment.
+
+    Attributes:
+        env: The environment.
+        info: Its last info.
+        history: What the plots show of the episode.
+        values: Values that were set, by the names in `LIVE` and `NEXT_EPISODE`.
+        pending: Names of those that wait for the next episode.
+        policy: Name of the policy that acts.
+        seed: Of the episode.
+        outcome: How the episode ended; None while it runs.
+        finished: How the episodes so far ended, in their order.
+
+    Raises:
+        ValueError: A value is unknown or not allowed.
+        FileNotFoundError: There is no policy at the path.
+        ModuleNotFoundError: The engine is not installed.
+    """
+
+    def __init__(
+        self,
+        task: str,
+        policy: str | None = None,
+        seed: int = 0,
+        options: Mapping[str, Any] | None = None,
+        **keywords: Any,
+    ) -> None:
+        self.task = find(task)
+        self.seed = seed - 1
+        self.policy = policy or own_policy(task)
+        self.values: dict[str, Any] = {}
+        self.pending: set[str] = set()
+        self.finished: list[Outcome] = []
+        self.env: Any = None
+        self._options, self._keywords = dict(options or {}), keywords
+        self._changes: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._left, self._ratio = 0.0, 1.0
+        self._make()
+        self.restart()
+
+    def submit(self, name: str, value: Any) -> None:
+        """Set a value of `LIVE` or `NEXT_EPISODE`; None gives it back to the episode.
+
+        Args:
+            name: Its name.
+            value: Grip force per finger [N], mu_c [-], mass [kg], name of a policy, or latency of the slip
+                sensors [samples].
+
+        Raises:
+            ValueError: There is no value of this name.
+        """
+        if name not in LIVE + NEXT_EPISODE:
+            raise ValueError(unknown("value", name, LIVE + NEXT_EPISODE))
+        self._changes.put(lambda: self._set(name, value))
+
+    def poke(self, direction: str, impulse: float) -> None:
+        """Push or turn the object from the next control step on, see `interventions.poke`."""
+        self._changes.put(lambda: interventions.poke(self._episode, direction, impulse))
+
+    def request_restart(self) -> None:
+        """Begin the next episode before the next control step."""
+        self._changes.put(self.restart)
+
+    def advance(self, seconds: float) -> int:
+        """Apply the changes and make the control steps of a stretch of simulated time.
+
+        Args:
+            seconds: Time that passed, >= 0 [s]; beyond 0.1 s is not made up for.
+
+        Returns:
+            Number of steps; fewer than the time asks for if the episode ended.
+
+        Raises:
+            ValueError: A change is not allowed; those after it wait for the next call.
+        """
+        while True:
+            try:
+                change = self._changes.get_nowait()
+            except Empty:
+                break
+            change()
+        self._left = min(self._left + seconds, _LONGEST)
+        steps, step_time = 0, self.env.simulation.step_time * self._skip
+        while self.outcome is None and self._left >= step_time * (1.0 - 1e-9):
+            self._left -= step_time
+            self._step()
+            steps += 1
+        return steps
+
+    def restart(self) -> None:
+        """Begin the next episode, with all values that are set."""
+        if self.pending:
+            self._make()
+        self.seed += 1
+        options = dict(self._options)
+        if "mass" in self.values:
+            options["object_mass"] = self.values["mass"]
+        if "mu_c" in self.values:
+            options["mu_c"], options["mu_s"] = self.values["mu_c"], self._ratio * self.values["mu_c"]
+        self._observation, self.info = self.env.reset(seed=self.seed, options=options)
+        self._memory, self.outcome, self._reward, self._left = None, None, 0.0, 0.0
+        self._ratio = float(self._episode["mu_s"] / self._episode["mu_c"])
+        self.history = History(self.env)
+
+    def close(self) -> None:
+        """Close the environment."""
+        self.env.close()
+
+    @property
+    def _episode(self) -> np.void:
+        return self.env.simulation.episode[0]
+
+    def _set(self, name: str, value: Any) -> None:
+        if value is None:
+            if self.values.pop(name, None) is None:
+                return
+        else:
+            self.values[name] = value
+        if name in NEXT_EPISODE:
+            self.pending.add(name)
+        elif value is not None and name == "mu_c":
+            interventions.set_friction(self._episode, value)
+        elif value is not None and name == "mass":
+            interventions.set_mass(self._episode, value)
+
+    def _step(self) -> None:
+        action, self._memory = self._player.predict(self._observation, state=self._memory)
+        if "grip_force" in self.values:
+            action = np.array(action, dtype=np.float32)
+            action[self._grip] = self._grip_action(self.values["grip_force"])
+        self._observation, reward, terminated, truncated, self.info = self.env.step(action)
+        self._reward += float(reward)
+        self.history.keep()
+        if terminated or truncated:
+            info, slip = self.info, tuple(self.info["slip"].tolist())
+            self.outcome = Outcome(
+                self.seed, info["time"], info["is_success"], info["dropped"], slip, self._reward
+            )
+            self.finished.append(self.outcome)
+
+    def _grip_action(self, force: float) -> float:
+        """Component of an action that commands a grip force per finger [N], or goes towards it."""
+        column = self.env.action_columns[self._grip]
+        value = force - float(self._episode["command"]) if column.name == "force_increment" else force
+        return min(max(2.0 * (value - column.low) / (column.high - column.low) - 1.0, -1.0), 1.0)
+
+    def _make(self) -> None:
+        """Make policy and environment from the values that are set; on an error the old ones stay."""
+        try:
+            name, policy, env = self._made()
+        except Exception:
+            for each in self.pending:
+                self.values.pop(each, None)
+            raise
+        finally:
+            self.pending.clear()
+        if self.env is not None:
+            self.env.close()
+        self.env, self.policy, self._player = env, name, policy
+        names = [column.name for column in env.action_columns]
+        self._grip = names.index("grip_force" if "grip_force" in names else "force_increment")
+
+    def _made(self) -> tuple[str, Policy, Any]:
+        name = self.values.get("policy", self.policy)
+        policy = policies.load(name)
+        keywords = {**policies.modes(policy), **self._keywords}
+        if "latency" in self.values:
+            given = keywords.get("config")
+            overrides = {"sensors": {"slip": {"latency_samples": self.values["latency"]}}}
+            keywords["config"] = merge({} if given is None else read_overrides(given)[1], overrides)
+        env_id = f"slipgym:{self.task.id}"
+        env: Any = gym.make(env_id, render_mode="rgb_array", disable_env_checker=True, **keywords).unwrapped
+        if isinstance(policy, LearnedPolicy):
+            try:
+                policy.check(env)
+            except ValueError:
+                env.close()
+                raise
+        self._skip = int(keywords.get("frame_skip", 1))
+        return name, policy, env
