@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from estimator import DEFAULT
 from slipgym.registration import TASK_MODULES
 
 TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
@@ -35,6 +36,7 @@ def main(
     ] = None,
     sensors: Annotated[str, typer.Option(help="Sensor preset.")] = "realistic",
     randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "none",
+    estimator: Annotated[str, typer.Option(help="Estimator of the environments.")] = DEFAULT,
     engine: Annotated[str, typer.Option(help="planar or bullet.")] = "planar",
     policy: Annotated[
         list[str] | None,
@@ -52,12 +54,12 @@ def main(
     from policies.research.leaderboard.tables import markdown
     from policies.research.policy_leaderboard.entries import entered, opponents
     from policies.research.policy_leaderboard.folder import write
-    from policies.research.policy_leaderboard.run import outcomes
+    from policies.research.policy_leaderboard.run import by_level, outcomes
     from slipgym.config.level import level_names
     from slipgym.envs.arguments import ENGINES, FRICTION_SOURCES, one_of
     from slipgym.tasks import find
 
-    arguments = {"sensors": sensors, "randomization": randomization}
+    arguments = {"sensors": sensors, "randomization": randomization, "estimator": estimator}
     try:
         one_of("engine", engine, ENGINES)
         mine = entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
@@ -69,5 +71,7 @@ def main(
                 typer.echo(markdown(found[-1], 1))
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
-    folder = write(pd.concat(found, ignore_index=True), output)
+    table = pd.concat(found, ignore_index=True)
+    folder = write(table, output)
+    typer.echo(f"Solved [%], {episodes} episodes each:\n\n{markdown(by_level(table), 1)}")
     typer.echo(f"Look at:\n  {folder / 'policies.png'}")

@@ -10,7 +10,7 @@ from policies.evaluation.plots.style import styled
 from policies.research.policy_leaderboard.entries import best_constant, entered, opponents
 from policies.research.policy_leaderboard.folder import write
 from policies.research.policy_leaderboard.picture import plot_policies
-from policies.research.policy_leaderboard.run import COLUMNS, ROWS, episodes_of, outcomes
+from policies.research.policy_leaderboard.run import COLUMNS, ROWS, by_level, episodes_of, outcomes
 from policies.research.reward_order.zoo import constant
 
 SHORT = {"config": {"tasks": {"hold": {"duration": 0.5}}}}
@@ -68,6 +68,10 @@ def test_a_folder_has_table_and_picture(tmp_path):
     table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
     folder = write(table, tmp_path)
     assert {path.name for path in folder.iterdir()} == {"policies.csv", "policies.png", "versions.json"}
+    wide = by_level(table)
+    assert list(wide.columns) == ["task", "level", "best constant", "controller, true"]
+    assert list(wide["level"]) == ["easy", "hard"]
+    assert list(wide["controller, true"]) == [100.0, 100.0]
     with styled():
         (axes,) = plot_policies(table).axes
     assert [label.get_text() for label in axes.get_yticklabels()] == ["controller, true", "best constant"]

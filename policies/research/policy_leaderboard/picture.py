@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from policies.evaluation.frames import distinct
 from policies.evaluation.plots.style import STYLE
+from policies.research.policy_leaderboard.run import kinds
 
 COLOURS = LinearSegmentedColormap.from_list("solved", ["#A33B00", "#E9A26A", "#F7F4E9", "#7FC8A9", "#00644A"])
 
@@ -19,7 +20,7 @@ def plot_policies(table: pd.DataFrame) -> Figure:
     Args:
         table: From `policies.research.policy_leaderboard.run.outcomes`, of several tasks and levels.
     """
-    table = table.assign(kind=table["policy"].str.replace(r" \(.*\)$", "", regex=True))
+    table = table.assign(kind=kinds(table))
     cells = list(dict.fromkeys(zip(table["task"], table["level"], strict=True)))
     grid = table.pivot_table(index="kind", columns=["task", "level"], values="solved [%]")[cells]
     grid = grid.loc[grid.mean(axis=1).sort_values(ascending=False).index]

@@ -85,3 +85,24 @@ def outcomes(
         rows.append((find(task).name, level, member.name, *solved, *measured, *spent))
     table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
     return table.sort_values(["solved [%]", "mean return"], ascending=False, ignore_index=True)
+
+
+def kinds(table: pd.DataFrame) -> pd.Series:
+    """Names of the policies without what differs between tasks: the force of the best constant grip."""
+    return table["policy"].str.replace(r" \(.*\)$", "", regex=True)
+
+
+def by_level(table: pd.DataFrame) -> pd.DataFrame:
+    """What is solved of each task and level [%], a column for each policy.
+
+    Args:
+        table: From `outcomes`, of several tasks and levels.
+
+    Returns:
+        A row for each task and level in the order of the table; NaN where a policy did not play.
+    """
+    cells = list(dict.fromkeys(zip(table["task"], table["level"], strict=True)))
+    names = kinds(table)
+    wide = table.assign(kind=names).pivot_table(index=["task", "level"], columns="kind", values="solved [%]")
+    order = sorted(dict.fromkeys(names), key=lambda name: (name.partition(",")[0], wide[name].mean()))
+    return wide.loc[cells, order].reset_index().rename_axis(columns=None)

@@ -11,14 +11,11 @@ import numpy as np
 import pandas as pd
 from tqdm import tqdm
 
-from estimator.registry import DEFAULT
 from policies.evaluation.play import play
 from policies.research.reward_order.zoo import Member
 from slipgym.tasks import find
 
 SUCCESS, DROPPED, RETURN = "success [%]", "dropped [%]", "mean return"
-SOURCES = "none", "nominal", "estimated", "true"
-"""Friction sources of the controller, in the order of the table of levels."""
 APART = 10.0
 """Pairs whose success rates differ by at least so many points are compared."""
 
@@ -93,39 +90,3 @@ def sentence(table: pd.DataFrame, apart: float = APART) -> str:
 def spread(table: pd.DataFrame) -> float:
     """Range of the success rates of a table, in points; without a range it says nothing about the order."""
     return float(np.ptp(table[SUCCESS]))
-
-
-def by_level(
-    task: str,
-    levels: Sequence[str],
-    members: Sequence[Member],
-    episodes: int = 200,
-    progress: bool = True,
-    estimator: str = DEFAULT,
-) -> pd.DataFrame:
-    """Success of the best constant grip and of the controller by friction source, in each level.
-
-    Args:
-        task: As `slipgym.tasks.find` takes it.
-        levels: Names of levels.
-        members: From `policies.research.reward_order.zoo.zoo`; those that are neither a constant grip nor the
-            undisturbed controller are left out.
-        episodes: How many.
-        progress: Whether to show a progress bar.
-        estimator: Name of the estimator.
-
-    Returns:
-        A row for each level, success in percent. The best constant grip is chosen on these same episodes.
-    """
-    kinds = {f"controller, {source}" for source in SOURCES}
-    chosen = [member for member in members if member.name in kinds or member.name.startswith("constant ")]
-    rows = []
-    for level in levels:
-        table = played(task, chosen, episodes, {"level": level, "estimator": estimator}, progress)
-        found = dict(zip(table["policy"].tolist(), table[SUCCESS].tolist(), strict=True))
-        best = max((name for name in found if name.startswith("constant ")), key=lambda name: found[name])
-        force = best.removeprefix("constant ") if found[best] > 0.0 else "any"
-        known = (found[f"controller, {source}"] for source in SOURCES)
-        rows.append((find(task).name, level, found[best], force, *known))
-    heads = ["task", "level", "best constant", "its force", *SOURCES]
-    return pd.DataFrame(rows, columns=pd.Index(heads))
