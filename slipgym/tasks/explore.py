@@ -18,10 +18,10 @@ The reference for the time is Poke and Strike (arXiv 2509.00178), in which a rob
 strikes it: 90 % success after less than 1.2 s of exploration in the mean. The objects and the errors that a
 strike allows differ from those here, so the figures compare in their order of magnitude alone.
 
-Episodes solved [%] by the best of nine constant grips and by the classic controller, which states as its
-guess what it observes: without friction, with nominal friction, with the estimates of "adaptive" (the
-default estimator) and of "joint", and with true friction; 200 each on the planar engine (`slipgym rank
-explore --levels`, the column "joint" with `--estimator joint`; docs/levels.md says what a level is):
+Episodes solved [%] by the best of 16 constant grips, chosen on other episodes, and by the classic controller,
+which states as its guess what it observes: without friction, with nominal friction, with the estimates of "adaptive" (the
+default estimator) and of "joint", and with true friction; 200 each on the planar engine (`slipgym
+policy-leaderboard explore`, the column "joint" with `--estimator joint`; docs/levels.md says what a level is):
 
 | level | best constant | none | nominal | adaptive | joint | true |
 |---|---|---|---|---|---|---|

@@ -20,9 +20,9 @@ The least grip is that with which both pads stick, by the ellipsoidal limit surf
 (tau / r)^2) / mu_s, at the largest load per finger of the episode. The load follows from the plan of the
 wrist and from the disturbances, for a box that never slips.
 
-Episodes solved [%] by the best of nine constant grips and by the classic controller without friction in the
-observation, with nominal, estimated and true friction, 200 each on the planar engine
-(`slipgym rank fragile_hold --levels`; docs/levels.md says what a level is):
+Episodes solved [%] by the best of 16 constant grips, chosen on other episodes, and by the classic controller
+without friction in the observation, with nominal, estimated and true friction, 200 each on the planar engine
+(`slipgym policy-leaderboard fragile_hold`; docs/levels.md says what a level is):
 
 | level | best constant | none | nominal | estimated | true |
 |---|---|---|---|---|---|

@@ -20,9 +20,9 @@ the task therefore has its own contact, a rounded fingertip with r = 3 mm (`task
 option `r`). At the end friction has to hold the box beside the pads: m g d sin(80 deg) = 0.029 N m of the
 2 mu_c r 25 N = 0.045 N m at mu_c 0.3. So the box is light, an empty carton of 30 g.
 
-Episodes solved [%] by the best of nine constant grips and by the classic controller without friction in the
-observation, with nominal, estimated and true friction, 200 each on the planar engine
-(`slipgym rank pivot_to --levels`; docs/levels.md says what a level is):
+Episodes solved [%] by the best of 16 constant grips, chosen on other episodes, and by the classic controller
+without friction in the observation, with nominal, estimated and true friction, 200 each on the planar engine
+(`slipgym policy-leaderboard pivot_to`; docs/levels.md says what a level is):
 
 | level | best constant | none | nominal | estimated | true |
 |---|---|---|---|---|---|
