@@ -19,9 +19,10 @@ strikes it: 90 % success after less than 1.2 s of exploration in the mean. The o
 strike allows differ from those here, so the figures compare in their order of magnitude alone.
 
 Episodes solved [%] by the best of 16 constant grips, chosen on other episodes, and by the classic controller,
-which states as its guess what it observes: without friction, with nominal friction, with the estimates of "adaptive" (the
-default estimator) and of "joint", and with true friction; 200 each on the planar engine (`slipgym
-policy-leaderboard explore`, the column "joint" with `--estimator joint`; docs/levels.md says what a level is):
+which states as its guess what it observes: without friction, with nominal friction, with the estimates of
+"adaptive" (the default estimator) and of "joint", and with true friction; 200 each on the planar engine
+(`slipgym policy-leaderboard explore`, the column "joint" with `--estimator joint`; docs/levels.md says what a
+level is):
 
 | level | best constant | none | nominal | adaptive | joint | true |
 |---|---|---|---|---|---|---|
