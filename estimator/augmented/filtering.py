@@ -15,7 +15,7 @@ from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZE
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
 
-ENOUGH = 0.002
+ENOUGH = 1e-4
 """Error of a linearisation, over the standard deviation of the state, after which no further one is made."""
 
 ABSURD = 1e6
