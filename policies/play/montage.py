@@ -20,7 +20,7 @@ from slipgym.rendering import camera
 MATERIALS = "wood", "plastic", "case", "cardboard"
 RATE = 10
 """Frames per second."""
-COLUMNS = 4
+COLUMNS = 3
 """Episodes in a row."""
 REST = 0.8
 """Time that each episode's last picture stays, at least [s]."""

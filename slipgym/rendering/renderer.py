@@ -42,6 +42,8 @@ class Renderer:
         goals = dict(zip(names, self._simulation.task_part[self._row].tolist(), strict=True))
         self._goal = self._motion.target(goals.get(self._motion.goal, 0.0))
         ways = np.cumsum(self._simulation.episode["moves"][self._row, :, 2:4], axis=0)
+        roam = self._motion.roam
+        ways = np.concatenate([ways, [(-roam, 0.0), (roam, 0.0)]])
         self._camera = camera.framing(footprint(self._view(), goals.get("wrist_pitch_goal", 0.0), ways))
         self._show()
 
