@@ -26,6 +26,7 @@ def bare():
     simulation.close()
 
 
+@pytest.mark.slow
 def test_the_bare_loop_simulates_the_environments_scene(bare):
     bare.run(1000)
     assert bare.held()

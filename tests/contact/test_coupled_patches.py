@@ -81,6 +81,7 @@ def potential(q, array, cells, _, inertia, centre, free):
 
 @settings(deadline=None, max_examples=150)
 @given(problems(), st.tuples(*[st.floats(-1.0, 1.0)] * 3))
+@pytest.mark.slow
 def test_the_balance_is_met_from_any_guess(problem, guess):
     data, limit = problem
     for start in (data[-1], (0.0, 0.0, 0.0), tuple(1e-5 * g for g in guess)):

@@ -91,6 +91,7 @@ def test_an_expression_that_is_no_python_names_its_line():
         generate("broken", ("row",), ["row[0] = 1 +"], {}, compiled, __file__, "")
 
 
+@pytest.mark.slow
 def test_another_process_loads_it_from_the_cache_and_a_changed_constant_is_noticed(tmp_path):
     (tmp_path / "table.py").write_text(
         textwrap.dedent("""

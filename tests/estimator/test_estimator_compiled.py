@@ -18,6 +18,7 @@ print(e.gamma_t)
 """
 
 
+@pytest.mark.slow
 def test_an_edited_shared_function_is_compiled_again(tmp_path):
     copy = tmp_path / "estimator"
     shutil.copytree(Path(estimator.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))

@@ -86,6 +86,7 @@ def test_a_run_of_true_friction_alone_reports_it(small, tmp_path):
     assert "constant_force  true " in report(folder)
 
 
+@pytest.mark.slow
 def test_results_do_not_depend_on_the_number_of_processes(small):
     experiment = small()
     one, two = (run_trials(experiment, plan(experiment), jobs, progress=False) for jobs in (1, 2))

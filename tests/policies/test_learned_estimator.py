@@ -37,6 +37,7 @@ def recordings():
     return list(record("linear_slip", 4, 90, 3, disturbed=0.5, sensors="lab"))
 
 
+@pytest.mark.slow
 def test_a_recording_is_what_the_estimator_gets():
     """Wrenches and twists of an environment with another estimator, whose controller acts on the truth."""
     (first, second) = record("linear_slip", 1, 60, 7, sensors="lab", friction_source="true")

@@ -44,8 +44,8 @@ def test_a_zoo_has_policies_of_every_kind():
         assert {"random actions", "controller, true", "controller, none"} <= set(names)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["hinge", "hold"])
-@pytest.mark.quick_cases("hold")
 def test_returns_have_the_order_of_success(key):
     """Hinge had the wrong order with the rewards of 0.1.0, in Hold few policies fail."""
     chosen = [

@@ -4,7 +4,18 @@ import pytest
 
 from slipgym.validation import EXPERIMENTS, Figure
 
-SLOW = {"accelerated", "creep", "disc", "distributed", "patch_steps", "slides", "soft"}
+SLOW = {
+    "accelerated",
+    "creep",
+    "disc",
+    "distributed",
+    "patch_rate",
+    "patch_steps",
+    "patch_surface",
+    "slides",
+    "soft",
+}
+"""Those of several seconds; `make validate` and `make test-all` run all."""
 CASES = [
     pytest.param(experiment, id=experiment.__name__, marks=[pytest.mark.slow] * (experiment.__name__ in SLOW))
     for experiment in EXPERIMENTS
