@@ -40,7 +40,7 @@ def unfinished(ended, tmp_path):
 
 
 def flip(path: Path) -> None:
-    """Flip a bit in the data of the largest member of a checkpoint; names and times in a zip do not matter."""
+    """Flip a bit in the data of the largest member; names and times in a zip do not matter."""
     with zipfile.ZipFile(path) as archive:
         member = max(archive.infolist(), key=lambda info: info.file_size)
     content = bytearray(path.read_bytes())
