@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 from policies.commands.policy_leaderboard import app
 from policies.evaluation.plots.style import styled
-from policies.research.policy_leaderboard.entries import best_constant, entered, opponents
+from policies.research.policy_leaderboard.entries import best_constant, entered, further, opponents
 from policies.research.policy_leaderboard.folder import write
 from policies.research.policy_leaderboard.picture import plot_policies
 from policies.research.policy_leaderboard.run import COLUMNS, ROWS, by_level, episodes_of, outcomes
@@ -52,6 +52,11 @@ def test_opponents_and_entries():
     names = [member.name.partition(" (")[0] for member in opponents("hold", SHORT, 2)]
     assert names[0] == "best constant"
     assert {f"controller, {source}" for source in ("none", "nominal", "estimated", "true")} < set(names)
+    sources = ("none", "nominal", "estimated", "true")
+    assert [member.name for member in further("PlanarSlip")] == [
+        f"planar_slip_continuous, {s}" for s in sources
+    ]
+    assert further("hold") == []
     (mine,) = entered(["policies.controllers.hold:HoldPolicy"], "true")
     assert mine.arguments["friction_source"] == "true"
     assert mine.arguments["observation_mode"] == "deviations"

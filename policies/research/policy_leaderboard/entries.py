@@ -10,6 +10,7 @@ import gymnasium as gym
 import numpy as np
 
 from policies import registry
+from policies.controllers.table import CLASSES
 from policies.evaluation.play import play
 from policies.learned import LearnedPolicy
 from policies.research.reward_order.zoo import Member, constant, controllers, learned
@@ -45,6 +46,19 @@ def best_constant(task: str, arguments: Mapping[str, Any], episodes: int) -> Mem
         envs.close()
     best = constant(max(found)[2])
     return best._replace(name=f"best constant ({best.name.removeprefix('constant ')})")
+
+
+def further(task: str) -> list[Member]:
+    """Controllers of a task beside the one of its name, such as "planar_slip_continuous".
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+    """
+    key, name, members = find(task).key, find(task).name, []
+    for other in CLASSES:
+        if other != key and getattr(registry.find(other), "task", None) == name:
+            members += controllers(other, other)
+    return members
 
 
 def imitated(task: str, folder: Path) -> list[Member]:
@@ -94,5 +108,5 @@ def opponents(
         folder: Of the runs of `slipgym imitate`; None: none.
     """
     key = find(task).key
-    found = [best_constant(task, arguments, episodes), *controllers(key), *learned(key)]
+    found = [best_constant(task, arguments, episodes), *controllers(key), *further(task), *learned(key)]
     return found if folder is None else [*found, *imitated(task, folder)]

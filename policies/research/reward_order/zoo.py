@@ -87,17 +87,18 @@ def constant(force: float) -> Member:
     return Member(f"constant {force:g} N", ConstantForcePolicy(force), arguments)
 
 
-def controllers(key: str) -> list[Member]:
-    """The controller of a task with every friction source.
+def controllers(key: str, called: str = "controller") -> list[Member]:
+    """A controller with every friction source.
 
     Args:
-        key: Of the task.
+        key: Its name: that of a task, or another one of `policies.controllers.table.CLASSES`.
+        called: How the members' names begin.
     """
     made, blind = registry.make(key), NoFrictionInfo(key)
-    members = [Member("controller, none", blind, {**registry.modes(blind), "friction_source": "none"})]
+    members = [Member(f"{called}, none", blind, {**registry.modes(blind), "friction_source": "none"})]
     for source in ("nominal", "estimated", "true"):
         arguments = {**registry.modes(made), "friction_source": source}
-        members.append(Member(f"controller, {source}", made, arguments))
+        members.append(Member(f"{called}, {source}", made, arguments))
     return members
 
 
