@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import time
@@ -19,6 +20,8 @@ ATTACKS = {each.name: each for each in (*arguments.ATTACKS, *crafted.ATTACKS, *e
 """Name -> attack."""
 START_UP = 120.0
 """Time that a process may take to import and compile [s]."""
+STANDSTILL = 20.0
+"""Times as long by the clock: a case that waits for ever uses no processor."""
 BATCH = 500
 """Cases of a process: what leaks in one does not last."""
 
@@ -110,17 +113,26 @@ def _carry_out(folder: Path, attack: Attack, seed: int, total: int) -> None:
 
 
 def _watched(process: subprocess.Popen, folder: Path, attack: Attack) -> bool:
-    """Wait for a process; False if a case takes too long."""
-    known, since, patience = -1, time.monotonic(), START_UP
+    """Wait for a process; False if a case takes too much of the processor, or stands still."""
+    known, since, patience = -1, (0.0, time.monotonic()), START_UP
     while process.poll() is None:
-        found = len(_outcomes(folder, attack))
+        found, now = len(_outcomes(folder, attack)), (_worked(process.pid), time.monotonic())
         if found != known:
             patience = START_UP if known < 0 else attack.seconds
-            known, since = found, time.monotonic()
-        if time.monotonic() - since > patience:
+            known, since = found, now
+        if now[0] - since[0] > patience or now[1] - since[1] > STANDSTILL * patience:
             return False
         time.sleep(0.1)
     return True
+
+
+def _worked(pid: int) -> float:
+    """Processor time of a process, so that other work on the machine does not count [s]."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    except OSError:  # it has ended, or this is no Linux
+        return time.monotonic()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _file(folder: Path, attack: Attack) -> Path:
