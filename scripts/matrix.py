@@ -66,7 +66,7 @@ def row(python: str, requirements: list[str], folder: Path, tests: list[str]) ->
     run = folder / "bin" / "python"
     if not run.exists():
         subprocess.run([python, "-m", "venv", str(folder)], check=True)
-    wanted = [f"{ROOT}[eval]", "pytest", "hypothesis", "psutil", "filterpy"]
+    wanted = [f"{ROOT}[eval,study]", "pytest", "hypothesis", "psutil", "filterpy"]
     install = [
         str(run),
         "-m",

@@ -1,5 +1,9 @@
 """Compiles what takes longest first, in each process something else, when all tests run in several."""
 
+from collections.abc import Generator
+from importlib.util import find_spec
+from typing import Any
+
 import gymnasium as gym
 import pytest
 
@@ -15,6 +19,26 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for mark in item.iter_markers("quick_cases"):
             if not any(item.name.endswith(f"[{case}]") for case in mark.args):
                 item.add_marker("slow")
+
+
+def _without_pybullet() -> Generator[None, Any, Any]:
+    """What needs PyBullet is skipped where it has no wheel."""
+    try:
+        return (yield)
+    except ModuleNotFoundError as error:
+        if find_spec("pybullet") is None and "needs PyBullet" in str(error):
+            pytest.skip("needs PyBullet")
+        raise
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_setup() -> Generator[None, Any, Any]:
+    return (yield from _without_pybullet())
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call() -> Generator[None, Any, Any]:
+    return (yield from _without_pybullet())
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
