@@ -10,6 +10,10 @@ OUTSIDE = {
     "changes.md": "CHANGELOG.md",
     "contributing.md": "CONTRIBUTING.md",
     "citation.cff": "CITATION.cff",
+    **{
+        f"examples/{name}.ipynb": f"examples/{name}.ipynb"
+        for name in ("1_first_rollout", "2_estimator_on_a_log", "3_what_friction_is_worth")
+    },
 }
 """Path in the site -> path in the repository."""
 
