@@ -15,8 +15,8 @@ from policies.research.torture.cases import ACCEPTED, EQUAL, REFUSED, Attack, at
 from policies.research.torture.interrupts import after_engine, before_engine, count, interrupt, lines
 
 _OTHER = {"object_size": (0.44, 0.03, 0.3)}
-BATCH_STEPS, BULLET_STEPS = 100, 500
-"""Steps of a case."""
+ROWS, BATCH_STEPS, BULLET_STEPS = 1000, 100, 1000
+"""Environments of a batch, and steps of a case: 10^7 and 10^5 a task in a full campaign."""
 
 
 def said(env: Any, seed: int = 2, options: Any = None) -> str:
@@ -103,9 +103,8 @@ def forks(rng: np.random.Generator) -> str:
 
 
 def batch(rng: np.random.Generator) -> str:
-    """Steps of a batch of 100 environments with everything randomized."""
-    n = 100
-    env = gym.make_vec(some_id(rng), num_envs=n, randomization="eval_ood")
+    """Steps of a batch with everything randomized."""
+    env = gym.make_vec(some_id(rng), num_envs=ROWS, randomization="eval_ood")
     env.reset(seed=int(rng.integers(2**31)))
     for _ in range(BATCH_STEPS):
         actions = rng.uniform(-1.0, 1.0, env.action_space.shape or ()).astype(np.float32)
