@@ -4,20 +4,14 @@ from typing import Annotated
 
 import typer
 
-from slipgym.registration import TASK_MODULES
+from policies.commands.several import TASKS, Tasks
 
-TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 @app.command()
 def main(
-    tasks: Annotated[
-        list[str] | None,
-        typer.Argument(
-            help=f"Of {', '.join(TASKS)} (also LinearSlip or ids); all if none.", show_default=False
-        ),
-    ] = None,
+    tasks: Tasks = None,
     trials: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
     engine: Annotated[str, typer.Option(help="What moves the bodies: bullet or planar.")] = "bullet",
     randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "train",

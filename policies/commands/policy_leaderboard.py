@@ -6,9 +6,8 @@ from typing import Annotated
 import typer
 
 from estimator import DEFAULT
-from slipgym.registration import TASK_MODULES
+from policies.commands.several import TASKS, Tasks
 
-TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
 EPILOG = """
 Examples:\n
 \b
@@ -24,12 +23,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    tasks: Annotated[
-        list[str] | None,
-        typer.Argument(
-            help=f"Of {', '.join(TASKS)} (also LinearSlip or ids); all if none.", show_default=False
-        ),
-    ] = None,
+    tasks: Tasks = None,
     episodes: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
     level: Annotated[
         list[str] | None, typer.Option(help="Only this level; repeatable.", show_default=False)

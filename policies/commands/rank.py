@@ -5,9 +5,8 @@ from typing import Annotated
 import typer
 
 from estimator.registry import DEFAULT
-from slipgym.registration import TASK_MODULES
+from policies.commands.several import TASKS, Tasks
 
-TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
 EPILOG = """
 Examples:\n
 \b
@@ -22,12 +21,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    tasks: Annotated[
-        list[str] | None,
-        typer.Argument(
-            help=f"Of {', '.join(TASKS)} (also LinearSlip or ids); all if none.", show_default=False
-        ),
-    ] = None,
+    tasks: Tasks = None,
     episodes: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
     randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "train",
     level: Annotated[str, typer.Option(help="A level or a YAML file.")] = "easy",

@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Annotated, TypeAlias
 
 import typer
 from typer.core import TyperCommand
+
+from slipgym.registration import TASK_MODULES
 
 TASK_HELP = (
     "Task: linear_slip, rotational_slip, hinge, planar_slip, hold, fragile_hold, carry, pivot_to or "
     "explore; LinearSlip, slipgym/LinearSlip-v0 or module:attribute name one, too."
 )
+TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
+"""Keys of the tasks that come with slipgym."""
+Tasks: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Argument(help=f"Of {', '.join(TASKS)} (also LinearSlip or ids); all if none.", show_default=False),
+]
+"""Argument of a command that takes several tasks."""
 
 
 def expanded(arguments: Sequence[str], several: Sequence[str]) -> list[str]:

@@ -8,6 +8,7 @@ import policies
 from estimator.estimate import confidence_of, deviation_of
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.evaluation.play import play
+from policies.stepping import steps
 from slipgym.tasks import find
 
 N = 60
@@ -42,13 +43,9 @@ def test_it_is_so_with_pybullet(task):
     policy, successes = policies.make(task), 0
     env = gym.make(f"slipgym:{find(task).id}", friction_source="true")
     for seed in range(10):
-        observation, info = env.reset(seed=seed)
-        state, over = None, False
-        while not over:
-            action, state = policy.predict(observation, state)
-            observation, _, terminated, truncated, info = env.step(action)
-            over = terminated or truncated
-        successes += info["is_success"]
+        observation, _ = env.reset(seed=seed)
+        *_, last = steps(env, policy, observation)
+        successes += last.info["is_success"]
     env.close()
     assert successes == 10
 

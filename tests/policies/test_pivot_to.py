@@ -8,6 +8,7 @@ import policies
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.controllers.pivot_to import Motion
 from policies.evaluation.play import play
+from policies.stepping import steps
 
 ID, N = "slipgym:slipgym/PivotTo-v0", 60
 
@@ -37,13 +38,9 @@ def test_it_is_so_with_pybullet():
     policy, successes = policies.make("pivot_to"), 0
     env = gym.make(ID, friction_source="true")
     for seed in range(10):
-        observation, info = env.reset(seed=seed)
-        state, over = None, False
-        while not over:
-            action, state = policy.predict(observation, state)
-            observation, _, terminated, truncated, info = env.step(action)
-            over = terminated or truncated
-        successes += info["is_success"]
+        observation, _ = env.reset(seed=seed)
+        *_, last = steps(env, policy, observation)
+        successes += last.info["is_success"]
     env.close()
     assert successes == 10
 

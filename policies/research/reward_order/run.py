@@ -6,12 +6,11 @@ from collections.abc import Mapping, Sequence
 from itertools import combinations
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 import pandas as pd
 from tqdm import tqdm
 
-from policies.evaluation.play import play
+from policies.research.reward_order.episodes import episodes_of
 from policies.research.reward_order.zoo import Member
 from slipgym.tasks import find
 
@@ -41,12 +40,7 @@ def played(
     """
     rows = []
     for member in tqdm(members, desc=find(task).key, unit="policy", disable=not progress):
-        made = {**(arguments or {}), **member.arguments}
-        envs = gym.make_vec(f"slipgym:{find(task).id}", episodes, "vector_entry_point", **made)
-        try:
-            found = play(envs, member.policy, range(episodes))
-        finally:
-            envs.close()
+        found = episodes_of(task, member, episodes, arguments or {})
         shares = 100.0 * found.success.mean(), 100.0 * found.dropped.mean()
         rows.append((member.name, *shares, found.reward.mean()))
     table = pd.DataFrame(rows, columns=pd.Index(["policy", SUCCESS, DROPPED, RETURN]))
