@@ -1,8 +1,11 @@
+import hashlib
+import json
+
 import numpy as np
 import pytest
 
 from policies.learned import files
-from policies.learned.description import Description
+from policies.learned.description import WEIGHTS, Description
 from policies.learned.fitting import column_of
 from policies.learned.tensors import expected
 from slipgym.config import load
@@ -82,3 +85,26 @@ def mark(tmp_path):
     path = tmp_path / "executed"
     yield path
     assert not path.exists()
+
+
+@pytest.fixture
+def rewrite():
+    """Changes policy.json of a folder."""
+
+    def apply(folder, change):
+        values = json.loads((folder / files.DESCRIPTION).read_text())
+        change(values)
+        (folder / files.DESCRIPTION).write_text(json.dumps(values))
+
+    return apply
+
+
+@pytest.fixture
+def replant(rewrite):
+    """Replaces a file, with its checksum: the work of someone who means it."""
+
+    def apply(folder, data, name=WEIGHTS):
+        (folder / name).write_bytes(data)
+        rewrite(folder, lambda v: v["files"].update({name: hashlib.sha256(data).hexdigest()}))
+
+    return apply
