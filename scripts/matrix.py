@@ -21,13 +21,16 @@ TESTS = (
     "tests/estimator",
 )
 """What each row runs unless other tests are named."""
+EXTRAS = ("eval", "study")
+"""Extras of slipgym that each row installs."""
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 def oldest() -> list[str]:
-    """Requirements of the lower bounds in pyproject.toml."""
+    """Requirements of the lower bounds in pyproject.toml, those of the tested extras included."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    bounds = [re.match(r"([\w-]+)>=([\d.]+)", requirement) for requirement in project["dependencies"]]
+    groups = [project["dependencies"], *(project["optional-dependencies"][name] for name in EXTRAS)]
+    bounds = [re.match(r"([\w-]+)>=([\d.]+)", requirement) for group in groups for requirement in group]
     return [f"{bound[1]}=={bound[2]}" for bound in bounds if bound]
 
 
@@ -66,7 +69,7 @@ def row(python: str, requirements: list[str], folder: Path, tests: list[str]) ->
     run = folder / "bin" / "python"
     if not run.exists():
         subprocess.run([python, "-m", "venv", str(folder)], check=True)
-    wanted = [f"{ROOT}[eval,study]", "pytest", "hypothesis", "psutil", "filterpy"]
+    wanted = [f"{ROOT}[{','.join(EXTRAS)}]", "pytest", "hypothesis", "psutil", "filterpy"]
     install = [
         str(run),
         "-m",

@@ -36,7 +36,10 @@ def read_csv(path: Path) -> tuple[Any, list[str]]:
         header, *rows = list(islice(file, _LOOKED_AT)) or [""]
     separator = max(SEPARATORS, key=header.count)
     comma = separator != "," and any(_DECIMAL_COMMA.search(row) for row in rows)
-    frame = pandas.read_csv(path, sep=separator, decimal="," if comma else ".")
+    # Before pandas 3.1 the default loses last digits of a number.
+    version = tuple(int(part) for part in pandas.__version__.split(".")[:2])
+    exactly = {} if version >= (3, 1) else {"float_precision": "round_trip"}
+    frame = pandas.read_csv(path, sep=separator, decimal="," if comma else ".", **exactly)
     names = next(csv.reader([header.rstrip("\r\n")], delimiter=separator), [])
     if not isinstance(frame.index, pandas.RangeIndex):  # pandas takes the first columns for an index
         raise ValueError(
