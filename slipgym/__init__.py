@@ -7,6 +7,10 @@
     slipgym/Hinge-v0           let it hang upright while the wrist pitches
     slipgym/PlanarSlip-v0      bring it to a pose (x, y, theta) in the grip
     slipgym/Hold-v0            keep it still while something shakes and pokes it
+    slipgym/FragileHold-v0     lift and carry it without breaking it
+    slipgym/Carry-v0           pick it up, swing it and set it down with little grip
+    slipgym/PivotTo-v0         swing it to an angle by strokes of the wrist
+    slipgym/Explore-v0         find its friction with little slip, and state it
 
     gym.make("slipgym/LinearSlip-v0", friction_source="estimated")
     gym.make_vec("slipgym/LinearSlip-v0", num_envs=1024)

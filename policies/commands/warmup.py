@@ -8,7 +8,7 @@ EPILOG = """
 Examples:\n
 \b
   slipgym warmup
-  slipgym warmup --task hold --engine planar --vector
+  slipgym warmup --task hold --engine planar
 \n
 For container images and CI: programs are kept in NUMBA_CACHE_DIR, if it is set, or beside the sources.
 docs/numba.md says what is compiled.

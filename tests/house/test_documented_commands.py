@@ -1,4 +1,4 @@
-"""Every command line that README and the pages print is one that the command line takes."""
+"""Every command line on README, the pages and in the commands' help is one that the command line takes."""
 
 import re
 import shlex
@@ -13,8 +13,9 @@ from policies.commands.front import COMMANDS
 
 ROOT = Path(__file__).resolve().parents[2]
 LINE = re.compile(r"^(?:    )?(?:python )?(scripts/(\w+)\.py|slipgym ([a-z][\w-]*)|make)(?: +(.*))?$")
+EXAMPLE = re.compile(r"^ +slipgym ([a-z][\w-]*)(?: +(.*))?$")
 USAGE_ERROR = typer.BadParameter.__bases__[0]
-OWN = {"lock", "make_docs", "make_notebooks", "matrix", "torture", "wheel_smoke"}
+OWN = {"first_use", "lock", "make_docs", "make_notebooks", "matrix", "torture", "wheel_smoke"}
 """Scripts of the repository alone."""
 
 
@@ -30,11 +31,23 @@ def lines():
     return found
 
 
-LINES = lines()
+def examples():
+    """(command, command, arguments) of each example in the help of the commands."""
+    found = []
+    for name in COMMANDS:
+        app = import_module(f"policies.commands.{name.replace('-', '_')}").app
+        for line in (app.registered_commands[0].epilog or "").splitlines():
+            if match := EXAMPLE.match(line):
+                found.append((f"slipgym {name} --help", match[1], tuple(shlex.split(match[2] or "", True))))
+    return found
+
+
+LINES = lines() + examples()
 
 
 def test_the_pages_have_many():
-    assert len(LINES) > 60
+    assert len(lines()) > 60
+    assert len(examples()) > 30
     assert {"evaluate", "study", "train", "estimate", "make"} <= {name for _, name, _ in LINES}
 
 
