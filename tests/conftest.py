@@ -9,6 +9,8 @@ import pytest
 
 import slipgym  # noqa: F401
 
+LATER = ("RotationalSlip", "Hinge")
+"""Tasks whose cases of tests marked `quick_tasks` are slow: their kinds of motion occur in other tasks."""
 MANY = 1000
 """Tests from which it pays: a few may need none of it."""
 
@@ -19,6 +21,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for mark in item.iter_markers("quick_cases"):
             if not any(item.name.endswith(f"[{case}]") for case in mark.args):
                 item.add_marker("slow")
+        if item.get_closest_marker("quick_tasks") and any(f"/{task}-v0" in item.name for task in LATER):
+            item.add_marker("slow")
 
 
 def _without_pybullet() -> Generator[None, Any, Any]:

@@ -17,6 +17,8 @@ from slipgym.contact.records import pads, patch
 
 EXPONENTS = (0.5, 1.0, 2.0, 4.0)
 H = 2.5e-4
+CELLS = patch_cells("uniform", 5)
+"""Positions and loads."""
 LAW = {"mu_c": 0.4, "mu_s": 0.55, "stribeck_velocity": 1e-3, "sigma_0": 1e6, "sigma_1": 80.0, "r": 0.01}
 
 
@@ -81,8 +83,7 @@ def test_an_ellipsoids_level_is_that_of_the_speed_found(exponent, slip_speed, fo
 @given(st.sampled_from(EXPONENTS), speeds, speeds)
 def test_a_patchs_levels_are_those_of_the_speed_found(exponent, expected, found):
     pad = pads(1, stribeck_exponent=exponent, normal=5.0, **LAW)
-    positions, loads = patch_cells("uniform", 5)
-    cells = patch(positions, loads)
+    cells = patch(*CELLS)
     cells[cell_levels.SPEED_CAP] = np.inf  # all cells slip
     pad["twist"], pad["half_step"] = (expected, 0.0, 0.0), 0.5 * H
     level = cell_levels.set_friction_levels(pad[0], cells, (expected, 0.0, 0.0))

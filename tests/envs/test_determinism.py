@@ -7,6 +7,8 @@ import pytest
 
 from slipgym.registration import ENVIRONMENTS
 
+pytestmark = pytest.mark.quick_tasks
+
 SCRIPT = str(Path(__file__).with_name("rollout.py"))
 
 

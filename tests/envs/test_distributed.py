@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+pytestmark = pytest.mark.quick_tasks
+
 IDS = "slipgym/LinearSlip-v0", "slipgym/Hold-v0"
 PATCH = {"contact": "distributed"}
 SMALL = {**PATCH, "config": {"contact": {"cells": 7}}}

@@ -7,6 +7,8 @@ import numpy as np
 import pybullet
 import pytest
 
+pytestmark = pytest.mark.quick_tasks
+
 CLIENTS = range(200)
 
 

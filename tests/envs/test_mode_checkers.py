@@ -13,6 +13,8 @@ from gymnasium.wrappers import FrameStackObservation, RecordEpisodeStatistics
 from slipgym.envs.actions import ACTION_MODES
 from slipgym.envs.arguments import OBSERVATION_MODES
 
+pytestmark = pytest.mark.quick_tasks
+
 PAIRS = tuple(product(ACTION_MODES, OBSERVATION_MODES))
 FULL = {"action_mode": "grip_force_wrist", "observation_mode": "dict", "history": 2}
 

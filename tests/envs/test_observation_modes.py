@@ -7,6 +7,8 @@ import pytest
 
 from slipgym.envs.observation import WRIST as WRIST_READINGS
 
+pytestmark = pytest.mark.quick_tasks
+
 WRIST = {"action_mode": "grip_force_wrist"}
 ACTIONS = np.random.default_rng(0).uniform(-1.0, 0.2, (40, 4))
 ACTIONS[:, 1:] *= 0.1

@@ -13,6 +13,8 @@ from gymnasium.utils.env_checker import check_env
 from slipgym.contact.pressure import OUTER_RADII
 from slipgym.contact.records import LOAD, X, Y
 
+pytestmark = pytest.mark.quick_tasks
+
 SCRIPT = str(Path(__file__).with_name("rollout.py"))
 PRESETS = ("train", "eval_ood")
 LINEAR = "slipgym/LinearSlip-v0"

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.quick_tasks
+
 ACTIONS = np.random.default_rng(0).uniform(-1.0, 0.3, (200, 1)).astype(np.float32)
 CONTINUE = "import pickle, sys; env, actions = pickle.load(sys.stdin.buffer); import numpy as np; " + (
     "np.set_printoptions(precision=17, floatmode='unique'); "

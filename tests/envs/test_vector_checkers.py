@@ -9,6 +9,8 @@ from gymnasium.wrappers import vector as wrappers
 
 from slipgym.vector_checker import check_vector_env
 
+pytestmark = pytest.mark.quick_tasks
+
 FULL = {
     "observation_mode": "dict",
     "history": 1,

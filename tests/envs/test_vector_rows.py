@@ -8,6 +8,8 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from slipgym.vector_checker.compare import difference
 from slipgym.vector_checker.returned import info_of
 
+pytestmark = pytest.mark.quick_tasks
+
 PLAIN = {}
 FULL = {
     "randomization": "train",

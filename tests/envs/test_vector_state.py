@@ -11,6 +11,8 @@ import pytest
 from slipgym.vector_checker.compare import difference, spoil
 from slipgym.vector_checker.returned import info_of
 
+pytestmark = pytest.mark.quick_tasks
+
 ID = "slipgym/LinearSlip-v0"
 MADE = {"num_envs": 5, "randomization": "train", "history": 1, "frame_skip": 4, "threads": 2}
 

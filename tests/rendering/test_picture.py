@@ -7,6 +7,8 @@ import pytest
 from slipgym.registration import ENVIRONMENTS
 from slipgym.rendering import camera
 
+pytestmark = pytest.mark.quick_tasks
+
 IDS = tuple(ENVIRONMENTS)
 
 
