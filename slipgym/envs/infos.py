@@ -98,8 +98,8 @@ _SIZES = [math.prod(info.shape) for info in NUMBERS]
 _WIDTH = sum(_SIZES)
 _ENDS = np.cumsum(_SIZES).tolist()
 _PARTS = {info.name: slice(end - size, end) for info, end, size in zip(NUMBERS, _ENDS, _SIZES, strict=True)}
-_VECTORS = [(info.name, _PARTS[info.name]) for info in NUMBERS if len(info.shape) == 1]
-_MATRICES = [(info.name, _PARTS[info.name], info.shape) for info in NUMBERS if len(info.shape) == 2]
+_VIEWS = {info.name: _PARTS[info.name] for info in NUMBERS if info.shape}
+_MATRICES = [(info.name, info.shape) for info in NUMBERS if len(info.shape) == 2]
 _SCALARS = [(info.name, _PARTS[info.name].start) for info in NUMBERS if not info.shape]
 _FLAG_NAMES = [info.name for info in FLAGS]
 
@@ -131,12 +131,12 @@ class InfoBuffer(NamedTuple):
             terms: Names of the reward terms.
         """
         row = self.numbers[i].copy()
-        info: dict[str, Any] = {name: row[part] for name, part in _VECTORS}
-        for name, part, shape in _MATRICES:
-            info[name] = row[part].reshape(shape)
+        info: dict[str, Any] = dict(zip(_VIEWS, map(row.__getitem__, _VIEWS.values())))  # noqa: B905
+        for name, shape in _MATRICES:
+            info[name] = info[name].reshape(shape)
         for name, at in _SCALARS:
             info[name] = row.item(at)
-        info.update(zip(_FLAG_NAMES, self.flags[i].tolist(), strict=True))
+        info.update(zip(_FLAG_NAMES, self.flags[i].tolist()))  # noqa: B905
         info["reward_terms"] = dict(zip(terms, self.terms[i].tolist(), strict=True))
         return info
 

@@ -9,7 +9,6 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.envs.arguments import ScalarArguments, complete, documented
-from slipgym.envs.observer import first
 from slipgym.envs.setup import MakeSimulation, Setup
 from slipgym.envs.simulation import Simulation
 from slipgym.envs.state import EnvState, checked, restored_generator, restored_seed
@@ -104,7 +103,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
                 self._renderer.begin()
             self._observer.begin(_FIRST)
             drawn, info = self.simulation.drawn.one(0), self._info()
-            observation = first(self._observer.read())
+            observation = self._observer.first()
         except BaseException:
             if generator is not None:
                 generator.bit_generator.state = state
@@ -136,8 +135,8 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             self._step_in_pictures(actions)
         observer.next(_ONE)
         terminated, info = simulation.ended_early, self._info()
-        reward, truncated = sum(info["reward_terms"].values()), simulation.over and not terminated
-        observation = first(observer.read())
+        reward, truncated = sum(info["reward_terms"].values()), not terminated and simulation.timed_out
+        observation = observer.first()
         self._ready = True
         return observation, reward, terminated, truncated, info
 
