@@ -49,7 +49,7 @@ class Fixed:
         kind = kind or typeof(value)
         self.kind, self._value = FixedType(kind), value
         self._words = np.array([*_words(value)], dtype=np.int64)
-        context = cpu_target.target_context
+        context: Any = cpu_target.target_context
         if self._words.nbytes != context.get_abi_sizeof(context.get_value_type(kind)):
             raise TypeError(f"the value is not laid out as {kind}")
         self.address = self._words.ctypes.data
@@ -70,15 +70,18 @@ def _words(value: Any) -> Iterator[int]:
         raise TypeError(f"{type(value).__name__} cannot be fixed; it must be None, a pointer or an array")
 
 
-@intrinsic
-def opened(_: Any, fixed: Any) -> Any:
-    """The value of a `Fixed`."""
+def _opening(_: Any, fixed: Any) -> Any:
+    """Type and code of a function that returns the value of a `Fixed`."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         kind = signature.return_type
         return builder.load(builder.bitcast(arguments[0], context.get_value_type(kind).as_pointer()))
 
     return fixed.kind(fixed), generate
+
+
+opened: Any = intrinsic(_opening)
+"""Function of a `Fixed` in compiled code: its value."""
 
 
 def _unbox_fixed(_: Any, fixed: Any, c: Any) -> NativeValue:
