@@ -126,13 +126,13 @@ def against_bare(player: Player, pairs: int) -> list[Figure]:
 
 
 def breakdown(player: Player, blocks: int) -> list[Figure]:
-    """Times of the parts of one env.step, by stopwatches around them."""
+    """CPU time of the parts of one env.step, by stopwatches around them."""
     env = player.env
     simulation = env.simulation
     assert isinstance(simulation, loops.BulletSimulation)
     player.block()  # the first step finds the calls that are watched
     rows: list[list[float]] = []
-    with Stopwatches() as watches:
+    with Stopwatches(clock=process_time) as watches:
         watches.watch("kernel", simulation.world.rows, "loads")
         watches.watch("Bullet and its calls", simulation.world, "move")
         watches.watch("action, disturbances, wrist", simulation._calls, "begin")
@@ -144,7 +144,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
             player.begin()
             watches.spent.update(dict.fromkeys(PARTS, 0.0))
             watches.running = True
-            seconds, steps = player.block()
+            seconds, steps = player.block(process_time)
             parts = [watches.spent[label] for label in PARTS]
             samples = steps / env.config.physics.engine_steps
             rows.append([part / samples for part in (*parts, seconds - sum(parts))])
