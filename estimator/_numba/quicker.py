@@ -8,13 +8,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from types import NoneType
 from typing import Any
 
+from numba.core import errors, ir
 from numba.core.targetconfig import TargetConfig
-from numba.core.types import Boolean, Function, Number
+from numba.core.types import Boolean, Function, Number, Record
 from numba.core.types.functions import BaseFunction
 
 _compare = TargetConfig.__eq__
+_variables = ir.Inst._rec_list_vars
+_describe = Record.__repr__
 _resolve = BaseFunction.get_call_type
 _resolved: dict[Any, Any] = {}
 
@@ -26,6 +30,9 @@ def quick_compiler() -> Iterator[None]:
         (TargetConfig, "__eq__", _same_options),
         (TargetConfig, "__hash__", _options_hash),
         (BaseFunction, "get_call_type", _call_type),
+        (ir.Inst, "_rec_list_vars", _list_variables),
+        (Record, "__repr__", _record_text),
+        (errors, "termcolor", _Plain),
     )
     before = [getattr(owner, name) for owner, name, _ in shortcuts]
     for owner, name, shortcut in shortcuts:
@@ -67,3 +74,40 @@ def _call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
     if key not in _resolved:
         _resolved[key] = _resolve(function, context, args, kws)
     return _resolved[key]
+
+
+_NO_VARIABLES = {str, int, float, bool, NoneType, ir.Loc, ir.Const, ir.Global, ir.FreeVar}
+"""Types of values in numba's intermediate representation that hold no variable."""
+
+
+def _list_variables(own: Any, value: Any) -> list[Any]:
+    """`ir.Inst._rec_list_vars`, which tests all that a statement holds against abstract base classes."""
+    kind = type(value)
+    if kind is not dict and kind is not list and kind is not tuple:
+        return _variables(own, value)
+    found: list[Any] = []
+    for item in value.values() if kind is dict else value:
+        kind = type(item)
+        if kind is ir.Var:
+            found.append(item)
+        elif kind not in _NO_VARIABLES:
+            found += own._rec_list_vars(item)
+    return found
+
+
+def _record_text(own: Record) -> str:
+    """`Record.__repr__`, a long text that numba makes for every function with records."""
+    try:
+        return own._text  # type: ignore[attr-defined]
+    except AttributeError:
+        own._text = text = _describe(own)  # type: ignore[attr-defined]
+        return text
+
+
+class _Plain:
+    """Colours of numba's messages: none. It raises and catches thousands of exceptions, each coloured."""
+
+    def _same(self, text: str) -> str:
+        return text
+
+    code = errmsg = filename = indicate = highlight = reset = _same

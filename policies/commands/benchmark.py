@@ -12,6 +12,7 @@ Examples:\n
   slipgym benchmark --env hold --pairs 100 --json figures.json
   slipgym benchmark --workloads
   slipgym benchmark --split
+  slipgym benchmark --bullet
 \n
 docs/performance.md explains the figures.
 """
@@ -39,6 +40,9 @@ def main(
         bool,
         typer.Option("--split", help="The headline and the parts of a step of the vector environment alone."),
     ] = False,
+    bullet: Annotated[
+        bool, typer.Option("--bullet", help="The environment with PyBullet and its bare loop alone.")
+    ] = False,
     optimisations: Annotated[
         bool, typer.Option("--optimisations", help="The benefit of each optimisation instead.")
     ] = False,
@@ -62,6 +66,10 @@ def main(
 
         typer.echo(line(machine()))
         publish(headline_and_parts(env_id, max(3, pairs // 5)), json)
+    elif bullet:
+        from slipgym.benchmarking.run import with_bullet
+
+        with_bullet(env_id, pairs, json)
     elif workloads:
         from policies.evaluation.workloads import benchmark as all_tasks
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from functools import partial
 from statistics import median
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import Any
 
 import gymnasium as gym
@@ -82,34 +83,35 @@ class Player:
             self.env.reset(seed=int(self._rng.integers(2**31)))
             self._over = False
 
-    def block(self) -> tuple[float, int]:
-        """Time of some control steps [s] and the engine steps in them; resets are not timed."""
+    def block(self, clock: Callable[[], float] = perf_counter) -> tuple[float, int]:
+        """Time of some control steps [s] by a clock and the engine steps in them; resets are not timed."""
         self.begin()
         actions = self._rng.uniform(*ACTIONS, (BLOCK, 1)).astype(np.float32)
         step, steps = self.env.step, 0
-        start = perf_counter()
+        start = clock()
         for action in actions:
             _, _, terminated, truncated, _ = step(action)
             steps += 1
             if terminated or truncated:
                 self._over = True
                 break
-        return perf_counter() - start, steps * self.env.config.physics.engine_steps
+        return clock() - start, steps * self.env.config.physics.engine_steps
 
 
 def against_bare(player: Player, pairs: int) -> list[Figure]:
-    """The whole environment against the bare loop of the same scene, in the same run."""
+    """The whole environment against the bare loop of the same scene, in the same run: CPU time."""
     config = player.env.config
     bare = BareLoop(config)
     steps = BLOCK * config.physics.engine_steps
 
     def block() -> tuple[float, int]:
-        start = perf_counter()
+        start = process_time()
         bare.run(steps)
-        return perf_counter() - start, steps
+        return process_time() - start, steps
 
-    compare(block, player.block, 10)  # warm up
-    result = compare(block, player.block, pairs)
+    own = partial(player.block, process_time)
+    compare(block, own, 10)  # warm up
+    result = compare(block, own, pairs)
     bare.close()
     lower, middle, upper = result.quartiles
     real_time = 1.0 / (config.physics.engine_rate * result.second)
@@ -124,24 +126,25 @@ def against_bare(player: Player, pairs: int) -> list[Figure]:
 
 
 def breakdown(player: Player, blocks: int) -> list[Figure]:
-    """Times of the parts of one env.step, by stopwatches around them."""
+    """CPU time of the parts of one env.step, by stopwatches around them."""
     env = player.env
     simulation = env.simulation
     assert isinstance(simulation, loops.BulletSimulation)
+    player.block()  # the first step finds the calls that are watched
     rows: list[list[float]] = []
-    with Stopwatches() as watches:
+    with Stopwatches(clock=process_time) as watches:
         watches.watch("kernel", simulation.world.rows, "loads")
         watches.watch("Bullet and its calls", simulation.world, "move")
-        watches.watch("action, disturbances, wrist", simulation, "_open")
-        watches.watch("sensors, estimator, task, observation", simulation, "_finish")
-        watches.watch("copies of the observation", env._observer, "read")
+        watches.watch("action, disturbances, wrist", simulation._calls, "begin")
+        watches.watch("sensors, estimator, task, observation", simulation._calls, "finish")
+        watches.watch("copies of the observation", env._observer, "first")
         watches.watch("info", env, "_info")
         for _ in range(blocks):
             watches.running = False
             player.begin()
             watches.spent.update(dict.fromkeys(PARTS, 0.0))
             watches.running = True
-            seconds, steps = player.block()
+            seconds, steps = player.block(process_time)
             parts = [watches.spent[label] for label in PARTS]
             samples = steps / env.config.physics.engine_steps
             rows.append([part / samples for part in (*parts, seconds - sum(parts))])

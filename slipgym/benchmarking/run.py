@@ -10,6 +10,21 @@ from slipgym.benchmarking.resets import resets
 from slipgym.benchmarking.substeps import softer, substeps
 
 
+def with_bullet(env_id: str, pairs: int, json: Path | None = None) -> None:
+    """Measure and print the environment with PyBullet against the bare loop, and the parts of its step.
+
+    Args:
+        env_id: Id of the environment.
+        pairs: Pairs of timed blocks.
+        json: File to write the figures to.
+    """
+    print(report.line(report.machine()))
+    player = measure.Player(env_id)
+    figures = [*measure.against_bare(player, pairs), *measure.breakdown(player, max(1, pairs // 3))]
+    player.env.close()
+    report.publish(figures, json)
+
+
 def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
     """Measure and print.
 

@@ -126,12 +126,12 @@ class Actions:
                 f"action must have shape {self._shape} in action_mode {self.mode!r} ({meaning}), "
                 f"got {array.shape}: {action!r}"
             )
-        for k, value in enumerate(array.tolist()):
-            if not -np.inf < value < np.inf:
-                raise ValueError(
-                    f"action[{k}] ({self.columns[k].name}) = {value!r} must be finite, within [-1, 1]"
-                )
-        return array.reshape(1, -1)
+        for value in array.tolist():
+            if not math.isfinite(value):
+                k = np.isfinite(array).argmin()
+                name = self.columns[k].name
+                raise ValueError(f"action[{k}] ({name}) = {value!r} must be finite, within [-1, 1]")
+        return array[np.newaxis]
 
     def checked_batch(self, actions: Any, n: int) -> np.ndarray:
         """Actions of n environments, (n, m) float64.
@@ -176,7 +176,7 @@ def numbers(given: Any, name: str) -> np.ndarray:
         raise ValueError(
             f"{name} = {given!r:.80} must be an array of numbers, within [-1, 1], not of {array.dtype}"
         )
-    return array.astype(np.float64, copy=False)
+    return array.astype(np.float64, order="C", copy=False)
 
 
 @compiled

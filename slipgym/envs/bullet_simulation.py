@@ -12,7 +12,7 @@ import numpy as np
 from slipgym._numba.compiled import patience
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMPONENT
-from slipgym.envs.bullet_step import compiled_step
+from slipgym.envs.bullet_step import BulletStep
 from slipgym.envs.nan_guard import Guard
 from slipgym.envs.observation import SENSORS, ObservationBuffers
 from slipgym.envs.reset_kernels import WARM_UP_STEPS
@@ -52,13 +52,13 @@ class BulletSimulation(Simulation):
     ) -> None:
         super().__init__(config, settings, task, estimator, randomization)
         self.world = BulletWorld(config, self.plant)
-        self._open, self._finish = compiled_step(*self._kinds)
         self._guard = Guard()
         self._first = True
         m = len(SENSORS) + len(task.columns)
         low, high = np.full((2, m), [[-np.inf], [np.inf]], dtype=np.float32)
         out = np.zeros((1, m), dtype=np.float32)
         self._unseen = ObservationBuffers(np.zeros(0, dtype=np.int64), self.estimated, low, high, out)
+        self._bind(self._unseen)
 
     def step(
         self,
@@ -69,11 +69,15 @@ class BulletSimulation(Simulation):
         buffers: ObservationBuffers,
     ) -> None:
         """See `Simulation.step`."""
+        if buffers is not self._calls.buffers:
+            self._bind(buffers)
+        if not active.item(0):
+            self.infos.terms[:] = 0.0
+            return
         action = actions, components, active
-        self.infos.terms[:] = 0.0
-        for _ in range(skip if active[0] else 0):
-            self._control_step(action, buffers)
-            if self.over:
+        for k in range(skip):
+            self._control_step(action, k == 0)
+            if k + 1 < skip and self.over:
                 break
 
     def keep_samples(self, count: int) -> None:
@@ -84,7 +88,7 @@ class BulletSimulation(Simulation):
         """
         self.plant.force_torque = roomier(self.plant.force_torque, count)
         self._choose_programs()
-        self._open, self._finish = compiled_step(*self._kinds)
+        self._bind(self._calls.buffers)
         self.world.bind()
 
     def sample(self, force: float) -> None:
@@ -94,7 +98,7 @@ class BulletSimulation(Simulation):
             FloatingPointError: A quantity is not finite; the environment needs a reset.
         """
         self.commands[0] = force, 0.0, 0.0, 0.0
-        self._control_step(_NO_ACTION, self._unseen)
+        self._control_step(_NO_ACTION, False)
 
     def get_state(self) -> SimulationState:
         """See `Simulation.get_state`."""
@@ -145,14 +149,25 @@ class BulletSimulation(Simulation):
         self.stages.evaluate(self.state, 0, 1)
         self._write_infos()
 
-    def _control_step(self, action: tuple[np.ndarray, ...], buffers: ObservationBuffers) -> None:
-        """The stages of `slipgym.envs.control_step`; PyBullet moves the bodies."""
-        world = self.world
-        world.update_mass(self._open(self.state, action))
+    def _bind(self, buffers: ObservationBuffers) -> None:
+        """Have control steps write the observations to these buffers."""
+        self._calls = BulletStep(
+            self._kinds, self.state, self.plant.force_torque, buffers, self.infos, self._guard.rows
+        )
+
+    def _control_step(self, action: tuple[np.ndarray, ...], fresh: bool) -> None:
+        """The stages of `slipgym.envs.control_step`; PyBullet moves the bodies.
+
+        Args:
+            action: As in `slipgym.envs.control_step.begin`.
+            fresh: Whether the reward terms start at 0.
+        """
+        world, calls = self.world, self._calls
+        world.update_mass(calls.begin(action, fresh))
         if self.plant.tilt is not None:
             shake_tilt(self.episode, self.plant.tilt)
-        world.move()
-        bad = self._end(buffers, self._guard.next())
+        pose, _, wrist, normals, _ = world.move()
+        bad = calls.finish(pose, wrist, normals, self._guard.next())
         if bad > 0:
             world.discard()
             self._guard.check(bad)
@@ -160,10 +175,5 @@ class BulletSimulation(Simulation):
     def _settle(self, force: float) -> None:
         """One control step of the world and its sensors alone, with a grip force per finger [N]."""
         self.world.command(force)
-        self.world.move()
-        self._end(self._unseen, -1)
-
-    def _end(self, buffers: ObservationBuffers, at: int) -> int:
-        pose, _, wrist, normals, _ = self.world.reading
-        sensors, kept = self.plant.force_torque, self._guard.rows
-        return self._finish(self.state, sensors, pose, wrist, normals, buffers, self.infos, kept, at)
+        pose, _, wrist, normals, _ = self.world.move()
+        self._calls.finish(pose, wrist, normals, -1)

@@ -2,53 +2,59 @@
 
 from __future__ import annotations
 
-from functools import cache
+from collections.abc import Callable
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 from numba import types
 
+from slipgym._numba.calls import entry_point
 from slipgym._numba.compiled import compiled, patience
-from slipgym.envs.stages import ACTION, BUFFERS, F2, INFOS, STATE, WHOLE, array, compiled_stages
+from slipgym._numba.fixed import Fixed, FixedType, opened
+from slipgym.envs.control_step import BatchState
+from slipgym.envs.infos import InfoBuffer
+from slipgym.envs.observation import ObservationBuffers
+from slipgym.envs.stages import ACTION, BUFFERS, F2, INFOS, STATE, WHOLE, Stages, array, compiled_stages
 from slipgym.world.bullet_rows import PAIR, POSE, VECTOR, queue, read_engine
 
 
 @compiled
-def _begin(stages, state, action):
+def _begin(fixed, action, fresh):
     """Begin a control step and queue the commanded grip force.
 
     Args:
-        stages: `Linked`.
-        state: `BatchState` of one environment.
+        fixed: See `BulletStep`.
         action: As in `slipgym.envs.control_step.begin`.
+        fresh: Whether the reward terms start at 0.
 
     Returns:
         Mass of the object [kg].
     """
+    stages, state, _, _, infos, _ = opened(fixed)
+    if fresh:
+        infos.terms[:] = 0.0
     stages.begin(stages.script_wrist, state, action, 0, 1)
     queue(state.worlds, state.fingers, state.commands[0, 0])
     return state.worlds[0].mass
 
 
 @compiled
-def _finish(stages, state, force_torque, pose, wrist, normals, buffers, infos, kept, at):
+def _finish(fixed, pose, wrist, normals, at):
     """End a control step: take over the engine's reading, measure, estimate, evaluate, observe.
 
     Args:
-        stages: `Linked`.
-        state: `BatchState` of one environment.
-        force_torque: FORCE_TORQUE (1, 2).
+        fixed: See `BulletStep`.
         pose: As in `slipgym.world.bullet_rows.read_engine`, like the next two.
         wrist: Positions of the joints.
         normals: Normal forces.
-        buffers: `ObservationBuffers`.
-        infos: Output: `InfoBuffer`; reward terms are added to those that are there.
-        kept: Output, see `slipgym.envs.nan_guard.note`.
-        at: Row of it; -1: a step of a world that settles, which is only measured.
+        at: Row of the guard's table that `slipgym.envs.nan_guard.note` writes; -1: a step of a world that
+            settles, which is only measured.
 
     Returns:
         As `slipgym.envs.nan_guard.note`.
     """
+    stages, state, force_torque, buffers, infos, kept = opened(fixed)
     read_engine(state.worlds, state.fingers, pose, wrist, normals)
     stages.measure(state, force_torque, 0, 1)
     if at < 0:
@@ -62,21 +68,45 @@ def _finish(stages, state, force_torque, pose, wrist, normals, buffers, infos, k
     return stages.note(kept, at, state, 0)
 
 
-@cache
-def compiled_step(task: Any, update: Any, force_torque: np.dtype, cells: int) -> tuple[Any, Any]:
-    """Compile `_begin` and `_finish`.
+class BulletStep:
+    """The two calls of a control step, for the arrays of one simulation.
 
     Args:
-        task: As of `slipgym.envs.stages.Stages`, like the others.
-        update: The estimator's.
-        force_torque: Dtype of the sensors.
-        cells: Dimensions of the patches.
+        kinds: Arguments of `slipgym.envs.stages.compiled_stages`.
+        state: `BatchState` of one environment.
+        force_torque: FORCE_TORQUE (1, 2).
+        buffers: Where observations are written.
+        infos: Where infos are written; reward terms are added to those that are there.
+        kept: See `slipgym.envs.nan_guard.note`.
 
-    Returns:
-        Functions of their arguments but the first.
+    Attributes:
+        begin: Takes the arguments of `_begin` after the first.
+        finish: Takes those of `_finish`.
+        buffers: As given.
     """
+
+    def __init__(
+        self,
+        kinds: tuple[Any, ...],
+        state: BatchState,
+        force_torque: np.ndarray,
+        buffers: ObservationBuffers,
+        infos: InfoBuffer,
+        kept: np.ndarray,
+    ) -> None:
+        stages, kind, begin, finish = _compiled_step(*kinds)
+        fixed = Fixed((stages.linked, state, force_torque, buffers, infos, kept), kind)
+        self.begin, self.finish, self.buffers = partial(begin, fixed), partial(finish, fixed), buffers
+
+
+@cache
+def _compiled_step(
+    task: Any, update: Any, force_torque: np.dtype, cells: int
+) -> tuple[Stages, Any, Callable[..., Any], Callable[..., Any]]:
+    """The stages, the type of what is fixed, and the machine code of `_begin` and `_finish`."""
     stages = compiled_stages(task, update, force_torque, cells)
-    arguments = STATE, array(force_torque, 2), POSE, VECTOR, PAIR, BUFFERS, INFOS, F2, WHOLE
+    kind = types.Tuple([stages.kind, STATE, array(force_torque, 2), BUFFERS, INFOS, F2])
+    fixed = FixedType(kind)
     with patience(f"the control step of {task.name} with PyBullet"):
-        begin = stages.program(_begin, types.float64, STATE, ACTION)
-        return begin, stages.program(_finish, WHOLE, *arguments)
+        begin = entry_point(_begin, (fixed, ACTION, types.boolean))
+        return stages, kind, begin, entry_point(_finish, (fixed, POSE, VECTOR, PAIR, WHOLE))

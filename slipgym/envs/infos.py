@@ -98,8 +98,7 @@ _SIZES = [math.prod(info.shape) for info in NUMBERS]
 _WIDTH = sum(_SIZES)
 _ENDS = np.cumsum(_SIZES).tolist()
 _PARTS = {info.name: slice(end - size, end) for info, end, size in zip(NUMBERS, _ENDS, _SIZES, strict=True)}
-_VECTORS = [(info.name, _PARTS[info.name]) for info in NUMBERS if len(info.shape) == 1]
-_MATRICES = [(info.name, _PARTS[info.name], info.shape) for info in NUMBERS if len(info.shape) == 2]
+_VIEWS = {info.name: (_PARTS[info.name], info.shape) for info in NUMBERS if info.shape}
 _SCALARS = [(info.name, _PARTS[info.name].start) for info in NUMBERS if not info.shape]
 _FLAG_NAMES = [info.name for info in FLAGS]
 
@@ -122,23 +121,6 @@ class InfoBuffer(NamedTuple):
     def empty_like(self) -> InfoBuffer:
         """Return another buffer of the same shapes, with undefined contents."""
         return InfoBuffer(*map(np.empty_like, self))
-
-    def one(self, i: int, terms: Sequence[str]) -> dict[str, Any]:
-        """Info of environment i as `gymnasium.Env` returns it: copies, plain numbers.
-
-        Args:
-            i: Index of the environment.
-            terms: Names of the reward terms.
-        """
-        row = self.numbers[i].copy()
-        info: dict[str, Any] = {name: row[part] for name, part in _VECTORS}
-        for name, part, shape in _MATRICES:
-            info[name] = row[part].reshape(shape)
-        for name, at in _SCALARS:
-            info[name] = row.item(at)
-        info.update(zip(_FLAG_NAMES, self.flags[i].tolist(), strict=True))
-        info["reward_terms"] = dict(zip(terms, self.terms[i].tolist(), strict=True))
-        return info
 
     def every(self, terms: Sequence[str], mask: np.ndarray | None = None) -> dict[str, Any]:
         """Infos of all environments as `gymnasium.vector.VectorEnv` returns them: views, with masks beside.
@@ -174,6 +156,42 @@ class InfoBuffer(NamedTuple):
         for mine, other in zip(copy, self, strict=True):
             mine[rows] = other[rows]
         return copy.every(terms, mask)
+
+
+class InfoCopies:
+    """Infos of one environment as `gymnasium.Env` returns them: the caller's own arrays, plain numbers.
+
+    The arrays of 32 infos share their memory, which lives as long as one of them.
+
+    Args:
+        terms: Names of the reward terms.
+    """
+
+    def __init__(self, terms: Sequence[str]) -> None:
+        self._terms = terms
+        self._rows: Iterator[tuple[np.ndarray, ...]] = iter(())
+
+    def take(self, buffer: InfoBuffer) -> dict[str, Any]:
+        """Copy the infos of the first environment."""
+        views = next(self._rows, None)
+        if views is None:
+            self._rows = _rows()
+            views = next(self._rows)
+        row, *arrays = views
+        row[:] = buffer.numbers[0]
+        info: dict[str, Any] = dict(zip(_VIEWS, arrays, strict=True))
+        for name, at in _SCALARS:
+            info[name] = row.item(at)
+        info.update(zip(_FLAG_NAMES, buffer.flags[0].tolist(), strict=True))
+        info["reward_terms"] = dict(zip(self._terms, buffer.terms[0].tolist(), strict=True))
+        return info
+
+
+def _rows(count: int = 32) -> Iterator[tuple[np.ndarray, ...]]:
+    """Rows of a new array, and the parts of each that `_VIEWS` names, made together: it costs less."""
+    rows = np.empty((count, _WIDTH))
+    parts = (rows[:, part].reshape(count, *shape) for part, shape in _VIEWS.values())
+    return zip(rows, *parts, strict=True)
 
 
 def _with_masks(infos: dict[str, Any], left: Iterator[np.ndarray]) -> dict[str, Any]:

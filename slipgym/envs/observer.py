@@ -99,6 +99,13 @@ class Observer:
             self._ground_truth = np.empty_like(self._ground_truth)
         return observations
 
+    def first(self) -> Observation:
+        """The observation of the first environment, owned by the caller."""
+        observations = self.present()
+        if isinstance(observations, dict):
+            return {group: values[0].copy() for group, values in observations.items()}
+        return observations[0].copy()
+
     def get_state(self) -> np.ndarray:
         """The last observations (n, history + 1, m), the newest one last."""
         if self._history:
@@ -123,13 +130,6 @@ class Observer:
 
     def _look(self, rows: np.ndarray) -> None:
         self._simulation.stages.look_at(rows, self._simulation.state, self.buffers)
-
-
-def first(observations: Observation) -> Observation:
-    """The observation of the first environment."""
-    if isinstance(observations, dict):
-        return {group: values[0] for group, values in observations.items()}
-    return observations[0]
 
 
 def _friction_part(simulation: Simulation, source: str) -> np.ndarray:

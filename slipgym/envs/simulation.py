@@ -137,7 +137,12 @@ class Simulation(ABC):
     @property
     def over(self) -> bool:
         """Whether the first environment's episode has ended."""
-        return self.ended_early or self._steps.item(0) >= self._length.item(0)
+        return self.ended_early or self.timed_out
+
+    @property
+    def timed_out(self) -> bool:
+        """Whether the first environment's episode has its full length."""
+        return self._steps.item(0) >= self._length.item(0)
 
     @property
     def time(self) -> float:

@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.envs.arguments import ScalarArguments, complete, documented
-from slipgym.envs.observer import first
+from slipgym.envs.infos import InfoCopies
 from slipgym.envs.setup import MakeSimulation, Setup
 from slipgym.envs.simulation import Simulation
 from slipgym.envs.state import EnvState, checked, restored_generator, restored_seed
@@ -69,6 +69,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self.action_columns = self._actions.columns
         self.action_space, self.observation_space = self._actions.space, self._observer.space
         self._arguments = {**setup.arguments, "engine": engine}
+        self._copies = InfoCopies(self.task.term_names)
         self._renderer: Any = None
         if render_mode is not None:
             from slipgym.rendering import Renderer
@@ -104,7 +105,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
                 self._renderer.begin()
             self._observer.begin(_FIRST)
             drawn, info = self.simulation.drawn.one(0), self._info()
-            observation = first(self._observer.read())
+            observation = self._observer.first()
         except BaseException:
             if generator is not None:
                 generator.bit_generator.state = state
@@ -136,8 +137,8 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             self._step_in_pictures(actions)
         observer.next(_ONE)
         terminated, info = simulation.ended_early, self._info()
-        reward, truncated = sum(info["reward_terms"].values()), simulation.over and not terminated
-        observation = first(observer.read())
+        reward, truncated = sum(info["reward_terms"].values()), not terminated and simulation.timed_out
+        observation = observer.first()
         self._ready = True
         return observation, reward, terminated, truncated, info
 
@@ -212,7 +213,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self._ready = state.simulation is not None
 
     def _info(self) -> dict[str, Any]:
-        return self.simulation.infos.one(0, self.task.term_names)
+        return self._copies.take(self.simulation.infos)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make an independent environment in the same state."""

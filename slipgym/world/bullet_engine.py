@@ -142,7 +142,7 @@ class BulletWorld:
             self._box = None
             box = replace(box, mass=mass, inertia=self._plant.world["inertia"].item())
             self._set_mass(mass, box.inertia)
-            self._place_links()
+            self._place_links(self.client)
             self._box = box
 
     def disturb(self, wrench: np.ndarray) -> None:
@@ -151,12 +151,14 @@ class BulletWorld:
 
     def step(self) -> None:
         """Advance by one control step."""
-        self.move()
-        pose, _, wrist, normals, _ = self._reading
+        pose, _, wrist, normals, _ = self.move()
         read_engine(self._plant.world, self._plant.fingers, pose, wrist, normals)
 
-    def move(self) -> None:
+    def move(self) -> tuple[Any, ...]:
         """Advance the bodies by one control step; the planar world has yet to take over the `reading`.
+
+        Returns:
+            `reading`.
 
         Raises:
             RuntimeError: The world is closed, needs a reset, or its physics client is gone.
@@ -165,11 +167,13 @@ class BulletWorld:
         box, self._box = self.box, None
         moving = self.rows.loads, self._reading, self._read, self._engine_steps
         if self._plant.tilt is None:
-            self._reading = bullet_upright.step(*bodies, *moving, self._finger_inertia)
+            reading = bullet_upright.step(*bodies, *moving, self._finger_inertia)
         else:
-            self._reading = bullet_tilt.step(*bodies, *moving)
-        self._place_links()
+            reading = bullet_tilt.step(*bodies, *moving)
+        self._reading = reading
+        self._place_links(bodies[0])
         self._box = box
+        return reading
 
     @cached_property
     def rows(self) -> BulletRows:
@@ -195,9 +199,10 @@ class BulletWorld:
         Raises:
             RuntimeError: The world is closed.
         """
-        load_engine(self._rebuilt(state.box), state.engine)
+        client = self._rebuilt(state.box)
+        load_engine(client, state.engine)
         self._reading = state.reading
-        self._place_links()
+        self._place_links(client)
         self._box = state.box
 
     def discard(self) -> None:
@@ -243,15 +248,14 @@ class BulletWorld:
         x, z, pitch, first, second = p.getJointStates(gripper, JOINTS, client)
         return pose, velocity, (x[0], z[0], pitch[0]), (x[1], z[1], pitch[1], first[1], second[1])
 
-    def _place_links(self) -> None:
+    def _place_links(self, client: int) -> None:
         """Make the engine compute the poses of the gripper's links from its joints.
 
         A step and a restore round these poses differently. Computed by the same function after both, a
         restored world continues bit for bit. Setting any joint to its own value is enough.
         """
         _, _, positions, _, speeds = self._reading
-        joint = WRIST_JOINTS[0]
-        p.resetJointState(self._gripper, joint, positions[0], speeds[0], physicsClientId=self.client)
+        p.resetJointState(self._gripper, WRIST_JOINTS[0], positions[0], speeds[0], client)
 
     def _build(self, box: Box) -> None:
         client = self.client

@@ -9,6 +9,7 @@ from numba import types
 
 from slipgym._numba.calls import direct_call
 from slipgym._numba.compiled import compiled
+from slipgym._numba.fixed import Fixed, opened
 from slipgym._numba.rows import row_of
 from slipgym.contact.records import Vector
 from slipgym.world.actuator import queue_command
@@ -25,18 +26,10 @@ POSE = types.Tuple([VECTOR, types.UniTuple(types.float64, 4)])
 
 @compiled
 def loads(
-    worlds: np.ndarray,
-    pads: np.ndarray,
-    cells: np.ndarray | None,
-    fingers: np.ndarray,
-    force_torque: np.ndarray,
-    slip_sensors: np.ndarray,
-    pose: tuple,
-    velocity: tuple,
-    wrist: Vector,
-    normals: tuple[float, float],
+    fixed: Fixed, pose: tuple, velocity: tuple, wrist: Vector, normals: tuple[float, float]
 ) -> tuple[Any, ...]:
-    """`engine_loads` of the first world."""
+    """`engine_loads` of the first world; `fixed` has the arrays that it takes first."""
+    worlds, pads, cells, fingers, force_torque, slip_sensors = opened(fixed)
     return engine_loads(
         worlds[0],
         pads[0],
@@ -54,19 +47,9 @@ def loads(
 
 
 @compiled
-def tilted_loads(
-    worlds: np.ndarray,
-    tilts: np.ndarray,
-    pads: np.ndarray,
-    cells: np.ndarray | None,
-    fingers: np.ndarray,
-    force_torque: np.ndarray,
-    slip_sensors: np.ndarray,
-    pose: tuple,
-    velocity: tuple,
-    wrist: Vector,
-) -> tuple[Any, ...]:
-    """`slipgym.world.tilt_coupling.tilted_loads` of the first world."""
+def tilted_loads(fixed: Fixed, pose: tuple, velocity: tuple, wrist: Vector) -> tuple[Any, ...]:
+    """`slipgym.world.tilt_coupling.tilted_loads` of the first world; `fixed` has the arrays, tilts last."""
+    worlds, pads, cells, fingers, force_torque, slip_sensors, tilts = opened(fixed)
     return coupled_loads(
         worlds[0],
         tilts[0],
@@ -106,17 +89,23 @@ class BulletRows:
         plant: The arrays, which must stay the same.
 
     Attributes:
-        loads: Takes the arguments of `loads` after the arrays; those of `tilted_loads` with `physics.tilt`.
+        loads: Takes the arguments of `loads` after the first; those of `tilted_loads` with `physics.tilt`.
         queue: Takes the grip force [N].
     """
 
     def __init__(self, plant: Plant) -> None:
-        contact = plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
         function: Any = loads
-        bodies: tuple[Any, ...] = (plant.world,)
+        arrays: tuple[Any, ...] = (
+            plant.world,
+            plant.pads,
+            plant.cells,
+            plant.fingers,
+            plant.force_torque,
+            plant.slip_sensors,
+        )
         readings: list[Any] = [POSE, types.UniTuple(VECTOR, 2), VECTOR, PAIR]
         if plant.tilt is not None:
-            function, bodies = tilted_loads, (plant.world, plant.tilt)
+            function, arrays = tilted_loads, (*arrays, plant.tilt)
             readings.pop()
-        self.loads = direct_call(function, (*bodies, *contact), *readings)
+        self.loads = direct_call(function, (Fixed(arrays),), *readings)
         self.queue = direct_call(queue, (plant.world, plant.fingers), types.float64)

@@ -226,3 +226,16 @@ def test_the_force_of_another_task_does_not_limit_this_one(make, env_id):
     env = make(env_id, engine="planar", config=config)
     env.reset(seed=0)
     env.reset(seed=0, options={"initial_force": 18.0})
+
+
+@pytest.mark.parametrize("engine", ["bullet", "planar"])
+def test_an_action_may_be_a_view_of_an_array_with_gaps(make, engine):
+    plain = np.array([-0.9, 0.5, -0.5, 0.3])
+    gaps = np.full(8, np.nan)
+    gaps[::2] = plain
+    found = []
+    for action in (plain, gaps[::2]):
+        env = make(engine=engine, action_mode="grip_force_wrist")
+        env.reset(seed=0)
+        found.append(env.step(action)[0])
+    np.testing.assert_array_equal(*found)

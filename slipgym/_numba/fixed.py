@@ -1,0 +1,96 @@
+"""Arguments of compiled functions that stay the same between calls.
+
+At each call from Python, numba takes every array apart and allocates a record of its owner. PyBullet's
+environment passes sixty small arrays a control step. Here this is done once: the compiled function finds
+what it needs at an address.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numba import typeof, types
+from numba.core.registry import cpu_target
+from numba.extending import NativeValue, intrinsic, models, register_model, typeof_impl, unbox
+
+from slipgym._numba.pointers import Pointer
+
+
+class FixedType(types.Type):
+    """Numba type of a `Fixed`.
+
+    Args:
+        kind: Numba type of its value.
+    """
+
+    def __init__(self, kind: Any) -> None:
+        super().__init__(name=f"Fixed({kind})")
+        self.kind = kind
+
+
+class Fixed:
+    """A tuple of arrays, pointers and None as compiled functions use it; it keeps the arrays alive.
+
+    Args:
+        value: The tuple; tuples in it are allowed. An element that is replaced later is not noticed.
+        kind: Its numba type; None: found by numba, which does not know pointers.
+
+    Attributes:
+        kind: `FixedType`.
+        address: Of the copy that compiled functions read.
+
+    Raises:
+        TypeError: An element is of another type.
+    """
+
+    def __init__(self, value: tuple[Any, ...], kind: Any = None) -> None:
+        kind = kind or typeof(value)
+        self.kind, self._value = FixedType(kind), value
+        self._words = np.array([*_words(value)], dtype=np.int64)
+        context: Any = cpu_target.target_context
+        if self._words.nbytes != context.get_abi_sizeof(context.get_value_type(kind)):
+            raise TypeError(f"the value is not laid out as {kind}")
+        self.address = self._words.ctypes.data
+
+
+def _words(value: Any) -> Iterator[int]:
+    """What numba's models of these types hold; nothing owns an array, so that references are not counted."""
+    if value is None:
+        yield 0
+    elif isinstance(value, tuple):
+        for item in value:
+            yield from _words(item)
+    elif isinstance(value, Pointer):
+        yield from (value.address, 0, 0)
+    elif isinstance(value, np.ndarray) and value.flags.c_contiguous and value.flags.writeable:
+        yield from (0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
+    else:
+        raise TypeError(f"{type(value).__name__} cannot be fixed; it must be None, a pointer or an array")
+
+
+def _opening(_: Any, fixed: Any) -> Any:
+    """Type and code of a function that returns the value of a `Fixed`."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        kind = signature.return_type
+        return builder.load(builder.bitcast(arguments[0], context.get_value_type(kind).as_pointer()))
+
+    return fixed.kind(fixed), generate
+
+
+opened: Any = intrinsic(_opening)
+"""Function of a `Fixed` in compiled code: its value."""
+
+
+def _unbox_fixed(_: Any, fixed: Any, c: Any) -> NativeValue:
+    number = c.pyapi.object_getattr_string(fixed, "address")
+    address = c.pyapi.long_as_voidptr(number)
+    c.pyapi.decref(number)
+    return NativeValue(address)
+
+
+register_model(FixedType)(models.OpaqueModel)
+unbox(FixedType)(_unbox_fixed)
+typeof_impl.register(Fixed)(lambda fixed, _: fixed.kind)
