@@ -78,7 +78,7 @@ fused = njit(error_model="numpy", fastmath={"contract"})
 the processor has it. Which of several products is taken is fixed when the function is compiled."""
 
 
-FORMAT = "3"
+FORMAT = "4"
 """Of the stored programs: another one makes none of the old ones valid."""
 
 

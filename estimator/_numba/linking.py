@@ -21,6 +21,7 @@ from numba.core.registry import CPUDispatcher
 from numba.core.target_extension import cpu_target, jit_registry
 
 from estimator._numba.quicker import quick_compiler
+from estimator._numba.references import without_counts_of_arguments
 
 
 def _shared(module: Any) -> Any:
@@ -84,9 +85,13 @@ class _ProgramLibrary(JITCodeLibrary):
         self._finalize_final_module()
 
     def _optimize_final_module(self) -> None:
-        """Optimises once: numba first inlines with a pass of its own, for which nothing is left here."""
+        """Optimises once: numba first inlines with a pass of its own, for which nothing is left here.
+
+        References are counted until then, and removed where they are an argument's.
+        """
         passes, builder = self._codegen._module_pass_manager(opt=2)
         passes.run(self._final_module, builder)
+        self._final_module = without_counts_of_arguments(self._final_module)
 
 
 def _is_ours(name: str) -> bool:

@@ -18,6 +18,7 @@ import numpy as np
 from slipgym._numba.compiled import unlocked
 from slipgym._numba.rows import row_of
 from slipgym.benchmarking.report import Figure
+from slipgym.benchmarking.timing import Stopwatches
 from slipgym.benchmarking.vector_player import VectorPlayer
 from slipgym.contact.coupled import step_pads
 from slipgym.world.planar_engine import step_world
@@ -35,8 +36,19 @@ STAGES = {
     "infos": "report",
 }
 """Part of a step -> its program in `slipgym.envs.stages.Stages.calls`; that of the world counts sub-steps."""
-REST = "resets, Gymnasium"
+BETWEEN = "prefetching, checks, calls of the stages"
+RESETS = "resets"
+REST = "Gymnasium"
+COMPILED = "all of these, the compiled step"
 FLOOR = "their contact kernel alone"
+
+
+def watched(player: VectorPlayer) -> Stopwatches:
+    """Stopwatches of CPU time for the compiled step (`COMPILED`) and the resets (`RESETS`) of a player."""
+    watches = Stopwatches(process_time)
+    watches.watch(COMPILED, player.env.simulation, "_drive")
+    watches.watch(RESETS, player.env.simulation, "reset_rows")
+    return watches
 
 
 class Split:
@@ -71,10 +83,12 @@ class Split:
     def pair(self) -> dict[str, float]:
         """CPU time of a step and of its parts, per environment [s], and the number of its sub-steps."""
         n, player = self._player.n, self._player
-        start = process_time()
-        _, steps = player.block(STEPS * n)
+        with watched(player) as watches:
+            start = process_time()
+            _, steps = player.block(STEPS * n)
+            whole, self.counted = (process_time() - start) / steps, 0
+        compiled, resets = (watches.spent[label] / steps for label in (COMPILED, RESETS))
         spent = dict.fromkeys(STAGES, 0.0)
-        whole, self.counted = (process_time() - start) / steps, 0
         for _ in range(STEPS):
             self._action[0][:] = self._rng.uniform(*player.actions, (n, 1))
             for part, program in STAGES.items():
@@ -83,7 +97,8 @@ class Split:
                 spent[part] += (process_time() - start) / (STEPS * n)
         substeps = self.counted / (STEPS * n)
         floor = substeps * self._contact_step()
-        return {"": whole, **spent, REST: whole - sum(spent.values()), "sub-steps": substeps, FLOOR: floor}
+        rest = {BETWEEN: compiled - sum(spent.values()), RESETS: resets, REST: whole - compiled - resets}
+        return {"": whole, **spent, **rest, COMPILED: compiled, "sub-steps": substeps, FLOOR: floor}
 
     def _advance(self) -> None:
         simulation = self._player.env.simulation
@@ -119,7 +134,9 @@ def parts(player: VectorPlayer, pairs: int) -> list[Figure]:
     ends = zip(("lower quartile", "upper quartile"), (ratios[0], ratios[2]), strict=True)
     return [
         Figure("batch step, one thread, environments in the cache", 1e9 * middle[""], "ns"),
-        *(Figure(f"batch step: {name}", 1e9 * middle[name], "ns") for name in (*STAGES, REST)),
+        *(Figure(f"batch step: {name}", 1e9 * middle[name], "ns") for name in (*STAGES, BETWEEN)),
+        Figure(f"batch step: {COMPILED}", 1e9 * middle[COMPILED], "ns"),
+        *(Figure(f"batch step: {name}", 1e9 * middle[name], "ns") for name in (RESETS, REST)),
         Figure("sub-steps per step", middle["sub-steps"], "-"),
         Figure(FLOOR, 1e9 * middle[FLOOR], "ns"),
         Figure("batch step / its contact kernel", ratios[1], "-"),

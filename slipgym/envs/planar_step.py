@@ -30,7 +30,7 @@ from slipgym.envs.stages import (
 )
 from slipgym.world.planar_engine import step_world
 
-BLOCK = 64
+BLOCK = 16
 """Number of rows that are stepped together: few enough to stay in the processor's caches, and enough for it
 to prefetch each array."""
 

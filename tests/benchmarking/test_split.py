@@ -16,9 +16,9 @@ def player():
 
 def test_the_parts_add_up_to_the_step(player):
     found = split.Split(player).pair()
-    parts = [found[name] for name in (*split.STAGES, split.REST)]
+    parts = [found[name] for name in (*split.STAGES, split.BETWEEN, split.RESETS, split.REST)]
     assert sum(parts) == pytest.approx(found[""])
-    assert all(found[name] > 0.0 for name in split.STAGES)
+    assert all(found[name] > 0.0 for name in (*split.STAGES, split.COMPILED, split.REST))
     assert found["sub-steps"] >= 1.0
 
 

@@ -25,9 +25,9 @@ def plot_policies(table: pd.DataFrame) -> Figure:
     """
     table = table.assign(kind=kinds(table))
     tasks = distinct(table, "task")
-    bands = [table[table["task"].isin(tasks[k : k + BAND])] for k in range(0, len(tasks), BAND)]
-    heights = [band["kind"].nunique() + 3 for band in bands]
-    width = max(len(band[["task", "level"]].drop_duplicates()) for band in bands)
+    bands = [table.loc[table["task"].isin(tasks[k : k + BAND])] for k in range(0, len(tasks), BAND)]
+    heights = [len(set(band["kind"])) + 3 for band in bands]
+    width = max(len(set(zip(band["task"], band["level"], strict=True))) for band in bands)
     figure = Figure(figsize=(0.56 * width + 3.4, 0.34 * sum(heights)), layout="constrained")
     rows = figure.subplots(len(bands), squeeze=False, gridspec_kw={"height_ratios": heights})
     for axes, band in zip(rows[:, 0], bands, strict=True):
