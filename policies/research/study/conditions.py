@@ -73,6 +73,7 @@ class Condition:
             "frame_skip": self.frame_skip,
             "randomization": self.change.of(self.preset, self.task),
             "level": study.level,
+            "sensors": study.sensors,
             "config": {**study.config, "contact": contact},
         }
         return validate(values, Experiment, self.name)

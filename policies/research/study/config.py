@@ -73,6 +73,7 @@ class Study(Frozen):
         default=("train", "eval_ood"), description="Presets of randomization; the first is the main one [-]"
     )
     level: str = Field(default=DEFAULT_LEVEL, description="Level of difficulty [-]")
+    sensors: str = Field(default="realistic", description="Sensor preset [-]")
     worlds: Annotated[tuple[World, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
         description="Worlds; the first is the main one [-]"
     )
