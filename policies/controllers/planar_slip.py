@@ -109,16 +109,16 @@ class PlanarSlipPolicy(PlanarPlanPolicy[PlanarSlipGains]):
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger and wrist velocity, (n, 4) [N, m/s, m/s, rad/s]."""
-        plan, in_leaps, slips, choice = np.split(
-            np.asarray(state), np.cumsum((_PLAN, _LEAPS, _SLIPS)), axis=1
-        )
+        memory = np.asarray(state)
+        plan, in_leaps, slips, choice = np.split(memory, np.cumsum((_PLAN, _LEAPS, _SLIPS)), axis=1)
         past, last, chosen = PlanState(*plan.T), LeapState(*in_leaps.T), Choice(*choice.T)
         prompt = (chosen.delay > 0.0) & (chosen.delay <= self.gains.prompt / self._dt)
         fast = prompt & self._short_of_time(columns, past)
         begins = (last.clock == 0.0) & ((past.slipping == 0.0) | (chosen.continuous == 0.0))
         continuous = np.where(begins, fast, chosen.continuous > 0.0)[:, None]
-        leap, after_leap = super().control(columns, np.column_stack((plan, in_leaps)))
-        slip, after_slip = self._continuous.control(columns, np.column_stack((plan, slips)))
+        leap, leapt = super().control(columns, np.column_stack((plan, in_leaps)))
+        slip, slipped = self._continuous.control(columns, np.column_stack((plan, slips)))
+        after_leap, after_slip = np.asarray(leapt), np.asarray(slipped)
         plan = np.where(continuous, after_slip[:, :_PLAN], after_leap[:, :_PLAN])
         in_leaps = np.where(continuous, in_leaps, after_leap[:, _PLAN:])
         slips = np.where(continuous, after_slip[:, _PLAN:], 0.0)

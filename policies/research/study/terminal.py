@@ -30,7 +30,7 @@ def words(study: Study, folder: Path) -> str:
         for name in ("outcomes", "shares")
     )
     world = study.worlds[0].label
-    rows = [["task", "preset", "policy", "friction", "success [%]", "dropped [%]", "return, IQM"]]
+    rows = [["task", "preset", "policy", "friction", "success [%]", "dropped [%]", "return, mean"]]
     for row in outcomes[(outcomes["world"] == world) & outcomes["change"].isna()].to_dict("records"):
         known = " ".join(str(row[name]) for name in FRICTION if row[name] == row[name])
         figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
@@ -42,12 +42,39 @@ def words(study: Study, folder: Path) -> str:
             share = _text(row, "share", "[%]")
             rows.append([row["task"], row["preset"], row["kind"], row["figure"], share, row["verdict"]])
         parts.append(aligned(rows))
+    parts += _benefits(
+        pd.read_csv(folder / "benefits.csv", dtype=names, keep_default_na=False, na_values=[""]), world
+    )
     rows = [["task", "force [N]", "success [%]", "dropped [%]", "return, mean"]]
     for row in pd.read_csv(folder / "constant_grip.csv").to_dict("records"):
         figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
         rows.append([row["task"], f"{row['force_N']:.2f}", *figures])
     parts += ["The best constant grip, without any sensor, planar engine:", aligned(rows)]
     return "\n\n".join([*parts, f"Look at:\n  {folder / 'report.html'}"])
+
+
+def _benefits(benefits: pd.DataFrame, world: str) -> list[str]:
+    """What friction information is worth against the strongest policy without it."""
+    rows = [
+        [
+            "task",
+            "preset",
+            "opponent",
+            "policy",
+            "success less opponent's [%]",
+            "share of the truth's [%]",
+            "",
+        ]
+    ]
+    for row in benefits[benefits["world"] == world].to_dict("records"):
+        known = " ".join(str(row[name]) for name in ("kind", *FRICTION) if row[name] == row[name])
+        figures = [_text(row, name, "[%]") for name in ("difference", "share")]
+        rows.append([row["task"], row["preset"], row["opponent"], known, *figures, row["verdict"]])
+    return (
+        ["Against the strongest policy without friction information, in pairs:", aligned(rows)]
+        if rows[1:]
+        else []
+    )
 
 
 _UNITS = {"success": "[%]", "dropped": "[%]", "return": ""}

@@ -99,10 +99,9 @@ def _lstm(width: int, size: int) -> nn.LSTM:
     """
     layer = nn.LSTM(width, size)
     keeps = torch.log(1.0 + (HORIZON - 2.0) * torch.rand(size))
-    with torch.no_grad():
-        layer.bias_ih_l0.zero_()
-        layer.bias_hh_l0.zero_()
-        layer.bias_hh_l0[:size], layer.bias_hh_l0[size : 2 * size] = -keeps, keeps  # input and forget gates
+    zeros = torch.zeros(2 * size)
+    layer.bias_ih_l0 = nn.Parameter(torch.zeros(4 * size))
+    layer.bias_hh_l0 = nn.Parameter(torch.cat([-keeps, keeps, zeros]))  # of input and forget gates
     return layer
 
 
