@@ -56,7 +56,7 @@ class PlanarSlipGains(PlanGains, LeapGains):
         default=1.5, description="Time that the wrist and the rest between the stages take [s]"
     )
     prompt: NonNegative = Field(
-        default=0.035,
+        default=0.026,
         description="Time from the fall of the force until the velocity shows it, up to which slips may be "
         "continuous [s]",
     )

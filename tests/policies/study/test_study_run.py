@@ -13,7 +13,7 @@ FILES = {
     "constant_grip",
     "constant_grip.csv",
     "episodes.parquet",
-    "outcomes.csv",
+    "benefits.csv", "outcomes.csv",
     "report.html",
     "shares.csv",
     "study.yaml",
