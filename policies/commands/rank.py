@@ -24,18 +24,26 @@ def main(
     tasks: Tasks = None,
     episodes: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
     randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "train",
-    level: Annotated[str, typer.Option(help="A level or a YAML file.")] = "easy",
+    level: Annotated[
+        list[str] | None,
+        typer.Option(help="Only this level, or a YAML file; repeatable.", show_default=False),
+    ] = None,
     estimator: Annotated[str, typer.Option(help="Estimator of the environments.")] = DEFAULT,
 ) -> None:
     """Print success and mean return of many policies, and how often both have the same order."""
     from policies.research.leaderboard.tables import markdown
-    from policies.research.reward_order.run import played, sentence
+    from policies.research.reward_order.run import compared, played, sentence
     from policies.research.reward_order.zoo import zoo
+    from slipgym.config.level import level_names
+    from slipgym.tasks import find
 
     try:
+        found = {}
         for task in tasks or TASKS:
-            made = {"randomization": randomization, "level": level, "estimator": estimator}
-            table = played(task, zoo(task), episodes, made)
-            typer.echo(f"\n{task}\n\n{markdown(table)}\n\n{sentence(table)}")
+            for name in level or level_names(find(task).key):
+                made = {"randomization": randomization, "level": name, "estimator": estimator}
+                table = found[find(task).name, name] = played(task, zoo(task), episodes, made)
+                typer.echo(f"\n{task}, {name}\n\n{markdown(table)}\n\n{sentence(table)}")
+        typer.echo(f"\n{markdown(compared(found), 1)}")
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error

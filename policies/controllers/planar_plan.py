@@ -19,6 +19,7 @@ APPROACH, TURN, FINISH, TRIM, DONE = range(5)
 
 Point: TypeAlias = tuple[np.ndarray, np.ndarray]
 Pair = Annotated[tuple[NonNegative, NonNegative], BeforeValidator(as_tuple)]
+PositivePair = Annotated[tuple[Positive, Positive], BeforeValidator(as_tuple)]
 _REST = (0.0006, 0.02)
 """Speed [m/s] and rate [rad/s] below which an object rests."""
 

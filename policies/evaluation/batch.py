@@ -12,6 +12,7 @@ import numpy as np
 import policies
 from policies.controllers.base import ForcePolicy, ObservationIndex
 from policies.controllers.no_friction_info import NoFrictionInfo
+from policies.controllers.slip_memory import SlipMemory
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.plan import Trial
 from policies.evaluation.recording import Recorder, Recording
@@ -32,7 +33,7 @@ def blocks(trials: Sequence[Trial]) -> list[tuple[Trial, ...]]:
 
 def acts_on_batches(policy: Any) -> bool:
     """Whether a policy is known to keep all its memory in its state, row by row."""
-    return isinstance(policy, ForcePolicy | NoFrictionInfo | LearnedPolicy)
+    return isinstance(policy, ForcePolicy | NoFrictionInfo | SlipMemory | LearnedPolicy)
 
 
 def record_block(

@@ -98,6 +98,14 @@ def test_at_half_the_rate_it_takes_half_the_steps():
 
 
 @pytest.mark.slow
+def test_planar_slip_is_continuous_where_time_is_short(play_batch):
+    env_id, hard = "slipgym/PlanarSlip-v0", {"level": "hard", "friction_source": "true"}
+    in_leaps = policies.make("planar_slip", prompt=0.0)
+    assert play_batch(env_id, policies.make("planar_slip"), 100, 50_000, **hard).success >= 0.9
+    assert play_batch(env_id, in_leaps, 100, 50_000, **hard).success <= 0.6
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("latency", [0, 2, 4])
 def test_planar_slip_is_solved_however_late_the_velocity_is(latency, play_batch):
     """The controller is not given the latency. Regulated slips fail at 4 samples."""

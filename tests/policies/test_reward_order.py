@@ -3,7 +3,16 @@
 import pandas as pd
 import pytest
 
-from policies.research.reward_order.run import DROPPED, RETURN, SUCCESS, order, played, sentence, spread
+from policies.research.reward_order.run import (
+    DROPPED,
+    RETURN,
+    SUCCESS,
+    compared,
+    order,
+    played,
+    sentence,
+    spread,
+)
 from policies.research.reward_order.zoo import zoo
 from slipgym.tasks import TASKS
 
@@ -35,6 +44,12 @@ def test_pairs_close_in_success_are_left_out_and_ties_are_wrong():
     assert order(rows, apart=20.0)[0] == 8
     assert "in 66.7 % of them" in sentence(rows)
     assert "c below d" in sentence(rows)
+
+
+def test_tasks_and_levels_stand_in_a_table():
+    good, tied = table(("a", 100.0, 9.0), ("b", 0.0, -1.0)), table(("a", 100.0, 9.0), ("b", 0.0, 9.0))
+    found = compared({("Hold", "easy"): good, ("Hold", "hard"): tied})
+    assert found.to_numpy().tolist() == [["Hold", "easy", 1, 100.0], ["Hold", "hard", 1, 0.0]]
 
 
 def test_a_zoo_has_policies_of_every_kind():

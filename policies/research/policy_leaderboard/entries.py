@@ -13,7 +13,7 @@ from policies import registry
 from policies.controllers.table import CLASSES
 from policies.evaluation.play import play
 from policies.learned import LearnedPolicy
-from policies.research.reward_order.zoo import Member, constant, controllers, learned
+from policies.research.reward_order.zoo import Member, constant, controllers, learned, remembering
 from slipgym.config import load
 from slipgym.tasks import find
 
@@ -108,5 +108,6 @@ def opponents(
         folder: Of the runs of `slipgym imitate`; None: none.
     """
     key = find(task).key
-    found = [best_constant(task, arguments, episodes), *controllers(key), *further(task), *learned(key)]
+    found = [best_constant(task, arguments, episodes), remembering(key), *controllers(key), *further(task)]
+    found += learned(key)
     return found if folder is None else [*found, *imitated(task, folder)]

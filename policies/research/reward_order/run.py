@@ -69,12 +69,32 @@ def order(table: pd.DataFrame, apart: float = APART) -> tuple[int, list[tuple[st
     return pairs, wrong
 
 
+def compared(tables: Mapping[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
+    """What `order` finds in tables of several tasks and levels.
+
+    Args:
+        tables: From `played`, by task and level.
+
+    Returns:
+        A row for each: task, level, pairs that are `APART`, share of them in the same order [%].
+    """
+    rows = []
+    for (task, level), table in tables.items():
+        pairs, wrong = order(table)
+        rows.append((task, level, pairs, _in_order(pairs, wrong)))
+    return pd.DataFrame(rows, columns=pd.Index(["task", "level", "pairs", "in order [%]"]))
+
+
+def _in_order(pairs: int, wrong: Sequence[tuple[str, str]]) -> float:
+    """Share of pairs in the right order [%]; 100 without any."""
+    return 100.0 if pairs == 0 else 100.0 * (pairs - len(wrong)) / pairs
+
+
 def sentence(table: pd.DataFrame, apart: float = APART) -> str:
     """What `order` finds, in words."""
     pairs, wrong = order(table, apart)
-    share = 100.0 if pairs == 0 else 100.0 * (pairs - len(wrong)) / pairs
     text = f"{pairs} pairs differ by {apart:g} points of success or more; "
-    text += f"in {share:.1f} % of them the mean returns have the same order."
+    text += f"in {_in_order(pairs, wrong):.1f} % of them the mean returns have the same order."
     if wrong:
         listed = "; ".join(f"{better} below {worse}" for better, worse in wrong[:12])
         text += f" Wrong: {listed}{'; ...' if len(wrong) > 12 else '.'}"

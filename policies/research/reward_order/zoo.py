@@ -10,6 +10,7 @@ import numpy as np
 from policies import registry
 from policies.controllers.constant_force import ConstantForcePolicy
 from policies.controllers.no_friction_info import NoFrictionInfo
+from policies.controllers.slip_memory import SlipMemory
 from policies.learned import LearnedPolicy, pretrained
 from policies.registry import Policy
 from slipgym.config import load
@@ -100,6 +101,16 @@ def controllers(key: str, called: str = "controller") -> list[Member]:
         arguments = {**registry.modes(made), "friction_source": source}
         members.append(Member(f"{called}, {source}", made, arguments))
     return members
+
+
+def remembering(key: str) -> Member:
+    """A controller without friction information that remembers slips.
+
+    Args:
+        key: Its name.
+    """
+    made = SlipMemory(key)
+    return Member("controller, memory of slips", made, {**made.modes, "friction_source": "none"})
 
 
 def learned(key: str) -> list[Member]:

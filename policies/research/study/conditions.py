@@ -17,6 +17,12 @@ from policies.research.study.learned import TRAINED_WITH, Shelf
 from slipgym.config.yaml_model import validate
 from slipgym.tasks import find
 
+_WITHOUT_FRICTION = {
+    "classic": "policies.controllers.no_friction_info:NoFrictionInfo",
+    "memory": "policies.controllers.slip_memory:SlipMemory",
+}
+"""Kind -> how a controller acts without friction in its observation."""
+
 
 @dataclass(frozen=True)
 class Condition:
@@ -73,18 +79,15 @@ class Condition:
             "frame_skip": self.frame_skip,
             "randomization": self.change.of(self.preset, self.task),
             "level": study.level,
+            "sensors": study.sensors,
             "config": {**study.config, "contact": contact},
         }
         return validate(values, Experiment, self.name)
 
     def _policy(self) -> PolicyChoice:
-        if self.kind == "classic" and self.source == "none":
+        if self.kind in _WITHOUT_FRICTION and self.source == "none":
             parameters = {"controller": self.policy}
-            return PolicyChoice(
-                name="policies.controllers.no_friction_info:NoFrictionInfo",
-                parameters=parameters,
-                label="classic",
-            )
+            return PolicyChoice(name=_WITHOUT_FRICTION[self.kind], parameters=parameters, label=self.kind)
         return PolicyChoice(name=self.policy, label=self.kind)
 
 
@@ -129,7 +132,7 @@ def _places(study: Study) -> Iterator[tuple]:
 
 def _policy(task: str, kind: str, source: str, block: int, learned: Shelf) -> list[str]:
     """The policy of a block, or none."""
-    if kind == "classic":
+    if kind == "classic" or (kind == "memory" and source == "none"):
         return [own_policy(task)]
     seeds = learned.get((kind, task, TRAINED_WITH[source]), {})
     chosen = sorted(seeds)

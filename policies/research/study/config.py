@@ -17,7 +17,7 @@ from slipgym.config.level import load_level
 from slipgym.config.physics import ContactModel
 from slipgym.tasks import find
 
-Kind: TypeAlias = Literal["classic", "learned", "imitation"]
+Kind: TypeAlias = Literal["classic", "memory", "learned", "imitation"]
 Source: TypeAlias = Literal["none", "nominal", "estimated", "true"]
 SOURCES: tuple[Source, ...] = ("none", "nominal", "estimated", "true")
 BLOCKS_MAX = 1000
@@ -73,6 +73,7 @@ class Study(Frozen):
         default=("train", "eval_ood"), description="Presets of randomization; the first is the main one [-]"
     )
     level: str = Field(default=DEFAULT_LEVEL, description="Level of difficulty [-]")
+    sensors: str = Field(default="realistic", description="Sensor preset [-]")
     worlds: Annotated[tuple[World, ...], BeforeValidator(as_tuple), Field(min_length=1)] = Field(
         description="Worlds; the first is the main one [-]"
     )

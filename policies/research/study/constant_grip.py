@@ -61,6 +61,7 @@ def _experiment(study: Study, task: str) -> Experiment:
         "engine": "planar",
         "randomization": study.presets[0],
         "level": study.level,
+        "sensors": study.sensors,
         "config": {**study.config, "contact": contact},
     }
     return validate(values, Experiment, study.name)

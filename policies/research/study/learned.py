@@ -63,16 +63,11 @@ def _keep(seeds: dict[int, Path], seed: int, folder: Path) -> None:
 def missing(study: Study, found: Shelf) -> list[str]:
     """In words, the policies that a study would need and that are not there."""
     lacking = []
-    for kind in (kind for kind in study.kinds if kind != "classic"):
-        place = folders(study).get(kind)
+    for kind, place in folders(study).items():
         for task in study.tasks:
             sources = [source for source in SOURCES if (kind, task, TRAINED_WITH[source]) not in found]
             if sources:
-                where = (
-                    "the policies that come with slipgym"
-                    if place == pretrained.FOLDER
-                    else place or "no folder"
-                )
+                where = "the policies that come with slipgym" if place == pretrained.FOLDER else place
                 lacking.append(
                     f"{task}: no policy of kind {kind} for {', '.join(sources)}; looked for "
                     f"{find(task).key}_<source> in {where}"

@@ -9,6 +9,7 @@ import pandas as pd
 import yaml
 
 from policies.research.study import tables
+from policies.research.study.benefit import benefits
 from policies.research.study.conditions import conditions
 from policies.research.study.config import Study
 from policies.research.study.constant_grip import constant_grips
@@ -52,6 +53,7 @@ def run_study(
     made = {
         "outcomes": tables.outcomes(done),
         "shares": tables.shares(done, study.estimators[0]),
+        "benefits": benefits(done),
         "transfer": tables.transfer(done, study),
         "constant_grip": constant_grips(study, folder / "constant_grip", progress=progress),
     }

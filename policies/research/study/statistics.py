@@ -7,9 +7,11 @@ would leave the failures out.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import trim_mean
 
 from policies.evaluation.statistics import CONFIDENCE, Interval
 
@@ -64,3 +66,16 @@ class Bootstrap:
         """The mean over the episodes, (n,), in the order of the strata."""
         values = np.asarray(values, dtype=np.float64)
         return Drawn(float(values.mean()), self._spread * values[self._at].mean(axis=-1))
+
+
+def over_seeds(shares: Sequence[float]) -> Interval:
+    """Interquartile mean over training seeds, with the percentile interval of a bootstrap over the seeds.
+
+    Args:
+        shares: Success of each seed's policy. A single one has no interval (NaN).
+    """
+    found = np.asarray(shares, dtype=np.float64)
+    if len(found) == 1:
+        return Interval(float(found[0]), np.nan, np.nan)
+    chosen = np.random.default_rng(0).choice(found, (RESAMPLES, len(found)))
+    return Drawn(float(trim_mean(found, 0.25)), trim_mean(chosen, 0.25, axis=1)).interval

@@ -20,6 +20,7 @@ _SOURCES = (
     "slipgym/**/*.py",
     "estimator/**/*.py",
     "policies/*.py",
+    "policies/controllers/*.py",
     "policies/evaluation/*.py",
     "policies/learned/*.py",
 )

@@ -11,7 +11,7 @@ import pandas as pd
 from policies.evaluation.frames import distinct, values, where
 from policies.evaluation.statistics import Interval, share_interval
 from policies.research.study.config import Study
-from policies.research.study.statistics import Bootstrap, Drawn
+from policies.research.study.statistics import Bootstrap, Drawn, over_seeds
 
 PLACE = ["world", "task", "preset", "change", "level", "kind"]
 FRICTION = ["source", "estimator"]
@@ -32,7 +32,8 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
 
     There are rows for the success over all tasks, too, of the tasks that have every source; returns of
     different tasks are not averaged. Shares have Wilson intervals, the mean return a bootstrap interval
-    stratified over the blocks.
+    stratified over the blocks. `seeds` is the interquartile mean of the success over the training seeds of a
+    learned policy, of which each acts in a block of its own.
     """
     rows = []
     together = [part.assign(task=ALL) for _, part in _over_tasks(episodes)]
@@ -49,6 +50,8 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
             figures["return"] = bootstrap(values(group, "return")).interval
             figures["force"] = bootstrap(values(group, "mean_force_N")).interval
         by_block = [float(values(part, "success").mean()) for _, part in by(group, ["block"])]
+        if keys[PLACE.index("kind")] != "classic":
+            figures["seeds"] = over_seeds(by_block)
         row = dict(zip([*PLACE, *FRICTION], keys, strict=True)) | {
             "n": len(group),
             "blocks": " ".join(f"{share:.3f}" for share in by_block),
@@ -76,7 +79,7 @@ def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
         parts["estimated"] = where(group, source="estimated", estimator=estimator)
         if min(map(len, parts.values())) == 0:
             continue
-        bootstrap = Bootstrap(_strata(parts["true"]))
+        bootstrap = Bootstrap(strata(parts["true"]))
         for column in FIGURES:
             if column == "return" and keys[1] == ALL:
                 continue
@@ -96,7 +99,7 @@ def transfer(episodes: pd.DataFrame, study: Study) -> pd.DataFrame:
             here, there = (where(main, world=world.label) for world in (planar, bullet))
             pairs = here.merge(there, on=same, suffixes=("_core", ""))
             for keys, group in [*by(pairs, ["task", "preset", "kind"]), *_all(pairs)]:
-                bootstrap = Bootstrap(_strata(group))
+                bootstrap = Bootstrap(strata(group))
                 core, bench = values(group, "success_core"), values(group, "success")
                 difference = bootstrap(100.0 * bench) - bootstrap(100.0 * core)
                 row = dict(zip(["task", "preset", "kind"], keys, strict=True))
@@ -119,7 +122,7 @@ def _share(drawn: dict[str, Drawn]) -> dict[str, Any]:
         verdict = "yes" if share.value >= ENOUGH else "no"
     else:
         verdict = "the truth does harm" if whole.interval.high < 0.0 else "not significant"
-    differences = _ends({"true-none": whole, "estimated-none": part})
+    differences = ends({"true-none": whole, "estimated-none": part})
     return {**differences, **_spread({"share": share}), "verdict": verdict}
 
 
@@ -145,12 +148,12 @@ def _all(pairs: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
             yield (ALL, *key), group
 
 
-def _strata(episodes: pd.DataFrame) -> np.ndarray:
+def strata(episodes: pd.DataFrame) -> np.ndarray:
     """A stratum for each task and block."""
     return np.asarray(episodes.groupby(["task", "block"], sort=False).ngroup())
 
 
-def _ends(figures: dict[str, Drawn]) -> dict[str, float]:
+def ends(figures: dict[str, Drawn]) -> dict[str, float]:
     """Figures with their intervals as columns."""
     return _spread({name: drawn.interval for name, drawn in figures.items()})
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import pandas as pd
 
+from policies.evaluation.frames import records, where
 from policies.evaluation.report import aligned
 from policies.evaluation.tables import text
 from policies.research.study.config import Study
@@ -25,12 +26,12 @@ def words(study: Study, folder: Path) -> str:
     # as text: a column of nothing but "true" would turn into booleans
     names = dict.fromkeys([*PLACE, *FRICTION], str)
     names.pop("level")
-    outcomes, shares = (
+    outcomes, shares, benefits = (
         pd.read_csv(folder / f"{name}.csv", dtype=names, keep_default_na=False, na_values=[""])  # type: ignore[arg-type]
-        for name in ("outcomes", "shares")
+        for name in ("outcomes", "shares", "benefits")
     )
     world = study.worlds[0].label
-    rows = [["task", "preset", "policy", "friction", "success [%]", "dropped [%]", "return, IQM"]]
+    rows = [["task", "preset", "policy", "friction", "success [%]", "dropped [%]", "return, mean"]]
     for row in outcomes[(outcomes["world"] == world) & outcomes["change"].isna()].to_dict("records"):
         known = " ".join(str(row[name]) for name in FRICTION if row[name] == row[name])
         figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
@@ -42,12 +43,37 @@ def words(study: Study, folder: Path) -> str:
             share = _text(row, "share", "[%]")
             rows.append([row["task"], row["preset"], row["kind"], row["figure"], share, row["verdict"]])
         parts.append(aligned(rows))
+    parts += _benefits(where(benefits, world=world))
     rows = [["task", "force [N]", "success [%]", "dropped [%]", "return, mean"]]
     for row in pd.read_csv(folder / "constant_grip.csv").to_dict("records"):
         figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
         rows.append([row["task"], f"{row['force_N']:.2f}", *figures])
     parts += ["The best constant grip, without any sensor, planar engine:", aligned(rows)]
     return "\n\n".join([*parts, f"Look at:\n  {folder / 'report.html'}"])
+
+
+def _benefits(benefits: pd.DataFrame) -> list[str]:
+    """What friction information is worth against the strongest policy without it."""
+    rows = [
+        [
+            "task",
+            "preset",
+            "opponent",
+            "policy",
+            "success less opponent's [%]",
+            "share of the truth's [%]",
+            "",
+        ]
+    ]
+    for row in records(benefits):
+        known = " ".join(str(row[name]) for name in ("kind", *FRICTION) if row[name] == row[name])
+        figures = [_text(row, name, "[%]") for name in ("difference", "share")]
+        rows.append([row["task"], row["preset"], row["opponent"], known, *figures, row["verdict"]])
+    return (
+        ["Against the strongest policy without friction information, in pairs:", aligned(rows)]
+        if rows[1:]
+        else []
+    )
 
 
 _UNITS = {"success": "[%]", "dropped": "[%]", "return": ""}

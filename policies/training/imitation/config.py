@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
@@ -24,9 +24,18 @@ class Imitation(Frozen):
         default=Environment(friction_source="none", frame_skip=2),
         description="Keyword arguments of the environment; friction_source: what the network observes",
     )
+    teacher: Literal["truth", "estimate", "revealed"] = Field(
+        default="truth",
+        description='Friction that the controller is given: the true one, the estimate, or "revealed", the '
+        "true one from the time on at which the estimate has confidence [-]",
+    )
     memory: int = Field(ge=0, le=1024, description="Units of the LSTM layer; 0: a network without memory [-]")
     layers: Annotated[tuple[Count, ...], BeforeValidator(as_tuple), Field(max_length=8)] = Field(
         description="Sizes of the dense layers behind it [-]"
+    )
+    squash: bool = Field(
+        default=False,
+        description="Whether a tanh bounds the actions: outputs are then about the logarithm of a force [-]",
     )
     rounds: Count = Field(
         default=8, description="Rounds of episodes; in the first one the controller acts [-]"
@@ -55,6 +64,8 @@ class Imitation(Frozen):
     def _is_seen(self) -> Self:
         if self.environment.history:
             raise ValueError("environment.history must be 0: the LSTM layer is the network's memory")
+        if self.teacher != "truth" and self.environment.friction_source not in ("none", "estimated"):
+            raise ValueError(f"teacher {self.teacher!r} needs environment.friction_source none or estimated")
         if self.environment.observation_mode == "sensor":
             raise ValueError(
                 "environment.observation_mode must be 'flat'; friction_source 'none' shows sensors"

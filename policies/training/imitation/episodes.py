@@ -16,6 +16,10 @@ from policies.training.imitation.config import Imitation
 from slipgym.envs.observation import FRICTION_COLUMNS
 from slipgym.tasks import find
 
+_FRICTION = [column.name for column in FRICTION_COLUMNS]
+KNOWN = 0.05
+"""Confidence of an estimate from which the teacher "revealed" is given the truth in its place [-]."""
+
 
 @dataclass(frozen=True)
 class Demonstrations:
@@ -47,9 +51,35 @@ class Scene:
 
     def __init__(self, config: Imitation, rows: int) -> None:
         task, given = find(config.task), arguments(config)
+        self._teacher, source = config.teacher, given["friction_source"]
+        if config.teacher != "truth":
+            given["friction_source"] = "estimated"
         self.envs: Any = gym.make_vec(f"slipgym:{task.id}", rows, "vector_entry_point", **given).unwrapped
         at = at_rate(self.envs.metadata["render_fps"], given["config"])
         self.controller = controllers.make(task.key, {"config": at})
+        names = [column.name for column in self.envs.columns]
+        self._bare = names.index(_FRICTION[0]) if _FRICTION[0] in names else len(names)
+        self._width = self._bare if source == "none" else len(names)
+
+    def seen(self, observations: np.ndarray) -> np.ndarray:
+        """What the network observes of observations (n, m)."""
+        return observations[:, : self._width]
+
+    def taught(self, observations: np.ndarray, true: np.ndarray) -> np.ndarray:
+        """What the controller observes.
+
+        Args:
+            observations: (n, m).
+            true: True mu_s, mu_c, r, (n, 3).
+        """
+        if self._teacher == "estimate":
+            return observations
+        confidence = np.ones_like(true)
+        if self._teacher == "revealed":
+            values, stated = np.split(observations[:, self._bare : self._bare + len(_FRICTION)], 2, axis=1)
+            known = stated >= KNOWN
+            true, confidence = np.where(known, true, values), np.where(known, 1.0, stated)
+        return np.column_stack((observations[:, : self._bare], true, confidence)).astype(np.float32)
 
     def close(self) -> None:
         """Close the environments."""
@@ -71,12 +101,12 @@ def demonstrate(scene: Scene, network: Network | None, acts: np.ndarray, seed: i
     state, running, solved = None, np.ones(n, bool), np.zeros(n, bool)
     seen, wanted, lengths = [], [], np.zeros(n, np.int64)
     while running.any():
-        labels, state = scene.controller.predict(_with_truth(observations, infos["true"], envs), state)
-        actions = labels
+        labels, state = scene.controller.predict(scene.taught(observations, infos["true"]), state)
+        actions, observed = labels, scene.seen(observations)
         if network is not None:
-            given, memory = network.forward(observations, memory)
+            given, memory = network.forward(observed, memory)
             actions = np.where(acts[:, None], given, labels)
-        seen.append(np.where(running[:, None], observations, np.float32(0.0)))
+        seen.append(np.where(running[:, None], observed, np.float32(0.0)))
         wanted.append(np.where(running[:, None], labels, np.float32(0.0)))
         lengths[running] += 1
         observations, _, terminated, truncated, infos = envs.step(actions)
@@ -84,14 +114,6 @@ def demonstrate(scene: Scene, network: Network | None, acts: np.ndarray, seed: i
         solved[ended] = infos["is_success"][ended]
         running = running & ~ended
     return Demonstrations(np.array(seen, np.float32), np.array(wanted, np.float32), lengths, solved)
-
-
-def _with_truth(observations: np.ndarray, true: np.ndarray, envs: Any) -> np.ndarray:
-    """Observations (n, m) with the true mu_s, mu_c, r (n, 3), in full confidence, as their friction part."""
-    names = [column.name for column in envs.columns]
-    first = names.index(FRICTION_COLUMNS[0].name) if FRICTION_COLUMNS[0].name in names else len(names)
-    confidence = np.ones((len(true), len(FRICTION_COLUMNS) - true.shape[1]))
-    return np.concatenate([observations[:, :first], true, confidence], axis=1).astype(np.float32)
 
 
 def _fresh(network: Network, n: int) -> tuple[np.ndarray, np.ndarray] | None:

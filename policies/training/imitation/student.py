@@ -21,6 +21,8 @@ FORCE = "grip_force"
 """Component of an action whose relative error counts."""
 LEAST = 0.1
 """Added to the distance of a force from its lower end before an error is divided by it [-]."""
+HORIZON = 300.0
+"""Longest memory of an LSTM layer before training [steps]."""
 OTHER = 0.3
 """What errors of other components are divided by [-]."""
 
@@ -41,10 +43,11 @@ class Student(nn.Module):
         super().__init__()
         self.mean, self.var = torch.from_numpy(mean.copy()), torch.from_numpy(var.copy())
         width = len(mean)
-        self.memory = nn.LSTM(width, config.memory) if config.memory else None
+        self.memory = _lstm(width, config.memory) if config.memory else None
         width = config.memory or width
         sizes = [width, *config.layers, len(components)]
         self.dense = nn.ModuleList(nn.Linear(a, b) for a, b in pairwise(sizes))
+        self._squash = config.squash
         self._is_force = torch.tensor([column.name == FORCE for column in components])
 
     def forward(self, observations: torch.Tensor) -> torch.Tensor:
@@ -55,7 +58,8 @@ class Student(nn.Module):
             x, _ = self.memory(x)
         for layer in self.dense[:-1]:
             x = torch.tanh(layer(x))
-        return self.dense[-1](x)
+        x = self.dense[-1](x)
+        return torch.tanh(x) if self._squash else x
 
     def loss(self, observations: torch.Tensor, wanted: torch.Tensor, lengths: torch.Tensor) -> torch.Tensor:
         """Mean Huber loss of the errors, a force's relative to its size.
@@ -88,11 +92,28 @@ class Student(nn.Module):
         return found
 
 
+def _lstm(width: int, size: int) -> nn.LSTM:
+    """An LSTM layer whose units remember from 1 to `HORIZON` steps at first.
+
+    By C. Tallec and Y. Ollivier, Can recurrent neural networks warp time?, ICLR 2018.
+    """
+    layer = nn.LSTM(width, size)
+    keeps = torch.log(1.0 + (HORIZON - 2.0) * torch.rand(size))
+    zeros = torch.zeros(2 * size)
+    layer.bias_ih_l0 = nn.Parameter(torch.zeros(4 * size))
+    layer.bias_hh_l0 = nn.Parameter(torch.cat([-keeps, keeps, zeros]))  # of input and forget gates
+    return layer
+
+
 def network_of(config: Imitation) -> Network:
     """What a policy's file says about the network."""
     memory = Memory(size=config.memory, layers=1) if config.memory else None
     return Network(
-        kind="lstm" if memory else "mlp", memory=memory, layers=config.layers, activation="tanh", squash=False
+        kind="lstm" if memory else "mlp",
+        memory=memory,
+        layers=config.layers,
+        activation="tanh",
+        squash=config.squash,
     )
 
 

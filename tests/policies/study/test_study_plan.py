@@ -29,7 +29,7 @@ def shelf(tmp_path, monkeypatch):
 
 
 def test_the_studies_that_come_with_slipgym():
-    assert study_names() == ["full", "quick", "short"]
+    assert study_names() == ["full", "hard", "hard_lab", "quick", "short"]
     full = load_study("full")
     assert (full.worlds[0].engine, full.worlds[0].contact) == ("bullet", "distributed")
     assert len(full.tasks) == 5
@@ -38,6 +38,19 @@ def test_the_studies_that_come_with_slipgym():
     assert (less.episodes, less.tasks, less.videos, less.seed) == (2, ("Hold",), (), 0)
     assert less.degradation is not None
     assert less.degradation.episodes == 2
+
+
+def test_a_memory_of_slips_acts_without_friction_information_alone(small, shelf):
+    study = small(kinds=["classic", "memory"], sensors="lab")
+    found = conditions(study, policies_of(study))
+    (source,) = {condition.source for condition in found if condition.kind == "memory"}
+    assert source == "none"
+    experiment = found[-1].experiment(study)
+    assert experiment.sensors == "lab"
+    assert missing(study, policies_of(study)) == []
+    made = [c.experiment(study).policies[0] for c in found if c.kind == "memory"]
+    assert {choice.name for choice in made} == {"policies.controllers.slip_memory:SlipMemory"}
+    assert {choice.label for choice in made} == {"memory"}
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ FILES = {
     "constant_grip",
     "constant_grip.csv",
     "episodes.parquet",
+    "benefits.csv",
     "outcomes.csv",
     "report.html",
     "shares.csv",

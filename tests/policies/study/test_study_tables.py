@@ -4,6 +4,8 @@ import pytest
 
 from policies.evaluation.frames import where
 from policies.evaluation.statistics import share_interval
+from policies.research.study.benefit import benefits
+from policies.research.study.statistics import over_seeds
 from policies.research.study.tables import ALL, outcomes, shares, transfer
 
 BULLET, CORE = "PyBullet, ellipsoid", "core"
@@ -71,3 +73,38 @@ def test_the_change_of_engine_over_pairs(invented, small):
     assert row["difference"] == pytest.approx(-20.0)
     assert row["difference_low"] < -20.0 < row["difference_high"] < 0.0
     assert row["n"] == 30
+
+
+def test_the_benefit_is_against_the_strongest_policy_without_friction(invented):
+    learned = invented({"none": 6, "estimated": 9}, kind="imitation")
+    table = benefits(pd.concat([invented(CLEAR), learned], ignore_index=True))
+    assert set(table["opponent"]) == {"imitation"}
+    assert set(zip(table["kind"], table["source"], strict=True)) == {
+        ("classic", "estimated"),
+        ("classic", "true"),
+        ("imitation", "estimated"),
+    }
+    row = one(table, kind="classic", source="true")
+    assert (row["difference"], row["share"], row["verdict"]) == (pytest.approx(0.4), 1.0, "better")
+    few = benefits(invented({"none": 2, "estimated": 3, "true": 10}))
+    assert one(few, source="estimated")["share"] == pytest.approx(1 / 8)
+    assert one(benefits(invented({"none": 5, "nominal": 5})), source="nominal")["verdict"] == "not resolvable"
+    assert len(benefits(invented({"true": 10}))) == 0
+
+
+def test_a_share_with_a_wide_interval_is_not_stated(invented):
+    wide = one(benefits(invented({"none": 4, "estimated": 5, "true": 6})), source="estimated")
+    assert np.isnan(wide["share"])
+    worse = one(benefits(invented({"none": 10, "estimated": 2, "true": 2})), source="estimated")
+    assert worse["verdict"] == "worse"
+    assert np.isnan(worse["share"])
+
+
+def test_the_mean_over_seeds_leaves_the_extremes_out(invented):
+    assert over_seeds([0.0, 0.5, 0.6, 0.7, 1.0]).value == pytest.approx(0.6)
+    one_seed = over_seeds([0.5])
+    assert one_seed.value == 0.5
+    assert np.isnan(one_seed.low)
+    rows = outcomes(pd.concat([invented(CLEAR), invented({"none": 6}, kind="imitation")]))
+    assert one(rows, kind="imitation")["seeds"] == pytest.approx(0.6)
+    assert where(rows, kind="classic")["seeds"].isna().all()

@@ -31,9 +31,9 @@ SMALL = {
 }
 
 
-@pytest.mark.parametrize("memory", [0, 5])
-def test_the_network_that_learns_is_the_one_that_acts(memory):
-    config = Imitation.model_validate({**SMALL, "memory": memory})
+@pytest.mark.parametrize(("memory", "squash"), [(0, False), (5, False), (5, True)])
+def test_the_network_that_learns_is_the_one_that_acts(memory, squash):
+    config = Imitation.model_validate({**SMALL, "memory": memory, "squash": squash})
     rng = np.random.default_rng(0)
     components = [
         Column(name=name, low=-1.0, high=1.0, unit="-") for name in ("grip_force", "wrist_pitch_rate")
@@ -71,6 +71,38 @@ def test_the_controller_acts_as_in_an_environment_that_shows_the_true_friction()
             )
     assert found.lengths.max() == k + 1
     envs.close()
+
+
+@pytest.mark.parametrize("teacher", ["estimate", "revealed"])
+def test_a_teacher_that_has_to_find_friction_out(teacher):
+    config = Imitation.model_validate({**SMALL, "teacher": teacher})
+    scene = Scene(config, 4)
+    observations, infos = scene.envs.reset(seed=3)
+    names = [column.name for column in scene.envs.columns]
+    bare = names.index("mu_s")
+    assert scene.seen(observations).shape == (4, bare)
+    observations[:2, names.index("confidence_mu_s")] = 0.9
+    observations[2:, names.index("confidence_mu_s")] = 0.0
+    taught = scene.taught(observations, infos["true"])
+    scene.close()
+    if teacher == "estimate":
+        np.testing.assert_array_equal(taught, observations)
+    else:
+        np.testing.assert_array_equal(taught[:2, bare], infos["true"][:2, 0].astype(np.float32))
+        np.testing.assert_array_equal(taught[2:, bare], observations[2:, bare])
+        assert taught[0, bare + 3] == 1.0
+        assert taught[2, bare + 3] == 0.0
+
+
+def test_units_of_the_memory_forget_at_different_rates():
+    components = [Column(name="grip_force", low=-1.0, high=1.0, unit="-")]
+    config = Imitation.model_validate({**SMALL, "memory": 64, "squash": True})
+    student = Student(config, np.zeros(3), np.ones(3), components)
+    bias = student.tensors()["memory.0.hidden_bias"].reshape(4, 64)
+    np.testing.assert_array_equal(bias[0], -bias[1])
+    assert bias[1].min() >= 0.0
+    assert bias[1].max() > 4.0
+    assert np.abs(student(torch.full((2, 1, 3), 1e3)).detach().numpy()).max() <= 1.0
 
 
 def _at_sixty():
@@ -115,6 +147,7 @@ def _assignments():
         ({"environment": {"action_mode": "grip_force"}}, "action_mode must be null"),
         ({"rows": 4096, "rounds": 8}, "at most 16384"),
         ({"task": "Linear"}, "unknown task"),
+        ({"teacher": "estimate", "environment": {"friction_source": "true"}}, "none or estimated"),
         ({"memory": -1}, "memory"),
     ],
 )

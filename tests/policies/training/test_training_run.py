@@ -13,6 +13,7 @@ from policies.training import (
     checkpoint_io,
     checkpoints,
     export,
+    files,
     folder,
     parallel,
     run,
@@ -202,3 +203,14 @@ def test_the_command_trains_and_mistakes_have_no_traceback(small, tmp_path):
     assert wrong.returncode == 2
     assert "'recurrent_ppo'" in wrong.stderr
     assert "Traceback" not in wrong.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", files.names())
+def test_every_configuration_trains(name, tmp_path):
+    short = {"budget": 512, "num_envs": 8, "evaluation.every": 512, "evaluation.episodes": 8}
+    sizes = {"ppo.n_steps": 32, "ppo.batch_size": 128, "ppo.n_epochs": 1}
+    path = tmp_path / name
+    folder.begin(path, files.changed(files.load(name), {**short, **sizes}), 0)
+    assert run.train(path, progress=False)["ended"] == "budget"
+    policies.load(path / export.POLICY)
