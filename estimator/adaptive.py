@@ -75,7 +75,8 @@ def _update(state, p, t, read, twist, estimate):
             rest = EVERY * p.drift_at_rest * p.drift_at_rest
             widen(state, rest, p.sd_log_mu_c0**2)
             hold(state, p, f_t, f_n)
-            bound_exponent(state, p, f_t, f_n)
+            if p.exponent_from_sticks:
+                bound_exponent(state, p, f_t, f_n)
         if not halted and slide(state, p):
             saw_mu_c = True
             state.updates_mu_c += 1

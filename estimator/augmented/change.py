@@ -64,7 +64,7 @@ def follow(state, p, value, variance):
         value: ln mu_c before the measurement.
         variance: Its variance then.
     """
-    fraction = min(state.shared / variance, 1.0)
+    fraction = min(state.shared / variance, 1.0) if p.mu_s_follows else 0.0
     state.shared = fraction * state.covariance[MU, MU]
     if state.events_mu_s > 0:
         moved = state.event * math.exp(fraction * (state.x[MU] - value))

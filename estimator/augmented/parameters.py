@@ -67,8 +67,17 @@ class AdaptiveParameters(NoiseParameters):
         "m/N",
     )
     compliance_max: float = parameter(2.5e-4, "Largest shear compliance of a pad.", "[0, inf)", "m/N")
+    soft_torsion: bool = parameter(
+        False,
+        "Whether pads may spring in torsion as much as the smallest plausible r allows: soft fingertips.",
+    )
     short_slips: bool = parameter(
         True, "Whether mu_c is learned from slips of fewer than four samples, by the force alone."
+    )
+    mu_s_from_sticks: bool = parameter(True, "Whether a stick that carries more than mu_s f_n raises mu_s.")
+    mu_s_follows: bool = parameter(True, "Whether mu_s follows the changes of mu_c.")
+    exponent_from_sticks: bool = parameter(
+        True, "Whether what a stick holds at a larger normal force bounds the exponent of the load."
     )
     caution: float = parameter(
         0.1,

@@ -7,7 +7,7 @@ import numpy as np
 from estimator._numba.caching import njit
 from estimator.augmented.change import follow, test_for_jump, widen
 from estimator.augmented.filtering import learn
-from estimator.augmented.holding import SAFETY, may_slide
+from estimator.augmented.holding import SAFETY, least_radius, may_slide
 from estimator.augmented.load import at_load
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
@@ -48,6 +48,12 @@ def _range(p, j, change, r):
 
 
 @njit(error_model="numpy")
+def _radius(state, p):
+    """Radius by which torque and rotation are compared with force and displacement [m]; `soft_torsion`."""
+    return least_radius(state) if p.soft_torsion else max(state.r, 0.5 * p.r_max)
+
+
+@njit(error_model="numpy")
 def _shear(state, p, moves, elapsed):
     """Compares how far the object has moved with how far the pad can have sprung.
 
@@ -71,7 +77,7 @@ def _shear(state, p, moves, elapsed):
     twist, last = state.twists[k & LAST], state.twists[(k - 1) & LAST]
     if state.moved > 1 and twist[0] == last[0] and twist[1] == last[1] and twist[2] == last[2]:
         state.repeated = 1
-    r, square, spring, power = max(state.r, 0.5 * p.r_max), 0.0, 0.0, 0.0
+    r, square, spring, power = _radius(state, p), 0.0, 0.0, 0.0
     for j in range(3):
         state.moved_by[j] += twist[j] * elapsed
         axis = j if j < 2 else 3
@@ -155,7 +161,7 @@ def _direct(state, p, power):
 @njit(error_model="numpy")
 def settle(state, p):
     """After a motion: what it has left, and the change of the load does not explain, was a slip."""
-    k, r, power, square, spring = state.samples, max(state.r, 0.5 * p.r_max), 0.0, 0.0, 0.0
+    k, r, power, square, spring = state.samples, _radius(state, p), 0.0, 0.0, 0.0
     for j in range(3):
         scale, axis = (1.0, j) if j < 2 else (r, 3)
         now = 0.5 * (state.wrenches[k & LAST, axis] + state.wrenches[(k - 1) & LAST, axis])

@@ -133,7 +133,7 @@ def learn_static_friction(state, p, f_t, f_n, tau, still, moves, halted):
         state.least = min(state.least, ratio) if state.above > 0 else ratio
         above = still and state.events_mu_s > 0 and ratio > state.mu_s
         state.above = state.above + 1 if above else 0
-        if state.above >= HELD:
+        if state.above >= HELD and p.mu_s_from_sticks:
             _held(state, p, min(state.least, p.mu_max), f_n, torque_share)
             state.above = 0
     starts, stops = transition(state, p, still, moves)

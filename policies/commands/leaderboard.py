@@ -1,9 +1,14 @@
 """Ranks all estimators on the same records: who finds mu_c, r and mu_s, when, and how surely."""
 
+from __future__ import annotations
+
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
@@ -20,6 +25,19 @@ def main(
         list[str] | None, typer.Option(help="Those in the loop; all if none.", show_default=False)
     ] = None,
     randomization: Annotated[str, typer.Option(help="Preset of the episodes in the loop.")] = "none",
+    task: Annotated[
+        list[str] | None, typer.Option(help="Tasks in the loop; all if none.", show_default=False)
+    ] = None,
+    parameter: Annotated[
+        list[str] | None,
+        typer.Option(help="Parameters of the estimators in the loop, as NAME=VALUE.", show_default=False),
+    ] = None,
+    imperfections: Annotated[
+        bool, typer.Option("--imperfections", help='In the loop: each imperfection of "lab" alone.')
+    ] = False,
+    delays: Annotated[
+        bool, typer.Option("--delays", help='Only print "adaptive" in stick-slip with late velocities.')
+    ] = False,
     ablation: Annotated[
         bool, typer.Option("--ablation", help='Only print what each state and test of "adaptive" is worth.')
     ] = False,
@@ -32,19 +50,25 @@ def main(
         from policies.research.leaderboard.tables import markdown
 
         if closed_loop:
-            found = removing.in_the_loop(closed_loop, seed, randomization=randomization)
+            found = removing.in_the_loop(closed_loop, seed, randomization=randomization, tasks=_ids(task))
         else:
             found = removing.worth(removing.ablation(effort_of(quick, seed)))
         typer.echo(markdown(found, 1 if closed_loop else 2))
         return
     if closed_loop:
-        import estimator
-        from policies.research.leaderboard import closed_loop as loop
         from policies.research.leaderboard.tables import markdown
 
-        chosen = estimators or estimator.names()
-        rows = loop.closed_loop(chosen, closed_loop, seed=seed, randomization=randomization)
+        rows = _in_the_loop(
+            closed_loop, seed, estimators, task, parameter or [], imperfections, randomization
+        )
         typer.echo(markdown(rows, 1))
+        return
+    if delays:
+        from policies.research.leaderboard.delays import delays as late
+        from policies.research.leaderboard.scenarios import effort_of
+        from policies.research.leaderboard.tables import markdown
+
+        typer.echo(markdown(late(effort_of(quick, seed)), 1))
         return
     if costs:
         from policies.research.leaderboard import cost
@@ -57,3 +81,37 @@ def main(
     folder = run_leaderboard(output, quick, seed)
     typer.echo((folder / "leaderboard.md").read_text(encoding="utf-8").partition("\n## mu_c")[0])
     typer.echo(f"Look at:\n  {folder / 'leaderboard.png'}")
+
+
+def _in_the_loop(
+    episodes: int,
+    seed: int,
+    estimators: list[str] | None,
+    tasks: list[str] | None,
+    parameters: list[str],
+    imperfections: bool,
+    randomization: str,
+) -> pd.DataFrame:
+    import estimator
+    from estimator.records import parse_settings
+    from policies.research.leaderboard.closed_loop import closed_loop
+    from policies.research.leaderboard.one_imperfection import one_imperfection
+
+    try:
+        changed = parse_settings(parameters)
+        chosen = {name: {"name": name, **changed} for name in estimators or estimator.names()}
+        sensors = one_imperfection() if imperfections else ("realistic", "lab")
+        return closed_loop(chosen, episodes, sensors, seed, _ids(tasks), randomization=randomization)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+def _ids(tasks: list[str] | None) -> list[str]:
+    """Ids of tasks, of all if none is named."""
+    from slipgym.registration import TASK_MODULES
+    from slipgym.tasks import find
+
+    try:
+        return [find(name).id for name in tasks] if tasks else list(TASK_MODULES)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error

@@ -10,8 +10,10 @@ import estimator
 from estimator.estimate import ESTIMATE
 from policies.research.leaderboard import ablation, run_leaderboard
 from policies.research.leaderboard.ablation import FULL, WITHOUT, worth
+from policies.research.leaderboard.delays import delays
 from policies.research.leaderboard.groups import GROUPS
 from policies.research.leaderboard.imperfect import opened
+from policies.research.leaderboard.one_imperfection import IMPERFECTIONS, one_imperfection
 from policies.research.leaderboard.ranking import ranked, winners
 from policies.research.leaderboard.replay import replay
 from policies.research.leaderboard.rubber import swinging
@@ -19,6 +21,7 @@ from policies.research.leaderboard.run import entrants, evaluate
 from policies.research.leaderboard.scenario import FIELDS, Run, Scenario, ends
 from policies.research.leaderboard.scenarios import MU_C, QUICK, R, closed_loop, mixed, patch
 from policies.research.leaderboard.score import score
+from slipgym.config import load
 from slipgym.synthetic import Record, sense
 
 
@@ -129,6 +132,23 @@ def test_truth_follows_the_load():
     assert normal.max() / normal.min() > 2.5
     np.testing.assert_allclose(mu_c, MU_C * (normal / 5.0) ** -0.31)
     np.testing.assert_allclose(r, R * (normal / 5.0) ** (1 / 3))
+
+
+def test_single_imperfections_are_all_that_differs_between_the_presets():
+    lab, realistic = (load(sensors=name).sensors.model_dump() for name in ("lab", "realistic"))
+    differ = {(s, name) for s in lab for name in lab[s] if lab[s][name] != realistic[s][name]}
+    listed = [(s, name) for case in IMPERFECTIONS.values() for s, names in case.items() for name in names]
+    assert sorted(listed) == sorted(differ)
+    cases = one_imperfection()
+    assert list(cases) == ["realistic", *IMPERFECTIONS, "lab"]
+    assert cases["tilt"]["config"] == {"sensors": {"force_torque": {"tilt": lab["force_torque"]["tilt"]}}}
+
+
+def test_late_velocities_have_a_row_for_each_material_and_delay():
+    found = delays(replace(QUICK, materials=("wood", "case")))
+    assert len(found) == 8
+    assert (found["mean error"].abs() <= found["largest"]).all()
+    assert found["within 5 %"].between(0.0, 100.0).all()
 
 
 def test_each_ablation_changes_known_parameters():

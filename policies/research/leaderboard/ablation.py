@@ -46,6 +46,9 @@ WITHOUT: dict[str, dict[str, object]] = {
         "sd_radius_exponent": NONE,
     },
     "evidence of jumps": {"jump_evidence": 0.0},
+    "mu_s from sticks": {"mu_s_from_sticks": False},
+    "mu_s with changes of mu_c": {"mu_s_follows": False},
+    "exponent from sticks": {"exponent_from_sticks": False},
     "drift of mu_s": {"drift_mu_s": 0.0},
     "new start of mu_s": {"jump_mu_s": float("inf")},
 }

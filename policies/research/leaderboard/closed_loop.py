@@ -22,12 +22,14 @@ from slipgym.tasks import find
 VALUES = "mu_s", "mu_c", "r"
 SURE = 0.5
 """Confidence from which an estimate at an episode's end counts."""
+FURTHER = {"linear_slip": ("linear_slip_leaps",)}
+"""Task -> controllers that are played beside its own."""
 
 
 def closed_loop(
     estimators: Sequence[str] | Mapping[str, Any],
     episodes: int = 200,
-    sensors: Sequence[str] = ("realistic", "lab"),
+    sensors: Sequence[str] | Mapping[str, Mapping[str, Any]] = ("realistic", "lab"),
     seed: int = 0,
     tasks: Sequence[str] = tuple(TASK_MODULES),
     **arguments: Any,
@@ -37,38 +39,50 @@ def closed_loop(
     Args:
         estimators: Names, or label -> the environments' argument `estimator`.
         episodes: Of each combination; the same initial conditions in all.
-        sensors: Sensor presets.
+        sensors: Sensor presets, or label -> arguments of the environments.
         seed: Of the first episode.
         tasks: Ids of environments.
         **arguments: Of the environments, for example `randomization="lab"`.
 
     Returns:
-        A row for each combination: see `played`.
+        A row for each combination, those of `FURTHER` among them: see `played`.
     """
     rows = []
     choices = estimators if isinstance(estimators, Mapping) else {name: name for name in estimators}
-    cells = [(task, name, preset) for task in tasks for name in choices for preset in sensors]
-    for task, name, preset in tqdm(cells, desc="closed loop"):
-        found = played(task, episodes, seed, estimator=choices[name], sensors=preset, **arguments)
-        rows.append({"task": find(task).name, "estimator": name, "sensors": preset, **found})
+    presets = sensors if isinstance(sensors, Mapping) else {name: {"sensors": name} for name in sensors}
+    played_by = [(task, key) for task in tasks for key in _controllers(task)]
+    cells = [(*pair, name, preset) for pair in played_by for name in choices for preset in presets]
+    for task, key, name, preset in tqdm(cells, desc="closed loop"):
+        own = {"estimator": choices[name], **presets[preset], **arguments}
+        found = played(task, episodes, seed, key, **own)
+        label = find(task).name if key == find(task).key else key
+        rows.append({"task": label, "estimator": name, "sensors": preset, **found})
     return pd.DataFrame(rows)
 
 
-def played(task: str, episodes: int, seed: int, **arguments: Any) -> dict[str, float]:
-    """Plays one episode in each row of a batch, with the task's controller.
+def _controllers(task: str) -> tuple[str, ...]:
+    return find(task).key, *FURTHER.get(find(task).key, ())
+
+
+def played(
+    task: str, episodes: int, seed: int, controller: str | None = None, **arguments: Any
+) -> dict[str, float]:
+    """Plays one episode in each row of a batch, with a controller.
 
     Args:
         task: Id of the environment.
         episodes: Rows.
         seed: Of the first row.
+        controller: As `policies.make` takes it; None: the task's own.
         **arguments: Of the environments.
 
     Returns:
-        `solved` and `dropped` [%]; for each of mu_s, mu_c, r the median of the error's size at the end where
-        the confidence is above SURE [%], and the share of instants, from the first update on, within one and
-        within two stated deviations [%]; `reversed`: instants with a published mu_c above mu_s [%].
+        `solved` and `dropped` [%]; for each of mu_s, mu_c, r the share of ends, of both fingers, with a
+        confidence above SURE [%], the median of the error's size there [%], and the share of instants, from
+        the first update on, within one and within two stated deviations [%]; `reversed`: instants with a
+        published mu_c above mu_s [%].
     """
-    policy = policies.make(find(task).key)
+    policy = policies.make(controller or find(task).key)
     env: Any = gym.make_vec(task, num_envs=episodes, **policies.modes(policy), **arguments).unwrapped
     observations, _ = env.reset(seed=seed)
     tally = _Tally(episodes)
@@ -116,6 +130,7 @@ class _Tally:
         }
         for name in VALUES:
             seen, one, two = self._instants[name]
+            row[f"{name} sure"] = 50.0 * len(self._errors[name]) / self._episodes
             row[f"{name} error"] = float(np.median(self._errors[name])) if self._errors[name] else np.nan
             row[f"{name} in 1 sd"] = 100.0 * one / seen if seen else np.nan
             row[f"{name} in 2 sd"] = 100.0 * two / seen if seen else np.nan

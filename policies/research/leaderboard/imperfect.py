@@ -30,11 +30,11 @@ ERRORS = {
 }
 
 
-def unknown_delay(effort: Effort) -> Iterator[Scenario]:
-    """Stick-slip in wood with velocities of an age that no estimator is given; one sample is nominal."""
+def unknown_delay(effort: Effort, material: str = "wood") -> Iterator[Scenario]:
+    """Stick-slip with velocities of an age that no estimator is given; one sample is nominal."""
     for delay, jitter in DELAYS:
         runs = []
-        for k, trace in enumerate(closed_loop("wood", effort.trials)):
+        for k, trace in enumerate(closed_loop(material, effort.trials)):
             exact = sense(trace, effort.seeds, effort.seed, config=AT_ONCE)
             record = impaired(exact, Imperfections(velocity_delay=delay, jitter=jitter), effort.seed + k)
             moving = (record.phase == "slip") & after(record, 1.0)
