@@ -27,6 +27,13 @@ from policies.research.study.videos import Scene, scene
 from policies.versions import versions
 from slipgym import atomic_io
 
+TITLES = {
+    "classic": "The controllers",
+    "memory": "The controllers with a memory of slips",
+    "learned": "The learned policies",
+    "imitation": "The imitations",
+}
+"""What the report calls the kinds of policies."""
 _TEMPLATE = Path(__file__).parent / "report.html.j2"
 
 
@@ -46,7 +53,7 @@ def write_page(
         study: The study.
         conditions: All its conditions.
         episodes: Their episodes.
-        tables: "outcomes", "shares", "transfer" and "constant_grip".
+        tables: "outcomes", "shares", "benefits", "transfer" and "constant_grip".
         missing: What was left out, in words.
         command: What it was made by.
         folder: The study's folder; videos are kept in its "videos".
@@ -84,7 +91,9 @@ def render(
     return environment.from_string(_TEMPLATE.read_text(encoding="utf-8")).render(
         study=study,
         answers=answers(study, outcomes, shares),
+        titles=TITLES,
         tiles=_tiles(main),
+        benefits=records(where(tables["benefits"], world=study.worlds[0].label)),
         pictures=_pictures(study, plain, changed, fractions, transfer),
         places=places,
         shares=records(fractions),
@@ -103,12 +112,13 @@ def render(
 
 
 def _tiles(main: pd.DataFrame) -> list[tuple[str, str, list[dict[str, Any]]]]:
-    """Kind, task and the rows of its sources: of all tasks together, or of the only one."""
+    """Kind, task and the rows of its sources, if there are several: of all tasks, or of the only one."""
     tiles = []
     for (kind,), group in by(main, ["kind"]):
         task = ALL if ALL in distinct(group, "task") else distinct(group, "task")[0]
         rows = where(group, task=task).drop_duplicates("source")
-        tiles.append((str(kind), task, records(rows)))
+        if len(rows) > 1:
+            tiles.append((str(kind), task, records(rows)))
     return tiles
 
 

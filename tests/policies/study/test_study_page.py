@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 
 from policies.play.video import Video
+from policies.research.study.benefit import benefits
 from policies.research.study.page import render
 from policies.research.study.tables import outcomes, shares, transfer
 from policies.research.study.videos import Clip, Scene
@@ -54,6 +55,7 @@ def page(small, invented, clip):
     made = {
         "outcomes": outcomes(episodes),
         "shares": shares(episodes, "disc"),
+        "benefits": benefits(episodes),
         "transfer": transfer(episodes, study),
     }
     made["constant_grip"] = pd.DataFrame(
@@ -119,9 +121,27 @@ def test_the_page_says_what_is_known(page):
     assert "Hold 20 3.14 50.0" in text
     assert "The benefit depends on that baseline" in text
     assert "Hold: &lt;nothing&gt; &amp; all" in text
+    assert re.search(
+        r"Hold train (classic|learned) classic estimated disc 30 90\.0 80\.0 to 100\.0 90 ", text
+    )
     assert "python scripts/study.py small" in text
     assert text.count("✓ reached") == 10
     assert "nan" not in text.lower().replace("nominal", "")
+
+
+def test_kinds_with_a_single_friction_source_are_compared_in_the_table_alone(small, invented):
+    episodes = pd.concat([invented(CLEAR), invented({"none": 7}, kind="memory")], ignore_index=True)
+    study = small(tasks=["Hold"])
+    made = {
+        "outcomes": outcomes(episodes),
+        "shares": shares(episodes, "disc"),
+        "benefits": benefits(episodes),
+    }
+    made |= {"transfer": transfer(episodes, study), "constant_grip": pd.DataFrame()}
+    page = render(study, episodes, made, [], [], "")
+    assert "The controllers: episodes solved" in page
+    assert "with a memory of slips" not in page
+    assert page.count("<td>memory</td><td>classic</td>") == 3  # the opponent of all sources but none
 
 
 def test_there_is_no_clock_on_the_page(page):
