@@ -41,7 +41,7 @@ benchmark: $(VENV)/.dev ## steps per second
 validate: $(VENV)/.dev ## the acceptance figures of the physics
 	$(RUN) scripts/validate.py
 
-torture: $(VENV)/.dev ## attacks on the public interface for an hour; goes on where it was stopped
+torture: $(VENV)/.dev ## attacks on the public interface for some hours; goes on where it was stopped
 	$(RUN) scripts/torture.py
 
 audit: $(RUN) ## known vulnerabilities of the pinned dependencies (needs the advisory data base)
