@@ -69,7 +69,8 @@ def timed(command: list[str], folder: Path) -> tuple[float, str]:
     begun = time.perf_counter()
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     spent = time.perf_counter() - begun
-    (folder / "transcript.txt").open("a", encoding="utf-8").write(done.stdout + done.stderr)
+    with (folder / "transcript.txt").open("a", encoding="utf-8") as transcript:
+        transcript.write(done.stdout + done.stderr)
     lines = (done.stdout if done.returncode == 0 else done.stderr).strip().splitlines() or [""]
     return spent, ("" if done.returncode == 0 else "failed: ") + lines[-1].strip()
 

@@ -9,7 +9,7 @@ import pytest
 
 import slipgym  # noqa: F401
 
-LATER = ("RotationalSlip", "Hinge")
+SLOW_TASKS = ("RotationalSlip", "Hinge")
 """Tasks whose cases of tests marked `quick_tasks` are slow: their kinds of motion occur in other tasks."""
 MANY = 1000
 """Tests from which it pays: a few may need none of it."""
@@ -21,7 +21,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         for mark in item.iter_markers("quick_cases"):
             if not any(item.name.endswith(f"[{case}]") for case in mark.args):
                 item.add_marker("slow")
-        if item.get_closest_marker("quick_tasks") and any(f"/{task}-v0" in item.name for task in LATER):
+        if item.get_closest_marker("quick_tasks") and any(f"/{task}-v0" in item.name for task in SLOW_TASKS):
             item.add_marker("slow")
 
 
