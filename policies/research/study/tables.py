@@ -22,6 +22,8 @@ SHARES = [
 ]
 """Columns of the table of shares."""
 ALL = "all tasks"
+TRAINED = "learned", "imitation"
+"""Kinds of policies that have training seeds."""
 ENOUGH = 0.8
 FIGURES = "success", "return"
 """Columns of an episode whose means are compared."""
@@ -50,7 +52,7 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
             figures["return"] = bootstrap(values(group, "return")).interval
             figures["force"] = bootstrap(values(group, "mean_force_N")).interval
         by_block = [float(values(part, "success").mean()) for _, part in by(group, ["block"])]
-        if keys[PLACE.index("kind")] != "classic":
+        if keys[PLACE.index("kind")] in TRAINED:
             figures["seeds"] = over_seeds(by_block)
         row = dict(zip([*PLACE, *FRICTION], keys, strict=True)) | {
             "n": len(group),
