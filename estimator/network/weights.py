@@ -18,6 +18,8 @@ OWN = Path(__file__).with_name("gru.npz")
 """The weights that come with the package; docs/learned_estimator.md says how they were made."""
 LIMIT = 2**20
 """Largest file, packed and unpacked [bytes]."""
+SHOWN = 300
+"""Most characters of a path in an error: its end, which names the file."""
 SHAPES: Mapping[str, tuple[int, ...]] = {
     "centre": (COLUMNS,),
     "scale": (COLUMNS,),
@@ -61,7 +63,9 @@ def _read(path: Path) -> Tensors:
     try:
         check_regular(path)
     except FileNotFoundError:
-        raise FileNotFoundError(f"weights = {os.fspath(path)[:80]!r}: there is no such file") from None
+        text = os.fspath(path)
+        shown = text if len(text) <= SHOWN else f"...{text[-SHOWN:]}"
+        raise FileNotFoundError(f"weights = {shown!r}: there is no such file") from None
     with path.open("rb") as stream:
         data = stream.read(LIMIT + 1)
     if len(data) > LIMIT:

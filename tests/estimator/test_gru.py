@@ -74,7 +74,7 @@ def test_the_file_is_a_text(value):
 
 def test_a_file_that_is_not_there_or_a_folder_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"none\.npz"):
-        estimator.make("gru", weights=str(tmp_path / "none.npz"))
+        estimator.make("gru", weights=str(tmp_path / "a folder of a long name" / ("b" * 150) / "none.npz"))
     with pytest.raises(ValueError, match="no regular file"):
         estimator.make("gru", weights=str(tmp_path))
 
