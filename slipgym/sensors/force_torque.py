@@ -24,10 +24,11 @@ HISTORY = 64
 def force_torque(kept: int, misaligned: bool = False) -> np.dtype:
     """FORCE_TORQUE, the record of a sensor that keeps some loads.
 
-    It has room for 4, 8, 16, ... of them, not for `HISTORY`, and for `mix` only if it is used: among
-    thousands of records space costs time, and every other dtype has to be compiled for.
+    It has room for 4, 16 or `HISTORY` of them, and for `mix` only if it is used or the room is not the least:
+    among thousands of records space costs time, and every other dtype has to be compiled for.
     """
-    room, axes = max(4, 1 << (kept - 1).bit_length()), 6 if misaligned else 1
+    large = misaligned or kept > 4
+    room, axes = (HISTORY if kept > 16 else 16, 6) if large else (4, 1)
     return np.dtype(
         [
             ("period", "i8"),  # ticks between samples
@@ -38,21 +39,21 @@ def force_torque(kept: int, misaligned: bool = False) -> np.dtype:
             ("bias", "f8", 6),
             ("resolution", "f8", 6),  # one count, 0 = continuous
             ("range", "f8", 6),  # saturation
-            # what an episode samples from, see `slipgym.sensors.misalignment`
-            ("misaligned", "?"),  # whether `mix` is not the identity
-            ("off_centre", "f8"),  # largest distance of the pad's centre from its place along x and y [m]
-            ("tilt", "f8"),  # largest tilt of the frame about x and y [rad]
-            ("crosstalk", "f8"),  # largest part of an axis's load that another axis reads [-]
-            ("least_delay", "i8"),  # in ticks
-            ("delay_spread", "i8"),  # what may be added, in ticks
+            ("misaligned", "i8"),  # 1 if `mix` is not the identity, 0 otherwise
             ("dropout", "f8"),  # probability that a reading is the last one again [-]
-            ("mix", "f8", (axes, axes)),  # of the load on all axes
             ("last", "f8", 6),  # reading
             ("key", "u8"),  # of the noise
             ("drift_key", "u8"),  # of the bias's random walk
             ("read", "i8"),  # readings since reset
             ("kept", "i8"),  # loads that `history` keeps
             ("history", "f8", (room, 6)),  # loads at the newest samples, in turn
+            ("mix", "f8", (axes, axes)),  # of the load on all axes
+            # what an episode samples from, see `slipgym.sensors.misalignment`
+            ("off_centre", "f8"),  # largest distance of the pad's centre from its place along x and y [m]
+            ("tilt", "f8"),  # largest tilt of the frame about x and y [rad]
+            ("crosstalk", "f8"),  # largest part of an axis's load that another axis reads [-]
+            ("least_delay", "i8"),  # in ticks
+            ("delay_spread", "i8"),  # what may be added, in ticks
         ]
     )
 
