@@ -180,14 +180,14 @@ def test_a_damaged_file_of_pybullet_does_not_crash(make):
     env.reset(seed=4)
     whole = env.get_state().simulation.engine.engine
     rng, refused = np.random.default_rng(0), 0
-    for k in range(12):
+    for k in range(6):
         content = bytearray(whole if k % 2 else whole[: rng.integers(len(whole))])
         for at in rng.integers(len(content), size=3):
             content[at] ^= 1 << rng.integers(8)
         state = with_parts(env.get_state(), "simulation.engine.engine", bytes(content))
         refused += "PyBullet cannot restore" in refusal(env, state)
         env.reset(seed=4)
-    assert refused >= 4
+    assert refused >= 2
 
 
 def test_a_batch_refuses_them_too(make_vec):

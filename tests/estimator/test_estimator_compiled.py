@@ -40,7 +40,8 @@ def test_an_edited_shared_function_is_compiled_again(tmp_path):
     assert gamma_t() == pytest.approx(0.5 * before)
 
 
-def test_a_touched_file_with_the_same_contents_keeps_the_cache(tmp_path):
+def test_a_touched_file_with_the_same_contents_keeps_the_cache(tmp_path, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     copy = tmp_path / "estimator"
     shutil.copytree(Path(estimator.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))
 

@@ -17,6 +17,7 @@ def blocks(page: str, language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
 
 
+@pytest.mark.quick_cases("adding_a_task")
 @pytest.mark.parametrize("page", MODULES)
 def test_the_examples_print_what_the_page_says(page, tmp_path):
     """In a process of their own, warnings as errors."""

@@ -87,6 +87,7 @@ def test_a_name_that_does_not_exist_is_found(kind):
         exists("", "contact.flux")
 
 
+@pytest.mark.slow
 def test_the_drawing_is_made_by_its_script(tmp_path):
     script = ROOT / "docs" / "drawings" / "frames.py"
     subprocess.run(

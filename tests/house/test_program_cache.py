@@ -120,6 +120,7 @@ def test_what_is_compiled_may_not_change(folder, file, old, new, value):
     assert run(folder) == [BEFORE, "1"]
 
 
+@pytest.mark.slow
 def test_options_and_switches_tell_programs_apart(folder):
     options = "from slipgym._numba.compiled import unlocked as compiled"
     assert edited(folder, "law.py", "from slipgym._numba.compiled import compiled", options)[1] == "0"
@@ -137,6 +138,7 @@ def test_a_damaged_file_is_compiled_again(folder):
     assert run(folder) == [BEFORE, "1"]
 
 
+@pytest.mark.slow
 def test_only_the_newest_programs_are_kept(tmp_path, monkeypatch):
     monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))
 
@@ -194,6 +196,7 @@ def test_a_process_that_waits_too_long_goes_on(tmp_path):
 
 def test_without_a_home_nothing_is_written_to_the_working_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(folders.config, "CACHE_DIR", "")
     monkeypatch.setattr(folders, "AppDirs", lambda **_: SimpleNamespace(user_cache_dir="~/.cache/numba"))
     monkeypatch.setattr(folders.tempfile, "gettempdir", lambda: str(tmp_path / "gone"))
     writable = folders._is_writable

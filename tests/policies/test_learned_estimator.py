@@ -56,6 +56,7 @@ def test_a_recording_is_what_the_estimator_gets():
     env.close()
 
 
+@pytest.mark.slow
 def test_the_truth_of_a_recording_begins_with_the_grasp(recordings):
     assert len(recordings) == 8
     for one in recordings:
@@ -85,6 +86,7 @@ def in_torch(tensors, columns):
     return torch.stack(means), np.log(0.01) * (1.0 - torch.sigmoid(out[:, 6:]))
 
 
+@pytest.mark.slow
 def test_torch_and_the_compiled_estimator_agree(recordings):
     """float32 with sums in another order; the averages forget, so errors do not grow with the samples."""
     one = recordings[0]
@@ -101,6 +103,7 @@ def test_torch_and_the_compiled_estimator_agree(recordings):
     np.testing.assert_allclose(kept[-len(expected) :], expected, atol=1e-3)
 
 
+@pytest.mark.slow
 def test_the_gradient_is_that_of_torch(recordings):
     torch = pytest.importorskip("torch")
     data = [Sequence(one.columns[:40], one.targets[:40]) for one in sequences(recordings[:3], 0.0, 0)]
