@@ -1,7 +1,7 @@
 """A seeded sample of the figures that README and the pages claim is printed again, and compared with them.
 
 A figure is a success rate over seeded episodes, which repeats to the last episode on one processor;
-another processor may round differently. A difference beyond `TOLERANCE` means that the page is older than the code.
+another processor may round differently. Beyond `TOLERANCE` the page is older than the code.
 """
 
 import random
