@@ -11,11 +11,12 @@ MISFIT = 2.0
 
 COUNTS = {"mu_s": "events_mu_s", "mu_c": "updates_mu_c", "r": "updates_r"}
 """Value -> field of an estimate that counts the data behind it."""
-_NEEDS = {
+NEEDS = {
     "mu_s": "it needs slips that start or stop in contact",
     "mu_c": "it needs slip with translation in it",
     "r": "it needs slip with rotation in it",
 }
+"""The motion that shows a value."""
 
 
 def reasons(estimate: Estimate, misfit: float = 1.0) -> dict[str, str]:
@@ -30,21 +31,36 @@ def reasons(estimate: Estimate, misfit: float = 1.0) -> dict[str, str]:
         motion that it needs.
     """
     found = {}
-    contradict = estimate.events_mu_s > 0 < estimate.updates_mu_c and estimate.mu_s == estimate.mu_c
-    for name, count in COUNTS.items():
-        data, value = int(getattr(estimate, count)), float(getattr(estimate, name))
+    for name, whys in causes(estimate, misfit).items():
         if getattr(estimate, f"confidence_{name}") >= CONFIDENT:
             continue
-        doubt, why = float(getattr(estimate, f"sd_{name}")) / value, []
-        if data == 0:
-            found[name] = f"not observed: this is the start value; {_NEEDS[name]}"
+        data = int(getattr(estimate, COUNTS[name]))
+        if not data:
+            found[name] = f"{whys[0]}: this is the start value; {NEEDS[name]}"
+        else:
+            found[name] = f"{', '.join(whys) or f'little data ({data})'}: be cautious; {NEEDS[name]}"
+    return found
+
+
+def causes(estimate: Estimate, misfit: float = 1.0) -> dict[str, tuple[str, ...]]:
+    """What speaks against each of "mu_s", "mu_c" and "r", whatever its confidence; the most important first.
+
+    Args:
+        estimate: What an estimator published.
+        misfit: As for `reasons`.
+    """
+    found = {}
+    contradict = estimate.events_mu_s > 0 < estimate.updates_mu_c and estimate.mu_s == estimate.mu_c
+    for name, count in COUNTS.items():
+        if not getattr(estimate, count):
+            found[name] = ("not observed",)
             continue
+        doubt, why = float(getattr(estimate, f"sd_{name}")) / float(getattr(estimate, name)), []
         if doubt > DOUBT:
             why.append(f"one standard deviation is {100.0 * doubt:.0f} %")
         if contradict and name != "r":
-            why.append("mu_s was not above mu_c, so both are their mean")
+            why.append("mu_s not above mu_c: both are their mean")
         if misfit > MISFIT and name != "mu_s":
-            why.append(f"the residuals are {misfit**0.5:.1f} times what noise explains")
-        what = ", ".join(why) or f"little data ({data})"
-        found[name] = f"{what}: be cautious; {_NEEDS[name]}"
+            why.append(f"residuals are {misfit**0.5:.1f} times what noise explains")
+        found[name] = tuple(why)
     return found

@@ -9,7 +9,20 @@ import numpy as np
 from slipgym.rendering.source import Source
 from slipgym.tasks.motion import Motion
 
-COLUMNS = ("grip_1", "grip_2", "path", "reference", "mu_c", "mu_s")
+COLUMNS = (
+    "grip_1",
+    "grip_2",
+    "path",
+    "reference",
+    "mu_c",
+    "mu_s",
+    "true_mu_c",
+    "true_mu_s",
+    "data_mu_c",
+    "data_mu_s",
+)
+"""Quantities of a row [N, N, mm or degrees, mm or degrees, -, ...]; estimates without data are NaN. `data_*`
+counts the samples and events behind an estimate, of both fingers."""
 
 
 class History:
@@ -23,6 +36,7 @@ class History:
 
     def __init__(self, simulation: Source, row: int, motion: Motion) -> None:
         self._simulation, self._row, self._motion = simulation, row, motion
+        self._estimates = simulation.estimator.estimates[2 * row], simulation.estimator.estimates[2 * row + 1]
         self.rows = np.full((int(simulation.episode["steps"][row]) + 1, len(COLUMNS)), math.nan)
         self.step_time = float(simulation.episode["step_time"][row])
         self.keep()
@@ -61,3 +75,7 @@ class History:
         row[2], row[3] = self._motion.path(slip), self._motion.target(reference)
         row[4] = mu_c if confidence_c > 0.0 else math.nan
         row[5] = mu_s if confidence_s > 0.0 else math.nan
+        row[7], row[6] = simulation.ground_truth[i, :2]
+        first, second = self._estimates
+        row[8] = first["updates_mu_c"] + second["updates_mu_c"]
+        row[9] = first["events_mu_s"] + second["events_mu_s"]

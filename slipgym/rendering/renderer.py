@@ -6,6 +6,7 @@ import numpy as np
 
 from slipgym.rendering import camera, strip
 from slipgym.rendering.caption import caption
+from slipgym.rendering.discrepancy import discrepancies
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.history import History
 from slipgym.rendering.look import look
@@ -76,8 +77,8 @@ class Renderer:
         about = f"{simulation.materials[row]}, {1e3 * world['mass']:.0f} g"
         slip = world["slip"]
         caption(view, simulation.task.name, about, self._history.time, self._state(), contact, slip, target)
-        true = float(simulation.ground_truth[row, 0]), float(simulation.ground_truth[row, 1])
-        strip.draw_strip(beside, self._history, self._motion, self._goal, true)
+        off = discrepancies(simulation, row, self._history)
+        strip.draw_strip(beside, self._history, self._motion, self._goal, off)
         return picture
 
     def close(self) -> None:

@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from estimator.batch import BatchEstimator
 from slipgym.config import Config
 from slipgym.tasks.task import Task
 from slipgym.world.plant import Plant
@@ -29,6 +30,11 @@ class Source(Protocol):
     @property
     def plant(self) -> Plant:
         """Worlds, pads, fingers and sensors."""
+        ...
+
+    @property
+    def estimator(self) -> BatchEstimator:
+        """Estimators of both fingers of each environment, (2n,)."""
         ...
 
     @property

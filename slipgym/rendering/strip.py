@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from slipgym.rendering.discrepancy import Discrepancy
 from slipgym.rendering.history import History
 from slipgym.rendering.palette import GRIP, GRIP_2, INK, MU_C, MU_S, MUTED, PAPER, SLIP, Colour
 from slipgym.rendering.plot import Curve, Plot, heading, limits
@@ -12,26 +15,25 @@ from slipgym.tasks.motion import Motion
 
 WIDTH = 272
 _LEFT, _RIGHT = 44, 254  # frame of the plots [pixels]
-_TOP, _TALL, _PITCH = 34, 102, 146
+_TOP, _TALL, _PITCH = 32, 86, 129
+_NOTES, _LINE = 418, 14  # baseline of the first note and their distance [pixels]
 
 
 def draw_strip(
-    picture: np.ndarray, history: History, motion: Motion, goal: float, true: tuple[float, float]
+    picture: np.ndarray, history: History, motion: Motion, goal: float, off: Sequence[Discrepancy]
 ) -> None:
-    """Draw the plots of an episode so far; time runs to the end of the episode.
+    """Draw the plots of an episode so far, and why estimates are off; time runs to the end of the episode.
 
     Args:
         picture: (height, WIDTH, 3) uint8, drawn over.
         history: Recorded quantities of the episode.
         motion: The task's motion.
         goal: Final target of the path.
-        true: True mu_s and mu_c.
+        off: Estimates that are off, and why.
     """
     picture[:] = PAPER
-    grip_1, grip_2, path, reference, mu_c, mu_s = map(
-        history.column, ("grip_1", "grip_2", "path", "reference", "mu_c", "mu_s")
-    )
-    level = np.ones(len(history.rows))
+    grip_1, grip_2, path, reference = map(history.column, ("grip_1", "grip_2", "path", "reference"))
+    mu_c, mu_s, true_c, true_s = map(history.column, ("mu_c", "mu_s", "true_mu_c", "true_mu_s"))
     _panel(
         picture,
         0,
@@ -50,7 +52,6 @@ def draw_strip(
         [Curve(path, SLIP, 2.0), Curve(reference, INK, 1.1, 4.0)],
         (1.1 * goal, 1.0),
     )
-    true_s, true_c = true
     _panel(
         picture,
         2,
@@ -58,18 +59,24 @@ def draw_strip(
         "friction",
         [("mu_c", MU_C), ("mu_s", MU_S), ("dashed: true", MUTED)],
         [
-            Curve(true_s * level, MU_S, 1.0, 4.0),
-            Curve(true_c * level, MU_C, 1.0, 4.0),
+            Curve(true_s, MU_S, 1.0, 4.0),
+            Curve(true_c, MU_C, 1.0, 4.0),
             Curve(mu_s, MU_S, 1.2),
             Curve(mu_c, MU_C, 2.2),
         ],
-        (1.2 * true_s, 0.1),
+        (1.2 * float(true_s[-1]), 0.1),
     )
-    if not np.isfinite([mu_c, mu_s]).any():
-        write(
-            picture, (_LEFT + _RIGHT) / 2, _TOP + 2 * _PITCH + _TALL - 12, "no estimate yet", MUTED, 12, 0.5
-        )
-    write(picture, (_LEFT + _RIGHT) / 2, _TOP + 2 * _PITCH + _TALL + 32, "time [s]", MUTED, 12, align=0.5)
+    write(picture, _LEFT - 8, _TOP + 2 * _PITCH + _TALL + 16, "t [s]", MUTED, 11, align=1.0)
+    _notes(picture, off)
+
+
+def _notes(picture: np.ndarray, off: Sequence[Discrepancy]) -> None:
+    """Two lines for each estimate that is off; one for both if the words are the same."""
+    same = len(off) == 2 and off[0][1:] == off[1][1:]
+    for k, (name, error, reason) in enumerate(off[:1] if same else off):
+        y, names = _NOTES + 2 * k * _LINE, "mu_c, mu_s" if same else name
+        write(picture, 12, y, f"{names}: {error}", MU_S if name == "mu_s" else MU_C, 12)
+        write(picture, 12, y + _LINE, reason, MUTED, 12)
 
 
 def _panel(

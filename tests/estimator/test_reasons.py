@@ -29,7 +29,7 @@ CASES = {
     "contradiction": (
         {"confidence_mu_s": 0.4, "mu_s": 0.4},
         {
-            "mu_s": "mu_s was not above mu_c, so both are their mean: be cautious; "
+            "mu_s": "mu_s not above mu_c: both are their mean: be cautious; "
             "it needs slips that start or stop in contact"
         },
     ),
@@ -47,7 +47,7 @@ def test_a_sure_estimate_needs_no_reason():
 
 
 def test_residuals_are_a_reason_and_an_estimator_knows_its_own():
-    words = "one standard deviation is 20 %, the residuals are 3.0 times what noise explains: be cautious"
+    words = "one standard deviation is 20 %, residuals are 3.0 times what noise explains: be cautious"
     found = estimator.reasons(estimated(confidence_r=0.2, sd_r=2e-3), misfit=9.0)
     assert found == {"r": f"{words}; it needs slip with rotation in it"}
     finger = estimator.make("adaptive")

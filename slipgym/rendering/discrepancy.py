@@ -1,0 +1,87 @@
+"""Says in words why the estimated friction in a picture differs from the true friction."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from estimator.estimate import Estimate
+from estimator.reasons import NEEDS, causes
+from slipgym.rendering.history import History
+from slipgym.rendering.source import Source
+
+VISIBLE = 0.02
+"""Error over the true value from which it is seen in a picture, and named."""
+RECENT = 0.5
+"""Time within which data are new and a change of friction is recent [s]."""
+
+
+class Discrepancy(NamedTuple):
+    """A friction coefficient whose estimate is off, or that has none."""
+
+    name: str
+    """"mu_c" or "mu_s"."""
+    error: str
+    """Its error in words, over the deviation that the estimator states."""
+    reason: str
+    """Why."""
+
+
+def discrepancies(simulation: Source, row: int, history: History) -> list[Discrepancy]:
+    """Estimates of an environment that are off by more than the stated standard deviation, or have no data.
+
+    The reasons are those of the estimator (`estimator.reasons`), how old its newest data are, and what it
+    does not know: whether the true friction has changed since.
+
+    Args:
+        simulation: The environments' simulation.
+        row: Index of the environment.
+        history: The episode so far.
+    """
+    found = []
+    for k, name in ((1, "mu_c"), (0, "mu_s")):
+        value, confidence, deviation = simulation.estimated[row, [k, 3 + k, 6 + k]].tolist()
+        true = float(simulation.ground_truth[row, k])
+        error = value - true
+        if not confidence:
+            found.append(Discrepancy(name, "not observed", NEEDS[name]))
+        elif abs(error) > max(deviation, VISIBLE * true):
+            size = f"{100.0 * abs(error) / true:.0f} % {'high' if error > 0.0 else 'low'}"
+            times = f", {abs(error) / deviation:.1f} deviations" if deviation else ""
+            found.append(Discrepancy(name, size + times, _reason(simulation, row, history, name)))
+    return found
+
+
+def _reason(simulation: Source, row: int, history: History, name: str) -> str:
+    """Why an estimate with data is off: the first that applies."""
+    errors = np.abs(history.column(name) / history.column(f"true_{name}") - 1.0)
+    newest = _last_change(history, f"data_{name}", 0.0)
+    age = (history.step - newest) * history.step_time
+    if age > 0.0 and errors[-1] - errors[newest] > VISIBLE:
+        return f"friction changed; newest data {age:.1f} s old"
+    if found := _causes(simulation, row, name):
+        return found[0]
+    if age >= RECENT:
+        return f"newest data {age:.1f} s old"
+    changed = (history.step - _last_change(history, f"true_{name}", 0.5 * errors[-1])) * history.step_time
+    if changed < min(RECENT, history.time):
+        return f"friction changed {changed:.1f} s ago"
+    return "sensor or model errors beyond the deviation"
+
+
+def _causes(simulation: Source, row: int, name: str) -> tuple[str, ...]:
+    """The estimator's causes, for the finger that has more confidence in the value."""
+    batch = simulation.estimator
+    kept = "misfit" in (batch.states.dtype.names or ())
+    fingers = range(2 * row, 2 * row + 2)
+    best = max(fingers, key=lambda finger: batch.estimates[f"confidence_{name}"][finger])
+    misfit = float(batch.states["misfit"][best]) if kept else 1.0
+    return causes(Estimate._make(batch.estimates[best].item()), misfit)[name]
+
+
+def _last_change(history: History, column: str, change: float) -> int:
+    """Step since which a column is at its present value, up to a fraction of it; 0 if always."""
+    values = history.column(column)
+    other = np.flatnonzero(np.abs(values - values[-1]) > change * abs(values[-1]))
+    return int(other[-1]) + 1 if len(other) else 0
