@@ -21,6 +21,7 @@ from estimator.augmented.change import test_for_jump, widen
 from estimator.augmented.deviation import EVERY, deviate
 from estimator.augmented.holding import hold, stiffen
 from estimator.augmented.load import at_load, bound_exponent
+from estimator.augmented.mounting import learn_tilt
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.prefetching import prefetch
 from estimator.augmented.short_slips import learn_short_slip
@@ -64,6 +65,7 @@ def _update(state, p, t, read, twist, estimate):
     if unloaded or f_n < p.eps_fn:
         lose_contact(state)
         state.in_a_row, state.moved, state.beyond, state.first, state.held = 0, 0, 0, -1, 0.0
+        state.resting = 0
         if unloaded:
             learn_zero(state, p, read)
     else:
@@ -71,6 +73,8 @@ def _update(state, p, t, read, twist, estimate):
         moves = speed_2 > p.eps_v * p.eps_v
         store(state, p, wrench, twist, moves, elapsed)
         stiffen(state, p)
+        if p.tilt_from_sticks:
+            learn_tilt(state, p, wrench, moves, f_t)
         if state.samples % EVERY == 0:
             rest = EVERY * p.drift_at_rest * p.drift_at_rest
             widen(state, rest, p.sd_log_mu_c0**2)

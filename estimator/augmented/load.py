@@ -10,12 +10,17 @@ the covariance with the exponents carries their uncertainty to the new force, an
 
 import math
 
+import numpy as np
+
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
 from estimator.augmented.slip_law import FALLS, GROWS, MU, STATES, R
+from estimator.augmented.timing import LAST
 
 BAND = 3.0
 """Deviations of the noise that the normal force must change before the states follow it."""
+OF_THREE = 1.5**0.5
+"""Deviation of a sample less the mean of two others, over that of a sample."""
 MOST_FALL, MOST_GROWTH = 0.5, 1.0 / 3.0
 """Largest exponents of mu_c and of r."""
 HEAVIER = 0.25
@@ -67,6 +72,21 @@ def at_load(state, p, f_n):
         return False
     move(state, f_n)
     return True
+
+
+@njit(error_model="numpy")
+def beside(state, p, i):
+    """Normal force [N] at sample i, by the samples before and after it unless it is clearly another one.
+
+    The noise of the normal force, over it, is an error of the measured ln mu_c. A step to the noisy normal
+    force has the same error, so that every sample would show an exponent of 1 (an error in the variable). The
+    noise of the samples on either side is another one. Where the force changes faster than a straight line,
+    by more than noise, that of the sample itself is exact enough.
+    """
+    f_n = np.float64(state.wrenches[i & LAST, 2])
+    before, after = state.wrenches[(i - 1) & LAST, 2], state.wrenches[(i + 1) & LAST, 2]
+    mean = 0.5 * (np.float64(before) + np.float64(after))
+    return mean if abs(f_n - mean) <= BAND * OF_THREE * p.sd_normal else f_n
 
 
 @njit(error_model="numpy")

@@ -79,6 +79,9 @@ class AdaptiveParameters(NoiseParameters):
     exponent_from_sticks: bool = parameter(
         True, "Whether what a stick holds at a larger normal force bounds the exponent of the load."
     )
+    tilt_from_sticks: bool = parameter(
+        True, "Whether the tilt is learned from a stick in which the normal force changes."
+    )
     caution: float = parameter(
         0.1,
         "Fraction of these spreads that the filter assumes, so that an error must be evident.",

@@ -14,7 +14,7 @@ from estimator._numba.memory import matrix
 from estimator.augmented.change import follow
 from estimator.augmented.filtering import MOST
 from estimator.augmented.holding import least_friction
-from estimator.augmented.load import at_load, limit
+from estimator.augmented.load import beside, limit, move
 from estimator.augmented.sliding import settle
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, STATES, TILT, ZERO, R
 from estimator.augmented.timing import EARLIEST, LAST, LATEST
@@ -86,7 +86,7 @@ def _take(state, p, i, speed):
     """
     f_x, f_y, tau, size, ratio = load_of(state, i)
     f_n, x, covariance = state.wrenches[i & LAST, 2], state.x, state.covariance
-    at_load(state, p, f_n)
+    move(state, beside(state, p, i))
     f_t = norm(f_x, f_y)
     share = direction_cosines(f_t, abs(tau) / state.r)[1] ** 2
     h, crossed = matrix(1, STATES)[0], matrix(1, STATES)[0]

@@ -8,7 +8,7 @@ from estimator._numba.caching import njit
 from estimator.augmented.change import follow, test_for_jump, widen
 from estimator.augmented.filtering import learn
 from estimator.augmented.holding import SAFETY, least_radius, may_slide
-from estimator.augmented.load import at_load
+from estimator.augmented.load import beside, move
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
 from estimator.augmented.timing import LAST, correlate
@@ -224,7 +224,7 @@ def slide(state, p):
     k = state.samples
     i = k - 2 - state.delay
     needed = margin(state)
-    if state.moved < needed or state.beyond < 2 or state.in_a_row < state.delay + 3:
+    if state.moved < needed or state.beyond < 2 or state.in_a_row < state.delay + 4:
         return False
     row, before, after = state.wrenches[i & LAST], state.twists[(k - 2) & LAST], state.twists[(k - 1) & LAST]
     wrench = np.float64(row[0]), np.float64(row[1]), np.float64(row[2]), np.float64(row[3])
@@ -250,7 +250,7 @@ def slide(state, p):
     state.covariance[R, R] += max(min(walk, p.sd_log_r0**2 - state.covariance[R, R]), 0.0)
     for j in range(ZERO, SHAPE):
         state.covariance[j, j] += (p.error_drift * state.x[j]) ** 2
-    at_load(state, p, wrench[2])
+    move(state, beside(state, p, i))
     value, variance = state.x[MU], state.covariance[MU, MU]
     learned, squared, score = learn(state, p, state.sign, wrench, twist, of_speed, of_spin)
     for j in range(3):

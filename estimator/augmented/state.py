@@ -35,6 +35,10 @@ _IN_CONTACT: list[tuple[Any, ...]] = [
     ("load", np.float64),
     ("held", np.float64),
     ("held_load", np.float64),
+    ("resting", np.int64),
+    ("rest_sample", np.int64),
+    ("restless", np.float64),
+    ("rest", np.float64, (3,)),
     ("x", np.float64, (STATES,)),
     ("products", np.float64, (CANDIDATES,)),
     ("energies", np.float64, (2,)),
@@ -90,10 +94,14 @@ slip, -1 for none; `quiet`: samples since it moved; `fallen`: number of the samp
 `slides`: instants of sliding learned from since the delay is as it is; `misfit`: mean squared normalised
 innovation; `runs`: of the jump test, for a rise and a fall: sum of the excess, number and sum of
 innovations; `scatter`: mean square of all; `load`: normal force at which ln mu_c and ln r are [N];
-`held`, `held_load`: largest ratio that was carried, and its normal force [-, N]; `event`, `event_load`:
+`held`, `held_load`: largest ratio that was carried, and its normal force [-, N]; `resting`: samples in a
+row at rest; `rest`: f_x, f_y, f_n at one of them [N], of number `rest_sample`; `restless`: mean squared
+change of the load at rest [N^2]; `event`, `event_load`:
 mu_s of the last events, and its normal force [-, N]."""
 
 
+RESTLESS = 0.1
+"""Change of a load at rest [N] that is expected at first."""
 _SPREADS = {MU: "log_mu_c0", R: "log_r0", SIGMA: "viscosity", ZERO: "zero", ZERO + 1: "zero"}
 _SPREADS |= {TILT: "tilt", TILT + 1: "tilt", COP: "cop", COP + 1: "cop", SHAPE: "shape"}
 _SPREADS |= {FALLS: "load_exponent", GROWS: "radius_exponent"}
@@ -125,6 +133,7 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
     states["delay"], states["spring"] = parameters["nominal_delay"], parameters["compliance_max"]
     states["fallen"] = states["first"] = states["slid"] = -1
     states["sign"] = states["misfit"] = 1.0
+    states["restless"] = RESTLESS * RESTLESS
     states["sd_lever"] = 2**0.5 * states["mu_c"] * states["r"]
     return states
 

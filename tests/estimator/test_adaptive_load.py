@@ -72,6 +72,21 @@ def test_two_loads_show_the_exponent():
         assert held.mu_c == pytest.approx(0.4 * (6.0 / LOAD) ** -exponent, rel=0.04)
 
 
+def test_noise_of_the_normal_force_is_no_exponent():
+    """Short slips at one small load: on average the exponent is less than its deviation."""
+    exponents, variances = [], []
+    for seed in range(8):
+        est, rng, k = estimator.make("adaptive"), np.random.default_rng(seed), 0
+        for _ in range(25):
+            for i in range(30):
+                f_t, f_n, speed = (0.6, 1.5, 0.02) if i >= 16 else (0.5, 3.0, 0.0)
+                wrench = np.array([0.0, f_t, f_n, 0.0]) + rng.normal(size=4) * NOISE
+                est.update((k := k + 1) / RATE, wrench, (0.0, speed, 0.0))
+        exponents.append(est.batch.states["x"][0, FALLS])
+        variances.append(est.batch.states["covariance"][0, FALLS, FALLS])
+    assert np.mean(exponents) < np.sqrt(np.mean(variances))
+
+
 def test_mu_s_follows_the_load_with_the_same_exponent():
     """A break-away at 3 N, slips at two loads that show the exponent of 0.3, then a firm hold."""
     est, k = estimator.make("adaptive"), 0

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 import estimator
+from estimator.augmented.slip_law import TILT
 from policies.research.leaderboard.imperfections import Imperfections, impaired
+from slipgym.validation.records import RATE
+
+NOISE = 0.02, 0.02, 0.04, 5e-4
+"""Of f_x, f_y, f_n, tau [N, N, N, N m]."""
 
 RIGID = {"load_exponent0": 0.0, "sd_load_exponent": 1e-3}
 """Friction of a hanging block does not depend on the load; what else is stated: `test_adaptive_load.py`."""
@@ -110,3 +115,28 @@ def test_the_same_bits_for_every_sign_convention(planar_slip):
     for_object, _ = replayed("adaptive", record)
     np.testing.assert_allclose(for_object["mu_c"], for_finger["mu_c"], rtol=1e-9)
     np.testing.assert_allclose(for_object["r"], for_finger["r"], rtol=1e-9)
+
+
+def test_changes_of_the_grip_at_rest_show_the_tilt():
+    """An open gripper, a straight slip, a load of 1 N at rest while the grip is 5 or 10 N, a slip."""
+    found = {}
+    for learns in (True, False):
+        est, rng = estimator.make("adaptive", tilt_from_sticks=learns), np.random.default_rng(0)
+        for i in range(400):
+            slips, open_ = 40 <= i < 100 or i >= 340, i < 40
+            f_n = 0.0 if open_ else 2.5 if slips else 5.0 + 5.0 * (i // 30 % 2)
+            f_t = 0.0 if open_ else 0.4 * f_n if slips else 1.0
+            wrench = np.array([0.02 * f_n, f_t + 0.04 * f_n, f_n, 0.0]) + rng.normal(size=4) * NOISE
+            found[learns] = est.update((i + 1) / RATE, wrench, (0.0, 0.02 if slips else 0.0, 0.0))
+    assert found[True].mu_c == pytest.approx(0.4, rel=0.03)
+    assert found[False].mu_c > 0.42
+    assert found[True].sd_mu_c < 0.7 * found[False].sd_mu_c
+
+
+def test_a_grip_in_proportion_to_the_load_is_no_tilt():
+    est, rng, k = estimator.make("adaptive"), np.random.default_rng(0), 0
+    for i in range(720):
+        f_t = 1.0 + 0.5 * np.sin(0.05 * i)
+        wrench = np.array([0.0, f_t, 5.0 * f_t, 0.0]) + rng.normal(size=4) * NOISE
+        est.update((k := k + 1) / RATE, wrench, (0.0, 0.0, 0.0))
+    np.testing.assert_allclose(est.batch.states["x"][0, TILT : TILT + 2], 0.0, atol=0.01)
