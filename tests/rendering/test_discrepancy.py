@@ -46,8 +46,13 @@ def found(past: Past, **values):
 
 def test_an_estimate_within_its_deviation_needs_no_words():
     assert found(Past(), mu_c=0.4, true=0.4) == []
-    assert found(Past(), mu_c=0.45, true=0.4, deviation=0.06) == []
+    assert found(Past(), mu_c=0.43, true=0.4, deviation=0.06) == []
     assert found(Past(), mu_c=0.404, true=0.4, deviation=0.001) == []  # nothing that one sees
+
+
+def test_a_large_error_is_named_within_its_deviation():
+    (off,) = found(Past(mu_c=0.5), mu_c=0.5, true=0.4, deviation=0.2)
+    assert off == ("mu_c", "25 % high, 0.5 deviations", "one standard deviation is 40 %")
 
 
 def test_a_value_without_data_says_which_motion_it_needs():
