@@ -33,8 +33,8 @@ class Discrepancy(NamedTuple):
 def discrepancies(simulation: Source, row: int, history: History) -> list[Discrepancy]:
     """Estimates of an environment that are off, or have no data.
 
-    An estimate is off if it differs from the truth by more than its stated standard deviation, or by more than
-    `LARGE`.
+    An estimate is off if it differs from the truth by more than its stated standard deviation, or by
+    more than `LARGE`.
 
     The reasons are those of the estimator (`estimator.reasons`), how old its newest data are, and what it
     does not know: whether the true friction has changed since.
@@ -60,10 +60,11 @@ def discrepancies(simulation: Source, row: int, history: History) -> list[Discre
 
 def _reason(simulation: Source, row: int, history: History, name: str) -> str:
     """Why an estimate with data is off: the first that applies."""
-    errors = np.abs(history.column(name) / history.column(f"true_{name}") - 1.0)
+    true = history.column(f"true_{name}")
+    errors = np.abs(history.column(name) / true - 1.0)
     newest = _last_change(history, f"data_{name}", 0.0)
     age = (history.step - newest) * history.step_time
-    if age > 0.0 and errors[-1] - errors[newest] > VISIBLE:
+    if min(abs(true[-1] / true[newest] - 1.0), errors[-1] - errors[newest]) > VISIBLE:
         return f"friction changed; newest data {age:.1f} s old"
     if found := _causes(simulation, row, name):
         return found[0]

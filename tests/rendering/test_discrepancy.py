@@ -68,6 +68,11 @@ JUMP = np.where(np.arange(STEPS + 1) < 80, 0.5, 0.4)
     ("past", "values", "reason"),
     [
         ({"data_mu_c": LATE, "true_mu_c": JUMP, "mu_c": 0.5}, {}, "friction changed; newest data 0.4 s old"),
+        (
+            {"data_mu_c": LATE, "mu_c": 0.9 - JUMP},
+            {"misfit": 9.0},
+            "residuals are 3.0 times what noise explains",
+        ),
         ({"mu_c": 0.5}, {"misfit": 9.0}, "residuals are 3.0 times what noise explains"),
         ({"mu_c": 0.5}, {"deviation": 0.08}, "one standard deviation is 16 %"),
         ({"mu_c": 0.5, "data_mu_c": LATE - 20}, {}, "newest data 0.4 s old"),
