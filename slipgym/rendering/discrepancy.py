@@ -13,6 +13,8 @@ from slipgym.rendering.source import Source
 
 VISIBLE = 0.02
 """Error over the true value from which it is seen in a picture, and named."""
+LARGE = 0.1
+"""Error over the true value from which it is named even within the stated deviation."""
 RECENT = 0.5
 """Time within which data are new and a change of friction is recent [s]."""
 
@@ -29,7 +31,10 @@ class Discrepancy(NamedTuple):
 
 
 def discrepancies(simulation: Source, row: int, history: History) -> list[Discrepancy]:
-    """Estimates of an environment that are off by more than the stated standard deviation, or have no data.
+    """Estimates of an environment that are off, or have no data.
+
+    An estimate is off if it differs from the truth by more than its stated standard deviation, or by
+    more than `LARGE`.
 
     The reasons are those of the estimator (`estimator.reasons`), how old its newest data are, and what it
     does not know: whether the true friction has changed since.
@@ -46,7 +51,7 @@ def discrepancies(simulation: Source, row: int, history: History) -> list[Discre
         error = value - true
         if not confidence:
             found.append(Discrepancy(name, "not observed", NEEDS[name]))
-        elif abs(error) > max(deviation, VISIBLE * true):
+        elif abs(error) > max(min(deviation, LARGE * true), VISIBLE * true):
             size = f"{100.0 * abs(error) / true:.0f} % {'high' if error > 0.0 else 'low'}"
             times = f", {abs(error) / deviation:.1f} deviations" if deviation else ""
             found.append(Discrepancy(name, size + times, _reason(simulation, row, history, name)))
@@ -55,10 +60,11 @@ def discrepancies(simulation: Source, row: int, history: History) -> list[Discre
 
 def _reason(simulation: Source, row: int, history: History, name: str) -> str:
     """Why an estimate with data is off: the first that applies."""
-    errors = np.abs(history.column(name) / history.column(f"true_{name}") - 1.0)
+    true = history.column(f"true_{name}")
+    errors = np.abs(history.column(name) / true - 1.0)
     newest = _last_change(history, f"data_{name}", 0.0)
     age = (history.step - newest) * history.step_time
-    if age > 0.0 and errors[-1] - errors[newest] > VISIBLE:
+    if min(abs(true[-1] / true[newest] - 1.0), errors[-1] - errors[newest]) > VISIBLE:
         return f"friction changed; newest data {age:.1f} s old"
     if found := _causes(simulation, row, name):
         return found[0]

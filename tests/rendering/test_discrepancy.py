@@ -46,8 +46,13 @@ def found(past: Past, **values):
 
 def test_an_estimate_within_its_deviation_needs_no_words():
     assert found(Past(), mu_c=0.4, true=0.4) == []
-    assert found(Past(), mu_c=0.45, true=0.4, deviation=0.06) == []
+    assert found(Past(), mu_c=0.43, true=0.4, deviation=0.06) == []
     assert found(Past(), mu_c=0.404, true=0.4, deviation=0.001) == []  # nothing that one sees
+
+
+def test_a_large_error_is_named_within_its_deviation():
+    (off,) = found(Past(mu_c=0.5), mu_c=0.5, true=0.4, deviation=0.2)
+    assert off == ("mu_c", "25 % high, 0.5 deviations", "one standard deviation is 40 %")
 
 
 def test_a_value_without_data_says_which_motion_it_needs():
@@ -63,6 +68,11 @@ JUMP = np.where(np.arange(STEPS + 1) < 80, 0.5, 0.4)
     ("past", "values", "reason"),
     [
         ({"data_mu_c": LATE, "true_mu_c": JUMP, "mu_c": 0.5}, {}, "friction changed; newest data 0.4 s old"),
+        (
+            {"data_mu_c": LATE, "mu_c": 0.9 - JUMP},
+            {"misfit": 9.0},
+            "residuals are 3.0 times what noise explains",
+        ),
         ({"mu_c": 0.5}, {"misfit": 9.0}, "residuals are 3.0 times what noise explains"),
         ({"mu_c": 0.5}, {"deviation": 0.08}, "one standard deviation is 16 %"),
         ({"mu_c": 0.5, "data_mu_c": LATE - 20}, {}, "newest data 0.4 s old"),
