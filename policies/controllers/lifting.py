@@ -45,7 +45,7 @@ class LiftingGains(Frozen):
     )
     recall: bool = Field(
         default=True,
-        description="Whether load over grip before the last slip is mu_s until the estimate is sure",
+        description="Whether load over grip before the last slip is mu_s until the estimate is sure [-]",
     )
     rest: NonNegative = Field(default=5, description="Control steps after a slip without another catch [-]")
     decay: Fraction = Field(
