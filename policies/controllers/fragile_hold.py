@@ -40,7 +40,7 @@ class FragileHoldPolicy(LiftingPolicy[FragileHoldGains]):
 
     task = "FragileHold"
     Gains = FragileHoldGains
-    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.5}
+    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.5, "recall": False}
 
     def share(self, columns: Columns) -> np.ndarray:
         """See `LiftingPolicy.share`."""

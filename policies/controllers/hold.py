@@ -13,12 +13,13 @@ from policies.controllers.base import Columns, State
 from policies.controllers.exploration import ActiveExploration, ExplorationState
 from policies.controllers.friction_fall import FallState
 from policies.controllers.gains import Fraction, GainPolicy, renamed
-from policies.controllers.sensing import ConservativePrior, both, scaled_load, scaled_speed
+from policies.controllers.sensing import ConservativePrior, both, relative, scaled_load, scaled_speed
 from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
 
 _EXPLORATION = ActiveExploration()
 _FIRST = 0.01  # confidence: less than that of one update, 0.02
+_DEVIATIONS = 0.3
 
 
 class HoldGains(Frozen):
@@ -26,6 +27,10 @@ class HoldGains(Frozen):
 
     reserve: NonNegative = Field(default=1.0, description="Disturbance per finger to be ready for [N]")
     margin: Positive = Field(default=1.0, description="Safety factor on load and reserve [-]")
+    stale: Positive = Field(
+        default=1.15,
+        description="Grip where friction is an estimate, which may have fallen since, over the usual [-]",
+    )
     k_v: NonNegative = Field(default=100.0, description="Force per scaled slip speed [N s/m]")
     decay: Fraction = Field(
         default=0.95, description="Fraction of the force that is left a control step later when it falls [-]"
@@ -49,9 +54,10 @@ class HoldPolicy(GainPolicy[HoldGains]):
         f = margin (|load| + reserve) / mu_c + k_v |slip twist|
 
     in the scaled norm of the limit surface, with a low quantile of mu_c and r if the environment shows their
-    deviations. The force rises at once and decays slowly. The
-    gripper's public controller doubles the load instead (and assumes at least 2 N); a reserve
-    that is added serves light objects, which a poke upsets more, and spares heavy ones.
+    deviations. Estimated friction may have fallen since the last slip, which no deviation covers: then the
+    grip is `stale` times as firm, and the quantile is not as low as in other controllers. The force rises at
+    once and decays slowly. The gripper's public controller doubles the load instead (and assumes at least
+    2 N); a reserve that is added serves light objects, which a poke upsets more, and spares heavy ones.
 
     While friction is not known it explores: it lowers the grip until the object slips a little
     (`policies.controllers.exploration`), and then holds with the new estimate. The task does not poke the
@@ -91,7 +97,11 @@ class HoldPolicy(GainPolicy[HoldGains]):
     ) -> None:
         parameters = renamed(parameters)
         self.exploration = parameters.pop("exploration", exploration)
-        own = ConservativePrior() if self.exploration is None else ConservativePrior(confidence=_FIRST)
+        own = (
+            ConservativePrior()
+            if self.exploration is None
+            else ConservativePrior(confidence=_FIRST, deviations=_DEVIATIONS)
+        )
         super().__init__(gains, parameters.pop("prior", prior) or own, config, **parameters)
 
     def initial_state(self, n: int) -> np.ndarray:
@@ -129,7 +139,8 @@ class HoldPolicy(GainPolicy[HoldGains]):
         """Grip (n,) [N], with exploration, and the memory but for that of falls."""
         g = self.gains
         level, *rest = memory
-        force = g.margin * (load + g.reserve) / mu_c + g.k_v * speed
+        margin = np.where(relative(columns, "mu_c", mu_c) > 0.0, g.stale * g.margin, g.margin)
+        force = margin * (load + g.reserve) / mu_c + g.k_v * speed
         force = np.maximum(force, g.decay * level)
         if self.exploration is None:
             return force, [force, *rest]

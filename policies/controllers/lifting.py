@@ -40,6 +40,13 @@ class LiftingGains(Frozen):
     speed: Positive = Field(default=2e-3, description="Scaled slip speed that is a slip [m/s]")
     catch: Positive = Field(default=1.5, description="Least factor by which the grip rises then [-]")
     jump: NonNegative = Field(default=1.5, description="Least share in that rise [-]")
+    kick: Positive = Field(
+        default=1.5, description="Command in the control step of a catch, over the grip wanted [-]"
+    )
+    recall: bool = Field(
+        default=True,
+        description="Whether load over grip before the last slip is mu_s until the estimate is sure [-]",
+    )
     rest: NonNegative = Field(default=5, description="Control steps after a slip without another catch [-]")
     decay: Fraction = Field(
         default=0.97, description="Fraction of the grip after a slip that is left a control step later [-]"
@@ -60,8 +67,12 @@ class LiftingPolicy(GainPolicy[L]):
 
     Before the first slip mu_s is taken as `guess`, more than what may come. The object then slips while the
     load is still small, which shows in the load at the next control step: the grip jumps to what the lightest
-    object needs at load / grip before the slip, the estimator learns friction, and the law takes over.
+    object needs at load / grip before the slip, for one control step to more, since the force follows late.
+    From then on load / grip before the slip is taken for mu_s, until the estimate has confidence. Without
+    friction in the observation that alone is a memory of slips.
     """
+
+    remembers_slips = True
 
     @abstractmethod
     def share(self, columns: Columns) -> np.ndarray:
@@ -70,14 +81,15 @@ class LiftingPolicy(GainPolicy[L]):
     def initial_state(self, n: int) -> np.ndarray:
         """Filtered load and last tangential force (negative: none yet), last grip and the one kept [N].
 
-        Then the control steps left without another catch, and those since the wrist moved. Shape (n, 6).
+        Then the control steps left without another catch, those since the wrist moved, and load over grip
+        before the last slip (0: none yet) [-]. Shape (n, 7).
         """
-        return np.tile([-1.0, -1.0, 0.0, 0.0, 0.0, 0.0], (n, 1))
+        return np.tile([-1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0], (n, 1))
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
         g, share = self.gains, self.share(columns)
-        old, before, gripped, kept, rest, still = np.asarray(state).T
+        old, before, gripped, kept, rest, still, shown = np.asarray(state).T
         r, pulled = self.prior.hold(columns, "r"), tangential(columns)
         slides = scaled_speed(columns, r) > g.speed
         moves = sum(np.abs(columns[f"wrist_{name}"]) for name in ("velocity_x", "velocity_z", "pitch_rate"))
@@ -88,11 +100,14 @@ class LiftingPolicy(GainPolicy[L]):
         trust = np.minimum(1.0, confidence / g.confidence)
         spread = deviation_of(np.clip(confidence, g.confidence, 1.0))
         cautious = columns["mu_s"] * np.exp(-g.deviations * spread)
-        mu = np.where(slides, columns["mu_c"], cautious)
-        known = np.maximum(ahead, np.minimum(g.lightest, _RISE * ahead)) / np.maximum(mu, 1e-3)
-        force = np.maximum(share * (trust * known + (1.0 - trust) * ahead / g.guess), g.least)
         slips = slides | (before - pulled > np.maximum(g.fall * before, g.noise))
         caught = slips & rests & (rest <= 0.0) & (trust < 1.0)
+        shown = np.where(caught & ~slides & g.recall, before / np.maximum(gripped, 1e-3), shown)
+        mu = np.where(slides, columns["mu_c"], cautious)
+        load = np.maximum(ahead, np.minimum(g.lightest, _RISE * ahead))
+        unsure = np.where(shown > 0.0, load / np.maximum(shown, 1e-3), ahead / g.guess)
+        force = share * (trust * load / np.maximum(mu, 1e-3) + (1.0 - trust) * unsure)
+        force = np.maximum(force, g.least)
         raised = (
             np.maximum(share, g.jump)
             * gripped
@@ -101,7 +116,8 @@ class LiftingPolicy(GainPolicy[L]):
         kept = np.where(caught, raised, g.decay * kept)
         rest = np.where(caught | slides, g.rest, rest - 1.0)
         force = np.maximum(force, kept)
-        return force, np.column_stack((weight, pulled, force, kept, rest, still))
+        memory = np.column_stack((weight, pulled, force, kept, rest, still, shown))
+        return np.where(caught, g.kick * force, force), memory
 
     def _weight(
         self, load: np.ndarray, old: np.ndarray, rests: np.ndarray, slides: np.ndarray, rest: np.ndarray

@@ -22,13 +22,13 @@ def tangential(columns: Columns) -> np.ndarray:
     return 0.5 * (first + second)
 
 
-def scaled_load(columns: Columns, r: np.ndarray) -> np.ndarray:
+def scaled_load(columns: Columns, r: np.ndarray | float) -> np.ndarray:
     """Load per finger in the scaled norm of the limit surface, sqrt(f_t^2 + (tau / r)^2), (n,) [N]."""
     f_x, f_y, tau = (both(columns, name) for name in ("f_x", "f_y", "tau"))
     return np.sqrt(f_x**2 + f_y**2 + (tau / r) ** 2)
 
 
-def scaled_speed(columns: Columns, r: np.ndarray) -> np.ndarray:
+def scaled_speed(columns: Columns, r: np.ndarray | float) -> np.ndarray:
     """Scaled slip speed sqrt(v_t^2 + (r omega)^2), (n,) [m/s]."""
     v_x, v_y, omega = (both(columns, name) for name in ("v_x", "v_y", "omega"))
     return np.sqrt(v_x**2 + v_y**2 + (r * omega) ** 2)
@@ -96,12 +96,12 @@ class ConservativePrior:
     def hold_lever(self, columns: Columns) -> np.ndarray:
         """As `blend_lever`, with the quantile in place of the estimate, (n,) [m]."""
         value = columns["mu_c"] * columns["r"]
-        return self._lever(columns, value * np.exp(-self.deviations * _relative(columns, "lever", value)))
+        return self._lever(columns, value * np.exp(-self.deviations * relative(columns, "lever", value)))
 
     def _lever(self, columns: Columns, value: np.ndarray) -> np.ndarray:
         weight, least = self.confidence_weight(columns, "r"), self.mu_c * self.r
         if columns.has("sd_lever"):
-            square = _relative(columns, "lever", columns["mu_c"] * columns["r"]) ** 2
+            square = relative(columns, "lever", columns["mu_c"] * columns["r"]) ** 2
             known = np.minimum(1.0, confidence_of(square) / self.confidence)
             weight = np.maximum(weight, np.where(columns["confidence_mu_c"] > 0.0, known, 0.0))
         return np.maximum(least, weight * value + (1.0 - weight) * least)
@@ -109,11 +109,11 @@ class ConservativePrior:
     def _quantile(self, columns: Columns, name: str, least: float) -> np.ndarray:
         """The estimate less some of its deviations; not below `least`, unless the estimate is."""
         value = columns[name]
-        cautious = value * np.exp(-self.deviations * _relative(columns, name, value))
+        cautious = value * np.exp(-self.deviations * relative(columns, name, value))
         return np.maximum(cautious, np.minimum(value, least))
 
 
-def _relative(columns: Columns, name: str, value: np.ndarray) -> np.ndarray:
+def relative(columns: Columns, name: str, value: np.ndarray) -> np.ndarray:
     """Deviation of a value over the value, (n,); 0 if the environment does not show it."""
     if not columns.has(f"sd_{name}"):
         return np.zeros(len(columns))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from pydantic import Field
@@ -10,29 +10,18 @@ from pydantic import Field
 from policies.controllers import table as controllers
 from policies.controllers.base import Columns
 from policies.controllers.gains import GainPolicy
-from policies.controllers.sensing import both, scaled_load, scaled_speed
+from policies.controllers.last_slip import SlipGains, SlipState, remembered
 from policies.registry import modes
 from slipgym.config import Overrides
-from slipgym.config.base import Frozen, NonNegative, Positive
+from slipgym.config.base import Positive
 from slipgym.config.yaml_model import validate
 from slipgym.envs.observation import FRICTION_COLUMNS
 
 
-class SlipMemoryGains(Frozen):
+class SlipMemoryGains(SlipGains):
     """Gains of `SlipMemory`."""
 
-    speed: Positive = Field(default=0.003, description="Scaled slip speed that is a slip [m/s]")
-    rest: NonNegative = Field(default=12, description="Control steps after a slip without another one [-]")
     ratio: Positive = Field(default=1.45, description="mu_s over mu_c, as of the materials at hand [-]")
-
-
-class SlipState(NamedTuple):
-    """Memory of the slips, (n,) each; all 0 at the start."""
-
-    mu_c: np.ndarray
-    """Load over normal force in the last slip; 0 before the first [-]."""
-    rest: np.ndarray
-    """Control steps left without another slip."""
 
 
 class SlipMemory:
@@ -41,7 +30,7 @@ class SlipMemory:
     When the slip velocity rises, load over normal force is taken for mu_c, `ratio` times it for mu_s and the
     controller's prior for r, each in full confidence; before the first slip the controller reads friction
     values with confidence 0. It is the simplest policy that sees sensors alone and adapts: an opponent of the
-    estimators.
+    estimators. A controller that remembers slips by itself, as those that lift do, always reads confidence 0.
 
     Args:
         controller: A name of `policies.names()` or "module:class": a controller with gains and a prior.
@@ -74,18 +63,12 @@ class SlipMemory:
         if episode_start is not None:
             slips = np.where(np.atleast_1d(episode_start)[:, None], 0.0, slips)
         r = np.full(len(observations), self._controller.prior.r)
-        memory = self._remembered(Columns(observations, self._controller.index), SlipState(*slips.T), r)
-        known = memory.mu_c > 0.0
+        memory = remembered(
+            Columns(observations, self._controller.index), SlipState(*slips.T), r, self._gains
+        )
+        known = (memory.mu_c > 0.0) & (not self._controller.remembers_slips)
         values = self._gains.ratio * memory.mu_c, memory.mu_c, r
         part = np.column_stack([*values, *(known for _ in FRICTION_COLUMNS[len(values) :])])
         seen = np.column_stack((observations, part)).astype(observations.dtype)
         actions, inner = self._controller.predict(seen, inner, episode_start, deterministic)
         return (actions if np.ndim(observation) == 2 else actions[0]), (inner, np.column_stack(memory))
-
-    def _remembered(self, columns: Columns, past: SlipState, r: np.ndarray) -> SlipState:
-        """The memory after the present observation."""
-        slips = (scaled_speed(columns, r) > self._gains.speed) & (past.rest <= 0.0)
-        shown = scaled_load(columns, r) / np.maximum(both(columns, "f_n"), 1e-3)
-        return SlipState(
-            mu_c=np.where(slips, shown, past.mu_c), rest=np.where(slips, self._gains.rest, past.rest - 1.0)
-        )

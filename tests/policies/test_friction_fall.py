@@ -79,14 +79,15 @@ def test_without_doubt_the_memory_is_that_of_the_exploration():
 
 @pytest.mark.slow
 def test_after_a_fall_of_friction_it_holds_more_often_than_without_doubt(play_batch):
-    """At no more than 1.15 times the grip of the truth; docs/evaluation.md says why not in 95 %."""
+    """In 95 % of the episodes, at no more than 1.15 times the grip of the truth."""
     keywords = {"randomization": JUMP, "friction_source": "estimated"}
     hold = "slipgym/Hold-v0"
     found = play_batch(hold, HoldPolicy(), 300, 50_000, **keywords)
-    without = play_batch(hold, HoldPolicy(doubt=0.0), 300, 50_000, **keywords)
+    light = play_batch(hold, HoldPolicy(stale=1.0), 300, 50_000, **keywords)
+    without = play_batch(hold, HoldPolicy(stale=1.0, doubt=0.0), 300, 50_000, **keywords)
     true = play_batch(hold, HoldPolicy(), 300, 50_000, **{**keywords, "friction_source": "true"})
-    assert found.success >= 0.88
-    assert found.success >= without.success + 0.08
+    assert found.success >= 0.95
+    assert light.success >= without.success + 0.08
     assert found.grip <= 1.15 * true.grip
 
 

@@ -4,7 +4,9 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
+from policies.controllers.last_slip import combined, weight_of
 from policies.controllers.no_friction_info import NoFrictionInfo
+from policies.controllers.rotational_slip import RotationalSlipPolicy
 from policies.controllers.slip_memory import SlipMemory
 from policies.evaluation.play import play
 
@@ -47,9 +49,45 @@ def test_it_needs_a_controller_that_reads_friction():
         SlipMemory("hold", speed=-1.0)
 
 
+def test_an_estimate_and_the_last_slip_count_by_their_variances():
+    shown, deviation = np.array([0.0, 0.4, 0.4, 0.4]), np.array([0.1, 0.0, 0.02, 1e6])
+    weight = weight_of(shown, deviation, 0.02)
+    np.testing.assert_allclose(weight, [0.0, 0.0, 0.5, 1.0], atol=1e-9)
+    mixed = combined(np.full(4, 0.9), shown, weight)
+    np.testing.assert_allclose(mixed, [0.9, 0.9, 0.6, 0.4])
+
+
+def test_known_friction_is_acted_on_as_it_is():
+    """With the true friction, which has no deviation, the last slip does not count."""
+    found = []
+    for shown in (0.0, 0.02):
+        policy = RotationalSlipPolicy(shown=shown)
+        envs = gym.make_vec(
+            "slipgym:slipgym/RotationalSlip-v0",
+            4,
+            "vector_entry_point",
+            friction_source="true",
+            **policy.modes,
+        )
+        found.append(play(envs, policy, range(4)))
+        envs.close()
+    np.testing.assert_array_equal(found[0].reward, found[1].reward)
+    assert RotationalSlipPolicy(shown=0.0).initial_state(2).shape == (2, 3)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(("task", "least"), [("RotationalSlip", 0.9), ("FragileHold", 0.4), ("Carry", 0.4)])
+def test_with_the_estimate_no_less_is_solved_than_with_the_memory():
+    policy = RotationalSlipPolicy()
+    arguments = {**HARD, **policy.modes, "friction_source": "estimated"}
+    envs = gym.make_vec("slipgym:slipgym/RotationalSlip-v0", 40, "vector_entry_point", **arguments)
+    found = play(envs, policy, range(40))
+    envs.close()
+    assert found.success.mean() >= played("RotationalSlip", SlipMemory("rotational_slip")).success.mean()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("task", "least"), [("RotationalSlip", 0.9), ("FragileHold", 0.7), ("Carry", 0.7)])
 def test_a_memory_of_slips_is_worth_more_than_a_guess(task, least):
     key = {"RotationalSlip": "rotational_slip", "FragileHold": "fragile_hold", "Carry": "carry"}[task]
     assert played(task, SlipMemory(key)).success.mean() >= least
-    assert played(task, NoFrictionInfo(key)).success.mean() <= least - 0.1
+    assert played(task, NoFrictionInfo(key)).success.mean() <= least - 0.3
