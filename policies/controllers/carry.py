@@ -45,7 +45,7 @@ class CarryPolicy(LiftingPolicy[CarryGains]):
 
     task = "Carry"
     Gains = CarryGains
-    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.4, "recall": False}
+    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.4, "shown": 0.0}
 
     def share(self, columns: Columns) -> np.ndarray:
         """See `LiftingPolicy.share`."""

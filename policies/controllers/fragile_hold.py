@@ -40,7 +40,7 @@ class FragileHoldPolicy(LiftingPolicy[FragileHoldGains]):
 
     task = "FragileHold"
     Gains = FragileHoldGains
-    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.5, "recall": False}
+    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.5, "shown": 0.0}
 
     def share(self, columns: Columns) -> np.ndarray:
         """See `LiftingPolicy.share`."""

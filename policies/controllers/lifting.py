@@ -11,6 +11,7 @@ from pydantic import Field
 from estimator.estimate import deviation_of
 from policies.controllers.base import Columns, State
 from policies.controllers.gains import Fraction, GainPolicy
+from policies.controllers.last_slip import combined, weight_of
 from policies.controllers.sensing import scaled_load, scaled_speed, tangential
 from slipgym.config.base import Frozen, NonNegative, Positive
 
@@ -43,10 +44,11 @@ class LiftingGains(Frozen):
     kick: Positive = Field(
         default=1.5, description="Command in the control step of a catch, over the grip wanted [-]"
     )
-    recall: bool = Field(
-        default=True,
-        description="Whether load over grip before the last slip is mu_s until the estimate is sure [-]",
+    shown: NonNegative = Field(
+        default=0.04,
+        description="Deviation of load over grip before a slip, relative; 0: it does not count [-]",
     )
+    sure: Positive = Field(default=0.8, description="Confidence up to which slips are caught [-]")
     rest: NonNegative = Field(default=5, description="Control steps after a slip without another catch [-]")
     decay: Fraction = Field(
         default=0.97, description="Fraction of the grip after a slip that is left a control step later [-]"
@@ -68,8 +70,8 @@ class LiftingPolicy(GainPolicy[L]):
     Before the first slip mu_s is taken as `guess`, more than what may come. The object then slips while the
     load is still small, which shows in the load at the next control step: the grip jumps to what the lightest
     object needs at load / grip before the slip, for one control step to more, since the force follows late.
-    From then on load / grip before the slip is taken for mu_s, until the estimate has confidence. Without
-    friction in the observation that alone is a memory of slips.
+    From then on load / grip before the slip counts for mu_s, and so does the estimate, each with the weight
+    of its variance. Without friction in the observation the former alone is a memory of slips.
     """
 
     remembers_slips = True
@@ -99,14 +101,18 @@ class LiftingPolicy(GainPolicy[L]):
         confidence = columns["confidence_mu_s"]
         trust = np.minimum(1.0, confidence / g.confidence)
         spread = deviation_of(np.clip(confidence, g.confidence, 1.0))
-        cautious = columns["mu_s"] * np.exp(-g.deviations * spread)
         slips = slides | (before - pulled > np.maximum(g.fall * before, g.noise))
-        caught = slips & rests & (rest <= 0.0) & (trust < 1.0)
-        shown = np.where(caught & ~slides & g.recall, before / np.maximum(gripped, 1e-3), shown)
-        mu = np.where(slides, columns["mu_c"], cautious)
-        load = np.maximum(ahead, np.minimum(g.lightest, _RISE * ahead))
-        unsure = np.where(shown > 0.0, load / np.maximum(shown, 1e-3), ahead / g.guess)
-        force = share * (trust * load / np.maximum(mu, 1e-3) + (1.0 - trust) * unsure)
+        caught = slips & rests & (rest <= 0.0) & (confidence < g.sure)
+        seen = caught & ~slides & (g.shown > 0.0)
+        shown = np.where(seen, before / np.maximum(gripped, 1e-3), shown)
+        weight_shown = np.where(confidence > 0.0, weight_of(shown, spread, g.shown), np.sign(shown))
+        known = combined(columns["mu_s"], shown, weight_shown)
+        spread = spread * np.sqrt(1.0 - weight_shown)
+        trust = np.where(shown > 0.0, 1.0, trust)
+        slower = slides & (columns["confidence_mu_c"] > 0.0)
+        mu = np.where(slower, columns["mu_c"], known * np.exp(-g.deviations * spread))
+        load = np.maximum(ahead, np.minimum(g.lightest, _RISE * ahead)) / np.maximum(mu, 1e-3)
+        force = share * (trust * load + (1.0 - trust) * ahead / g.guess)
         force = np.maximum(force, g.least)
         raised = (
             np.maximum(share, g.jump)
