@@ -86,7 +86,8 @@ class VectorPPO(PPO):
             with torch.no_grad():
                 actions, values, log_probs = self.policy(torch.from_numpy(observations))
             actions = actions.numpy()
-            self._last_obs, rewards, dones, infos = env.step(np.clip(actions, space.low, space.high))
+            step: Any = env.step(np.clip(actions, space.low, space.high))
+            self._last_obs, rewards, dones, infos = step
             self.num_timesteps += env.num_envs
             callback.update_locals(locals())
             if not callback.on_step():
