@@ -16,6 +16,7 @@ from torch import nn
 
 from policies.training import vector
 from policies.training.config import Training
+from policies.training.ppo import VectorPPO
 from policies.training.state_checks import check_array, check_counters, check_twister, fits
 
 _CLASSES: dict[str, Any] = {"ppo": PPO, "recurrent_ppo": RecurrentPPO, "sac": SAC, "tqc": TQC}
@@ -60,7 +61,7 @@ def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
     policy["optimizer_kwargs"] = {"eps": _EPSILON.get(config.algorithm, 1e-8), "fused": True}
     if config.algorithm == "tqc":
         policy["n_quantiles"] = 25
-    return _CLASSES[config.algorithm](
+    return _class(config)(
         "MlpLstmPolicy" if config.algorithm == "recurrent_ppo" else "MlpPolicy",
         envs,
         learning_rate=lambda left: start * (end + (1.0 - end) * left),
@@ -69,6 +70,13 @@ def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
         device="cpu",
         **values,
     )
+
+
+def _class(config: Training) -> Any:
+    """The algorithm's class: `VectorPPO` where it computes what Stable-Baselines3's PPO does."""
+    if config.algorithm == "ppo" and not config.ppo.use_sde and config.ppo.target_kl is None:
+        return VectorPPO
+    return _CLASSES[config.algorithm]
 
 
 def get_state(model: Any, replay: bool = True) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from policies.training import evaluate, files, seeds, vector
 from policies.training import model as learners
 from policies.training.adapter import SlipVecEnv
 from policies.training.config import Training
+from policies.training.ppo import VectorPPO
 from policies.training.residual import ResidualVecEnv
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import Stopwatches
@@ -77,7 +78,10 @@ def _watch(watches: Stopwatches, model: Any) -> None:
     watches.watch("policy in rollouts", policy, "predict_values")
     watches.watch("buffer and minibatches", buffer, "add")
     watches.watch("buffer and minibatches", buffer, "compute_returns_and_advantage")
+    watches.watch("buffer and minibatches", buffer, "swap_and_flatten")
     watches.watch("buffer and minibatches", buffer, "_get_samples")
+    if isinstance(model, VectorPPO):
+        watches.watch("buffer and minibatches", model, "minibatches")
     watches.watch("forward pass", policy, "evaluate_actions")
     watches.watch("backward pass", torch.Tensor, "backward")
     watches.watch("gradient clipping", torch.nn.utils, "clip_grad_norm_")
