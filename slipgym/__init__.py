@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from slipgym.envs.environment import register_task
 
 __all__ = ["__version__", "register_task"]
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 register()
 
