@@ -27,7 +27,7 @@ without friction in the observation, with nominal, estimated and true friction, 
 | level | best constant | none | nominal | estimated | true |
 |---|---|---|---|---|---|
 | easy | 0 | 21 | 17.5 | 97.5 | 100 |
-| standard | 0 | 16.5 | 15 | 94 | 99 |
+| standard | 0 | 16.5 | 15 | 94.5 | 99 |
 | hard | 0 | 16 | 13 | 93 | 96.5 |
 
 The controller without friction keeps one guess for all episodes. With sensors alone and a memory of load over

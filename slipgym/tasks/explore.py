@@ -26,8 +26,8 @@ level is):
 
 | level | best constant | none | nominal | adaptive | joint | true |
 |---|---|---|---|---|---|---|
-| easy | 0 | 0 | 0.5 | 5 | 98.5 | 100 |
-| standard | 0 | 0 | 0.5 | 5 | 79.5 | 100 |
+| easy | 0 | 0 | 0.5 | 5.5 | 98.5 | 100 |
+| standard | 0 | 0 | 0.5 | 6.5 | 79.5 | 100 |
 | hard | 0.5 | 0 | 0 | 0.5 | 74 | 100 |
 
 True friction is an upper bound: the controller commits itself in the first step. With "joint" 96 % (95 %
