@@ -95,8 +95,8 @@ def test_the_example_mapping_turns_names_units_and_signs(tmp_path):
 def test_the_shipped_record_gives_its_friction():
     """A slide of up to 90 mm/s with viscous friction: mu_c within 3 %, mu_s within 5 %, r not observed.
 
-    sigma_2 v adds 0.2 s/m × up to 0.09 m/s to the ratio of forces, about 4 % of mu_c, of which one slide separates
-    a part. Friction might fall with the load, too; known not to, mu_c keeps these bounds.
+    sigma_2 v adds 0.2 s/m × up to 0.09 m/s to the ratio of forces, about 4 % of mu_c, of which one slide
+    separates a part. Friction might fall with the load, too; known not to, mu_c keeps these bounds.
     """
     assert SHIPPED.stat().st_size < 300_000
     result = records.estimate(records.load(SHIPPED))
