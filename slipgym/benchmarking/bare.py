@@ -9,11 +9,14 @@ No friction, no sensors, no bookkeeping; what is sent is constant and what comes
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from itertools import repeat
 
 from slipgym.config import Config
 from slipgym.world import scene
 from slipgym.world.quiet_pybullet import p
 from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
+from slipgym.world.snapshot import load_engine
 
 
 class BareLoop:
@@ -33,35 +36,48 @@ class BareLoop:
         self._body = scene.add_box(self._client, box)
         scene.settle(self._client, config, self._gripper)
         scene.set_mass(self._client, self._body, box.mass, box.inertia)
-        self._weight = box.mass * config.physics.gravity
-        self._efforts = (force, force)
-        self._points = tuple((0.0, side * box.size[1] / 2, 0.0) for side in (1.0, -1.0))
+        weight, side, none = box.mass * config.physics.gravity, box.size[1] / 2, (0.0, 0.0, 0.0)
+        half = 0.0, 0.0, -0.5 * weight
+        self._constant = (
+            ((0.0, 0.0, weight), none),
+            ((0.0, side, 0.0), half, none),
+            ((0.0, -side, 0.0), half, none),
+            (force, force),
+            none,
+        )
 
     def run(self, steps: int) -> None:
         """Advance by a number of engine steps."""
+        self.replay(repeat(self._constant, steps))
+
+    def load(self, state: bytes) -> None:
+        """Restore the state of an environment's engine, from `slipgym.world.snapshot.save_engine`."""
+        load_engine(self._client, state)
+
+    def replay(self, loads: Iterable[tuple]) -> None:
+        """Advance by one engine step for each of some loads.
+
+        Args:
+            loads: As `slipgym.world.bullet_rows.loads` returns them: force and torque on the object; place,
+                force and torque on either finger; efforts of the fingers; velocities of the wrist.
+        """
         client, body, gripper = self._client, self._body, self._gripper
         push, twist, advance = p.applyExternalForce, p.applyExternalTorque, p.stepSimulation
         drive, world = p.setJointMotorControlArray, p.WORLD_FRAME
         pose, velocity, joints = p.getBasePositionAndOrientation, p.getBaseVelocity, p.getJointStates
-        (first, second), (at_first, at_second) = FINGER_LINKS, self._points
-        up, down = (0.0, 0.0, self._weight), (0.0, 0.0, -0.5 * self._weight)
-        origin = none = (0.0, 0.0, 0.0)
-        effort = {"controlMode": p.TORQUE_CONTROL, "forces": self._efforts, "physicsClientId": client}
-        motion = {
-            "controlMode": p.VELOCITY_CONTROL,
-            "targetVelocities": none,
-            "forces": WRIST_FORCE,
-            "physicsClientId": client,
-        }
-        for _ in range(steps):
-            push(body, -1, up, origin, world, client)
-            twist(body, -1, none, world, client)
-            push(gripper, first, down, at_first, world, client)
-            twist(gripper, first, none, world, client)
-            push(gripper, second, down, at_second, world, client)
-            twist(gripper, second, none, world, client)
-            drive(gripper, FINGER_LINKS, **effort)
-            drive(gripper, WRIST_JOINTS, **motion)
+        first, second = FINGER_LINKS
+        origin = pose(body, client)[0]
+        effort = {"controlMode": p.TORQUE_CONTROL, "physicsClientId": client}
+        motion = {"controlMode": p.VELOCITY_CONTROL, "forces": WRIST_FORCE, "physicsClientId": client}
+        for (force, torque), at_first, at_second, efforts, speeds in loads:
+            push(body, -1, force, origin, world, client)
+            twist(body, -1, torque, world, client)
+            push(gripper, first, at_first[1], at_first[0], world, client)
+            twist(gripper, first, at_first[2], world, client)
+            push(gripper, second, at_second[1], at_second[0], world, client)
+            twist(gripper, second, at_second[2], world, client)
+            drive(gripper, FINGER_LINKS, forces=efforts, **effort)
+            drive(gripper, WRIST_JOINTS, targetVelocities=speeds, **motion)
             advance(client)
             origin = pose(body, client)[0]
             velocity(body, client)

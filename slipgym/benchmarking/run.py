@@ -6,6 +6,7 @@ from pathlib import Path
 
 from slipgym.benchmarking import measure, report
 from slipgym.benchmarking.batch import batch
+from slipgym.benchmarking.layers import layers
 from slipgym.benchmarking.resets import resets
 from slipgym.benchmarking.substeps import softer, substeps
 
@@ -20,7 +21,11 @@ def with_bullet(env_id: str, pairs: int, json: Path | None = None) -> None:
     """
     print(report.line(report.machine()))
     player = measure.Player(env_id)
-    figures = [*measure.against_bare(player, pairs), *measure.breakdown(player, max(1, pairs // 3))]
+    figures = [
+        *measure.against_bare(player, pairs),
+        *layers(player.env, measure.ACTIONS, pairs),
+        *measure.breakdown(player, max(1, pairs // 3)),
+    ]
     player.env.close()
     report.publish(figures, json)
 

@@ -12,6 +12,7 @@ import pytest
 from slipgym._numba.switches import OPTIMISATIONS, VARIABLE
 from slipgym.benchmarking import batch, measure, optimisations, timing
 from slipgym.benchmarking.bare import BareLoop
+from slipgym.benchmarking.layers import Layers
 from slipgym.benchmarking.report import Figure, table, write
 from slipgym.benchmarking.timing import Stopwatches, compare, per_call
 from slipgym.config import load
@@ -45,6 +46,29 @@ def test_the_bare_loop_simulates_the_environments_scene(bare):
     counts = [len(pybullet.getContactPoints(physicsClientId=client)) for client in (ours, theirs)]
     assert counts == [8, 8]
     env.close()
+
+
+def test_the_bare_loop_replays_an_environments_motion(bare):
+    player = measure.Player("slipgym/LinearSlip-v0")
+    played = Layers(player.env, measure.ACTIONS, steps=30)
+    played.record()
+    bare.load(played.start)
+    bare.replay(played.loads)
+    reading, slip = player.env.simulation.world.reading, player.env.simulation.plant.world["slip"][0, 1]
+    pose = pybullet.getBasePositionAndOrientation(bare._body, bare._client)
+    assert abs(slip) > 1e-4
+    assert pose == reading[0]
+    player.env.close()
+
+
+def test_layers_play_the_same_motion():
+    player = measure.Player("slipgym/LinearSlip-v0")
+    played, ends = Layers(player.env, measure.ACTIONS, steps=30), []
+    for prepare in (played.world, played.simulation, played.environment):
+        prepare()()
+        ends.append(player.env.simulation.world.reading[0])
+    assert ends[0] == ends[1] == ends[2]
+    player.env.close()
 
 
 def test_the_player_lets_the_box_slip_and_goes_on():
