@@ -48,8 +48,13 @@ class Layers:
         self._env.reset(seed=0)
         env = self._env
         table, buffers = env._actions.table, env._observer.buffers
-        actions = [env._actions.checked(action) for action in self._actions]
-        return partial(self._play, lambda a: self._simulation.step(a, table, 1, _ACTIVE, buffers), actions)
+        batch = env._actions.checked(self._actions[0])
+
+        def step(action: float) -> None:
+            batch[0, 0] = action
+            self._simulation.step(batch, table, 1, _ACTIVE, buffers)
+
+        return partial(self._play, step, self._actions[:, 0].tolist())
 
     def world(self) -> Callable[[], None]:
         """Reset; return a function that moves the bodies with friction, and nothing else."""

@@ -138,7 +138,7 @@ def breakdown(player: Player, blocks: int) -> list[Figure]:
         watches.watch("action, disturbances, wrist", simulation._calls, "begin")
         watches.watch("sensors, estimator, task, observation", simulation._calls, "finish")
         watches.watch("copies of the observation", env._observer, "first")
-        watches.watch("info", env, "_info")
+        watches.watch("info", env, "_report")
         for _ in range(blocks):
             watches.running = False
             player.begin()

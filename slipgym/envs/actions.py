@@ -110,28 +110,30 @@ class Actions:
         self.table = np.array(rows, COMPONENT)
         self.moves_wrist = any(0 < place < _INCREMENT for place, *_ in rows)
         self._shape = (len(rows),)
+        self._batch = np.zeros((1, len(rows)))
         self.space = gym.spaces.Box(-1.0, 1.0, self._shape, dtype=np.float32)
 
     def checked(self, action: Any) -> np.ndarray:
-        """An action as a batch of one, (1, m) float64.
+        """An action as a batch of one, (1, m) float64: always the same array, which the next call overwrites.
 
         Raises:
             ValueError: It is not numeric, has the wrong shape or is not finite; the message names the
                 component.
         """
-        array = numbers(action, "action")
+        array = _real(action, "action")
         if array.shape != self._shape:
             meaning = ", ".join(column.name for column in self.columns)
             raise ValueError(
                 f"action must have shape {self._shape} in action_mode {self.mode!r} ({meaning}), "
                 f"got {array.shape}: {action!r}"
             )
-        for value in array.tolist():
+        batch = self._batch
+        batch[0] = array
+        for k, value in enumerate(batch.tolist()[0]):
             if not math.isfinite(value):
-                k = np.isfinite(array).argmin()
                 name = self.columns[k].name
                 raise ValueError(f"action[{k}] ({name}) = {value!r} must be finite, within [-1, 1]")
-        return array[np.newaxis]
+        return batch
 
     def checked_batch(self, actions: Any, n: int) -> np.ndarray:
         """Actions of n environments, (n, m) float64.
@@ -164,6 +166,11 @@ def numbers(given: Any, name: str) -> np.ndarray:
     Raises:
         ValueError: It is something else: complex, text, a time, masked, an integer beyond 64 bits.
     """
+    return _real(given, name).astype(np.float64, order="C", copy=False)
+
+
+def _real(given: Any, name: str) -> np.ndarray:
+    """`numbers` of any real type."""
     array = given
     if type(given) is not np.ndarray:
         try:
@@ -176,7 +183,7 @@ def numbers(given: Any, name: str) -> np.ndarray:
         raise ValueError(
             f"{name} = {given!r:.80} must be an array of numbers, within [-1, 1], not of {array.dtype}"
         )
-    return array.astype(np.float64, order="C", copy=False)
+    return array
 
 
 @compiled

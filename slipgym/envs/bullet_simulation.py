@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from slipgym._numba.compiled import patience
+from slipgym._numba.fixed import Fixed
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMPONENT
-from slipgym.envs.bullet_step import BulletStep
+from slipgym.envs.bullet_step import BulletStep, fixed_action
 from slipgym.envs.nan_guard import Guard
 from slipgym.envs.observation import SENSORS, ObservationBuffers
 from slipgym.envs.reset_kernels import WARM_UP_STEPS
@@ -54,6 +55,8 @@ class BulletSimulation(Simulation):
         self.world = BulletWorld(config, self.plant)
         self._guard = Guard()
         self._first = True
+        self._given: tuple[np.ndarray, ...] = _NO_ACTION
+        self._action = self._no_action = fixed_action(*_NO_ACTION)
         m = len(SENSORS) + len(task.columns)
         low, high = np.full((2, m), [[-np.inf], [np.inf]], dtype=np.float32)
         out = np.zeros((1, m), dtype=np.float32)
@@ -74,9 +77,11 @@ class BulletSimulation(Simulation):
         if not active.item(0):
             self.infos.terms[:] = 0.0
             return
-        action = actions, components, active
+        if actions is not self._given[0] or components is not self._given[1] or active is not self._given[2]:
+            self._given = actions, components, active
+            self._action = fixed_action(*self._given)
         for k in range(skip):
-            self._control_step(action, k == 0)
+            self._control_step(self._action, k == 0)
             if k + 1 < skip and self.over:
                 break
 
@@ -98,7 +103,7 @@ class BulletSimulation(Simulation):
             FloatingPointError: A quantity is not finite; the environment needs a reset.
         """
         self.commands[0] = force, 0.0, 0.0, 0.0
-        self._control_step(_NO_ACTION, False)
+        self._control_step(self._no_action, False)
 
     def get_state(self) -> SimulationState:
         """See `Simulation.get_state`."""
@@ -155,11 +160,11 @@ class BulletSimulation(Simulation):
             self._kinds, self.state, self.plant.force_torque, buffers, self.infos, self._guard.rows
         )
 
-    def _control_step(self, action: tuple[np.ndarray, ...], fresh: bool) -> None:
+    def _control_step(self, action: Fixed, fresh: bool) -> None:
         """The stages of `slipgym.envs.control_step`; PyBullet moves the bodies.
 
         Args:
-            action: As in `slipgym.envs.control_step.begin`.
+            action: See `fixed_action`.
             fresh: Whether the reward terms start at 0.
         """
         world, calls = self.world, self._calls

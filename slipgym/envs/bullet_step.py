@@ -25,7 +25,7 @@ def _begin(fixed, action, fresh):
 
     Args:
         fixed: See `BulletStep`.
-        action: As in `slipgym.envs.control_step.begin`.
+        action: `fixed_action`.
         fresh: Whether the reward terms start at 0.
 
     Returns:
@@ -34,7 +34,7 @@ def _begin(fixed, action, fresh):
     stages, state, _, _, infos, _ = opened(fixed)
     if fresh:
         infos.terms[:] = 0.0
-    stages.begin(stages.script_wrist, state, action, 0, 1)
+    stages.begin(stages.script_wrist, state, opened(action), 0, 1)
     queue(state.worlds, state.fingers, state.commands[0, 0])
     return state.worlds[0].mass
 
@@ -66,6 +66,11 @@ def _finish(fixed, pose, wrist, normals, at):
     stages.look(state, buffers, 0, 1)
     stages.report(state, infos.numbers, infos.flags, 0, 1)
     return stages.note(kept, at, state, 0)
+
+
+def fixed_action(actions: np.ndarray, components: np.ndarray, active: np.ndarray) -> Fixed:
+    """An action as in `slipgym.envs.control_step.begin`, whose arrays are not taken apart at each call."""
+    return Fixed((actions, components, active), ACTION)
 
 
 class BulletStep:
@@ -108,5 +113,5 @@ def _compiled_step(
     kind = types.Tuple([stages.kind, STATE, array(force_torque, 2), BUFFERS, INFOS, F2])
     fixed = FixedType(kind)
     with patience(f"the control step of {task.name} with PyBullet"):
-        begin = entry_point(_begin, (fixed, ACTION, types.boolean))
+        begin = entry_point(_begin, (fixed, FixedType(ACTION), types.boolean))
         return stages, kind, begin, entry_point(_finish, (fixed, POSE, VECTOR, PAIR, WHOLE))

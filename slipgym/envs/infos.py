@@ -94,13 +94,19 @@ FLAGS = (
 )
 """Entries that are true or false, in the order of a row."""
 
+_ENDS = "episodes[i].dropped or episodes[i].ended", "episodes[i].step >= episodes[i].steps"
+"""Whether the episode has ended early, and whether it has its full length: they follow the flags in a row."""
+
 _SIZES = [math.prod(info.shape) for info in NUMBERS]
 _WIDTH = sum(_SIZES)
-_ENDS = np.cumsum(_SIZES).tolist()
-_PARTS = {info.name: slice(end - size, end) for info, end, size in zip(NUMBERS, _ENDS, _SIZES, strict=True)}
+_STOPS = np.cumsum(_SIZES).tolist()
+_PARTS = {
+    info.name: slice(stop - size, stop) for info, stop, size in zip(NUMBERS, _STOPS, _SIZES, strict=True)
+}
 _VIEWS = {info.name: (_PARTS[info.name], info.shape) for info in NUMBERS if info.shape}
-_SCALARS = [(info.name, _PARTS[info.name].start) for info in NUMBERS if not info.shape]
+_TIME = _PARTS["time"].start
 _FLAG_NAMES = [info.name for info in FLAGS]
+_NAMES = (*_VIEWS, "time", *_FLAG_NAMES, "reward_terms")
 
 
 class InfoBuffer(NamedTuple):
@@ -109,14 +115,15 @@ class InfoBuffer(NamedTuple):
     numbers: np.ndarray
     """See `NUMBERS`, (n, m)."""
     flags: np.ndarray
-    """See `FLAGS`, (n, 3) bool."""
+    """See `FLAGS`; then whether the episode ended early, and whether it has its full length, (n, 5) bool."""
     terms: np.ndarray
     """Reward terms of the last step, summed over its control steps, (n, k)."""
 
     @classmethod
     def zeros(cls, n: int, terms: int) -> InfoBuffer:
         """Make a buffer for n environments and a number of reward terms."""
-        return cls(np.zeros((n, _WIDTH)), np.zeros((n, len(FLAGS)), dtype=bool), np.zeros((n, terms)))
+        flags = np.zeros((n, len(FLAGS) + len(_ENDS)), dtype=bool)
+        return cls(np.zeros((n, _WIDTH)), flags, np.zeros((n, terms)))
 
     def empty_like(self) -> InfoBuffer:
         """Return another buffer of the same shapes, with undefined contents."""
@@ -170,21 +177,30 @@ class InfoCopies:
     def __init__(self, terms: Sequence[str]) -> None:
         self._terms = terms
         self._rows: Iterator[tuple[np.ndarray, ...]] = iter(())
+        self._buffer: InfoBuffer | None = None
+        self._sources: list[np.ndarray] = []
 
-    def take(self, buffer: InfoBuffer) -> dict[str, Any]:
-        """Copy the infos of the first environment."""
+    def take(self, buffer: InfoBuffer) -> tuple[dict[str, Any], bool, bool]:
+        """Copy the infos of the first environment.
+
+        PyBullet's step leaves nothing in the processor's cache: few calls of numpy matter more here than
+        short ones.
+
+        Returns:
+            The info, whether the episode has ended early, and whether it has its full length.
+        """
+        if buffer is not self._buffer:
+            self._buffer, self._sources = buffer, [array[0] for array in buffer]
+        numbers, marks, terms = self._sources
         views = next(self._rows, None)
         if views is None:
             self._rows = _rows()
             views = next(self._rows)
         row, *arrays = views
-        row[:] = buffer.numbers[0]
-        info: dict[str, Any] = dict(zip(_VIEWS, arrays, strict=True))
-        for name, at in _SCALARS:
-            info[name] = row.item(at)
-        info.update(zip(_FLAG_NAMES, buffer.flags[0].tolist(), strict=True))
-        info["reward_terms"] = dict(zip(self._terms, buffer.terms[0].tolist(), strict=True))
-        return info
+        row[:] = numbers
+        *flags, early, late = marks.tolist()
+        rewards = dict(zip(self._terms, terms.tolist(), strict=True))
+        return dict(zip(_NAMES, (*arrays, row.item(_TIME), *flags, rewards), strict=True)), early, late
 
 
 def _rows(count: int = 32) -> Iterator[tuple[np.ndarray, ...]]:
@@ -229,7 +245,11 @@ _write_numbers = row_writer(
     "Write `NUMBERS` of environment i.",
 )
 _write_flags = row_writer(
-    "_write_flags", [info.read for info in FLAGS], _ARRAYS, __file__, "Write `FLAGS` of environment i."
+    "_write_flags",
+    [*(info.read for info in FLAGS), *_ENDS],
+    _ARRAYS,
+    __file__,
+    "Write `FLAGS` of environment i, and whether its episode has ended.",
 )
 
 
@@ -239,7 +259,7 @@ def write_infos(numbers, flags, worlds, pads, fingers, episodes, ground_truth, e
 
     Args:
         numbers: Output (n, m), see `NUMBERS`.
-        flags: Output (n, 3), see `FLAGS`.
+        flags: Output (n, 5), see `InfoBuffer.flags`.
         worlds: WORLD (n,).
         pads: PAD (n, 2).
         fingers: FINGER (n, 2).

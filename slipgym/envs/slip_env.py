@@ -104,7 +104,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             if self._renderer is not None:
                 self._renderer.begin()
             self._observer.begin(_FIRST)
-            drawn, info = self.simulation.drawn.one(0), self._info()
+            drawn, (info, _, _) = self.simulation.drawn.one(0), self._report()
             observation = self._observer.first()
         except BaseException:
             if generator is not None:
@@ -136,8 +136,8 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         else:
             self._step_in_pictures(actions)
         observer.next(_ONE)
-        terminated, info = simulation.ended_early, self._info()
-        reward, truncated = sum(info["reward_terms"].values()), not terminated and simulation.timed_out
+        info, terminated, timed_out = self._report()
+        reward, truncated = sum(info["reward_terms"].values()), timed_out and not terminated
         observation = observer.first()
         self._ready = True
         return observation, reward, terminated, truncated, info
@@ -212,7 +212,8 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self._np_random, self._np_random_seed = generator, seed
         self._ready = state.simulation is not None
 
-    def _info(self) -> dict[str, Any]:
+    def _report(self) -> tuple[dict[str, Any], bool, bool]:
+        """See `InfoCopies.take`."""
         return self._copies.take(self.simulation.infos)
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -27,6 +27,8 @@ SCRIPT = str(Path(__file__).with_name("rollout.py"))
 )
 @pytest.mark.parametrize("model", ["ellipsoid", "distributed"])
 def test_the_true_r_is_that_of_the_pressure_on_the_pad(make, env_id, model, contact, r):
+    if "Explore" in env_id:
+        pytest.skip("Explore draws r in every episode")
     env = make(env_id, contact=model, friction_source="true", config={"contact": contact})
     observation, info = env.reset(seed=0)
     r = env.settings.radius or r  # a task with fingertips of its own

@@ -54,7 +54,7 @@ def test_of_one_environment(make, env_id, engine):
     np.testing.assert_array_equal(info["grip_force"], kept)
     assert not np.array_equal(later["grip_force"], kept)
     other.set_state(env.get_state())
-    restored = other._info()
+    restored, *_ = other._report()
     for name, values in later.items():
         if name != "reward_terms":  # of a step that another environment made
             np.testing.assert_array_equal(restored[name], values, err_msg=name)
