@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, Unpack
+from typing import TYPE_CHECKING, Any, ClassVar, Unpack
 
 import gymnasium as gym
 import numpy as np
@@ -15,6 +15,9 @@ from slipgym.envs.simulation import Simulation
 from slipgym.envs.state import EnvState, checked, restored_generator, restored_seed
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
+
+if TYPE_CHECKING:
+    from slipgym.rendering.discrepancy import Discrepancy
 
 
 def _bullet(*arguments: Any) -> Simulation:
@@ -166,9 +169,20 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self.simulation.check_open()
         if self._renderer is None:
             return None
-        if self.simulation.boxes[0] is None:
-            raise RuntimeError("call reset() first: there is no object yet")
+        self._check_object()
         return self._renderer.render()
+
+    def discrepancies(self) -> list[Discrepancy]:
+        """Return the estimates of friction that are off, and why, in the words of the picture.
+
+        Returns:
+            One for each; empty without a render mode, which keeps the episode's history.
+
+        Raises:
+            RuntimeError: The environment is closed or was never reset.
+        """
+        self._check_object()
+        return [] if self._renderer is None else self._renderer.discrepancies()
 
     def get_state(self) -> EnvState:
         """Return the complete state as plain data; an environment continues from it bit for bit.
@@ -211,6 +225,11 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             self._observer.set_state(state.frames, _ONE)
         self._np_random, self._np_random_seed = generator, seed
         self._ready = state.simulation is not None
+
+    def _check_object(self) -> None:
+        self.simulation.check_open()
+        if self.simulation.boxes[0] is None:
+            raise RuntimeError("call reset() first: there is no object yet")
 
     def _report(self) -> tuple[dict[str, Any], bool, bool]:
         """See `InfoCopies.take`."""

@@ -1,4 +1,4 @@
-"""Says in words why the estimated friction in a picture differs from the true friction."""
+"""Says in words why the estimated friction differs from the true friction, for pictures and the viewer."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ RECENT = 0.5
 
 
 class Discrepancy(NamedTuple):
-    """A friction coefficient whose estimate is off, or that has none."""
+    """A friction coefficient whose estimate is off, or that has none; both, if the words are the same."""
 
     name: str
-    """"mu_c" or "mu_s"."""
+    """"mu_c", "mu_s" or "mu_c, mu_s"."""
     error: str
     """Its error in words, over the deviation that the estimator states."""
     reason: str
@@ -55,6 +55,8 @@ def discrepancies(simulation: Source, row: int, history: History) -> list[Discre
             size = f"{100.0 * abs(error) / true:.0f} % {'high' if error > 0.0 else 'low'}"
             times = f", {abs(error) / deviation:.1f} deviations" if deviation else ""
             found.append(Discrepancy(name, size + times, _reason(simulation, row, history, name)))
+    if len(found) == 2 and found[0][1:] == found[1][1:]:
+        return [found[0]._replace(name="mu_c, mu_s")]
     return found
 
 

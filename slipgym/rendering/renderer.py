@@ -6,7 +6,7 @@ import numpy as np
 
 from slipgym.rendering import camera, strip
 from slipgym.rendering.caption import caption
-from slipgym.rendering.discrepancy import discrepancies
+from slipgym.rendering.discrepancy import Discrepancy, discrepancies
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.history import History
 from slipgym.rendering.look import look
@@ -77,9 +77,12 @@ class Renderer:
         about = f"{simulation.materials[row]}, {1e3 * world['mass']:.0f} g"
         slip = world["slip"]
         caption(view, simulation.task.name, about, self._history.time, self._state(), contact, slip, target)
-        off = discrepancies(simulation, row, self._history)
-        strip.draw_strip(beside, self._history, self._motion, self._goal, off)
+        strip.draw_strip(beside, self._history, self._motion, self._goal, self.discrepancies())
         return picture
+
+    def discrepancies(self) -> list[Discrepancy]:
+        """Return the estimates that are off, or have no data, as a picture names them."""
+        return discrepancies(self._simulation, self._row, self._history)
 
     def close(self) -> None:
         """Close the window, if there is one."""

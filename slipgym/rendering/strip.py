@@ -71,11 +71,10 @@ def draw_strip(
 
 
 def _notes(picture: np.ndarray, off: Sequence[Discrepancy]) -> None:
-    """Two lines for each estimate that is off; one for both if the words are the same."""
-    same = len(off) == 2 and off[0][1:] == off[1][1:]
-    for k, (name, error, reason) in enumerate(off[:1] if same else off):
-        y, names = _NOTES + 2 * k * _LINE, "mu_c, mu_s" if same else name
-        write(picture, 12, y, f"{names}: {error}", MU_S if name == "mu_s" else MU_C, 12)
+    """Two lines for each estimate that is off."""
+    for k, (name, error, reason) in enumerate(off):
+        y = _NOTES + 2 * k * _LINE
+        write(picture, 12, y, f"{name}: {error}", MU_S if name == "mu_s" else MU_C, 12)
         write(picture, 12, y + _LINE, reason, MUTED, 12)
 
 

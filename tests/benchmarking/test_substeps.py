@@ -8,6 +8,8 @@ import pytest
 from slipgym.benchmarking import substeps
 from slipgym.benchmarking.measure import Player
 
+pytestmark = pytest.mark.slow  # they compile a program that only the benchmark runs
+
 
 @pytest.fixture(scope="module")
 def plant():

@@ -13,7 +13,7 @@ from slipgym.contact.limit_surface_exact import exact_friction
 from slipgym.synthetic import Course
 from slipgym.validation.patch_rate import rate_form
 from slipgym.validation.patch_steps import profile, step_difference
-from slipgym.validation.patch_stick import energy_gain, hold
+from slipgym.validation.patch_stick import CREEP_BOUND, energy_gain, hold
 from slipgym.validation.patch_surface import MU_C, MU_S, RADIUS, steady_friction
 
 DISC = 1.5  # radius of a uniform disc over r
@@ -41,6 +41,10 @@ def test_a_slow_slip_breaks_away_on_the_static_limit_surface(direction):
     # at 1e-5 m/s g is below mu_s by 1e-4 of it at most and bristle damping adds 1e-3
     assert forces[-1] == pytest.approx(expected, rel=6e-3)
     assert forces[1] < 0.5 * expected  # still elastic
+
+
+def test_a_load_below_the_static_limit_is_held():
+    assert 1e3 * hold((0.5, -0.4, 0.77), 0.8) <= CREEP_BOUND
 
 
 def test_a_load_above_the_static_limit_slides():

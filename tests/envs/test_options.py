@@ -1,5 +1,6 @@
 """Every reset option takes effect, and only for its episode."""
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
@@ -51,6 +52,22 @@ UNSEEN = {("slipgym/Explore-v0", name) for name in ("accuracy", "commitment", "t
 """Options that show in a guess, or in a turn in the grip: tests/tasks/test_explore.py."""
 
 
+@pytest.fixture(scope="module")
+def kept():
+    """Makes an environment once for all tests of this file."""
+    made = {}
+
+    def factory(env_id, randomization):
+        arguments = {"action_mode": "grip_force", "randomization": randomization}
+        if (env_id, randomization) not in made:
+            made[env_id, randomization] = gym.make(env_id, **arguments).unwrapped
+        return made[env_id, randomization]
+
+    yield factory
+    for env in made.values():
+        env.close()
+
+
 def test_every_option_is_tried_and_explained(make, env_id):
     fields = make(env_id).task.options.model_fields
     assert set(fields) <= {*CHANGES, "wrist_roll"}  # that one needs tilt: tests/world/test_tilt.py
@@ -58,8 +75,8 @@ def test_every_option_is_tried_and_explained(make, env_id):
 
 
 @pytest.mark.parametrize("name", CHANGES)
-def test_an_option_changes_its_episode_and_no_other(make, env_id, play, name):
-    env = make(env_id, randomization="train" if name == "randomization_scale" else "none")
+def test_an_option_changes_its_episode_and_no_other(kept, env_id, play, name):
+    env = kept(env_id, "train" if name == "randomization_scale" else "none")
     if name not in env.task.options.model_fields:
         pytest.skip("not an option of this task")
     if (env_id, name) in UNSEEN:
@@ -67,8 +84,8 @@ def test_an_option_changes_its_episode_and_no_other(make, env_id, play, name):
     late = (
         name.startswith(("poke", "tilt", "grip_limit")) or "Carry" in env_id
     )  # no tilt or slip before the wrist moves
-    steps = 900 if name == "grip_limit_start" else 200 if late else 20
-    others = {"grip_limit": 1.5} if name == "grip_limit_start" else {}
+    steps = 200 if late else 20
+    others = {"grip_limit": 1.5, "duration": 1.5} if name == "grip_limit_start" else {}
     plain = play(env, steps=steps, options=others)
     assert play(env, steps=steps, options={**others, name: CHANGES[name]}) != plain
     assert play(env, steps=steps, options=others) == plain

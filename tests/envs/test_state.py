@@ -78,6 +78,7 @@ def test_copies_have_a_world_of_their_own(midway, duplicate):
     twin.close()
 
 
+@pytest.mark.quick_cases("slipgym/LinearSlip-v0-planar", "slipgym/Hold-v0-bullet")
 def test_in_another_process(midway, env_id, engine, exact_printing):
     if (engine == "bullet") != (env_id == "slipgym/Hold-v0"):
         pytest.skip("one process a task is enough")

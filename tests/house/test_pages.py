@@ -1,5 +1,6 @@
 """The pages hang together: links lead somewhere, and every page can be reached from README.md."""
 
+import ast
 import re
 from functools import cache
 from pathlib import Path
@@ -45,6 +46,12 @@ def test_links_lead_somewhere(page):
 def test_anchors_are_headings(page):
     found = [(target(page, link), link) for link in links(page) if "#" in link]
     assert [link for to, link in found if link.partition("#")[2] not in anchors(to)] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=PAGE_IDS)
+def test_python_on_a_page_is_python(page):
+    for block in re.findall(r"^```python.*?\n(.*?)^```$", page.read_text(), re.DOTALL | re.MULTILINE):
+        ast.parse(block)
 
 
 def test_every_page_can_be_reached_from_the_readme():

@@ -1,5 +1,6 @@
 """Films and windows of policies."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -7,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from typer.testing import CliRunner
 
+from policies.commands.play import app
 from policies.play import Video, own_policy, take_screenshot, watch
 from policies.play.watch import Keyboard
 from slipgym.config import load
@@ -126,23 +129,29 @@ def test_every_task_has_a_policy_to_show():
 
 
 def test_the_command_line(tmp_path):
-    def call(*arguments: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, str(ROOT / "scripts" / "play.py"), *arguments],
-            cwd=tmp_path,
-            env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin"},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+    displays = {"DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"}
+    without_display = {name: value for name, value in os.environ.items() if name not in displays}
 
     options = [word for name, value in SHORT.items() for word in ("--option", f"{name}={value}")]
-    done = call("LinearSlip", "--video", "film.gif", "--material", "wood", *options)
+    words = "LinearSlip", "--video", "film.gif", "--material", "wood", *options
+    done = subprocess.run(
+        [sys.executable, str(ROOT / "scripts" / "play.py"), *words],
+        cwd=tmp_path,
+        env={**without_display, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     assert "seed 0:" in done.stdout
     assert (tmp_path / "film.gif").stat().st_size > 1000
-    done = call("LinearSlip")
-    assert done.returncode == 2
+
+
+def test_without_a_screen_the_command_line_names_the_option_of_a_video(monkeypatch):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
+        monkeypatch.delenv(name, raising=False)
+    done = CliRunner().invoke(app, ["LinearSlip"])
+    assert done.exit_code == 2
     assert "--video" in done.stderr
 
 

@@ -54,6 +54,7 @@ def test_bias_is_where_the_ellipsoids_equations_rest():
     np.testing.assert_allclose(disc_bias(gamma_t, viscous), (mu_c - 1.0, r / disc(1.0) - 1.0), atol=5e-4)
 
 
+@pytest.mark.quick_cases("0.5", "0.9")
 @pytest.mark.parametrize("gamma_t", [0.3, 0.5, 0.707, 0.8, 0.9])
 def test_planar_errors_on_a_disc_are_the_ellipsoids_bias(gamma_t):
     contact = DistributedContact(cells=41, sigma_2=0.2)

@@ -1,4 +1,4 @@
-"""The viewer without a browser: session, changes, controls, limit surface, recording, errors."""
+"""The viewer without a browser: session, changes, controls, recording, errors."""
 
 import sys
 from contextlib import nullcontext
@@ -15,8 +15,6 @@ from policies.play.viewer.app import policies_for
 from policies.play.viewer.controls import Controls
 from policies.play.viewer.interventions import POKE_TIME, poke, set_friction, set_mass
 from policies.play.viewer.recording import Recording
-from policies.play.viewer.surface import SurfacePlot, boundary
-from slipgym.contact import EllipsoidContact
 from slipgym.tasks import find
 from slipgym.tasks.episode import EPISODE
 
@@ -147,34 +145,6 @@ def test_a_full_list_of_pushes_makes_room():
 def test_a_change_that_makes_no_sense_is_refused(change, words):
     with pytest.raises(ValueError, match=words):
         change(np.ones(1, EPISODE)[0])
-
-
-def test_the_surface_is_the_steady_friction_of_two_ellipsoidal_pads():
-    mu, normal, radius = np.array([0.4, 0.5]), np.array([6.0, 8.0]), np.array([0.009, 0.011])
-    curve = boundary(mu, normal, radius)
-    assert curve[20] == pytest.approx([0.0, mu @ normal])  # translation alone
-    assert curve[-1] == pytest.approx([(mu * normal) @ radius, 0.0], abs=1e-12)  # spin alone
-    ratio = np.tan(0.25 * np.pi)  # r omega / v at three quarters
-    twist = (0.0, -0.02, ratio * 0.02 / 0.010)
-    total = np.zeros(3)
-    for k in range(2):
-        pad = EllipsoidContact(r=radius[k], mu_c=mu[k], mu_s=mu[k], sigma_0=1e6, sigma_1=0.0, sigma_2=0.0)
-        for _ in range(200):
-            wrench = pad.step(twist, normal[k], 1e-3)
-        total += wrench
-    assert curve[30] == pytest.approx([abs(total[2]), np.hypot(total[0], total[1])], rel=1e-6)
-
-
-def test_the_plot_of_the_surface_draws_what_is_known(session):
-    plot = SurfacePlot()
-    before = plot.draw(session.env.simulation, session.info)
-    assert before.count("<polyline") == 2  # nothing is estimated yet
-    for _ in range(5):
-        session.advance(0.1)
-    after = plot.draw(session.env.simulation, session.info)
-    assert after.count("<polyline") == 3
-    assert "nan" not in before + after
-    assert after.count("<circle") == 2
 
 
 class Handle(SimpleNamespace):

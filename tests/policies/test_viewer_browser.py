@@ -84,6 +84,7 @@ def page(tmp_path_factory):
 
 
 def test_the_page_shows_the_episode(page):
+    page.until(lambda: "not observed: it needs slip" in page.read("off mu_c"))
     page.play(1.0)
     page.until(lambda: page.read("time") not in ("", "0.00 s"), 1.0 / 30.0)
     assert page.read("policy") == "linear_slip"

@@ -87,6 +87,25 @@ def test_each_reason(past, values, reason, monkeypatch):
     assert off == [Discrepancy("mu_c", f"25 % high, {size:.1f} deviations", reason)]
 
 
+def test_the_same_words_for_both_are_said_once():
+    expected = Discrepancy("mu_c, mu_s", "25 % high, 2.5 deviations", "newest data 1.0 s old")
+    past = Past(mu_c=0.5, mu_s=0.75, data_mu_c=0, data_mu_s=0)
+    values = simulated(0.5, 0.4, deviation=0.04, sd_mu_s=0.06)
+    values.estimated[0, [0, 6]] = 0.75, 0.06
+    assert discrepancies(values, 0, past) == [expected]
+
+
+def test_an_environment_says_them_where_it_draws(make):
+    env = make(engine="planar", render_mode=None)
+    with pytest.raises(RuntimeError, match="call reset"):
+        env.discrepancies()
+    env.reset(seed=0)
+    assert env.discrepancies() == []  # no history is kept
+    env = make(engine="planar")
+    env.reset(seed=0)
+    assert [off.error for off in env.discrepancies()] == ["not observed"] * 2
+
+
 def test_reasons_fit_beside_the_view():
     reasons = [
         "sensor or model errors beyond the deviation",

@@ -34,13 +34,13 @@ def call(folder, script, *arguments, path=ROOT):
 @pytest.mark.parametrize(
     ("script", "words"),
     [
-        ("estimate.py", ("--columns", "--velocity", "--estimator", "--set", "--allow-gaps", "--output")),
-        ("record.py", ("--velocity", "--finger", "--seed", "--material", "--option")),
+        ("estimate", ("--columns", "--velocity", "--estimator", "--set", "--allow-gaps", "--output")),
+        ("record", ("--velocity", "--finger", "--seed", "--material", "--option")),
     ],
 )
-def test_help_teaches(tmp_path, script, words):
-    done = call(tmp_path, script, "--help")
-    assert done.returncode == 0, done.stderr
+def test_help_teaches(invoke, script, words):
+    done = invoke(script, "--help")
+    assert done.exit_code == 0, done.stderr
     for word in (*words, "Examples", "docs/records.md"):
         assert word in done.stdout
 
@@ -71,6 +71,7 @@ def test_a_missing_extra_says_how_to_install_it(tmp_path, missing):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow  # the scripts in processes of their own; the tests below call what they call
 def test_from_an_episode_to_estimates(tmp_path):
     options = [word for name, value in OPTIONS.items() for word in ("--option", f"{name}={value}")]
     files = "forces.parquet", "--velocity", "velocities.csv"

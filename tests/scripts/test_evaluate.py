@@ -29,9 +29,9 @@ def call(folder, *arguments):
     )
 
 
-def test_help_teaches(tmp_path):
-    done = call(tmp_path, "--help")
-    assert done.returncode == 0, done.stderr
+def test_help_teaches(invoke):
+    done = invoke("evaluate", "--help")
+    assert done.exit_code == 0, done.stderr
     for word in ("--demo", "--trials", "--jobs", "--friction-source", "--output", "--seed", "Examples"):
         assert word in done.stdout
 

@@ -18,9 +18,9 @@ def call(folder, *arguments):
     )
 
 
-def test_help_teaches(tmp_path):
-    done = call(tmp_path, "--help")
-    assert done.returncode == 0, done.stderr
+def test_help_teaches(invoke):
+    done = invoke("study", "--help")
+    assert done.exit_code == 0, done.stderr
     assert "slipgym study full --jobs 2" in done.stdout
 
 

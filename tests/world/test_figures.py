@@ -11,6 +11,7 @@ SLOW = {
     "distributed",
     "patch_rate",
     "patch_steps",
+    "patch_stick",
     "patch_surface",
     "slides",
     "soft",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import html
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,6 +11,7 @@ import numpy as np
 from policies.play.viewer.history import History
 from policies.play.viewer.session import Session
 from policies.play.viewer.surface import SurfacePlot
+from slipgym.rendering.discrepancy import Discrepancy
 
 ORANGE, GREEN, BLUE, LIGHT, GREY = "#D55E00", "#009E73", "#0072B2", "#56B4E9", "#767676"
 _FRICTION = (
@@ -61,6 +64,7 @@ class Plots:
             padding=(8, 16, 0, 0),
             height=165,
         )
+        self._off = gui.add_html("")
         with gui.add_folder("limit surface of both pads"):
             self._dome = gui.add_html("")
             gui.add_html(_KEY)
@@ -97,6 +101,7 @@ class Plots:
         self._friction.data = _friction(history)
         self._grip.data = history.columns(*_GRIP)
         self._path.data = history.columns(*_PATH)
+        self._off.content = _notes(self._session.env.discrepancies())
         self._dome.content = self._surface.draw(self._session.env.simulation, self._session.info)
 
 
@@ -105,6 +110,18 @@ def _friction(history: History) -> tuple[np.ndarray, ...]:
     columns = history.columns(*_FRICTION)
     zero = np.zeros_like(columns[0])
     return *columns, zero, zero + 1.2 * columns[-1].max()
+
+
+def _notes(off: Sequence[Discrepancy]) -> str:
+    """Estimates that are off, and why, as HTML, of a height that keeps the plots in place."""
+    lines = [
+        f'<div data-name="off {name}"><b style="color:{GREEN if name == "mu_s" else ORANGE}">{name}</b> '
+        f"{html.escape(error)}: {html.escape(reason)}</div>"
+        for name, error, reason in off
+    ]
+    lines = lines or [f'<div style="color:{GREY}">no estimate is off</div>']
+    style = "font-size:12px;line-height:1.35;min-height:5.4em;padding:0 10px"
+    return f'<div style="{style}">{"".join(lines)}</div>'
 
 
 def _line(label: str, colour: str, width: float, dash: list[int] | None = None) -> dict[str, Any]:
