@@ -14,6 +14,7 @@ import numpy as np
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
+from estimator.augmented.scalar_update import correct
 from estimator.augmented.slip_law import FALLS, GROWS, MU, STATES, R
 from estimator.augmented.timing import LAST
 
@@ -119,18 +120,16 @@ def bound_exponent(state, p, f_t, f_n):
     expected = state.event * math.exp(-state.x[FALLS] * step)
     margin = max(math.log(expected * (f_n + BAND * p.sd_normal) / held), 0.0)
     square = margin * margin + state.variance_mu_s + state.common_mu_s
-    _narrow(state.covariance, FALLS, square / (3.0 * step * step))
+    _narrow(state.x, state.covariance, FALLS, square / (3.0 * step * step))
 
 
 @njit(error_model="numpy")
-def _narrow(covariance, j, variance):
+def _narrow(x, covariance, j, variance):
     """Lowers the variance of state j, and what the others share with it; a larger one changes nothing."""
     before = covariance[j, j]
     if not variance < before:
         return
-    row, factor = matrix(1, STATES)[0], (before - variance) / (before * before)
+    crossed = matrix(1, STATES)[0]
     for k in range(STATES):
-        row[k] = covariance[j, k]
-    for i in range(STATES):
-        for k in range(STATES):
-            covariance[i, k] -= row[i] * row[k] * factor
+        crossed[k] = covariance[j, k]
+    correct(x, covariance, crossed, (before - variance) / (before * before), 0.0)

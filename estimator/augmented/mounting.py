@@ -10,6 +10,7 @@ makes a ratio of both changes that no tilt explains.
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
 from estimator.augmented.load import limit
+from estimator.augmented.scalar_update import correct
 from estimator.augmented.slip_law import STATES, TILT
 from estimator.augmented.timing import LAST
 
@@ -88,12 +89,8 @@ def _compare(state, p, axis, change, step, passed):
     variance = step * step * covariance[at, at] + cautious * noise
     if not square * cautious < UNLIKELY * UNLIKELY * variance:
         return
-    gain = step / variance
-    row = matrix(1, STATES)[0]
+    crossed = matrix(1, STATES)[0]
     for j in range(STATES):
-        row[j] = covariance[at, j]
-    for j in range(STATES):
-        x[j] += row[j] * gain * innovation
-        for k in range(STATES):
-            covariance[j, k] -= row[j] * row[k] * gain * step
+        crossed[j] = step * covariance[at, j]
+    correct(x, covariance, crossed, 1.0 / variance, innovation)
     limit(x, state.limits)

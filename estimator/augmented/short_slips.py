@@ -15,6 +15,7 @@ from estimator.augmented.change import follow
 from estimator.augmented.filtering import MOST
 from estimator.augmented.holding import least_friction
 from estimator.augmented.load import beside, limit, move
+from estimator.augmented.scalar_update import correct
 from estimator.augmented.sliding import settle
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, STATES, TILT, ZERO, R
 from estimator.augmented.timing import EARLIEST, LAST, LATEST
@@ -113,10 +114,7 @@ def _take(state, p, i, speed):
         if not crossed[j] * crossed[j] * gain < MOST * covariance[j, j]:
             return math.nan
     value, before = x[MU], covariance[MU, MU]
-    for j in range(STATES):
-        x[j] += crossed[j] * gain * innovation
-        for k in range(STATES):
-            covariance[j, k] -= crossed[j] * crossed[k] * gain
+    correct(x, covariance, crossed, gain, innovation)
     limit(x, state.limits)
     follow(state, p, value, before)
     if state.updates_mu_c == 0:

@@ -6,7 +6,9 @@ Those of normal force and torque are averaged here, and subtracted from every sa
 """
 
 from estimator._numba.caching import njit
+from estimator._numba.memory import matrix
 from estimator.augmented.load import limit
+from estimator.augmented.scalar_update import correct
 from estimator.augmented.slip_law import STATES, ZERO
 
 HEDGE = 2.0
@@ -44,26 +46,18 @@ def learn_zero(state, p, wrench):
         if abs(change) < 10.0 * p.sd_zero_torque:
             state.zero_torque += gain * change
             state.variance_torque *= 1.0 - gain
-    x, covariance = state.x, state.covariance
+    x, covariance, crossed = state.x, state.covariance, matrix(1, STATES)[0]
     for axis in range(2):
         at = ZERO + axis
-        variance = covariance[at, at]
-        gain = 1.0 / (variance + (HEDGE * p.caution * p.sd_force) ** 2)
         innovation = wrench[axis] - x[at]
         if not abs(innovation) < 10.0 * p.sd_zero:
             continue
         state.unloaded = True
         for j in range(STATES):
-            x[j] += covariance[j, at] * gain * innovation
+            crossed[j] = covariance[j, at]
+        noise = HEDGE * p.caution * p.sd_force
+        correct(x, covariance, crossed, 1.0 / (crossed[at] + noise * noise), innovation)
         limit(x, state.limits)
-        for j in range(STATES):
-            for k in range(STATES):
-                if j != at and k != at:
-                    covariance[j, k] -= covariance[j, at] * covariance[at, k] * gain
-        left = 1.0 - variance * gain
-        for j in range(STATES):
-            covariance[j, at] *= left
-            covariance[at, j] = covariance[j, at]
 
 
 @njit(error_model="numpy")
