@@ -142,6 +142,10 @@ class Training(Frozen):
         default=None,
         description="A controller whose actions the learner changes; null: it acts by itself [-]",
     )
+    derived: Mapping[str, Mapping[str, float]] = Field(
+        default={},
+        description="Columns that the learner reads in addition: name -> column of the observation -> factor",
+    )
     normalisation: Normalisation = Field(default=Normalisation(), description="Of what is learned from [-]")
     evaluation: Evaluation = Field(default=Evaluation(), description="How progress is measured [-]")
     stop: Stop = Field(default=Stop(), description="When a run ends early [-]")
@@ -174,6 +178,12 @@ class Training(Frozen):
             raise ValueError(f"residual: {self.residual.controller} needs action_mode {needs!r}")
         if getattr(controller, "task", None) not in (None, self.task):
             raise ValueError(f"residual: {self.residual.controller} is not for {self.task}")
+        return self
+
+    @model_validator(mode="after")
+    def _can_fold_derived_columns(self) -> Self:
+        if self.derived and (self.algorithm != "ppo" or self.residual is not None):
+            raise ValueError("derived needs algorithm 'ppo' and no residual")
         return self
 
     @model_validator(mode="after")

@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from stable_baselines3.common.vec_env import VecNormalize
+
 from policies.learned import export
+from policies.training import derived
 from policies.training import model as learners
 from policies.training.config import Training
 from slipgym.tasks import find
@@ -38,4 +41,23 @@ def write(
     learners.set_normalisation(envs, dict(normalisation))
     arguments = config.environment.model_dump(mode="json")
     env_id = find(config.task).id
+    if config.derived:
+        model, envs = _folded(model, envs, config)
     return export.save(model, path, env_id, arguments, envs, command, [seed], residual=config.residual)
+
+
+def _folded(model: Any, envs: VecNormalize, config: Training) -> tuple[Any, VecNormalize]:
+    """A learner without derived columns that acts as one with them, and its environments."""
+    plain = config.model_copy(update={"derived": {}, "num_envs": 1})
+    found: Any = envs.venv
+    own = learners.normalised(plain, found.venv)
+    count = found.matrix.shape[1]
+    own.ret_rms = envs.ret_rms
+    if own.norm_obs:
+        read: Any = envs.obs_rms
+        moments: Any = own.obs_rms
+        moments.mean, moments.var, moments.count = read.mean[:count], read.var[:count], read.count
+    learner = learners.make(plain, own, 0)
+    learner.policy.load_state_dict(derived.fold(model.policy.state_dict(), envs, found.matrix))
+    learner.num_timesteps = model.num_timesteps
+    return learner, own

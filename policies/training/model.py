@@ -16,6 +16,7 @@ from torch import nn
 
 from policies.training import vector
 from policies.training.config import Training
+from policies.training.derived import DerivedVecEnv, Moments
 from policies.training.ppo import VectorPPO
 from policies.training.state_checks import check_array, check_counters, check_twister, fits
 
@@ -32,7 +33,7 @@ _REPLAY = ("observations", "next_observations", "actions", "rewards", "dones", "
 def normalised(config: Training, envs: Any, training: bool = True) -> VecNormalize:
     """Environments whose observations and rewards are normalised as configured."""
     chosen = config.normalisation
-    return VecNormalize(
+    made = VecNormalize(
         envs,
         training=training,
         norm_obs=chosen.observation,
@@ -41,6 +42,9 @@ def normalised(config: Training, envs: Any, training: bool = True) -> VecNormali
         clip_reward=chosen.clip,
         gamma=config.hyperparameters.gamma,
     )
+    if isinstance(envs, DerivedVecEnv) and chosen.observation:
+        made.obs_rms = Moments(envs.matrix.shape[1], sum(envs.matrix.shape))
+    return made
 
 
 def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:

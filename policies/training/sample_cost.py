@@ -13,6 +13,7 @@ from policies.training import evaluate, files, seeds, vector
 from policies.training import model as learners
 from policies.training.adapter import SlipVecEnv
 from policies.training.config import Training
+from policies.training.derived import DerivedVecEnv
 from policies.training.ppo import VectorPPO
 from policies.training.residual import ResidualVecEnv
 from slipgym.benchmarking.report import Figure
@@ -23,6 +24,7 @@ _WRAPPERS: dict[type, str] = {
     SlipVecEnv: "adapter",
     VecMonitor: "monitor",
     ResidualVecEnv: "controller",
+    DerivedVecEnv: "derived columns",
     VecNormalize: "normalisation",
 }
 """Label of each layer around the vector environment."""

@@ -12,6 +12,7 @@ from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv,
 from policies.learned.residual import Underlying
 from policies.training.adapter import SlipVecEnv, make_vec_env
 from policies.training.config import Training
+from policies.training.derived import DerivedVecEnv
 from policies.training.residual import ResidualVecEnv
 from policies.training.state_checks import check_array
 from slipgym.tasks import find
@@ -68,6 +69,8 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
         columns, metadata = envs.get_attr("columns")[0], envs.get_attr("metadata")[0]
         underlying = Underlying(config.residual, keywords, len(columns), metadata["render_fps"])
         envs = ResidualVecEnv(envs, underlying)
+    if config.derived:
+        envs = DerivedVecEnv(envs, config.derived, config.environment.history)
     return envs
 
 
@@ -95,6 +98,8 @@ def scalar(
 
 def get_state(envs: Any) -> dict[str, Any]:
     """Everything that decides what the environments do next, as plain data."""
+    if isinstance(envs, DerivedVecEnv):
+        return get_state(envs.venv)
     if isinstance(envs, ResidualVecEnv):
         return {**get_state(envs.venv), "residual": envs.get_state()}
     states = envs.env_method("get_state")
@@ -111,6 +116,9 @@ def set_state(envs: Any, state: dict[str, Any]) -> None:
     Raises:
         ValueError: It is of other environments.
     """
+    if isinstance(envs, DerivedVecEnv):
+        set_state(envs.venv, state)
+        return
     if isinstance(envs, ResidualVecEnv):
         envs.set_state(state["residual"])
         set_state(envs.venv, state)

@@ -53,6 +53,7 @@ def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algori
         algorithm=algorithm,
         residual=residual,
         spread=residual is None,
+        derived={"grip": {"f_n_1": 0.5, "f_n_2": 0.5}} if algorithm == "ppo" and residual is None else {},
     )
     whole, broken = tmp_path / "whole", tmp_path / "broken"
     folder.begin(whole, config, 3)

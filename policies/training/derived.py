@@ -1,0 +1,119 @@
+"""Columns that the learner reads besides those of the observation: linear combinations of them.
+
+A difference of two columns that are nearly equal, such as a tracking error, is small beside the standard
+deviation by which either is normalised. Derived columns keep the scale that their factors give them. A
+trained network needs no such columns: its first layer can compute them (`fold`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import torch
+from gymnasium.spaces import Box
+from stable_baselines3.common.running_mean_std import RunningMeanStd
+from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper, VecNormalize
+from stable_baselines3.common.vec_env.base_vec_env import VecEnvStepReturn
+
+from slipgym.config.errors import unknown
+
+Derived = Mapping[str, Mapping[str, float]]
+"""Name of a derived column -> column of the observation -> coefficient."""
+_FIRST_LAYERS = "mlp_extractor.policy_net.0", "mlp_extractor.value_net.0"
+
+
+class DerivedVecEnv(VecEnvWrapper):
+    """Environments whose observations end with linear combinations of their columns.
+
+    With earlier observations, each of them gives its own combinations, in the same order.
+
+    Args:
+        venv: The environments; observations are vectors.
+        derived: The combinations.
+        history: Earlier observations in each observation.
+
+    Attributes:
+        matrix: What turns an observation into its derived columns, (d, k) float64.
+
+    Raises:
+        ValueError: The observation has no such column.
+    """
+
+    def __init__(self, venv: VecEnv, derived: Derived, history: int) -> None:
+        observed = venv.observation_space
+        assert isinstance(observed, Box)
+        names = [column.name for column in venv.get_attr("columns")[0]]
+        for column in (column for combination in derived.values() for column in combination):
+            if column not in names:
+                raise ValueError(f"derived: {unknown('column', column, names)}")
+        rows = [[combination.get(name, 0.0) for name in names] for combination in derived.values()]
+        matrix = np.kron(np.eye(history + 1), np.array(rows, np.float64))
+        self.matrix = np.pad(matrix, ((0, 0), (0, observed.shape[0] - matrix.shape[1])))
+        ends = np.full(len(matrix), np.inf, np.float32)
+        super().__init__(venv, Box(np.append(observed.low, -ends), np.append(observed.high, ends)))
+
+    def reset(self) -> np.ndarray:
+        """Start episodes in all environments."""
+        return self._extended(self.venv.reset())
+
+    def step_wait(self) -> VecEnvStepReturn:
+        """Step all environments; the last observation of an episode is extended, too."""
+        observations, rewards, dones, infos = self.venv.step_wait()
+        for i in np.flatnonzero(dones).tolist():
+            infos[i]["terminal_observation"] = self._extended(infos[i]["terminal_observation"])
+        return self._extended(observations), rewards, dones, infos
+
+    def _extended(self, observations: Any) -> np.ndarray:
+        """Observations (..., k) with their derived columns, (..., k + d) float32."""
+        return np.concatenate([observations, observations @ self.matrix.T], axis=-1, dtype=np.float32)
+
+
+class Moments(RunningMeanStd):
+    """Running mean and variance of the observation's columns; 0 and 1 for the derived columns behind them.
+
+    Args:
+        columns: Of the observation, k.
+        width: Numbers that the learner reads, k + d.
+    """
+
+    def __init__(self, columns: int, width: int) -> None:
+        super().__init__(shape=(width,))
+        self._columns = columns
+
+    def update_from_moments(self, batch_mean: np.ndarray, batch_var: np.ndarray, batch_count: float) -> None:
+        """Take moments (k + d,) of more observations in."""
+        super().update_from_moments(batch_mean, batch_var, batch_count)
+        self.mean[self._columns :], self.var[self._columns :] = 0.0, 1.0
+
+
+def fold(
+    parameters: Mapping[str, torch.Tensor], normalisation: VecNormalize, matrix: np.ndarray
+) -> dict[str, torch.Tensor]:
+    """Parameters of a network that reads the observation alone and computes the same.
+
+    The clipping of normalised derived columns is left out.
+
+    Args:
+        parameters: State of an "MlpPolicy" of PPO, by name.
+        normalisation: Of its observations (k + d columns).
+        matrix: What turns an observation into its derived columns, (d, k).
+
+    Returns:
+        The state of a policy with k columns.
+    """
+    count = matrix.shape[1]
+    mean, scale = np.zeros(sum(matrix.shape)), np.ones(sum(matrix.shape))
+    if normalisation.norm_obs:
+        moments: Any = normalisation.obs_rms
+        mean, scale = moments.mean, np.sqrt(moments.var + normalisation.epsilon)
+    of_normalised = matrix * scale[:count] / scale[count:, None]
+    offset = (matrix @ mean[:count] - mean[count:]) / scale[count:]
+    folded = dict(parameters)
+    for layer in _FIRST_LAYERS:
+        weight, bias = parameters[f"{layer}.weight"].double(), parameters[f"{layer}.bias"].double()
+        own, derived = weight[:, :count], weight[:, count:]
+        folded[f"{layer}.weight"] = (own + derived @ torch.from_numpy(of_normalised)).float()
+        folded[f"{layer}.bias"] = (bias + derived @ torch.from_numpy(offset)).float()
+    return folded
