@@ -71,6 +71,9 @@ class AdaptiveParameters(NoiseParameters):
         False,
         "Whether pads may spring in torsion as much as the smallest plausible r allows: soft fingertips.",
     )
+    torsion_from_turns: bool = parameter(
+        True, "Whether a turn to which the torque is proportional shows how far the pad springs in torsion."
+    )
     short_slips: bool = parameter(
         True, "Whether mu_c is learned from slips of fewer than four samples, by the force alone."
     )

@@ -12,6 +12,7 @@ from estimator.augmented.load import beside, move
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
 from estimator.augmented.timing import LAST, correlate
+from estimator.augmented.torsion import learn_torsion, torsion_radius
 
 MARGIN = 4
 """Velocities in a row that moved: two about an instant, one on either side; one more if repeated."""
@@ -49,8 +50,8 @@ def _range(p, j, change, r):
 
 @njit(error_model="numpy")
 def _radius(state, p):
-    """Radius by which torque and rotation are compared with force and displacement [m]; `soft_torsion`."""
-    return least_radius(state) if p.soft_torsion else max(state.r, 0.5 * p.r_max)
+    """Radius by which torque and rotation are compared with force and displacement [m]."""
+    return least_radius(state) if p.soft_torsion else torsion_radius(state, p)
 
 
 @njit(error_model="numpy")
@@ -185,6 +186,8 @@ def store(state, p, wrench, twist, moves, elapsed):
     for j in range(3):
         state.twists[k & LAST, j] = twist[j]
     state.in_a_row += 1
+    if p.torsion_from_turns:
+        learn_torsion(state, p, twist, elapsed)
     _shear(state, p, moves, elapsed)
     delay = state.delay
     correlate(state, p)

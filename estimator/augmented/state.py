@@ -9,6 +9,7 @@ from estimator._numba.caching import njit
 from estimator.augmented.load import MOST_FALL, MOST_GROWTH
 from estimator.augmented.slip_law import COP, FALLS, GROWS, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R
 from estimator.augmented.timing import CANDIDATES, NEWEST, RING
+from estimator.augmented.torsion import TURN
 from estimator.stick_slip import EVENT_STATE, STICK_SLIP_STATE, start
 
 _IN_CONTACT: list[tuple[Any, ...]] = [
@@ -39,6 +40,8 @@ _IN_CONTACT: list[tuple[Any, ...]] = [
     ("rest_sample", np.int64),
     ("restless", np.float64),
     ("rest", np.float64, (3,)),
+    ("turn", np.float64, (TURN,)),
+    ("torsion", np.float64),
     ("x", np.float64, (STATES,)),
     ("products", np.float64, (CANDIDATES,)),
     ("energies", np.float64, (2,)),
@@ -96,8 +99,9 @@ innovation; `runs`: of the jump test, for a rise and a fall: sum of the excess, 
 innovations; `scatter`: mean square of all; `load`: normal force at which ln mu_c and ln r are [N];
 `held`, `held_load`: largest ratio that was carried, and its normal force [-, N]; `resting`: samples in a
 row at rest; `rest`: f_x, f_y, f_n at one of them [N], of number `rest_sample`; `restless`: mean squared
-change of the load at rest [N^2]; `event`, `event_load`:
-mu_s of the last events, and its normal force [-, N]."""
+change of the load at rest [N^2]; `turn`: regression of the torque on the angle, see
+`estimator.augmented.torsion`; `torsion`: compliance that the pad has shown there [rad/(N m)],
+0 for none; `event`, `event_load`: mu_s of the last events, and its normal force [-, N]."""
 
 
 RESTLESS = 0.1
@@ -154,7 +158,7 @@ def restart(state, p):
         covariance[j, j] = variance if kept else (assumed * spread) ** 2
     state.misfit, state.slides = 1.0, 0
     state.runs[:] = 0.0
-    state.spring = p.compliance_max
+    state.spring, state.torsion = p.compliance_max, 0.0
 
 
 @njit

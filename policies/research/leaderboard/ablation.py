@@ -50,6 +50,7 @@ WITHOUT: dict[str, dict[str, object]] = {
     "mu_s with changes of mu_c": {"mu_s_follows": False},
     "exponent from sticks": {"exponent_from_sticks": False},
     "tilt from sticks": {"tilt_from_sticks": False},
+    "torsion from turns": {"torsion_from_turns": False},
     "drift of mu_s": {"drift_mu_s": 0.0},
     "new start of mu_s": {"jump_mu_s": float("inf")},
 }
