@@ -6,6 +6,8 @@ import pytest
 from slipgym.benchmarking import split
 from slipgym.benchmarking.vector_player import VectorPlayer
 
+pytestmark = pytest.mark.slow  # they compile a program that only the benchmark runs
+
 
 @pytest.fixture(scope="module")
 def player():
@@ -14,7 +16,6 @@ def player():
     player.env.close()
 
 
-@pytest.mark.slow  # it compiles a program that only the benchmark runs
 def test_the_parts_add_up_to_the_step(player):
     found = split.Split(player).pair()
     parts = [found[name] for name in (*split.STAGES, split.BETWEEN, split.RESETS, split.REST)]
@@ -23,7 +24,6 @@ def test_the_parts_add_up_to_the_step(player):
     assert found["sub-steps"] >= 1.0
 
 
-@pytest.mark.slow
 def test_stage_by_stage_a_step_is_that_of_the_environment(player):
     split.Split(player).pair()  # until an action is there
     env, taken = player.env, split.Split(player)
@@ -41,7 +41,6 @@ def test_stage_by_stage_a_step_is_that_of_the_environment(player):
         assert array[moving].tobytes() == wanted.tobytes()
 
 
-@pytest.mark.slow
 def test_the_contact_kernel_is_timed_on_a_copy(player):
     before = player.env.simulation.plant.pads.tobytes()
     assert split.Split(player)._contact_step() > 0.0

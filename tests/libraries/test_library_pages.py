@@ -29,7 +29,8 @@ def example(page):
 
 def called(command, folder, **more):
     """What a command prints, in a folder of its own."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), **more}
+    paths = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), **more}
     done = subprocess.run(
         command, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=600
     )

@@ -62,7 +62,7 @@ class Plots:
             axes=_axes(),
             legend={"show": False},
             padding=(8, 16, 0, 0),
-            height=165,
+            height=155,
         )
         self._off = gui.add_html("")
         with gui.add_folder("limit surface of both pads"):
@@ -76,7 +76,7 @@ class Plots:
             axes=_axes(),
             legend={"show": False},
             padding=(8, 16, 0, 0),
-            height=115,
+            height=100,
         )
         self._path = gui.add_uplot(
             history.columns(*_PATH),
@@ -86,7 +86,7 @@ class Plots:
             axes=_axes(),
             legend={"show": False},
             padding=(8, 16, 0, 0),
-            height=115,
+            height=100,
         )
         self.update()
 
@@ -120,7 +120,7 @@ def _notes(off: Sequence[Discrepancy]) -> str:
         for name, error, reason in off
     ]
     lines = lines or [f'<div style="color:{GREY}">no estimate is off</div>']
-    style = "font-size:12px;line-height:1.35;min-height:5.4em;padding:0 10px"
+    style = "font-size:11px;line-height:1.25;min-height:5em;padding:0 10px"
     return f'<div style="{style}">{"".join(lines)}</div>'
 
 
