@@ -39,4 +39,4 @@ def test_it_is_built_without_warnings(tmp_path):
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert "source of the friction part" in (tmp_path / "api/environments.html").read_text(encoding="utf-8")
+    assert "Source of the friction part" in (tmp_path / "api/environments.html").read_text(encoding="utf-8")
