@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import os
 from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -170,7 +171,10 @@ def described(environment: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     Raises:
         ValueError: The id or an argument is not allowed.
     """
-    env: Any = gym.make(f"slipgym:{environment}", disable_env_checker=True, **arguments).unwrapped
+    engine = {} if find_spec("pybullet") else {"engine": "planar"}  # the columns are the same
+    env: Any = gym.make(
+        f"slipgym:{environment}", disable_env_checker=True, **{**engine, **arguments}
+    ).unwrapped
     with env:
         values = {
             "id": environment,

@@ -224,3 +224,14 @@ def test_the_page_is_true(torch, tmp_path, monkeypatch, capsys):
     (printed,) = re.findall(r"```text\n(.*?)```", page, re.DOTALL)
     assert capsys.readouterr().out.endswith(printed)
     names["env"].close()
+
+
+def test_an_environment_is_described_without_pybullet(monkeypatch):
+    expected = export.described(ENV, ARGUMENTS)
+
+    def connect():
+        raise ModuleNotFoundError("pybullet")
+
+    monkeypatch.setattr(export, "find_spec", lambda name: None)
+    monkeypatch.setattr("slipgym.world.scene.connect", connect)
+    assert export.described(ENV, ARGUMENTS) == expected
