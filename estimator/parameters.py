@@ -6,6 +6,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from estimator.suggestions import asking
+
 _KINDS = {
     bool: ((bool, np.bool_), "True or False"),
     int: ((int, np.integer), "an integer in"),
@@ -66,7 +68,8 @@ class Parameters:
         valid = [field.name for field in dataclasses.fields(cls)]
         unknown = sorted(set(values) - set(valid))
         if unknown:
-            raise ValueError(f"unknown parameter {', '.join(unknown)}; valid: {', '.join(valid)}")
+            said = f"unknown parameter {', '.join(unknown)}; valid: {', '.join(valid)}"
+            raise ValueError(asking(said, unknown[0], valid))
         return cls(**values)
 
     def changed(self) -> dict[str, Any]:

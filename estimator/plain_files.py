@@ -11,6 +11,8 @@ from typing import Any
 
 import yaml
 
+from estimator.suggestions import no_file
+
 BYTES = 2**20
 """Largest YAML file."""
 NODES = 20_000
@@ -31,6 +33,8 @@ def check_regular(path: Path) -> None:
     """
     try:
         mode = path.stat().st_mode
+    except FileNotFoundError:
+        raise FileNotFoundError(no_file(path)) from None
     except OSError as error:
         if error.errno != errno.ENAMETOOLONG:
             raise

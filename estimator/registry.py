@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from estimator.parameters import Parameters
 from estimator.reference import is_reference, referenced
+from estimator.suggestions import asking
 
 DEFAULT = "adaptive"
 """Name of the default estimator, also of the environments (docs/leaderboard.md compares them)."""
@@ -72,5 +73,5 @@ def specification(name: str) -> Specification:
             raise ValueError(f"{name!r} is no Specification of this name")
         return found
     if name not in names():
-        raise ValueError(f"unknown estimator {name!r}; valid: {', '.join(names())}")
+        raise ValueError(asking(f"unknown estimator {name!r}; valid: {', '.join(names())}", name, names()))
     return referenced(f"{_MODULES[name]}:SPECIFICATION")

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from estimator.reference import is_reference
+from estimator.suggestions import asking
 from policies.controllers import table as controllers
 from policies.learned import LearnedPolicy, pretrained
 
@@ -93,6 +94,7 @@ def load(which: str | os.PathLike[str], **parameters: Any) -> Policy:
         return make(str(which), **parameters)
     if not Path(which).exists():
         known = ", ".join(names())
-        raise FileNotFoundError(f"no policy at {os.fspath(which)!r}; policies.make knows by name: {known}")
+        said = f"no policy at {os.fspath(which)!r}; policies.make knows by name: {known}"
+        raise FileNotFoundError(asking(said, os.fspath(which), names()))
     controllers.refuse(os.fspath(which), parameters, [])
     return LearnedPolicy(which)

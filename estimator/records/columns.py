@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import difflib
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from estimator.records.extras import extra
 from estimator.records.units import OPTIONAL, REQUIRED, UNITS
+from estimator.suggestions import unknown
 
 
 @dataclass(frozen=True)
@@ -62,15 +62,6 @@ def load_columns(path: str | os.PathLike[str] | None) -> Columns:
     if not isinstance(values, dict):
         raise ValueError(f"{path.name}: must be a mapping of names to columns, such as `f_n: Fz`")
     return Columns({key: _column(path.name, key, value) for key, value in values.items()})
-
-
-def unknown(what: str, name: object, valid: Iterable[str]) -> str:
-    """The message for a name that is not a valid one, with a guess at the one that was meant."""
-    valid = list(valid)
-    lower = {known.lower(): known for known in valid}
-    close = difflib.get_close_matches(str(name).lower(), lower, n=1)
-    guess = f"did you mean {lower[close[0]]!r}? " if close else ""
-    return f"{what} {name!r}; {guess}valid: {', '.join(valid)}"
 
 
 def _column(source: str, key: Any, value: Any) -> Column | None:

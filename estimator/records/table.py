@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from estimator.records.columns import Columns, unknown
+from estimator.records.columns import Columns
 from estimator.records.extras import extra
 from estimator.records.record import Array
 from estimator.records.separated import read_csv
 from estimator.records.units import UNITS
+from estimator.suggestions import no_file, unknown
 
 TYPES = (".csv", ".csv.gz", ".parquet")
 
@@ -103,7 +104,7 @@ def read_table(path: Path, columns: Columns) -> Table:
     if not path.name.endswith(TYPES):
         raise ValueError(f"{path.name}: unknown file type; records are {', '.join(TYPES)}")
     if not path.is_file():
-        raise FileNotFoundError(f"{path}: no such file")
+        raise FileNotFoundError(no_file(path))
     pandas = extra("pandas")
     if path.suffix == ".parquet":
         extra("pyarrow")

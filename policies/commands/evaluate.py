@@ -71,6 +71,8 @@ def main(
             raise typer.BadParameter(f"with --policy: --set level={level}")
         typer.echo(_outcome(policy, trials or 100, seed, task, set_ or []))
         return
+    if set_ or task:
+        raise typer.BadParameter("--set and --task are for --policy; an experiment names its own")
     from policies import evaluation
 
     if demo == bool(experiments):

@@ -44,6 +44,9 @@ def main(
     costs: Annotated[bool, typer.Option("--costs", help="Only print what an update costs.")] = False,
 ) -> None:
     """Runs all estimators on all scenarios; writes a folder with tables and a picture."""
+    if not closed_loop and (estimators or task or parameter or imperfections or randomization != "none"):
+        named = "--estimators, --task, --parameter, --imperfections and --randomization"
+        raise typer.BadParameter(f"{named} are for episodes in the loop: --closed-loop 64")
     if ablation:
         from policies.research.leaderboard import ablation as removing
         from policies.research.leaderboard.scenarios import effort_of

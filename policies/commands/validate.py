@@ -47,15 +47,14 @@ def main(
     ] = None,
 ) -> None:
     """Print the acceptance figures of the physics; exit code 1 if one is not met."""
+    from estimator.suggestions import unknown
     from slipgym.validation import EXPERIMENTS, suite
 
     names = [experiment.__name__ for experiment in EXPERIMENTS]
     for option, given, known in ("--only", only, names), ("--against", against, suite.ENGINES):
         for name in given or ():
             if name not in known:
-                raise typer.BadParameter(
-                    f"unknown name {name!r}; valid: {', '.join(known)}", param_hint=option
-                )
+                raise typer.BadParameter(unknown("unknown name", name, known), param_hint=option)
     if figure and not against:
         raise typer.BadParameter("needs --against", param_hint="--figure")
     if against:

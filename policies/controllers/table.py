@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from estimator.reference import is_reference, referenced
+from estimator.suggestions import asking
 from policies.controllers.gains import GainPolicy, renamed
 
 CLASSES = {
@@ -81,4 +82,5 @@ def refuse(name: str, parameters: Mapping[str, Any], valid: Sequence[str]) -> No
     for parameter in parameters:
         if parameter not in valid:
             known = ", ".join(valid) or "none, it is learned"
-            raise ValueError(f"unknown parameter {parameter!r} of policy {name!r}; valid: {known}")
+            said = f"unknown parameter {parameter!r} of policy {name!r}; valid: {known}"
+            raise ValueError(asking(said, parameter, valid))

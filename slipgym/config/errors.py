@@ -11,6 +11,8 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
+from estimator.suggestions import asking
+
 SourceOf = Callable[[tuple[int | str, ...]], str]
 """Names the file or argument that a location in the configuration came from."""
 
@@ -72,10 +74,13 @@ def _describe(error: ErrorDetails, model: type[BaseModel], prefix: tuple[str, ..
     if error["type"].startswith("union_tag"):
         kinds = _Schema(model).at(location)["discriminator"]["mapping"]
         return f"{dotted}: {unknown('kind', error.get('ctx', {}).get('tag'), kinds)}"
-    allowed = _Schema(model).allowed(_Schema(model).at(location))
+    node = _Schema(model).at(location)
+    allowed = _Schema(model).allowed(node)
     if error["type"] == "missing":
         return f"{dotted} is missing: must be {allowed}"
-    return f"{dotted} = {_shorten(error['input'])}: must be {allowed}"
+    names = map(str, node.get("enum", ()))
+    said = f"{dotted} = {_shorten(error['input'])}: must be {allowed}"
+    return asking(said, error["input"], names) if isinstance(error["input"], str) else said
 
 
 def _shorten(value: object) -> str:

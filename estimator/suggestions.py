@@ -1,0 +1,35 @@
+"""Messages for names and files that do not exist, with a guess at what was meant."""
+
+import difflib
+from collections.abc import Iterable
+from pathlib import Path
+
+_LONGEST = 100
+"""Characters of a name that are compared and shown."""
+
+
+def guess(name: object, valid: Iterable[str]) -> str:
+    """Ask whether the most similar valid name, whatever its case, was meant; an empty text if none is."""
+    lower = {known.lower(): known for known in valid}
+    close = difflib.get_close_matches(str(name)[:_LONGEST].lower(), lower, n=1)
+    return f"did you mean {lower[close[0]]!r}? " if close else ""
+
+
+def unknown(what: str, name: object, valid: Iterable[str]) -> str:
+    """The message for a name that is not a valid one, with a guess at the one that was meant."""
+    valid = list(valid)
+    return f"{what} {f'{name!r}'[:_LONGEST]}; {guess(name, valid)}valid: {', '.join(valid)}"
+
+
+def asking(message: str, name: object, valid: Iterable[str]) -> str:
+    """A message, and at its end the guess at the valid name that was meant, if there is one."""
+    return f"{message}; {guess(name, valid)}".rstrip("; ")
+
+
+def no_file(path: Path) -> str:
+    """The message for a file that does not exist, with the most similar name in its folder."""
+    try:
+        there = [each.name for each in path.parent.iterdir()]
+    except OSError:
+        return f"{path}: no such file"
+    return asking(f"{path}: no such file", path.name, there)
