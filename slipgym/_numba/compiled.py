@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, ParamSpec, Protocol, TypeVar
@@ -52,19 +53,42 @@ inlined_sum = _decorator(forceinline=True, fastmath={"reassoc"})
 
 
 @contextmanager
-def patience(what: str, after: float = 2.0) -> Iterator[None]:
+def patience(what: str, programs: int = 1, after: float = 2.0) -> Iterator[Callable[[], None]]:
     """Say on stderr why it takes so long, if it does: what is not in the cache has to be compiled.
+
+    A terminal shows how far it is, too.
 
     Args:
         what: What is compiled.
+        programs: Number of its programs.
         after: Time until the message [s].
+
+    Yields:
+        What to call after each program.
     """
-    message = f"slipgym: compiling {what}; once on this machine, for up to a minute\n"
-    timer = threading.Timer(after, sys.stderr.write, (message,))
-    timer.daemon = True
-    timer.start()
+    begun, done, over = time.perf_counter(), [0], threading.Event()
+
+    def tell() -> None:
+        if over.wait(after):
+            return
+        if not sys.stderr.isatty():
+            sys.stderr.write(f"slipgym: compiling {what}; once on this machine, for up to a minute\n")
+            return
+        while not over.wait(0.2):
+            count = f"{done[0]} of {programs} programs, " if programs > 1 else ""
+            line = f"slipgym: compiling {what}, once on this machine: {count}"
+            sys.stderr.write(f"\r{line}{time.perf_counter() - begun:.0f} s")
+            sys.stderr.flush()
+        sys.stderr.write("\n")
+
+    def one_more() -> None:
+        done[0] += 1
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
     try:
         with resting():
-            yield
+            yield one_more
     finally:
-        timer.cancel()
+        over.set()
+        teller.join()

@@ -112,6 +112,7 @@ def _compiled_step(
     stages = compiled_stages(task, update, force_torque, cells)
     kind = types.Tuple([stages.kind, STATE, array(force_torque, 2), BUFFERS, INFOS, F2])
     fixed = FixedType(kind)
-    with patience(f"the control step of {task.name} with PyBullet"):
+    with patience(f"the control step of {task.name} with PyBullet", 2) as one_more:
         begin = entry_point(_begin, (fixed, FixedType(ACTION), types.boolean))
+        one_more()
         return stages, kind, begin, entry_point(_finish, (fixed, POSE, VECTOR, PAIR, WHOLE))

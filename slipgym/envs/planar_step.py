@@ -180,12 +180,14 @@ def compiled_batch(task: Any, update: Any, force_torque: np.dtype, cells: int) -
     """
     stages = compiled_stages(task, update, force_torque, cells)
     contact = types.Tuple([cells_type(cells), array(force_torque, 2)])
-    with patience(f"the batch of {task.name}"):
+    with patience(f"the batch of {task.name}", 3) as one_more:
         rows = WHOLE, WHOLE
         move = Program(_move, types.void(STATE, *contact.types, *rows))
+        one_more()
         results = types.Tuple([*INFOS.types, F1, FLAGS, FLAGS])
         arguments = STATE, contact, BUFFERS, ACTION, results, WHOLE
         drive = stages.program(_drive, WHOLE, move.known, *arguments, *rows)
+        one_more()
         begun = types.Tuple([array(HARDWARE), F3, FRESH])
         arguments = array(START), VALUES_TYPE, STATE, contact, begun, INFOS
         start = stages.program(_start, types.void, move.known, *arguments)

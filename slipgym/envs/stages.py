@@ -157,8 +157,11 @@ class Stages:
             "equip": (equip_rows, void(*arguments)),
             "open": (open_episodes, void(learn, array(START), FRESH, STATE, sensors, F2)),
         }
-        with patience(f"the control step of {task.name}"):
-            programs = {name: Program(*each) for name, each in signatures.items()}
+        programs = {}
+        with patience(f"the control step of {task.name}", len(signatures)) as one_more:
+            for name, each in signatures.items():
+                programs[name] = Program(*each)
+                one_more()
             self.calls = {name: program.call for name, program in programs.items()}
             task.script_wrist.compile(SCRIPT_WRIST)
             task.evaluate_step.compile(EVALUATE_STEP)
