@@ -86,3 +86,18 @@ def test_its_seed_is_among_those_whose_curves_are_shown(name):
     assert str(best(ends, episodes).steps) == steps
     command = f"python scripts/train.py {key} --friction-source {source} --seeds {seed}"
     assert origin.command == command
+
+
+def test_only_those_of_rotational_slip_solve_more_than_the_controllers_they_began_as():
+    """As docs/learned.md says: the best checkpoint of each source against its controller, at 0 steps."""
+    episodes, moved = 512, set()
+    for key in {task.key for task in TASKS.values()} - WITHOUT:
+        with (PAGES / f"{key}.csv").open(encoding="utf-8") as stream:
+            rows = list(csv.DictReader(stream))
+        for source in ("estimated", "true", "none"):
+            own = [row for row in rows if row["source"] == source]
+            first = np.mean([float(row["success"]) for row in own if row["steps"] == "0"])
+            largest = max(float(row["success"]) for row in own)
+            if largest - first > 2.0 * np.sqrt(first * (1.0 - first) / episodes):
+                moved.add(f"{key}_{source}")
+    assert moved == {f"rotational_slip_{source}" for source in ("estimated", "true", "none")}
