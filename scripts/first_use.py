@@ -62,17 +62,34 @@ STEPS = (
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-def timed(command: list[str], folder: Path) -> tuple[float, str]:
-    """Seconds of a command on an empty cache of its own, and its last line; "failed: ..." if it failed."""
+class Watch:
+    """Measures what this program waits for, by the clock and by the processors."""
+
+    def __init__(self) -> None:
+        self.begun, self.used = time.perf_counter(), self._used()
+
+    @staticmethod
+    def _used() -> float:
+        spent = os.times()
+        return spent.children_user + spent.children_system
+
+    def said(self) -> str:
+        """Such as "67 s (31 s)"."""
+        return f"{time.perf_counter() - self.begun:.0f} s ({self._used() - self.used:.0f} s)"
+
+
+def timed(command: list[str], folder: Path) -> str:
+    """Time of a command on an empty cache of its own, or "failed: " and its last line."""
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     environment["NUMBA_CACHE_DIR"] = tempfile.mkdtemp(dir=folder)
-    begun = time.perf_counter()
+    watch = Watch()
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    spent = time.perf_counter() - begun
+    spent = watch.said()
     with (folder / "transcript.txt").open("a", encoding="utf-8") as transcript:
         transcript.write(done.stdout + done.stderr)
-    lines = (done.stdout if done.returncode == 0 else done.stderr).strip().splitlines() or [""]
-    return spent, ("" if done.returncode == 0 else "failed: ") + lines[-1].strip()
+    return (
+        spent if done.returncode == 0 else f"failed: {(done.stderr.strip() or '-').splitlines()[-1].strip()}"
+    )
 
 
 def row(python: str, wheel: Path, folder: Path, steps: list[str]) -> list[str]:
@@ -82,17 +99,16 @@ def row(python: str, wheel: Path, folder: Path, steps: list[str]) -> list[str]:
     places = {name: str(folder / "venv" / "bin" / name) for name in ("python", "slipgym")}
     extras = "eval,train" if "policy" in steps else "eval"
     pip = [places["python"], "-m", "pip", "install", "--quiet", "--constraint", str(ROOT / "constraints.txt")]
-    begun = time.perf_counter()
+    watch = Watch()
     done = subprocess.run([*pip, f"{wheel}[{extras}]"], capture_output=True, text=True, check=False)
     if done.returncode:
         return [f"not installed: {reason(done.stdout + done.stderr)}"]
-    cells = [f"{time.perf_counter() - begun:.0f} s"]
+    cells = [watch.said()]
     record = str(ROOT / "examples" / "linear_slip_wood.csv.gz")
     subprocess.run([places["python"], "-c", LOG, record], cwd=folder, check=True)
     for name, command in STEPS:
         if name in steps:
-            spent, said = timed([places.get(word, word) for word in command], folder)
-            cells.append(said if said.startswith("failed") else f"{spent:.0f} s")
+            cells.append(timed([places.get(word, word) for word in command], folder))
     return cells
 
 
@@ -104,7 +120,10 @@ def main(
         ".venv-first"
     ),
 ) -> None:
-    """Print a table of seconds by the clock; what the commands said is in transcript.txt of each folder."""
+    """Print a table of seconds by the clock and, in brackets, of processor time.
+
+    What the commands said is in transcript.txt of each folder.
+    """
     wanted = [name for name, _ in STEPS if not steps or name in steps]
     unknown = sorted(set(steps or ()) - set(wanted))
     if unknown:
