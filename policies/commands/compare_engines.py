@@ -7,10 +7,16 @@ import typer
 from slipgym.registration import TASK_MODULES
 
 TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
+EPILOG = """
+Examples:\n
+\b
+  slipgym compare-engines hinge --trials 20
+  slipgym compare-engines --randomization lab
+"""
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command()
+@app.command(epilog=EPILOG)
 def main(
     experiments: Annotated[
         list[str] | None,

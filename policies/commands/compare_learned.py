@@ -6,10 +6,16 @@ import typer
 
 from policies.commands.several import TASKS, Tasks
 
+EPILOG = """
+Examples:\n
+\b
+  slipgym compare-learned rotational_slip --trials 50
+  slipgym compare-learned --engine planar
+"""
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command()
+@app.command(epilog=EPILOG)
 def main(
     tasks: Tasks = None,
     trials: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,

@@ -7,10 +7,16 @@ import typer
 
 from policies.commands import evaluate
 
+EPILOG = """
+Examples:\n
+\b
+  slipgym demo
+  slipgym demo --output /tmp/runs
+"""
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command()
+@app.command(epilog=EPILOG)
 def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,

@@ -10,10 +10,17 @@ import typer
 if TYPE_CHECKING:
     import pandas as pd
 
+EPILOG = """
+Examples:\n
+\b
+  slipgym leaderboard --quick
+  slipgym leaderboard --closed-loop 16 --estimators adaptive --task hold
+  slipgym leaderboard --costs
+"""
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command()
+@app.command(epilog=EPILOG)
 def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     quick: Annotated[bool, typer.Option(help="A few coarse records, to see that it works.")] = False,

@@ -5,10 +5,16 @@ from typing import Annotated
 
 import typer
 
+EPILOG = """
+Examples:\n
+\b
+  slipgym pushes MLab_EXP
+  slipgym pushes MLab_EXP --held-out
+"""
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command()
+@app.command(epilog=EPILOG)
 def main(
     source: Annotated[
         Path | None,

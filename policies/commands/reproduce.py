@@ -6,7 +6,14 @@ from typing import Annotated
 
 import typer
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+EPILOG = """
+Examples:\n
+\b
+  slipgym reproduce coupling
+  slipgym reproduce linear --trials 2
+  slipgym reproduce planar --contact ellipsoid
+"""
+app = typer.Typer(epilog=EPILOG, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 Output = Annotated[Path, typer.Option(help="Folder for the run's own folder.")]
 Trials = Annotated[int, typer.Option(min=1, help="Trials per cell.")]
 Jobs = Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")]

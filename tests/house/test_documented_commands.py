@@ -103,6 +103,12 @@ def test_a_documented_command_is_understood(page, name, words):
         pytest.fail(f"{page}: {name} {' '.join(words)}: {error.format_message()}")
 
 
+def test_the_help_of_every_command_has_examples():
+    for name in COMMANDS:
+        app = import_module(f"policies.commands.{name.replace('-', '_')}").app
+        assert "Examples:" in (typer.main.get_command(app).epilog or ""), name
+
+
 def test_an_option_that_a_sentence_names_exists():
     for page in (ROOT / "docs").rglob("*.md"):
         for match in OPTION.finditer(page.read_text(encoding="utf-8")):
