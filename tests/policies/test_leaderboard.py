@@ -145,7 +145,7 @@ def test_single_imperfections_are_all_that_differs_between_the_presets():
 
 
 def test_sensors_without_some_imperfections():
-    overrides = without(["scale", "late velocity"])
+    overrides = without(["scale", "late-velocity"])
     sensors = load(overrides, sensors="lab").sensors
     assert (sensors.slip.scale_error, sensors.slip.latency_samples, sensors.slip.latency_spread) == (
         0.0,

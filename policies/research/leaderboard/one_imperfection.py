@@ -55,13 +55,14 @@ def without(labels: Sequence[str]) -> Mapping[str, Any]:
     """Overrides of the configuration that give sensors what "realistic" has instead of some imperfections.
 
     Args:
-        labels: Of `IMPERFECTIONS`.
+        labels: Of `IMPERFECTIONS`; hyphens may stand for spaces.
 
     Raises:
         ValueError: There is no such imperfection.
     """
     found: Values = {}
+    spaced = {label.replace(" ", "-"): label for label in IMPERFECTIONS}
     for label in labels:
-        for sensor, values in values_of(label, "realistic").items():
+        for sensor, values in values_of(spaced.get(label, label), "realistic").items():
             found[sensor] = {**found.get(sensor, {}), **values}
     return {"sensors": found} if found else {}
