@@ -38,8 +38,8 @@ controller were chosen on other episodes.
 The controller measures friction itself: load over grip at the break-away shows mu_s, force over grip in the
 slide that follows mu_c, and torque over grip in a turn r. Its guess combines these values with the estimate,
 each with the weight of its variance. The estimate alone is not enough: "adaptive" takes the limit surface for
-that of a uniform disc, and its deviations allow for errors of the sensors that these do not have: they are too
-large for a commitment. "joint" is given the ellipsoidal limit surface, which is that of the pads, and the
+that of a uniform disc, and its deviations allow for errors of the sensors that these do not have: they are
+too large for a commitment. "joint" is given the ellipsoidal limit surface, which is that of the pads, and the
 delay of the sensors. The controller is given neither, and allows for both limit surfaces. So this task does
 not need an estimator. With the sensors "lab" nothing but the truth solves it: zero errors of 0.15 N are
 a tenth of the load (docs/policy_leaderboard.md).
