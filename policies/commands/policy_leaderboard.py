@@ -1,7 +1,7 @@
 """Plays the same episodes with every policy: each task, each level, opponents and entries."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -13,6 +13,7 @@ Examples:\n
 \b
   slipgym policy-leaderboard
   slipgym policy-leaderboard hold --level hard --sensors lab
+  slipgym policy-leaderboard rotational_slip --level hard --sensors lab --without scale
   slipgym policy-leaderboard hold --policy grips:Catch
   slipgym policy-leaderboard hold --engine bullet --episodes 50
 \n
@@ -29,6 +30,10 @@ def main(
         list[str] | None, typer.Option(help="Only this level; repeatable.", show_default=False)
     ] = None,
     sensors: Annotated[str, typer.Option(help="Sensor preset.")] = "realistic",
+    without: Annotated[
+        list[str] | None,
+        typer.Option(help="Imperfection that sensors 'lab' then lack; repeatable.", show_default=False),
+    ] = None,
     randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "none",
     estimator: Annotated[str, typer.Option(help="Estimator of the environments.")] = DEFAULT,
     engine: Annotated[str, typer.Option(help="planar or bullet.")] = "planar",
@@ -45,6 +50,7 @@ def main(
     """Print a table of policies by success, and write it with a picture."""
     import pandas as pd
 
+    from policies.research.leaderboard.one_imperfection import without as lacking
     from policies.research.leaderboard.tables import markdown
     from policies.research.policy_leaderboard.entries import entered, opponents
     from policies.research.policy_leaderboard.folder import write
@@ -53,8 +59,13 @@ def main(
     from slipgym.envs.arguments import ENGINES, FRICTION_SOURCES, one_of
     from slipgym.tasks import find
 
-    arguments = {"sensors": sensors, "randomization": randomization, "estimator": estimator}
+    arguments: dict[str, Any] = {
+        "sensors": sensors,
+        "randomization": randomization,
+        "estimator": estimator,
+    }
     try:
+        arguments["config"] = lacking(without or [])
         one_of("engine", engine, ENGINES)
         mine = entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
         found = []

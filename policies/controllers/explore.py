@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from pydantic import Field
 
 from estimator.estimate import deviation_of
 from policies.controllers.base import Columns, State
-from policies.controllers.gains import Fraction, GainPolicy
+from policies.controllers.explore_forces import Events, Forces, watch
+from policies.controllers.explore_gains import ExploreGains
+from policies.controllers.force_friction import merge
+from policies.controllers.gains import GainPolicy
 from policies.controllers.sensing import both, tangential
-from slipgym.config.base import Frozen, NonNegative, Positive
 from slipgym.envs.actions import GUESSED_DEVIATION
 
-SETTLE, RELAX, REST, TURN, HOLD = range(5)
-"""Phases: the load is averaged; the grip falls until the object slips; it rests; the wrist turns; the end."""
+SETTLE, HANG, RELAX, REST, TURN, HOLD = range(6)
+"""Phases: the load is averaged; the wrist pitches until the weight has no torque; the grip falls until the
+object slips; it rests; the wrist turns; the end."""
 _NAMES = "mu_s", "mu_c", "r"
 
 
@@ -36,72 +39,50 @@ class ExploreState(NamedTuple):
     """Grip at which the last slip began [N]."""
     slips: np.ndarray
     """Slips caught so far."""
+    slow: np.ndarray
+    """1 if the last slip began slowly, else 0."""
     turns: np.ndarray
     """Turns of the wrist so far."""
     rate: np.ndarray
     """Pitch rate of the wrist [rad/s]."""
+    braking: np.ndarray
+    """1 while the wrist brakes before the first slip, else 0."""
     x: np.ndarray
     """Measured slip after the last control step [m]."""
     y: np.ndarray
     theta: np.ndarray
     """The same, the angle [rad]."""
+    uneven: np.ndarray
+    """Tangential force of finger 1 less that of finger 2, in the first grip [N]."""
     slid: np.ndarray
     """Path of the measured slip [m]."""
     turned: np.ndarray
     """Path of its angle [rad]."""
 
 
-class ExploreGains(Frozen):
-    """Gains of `ExplorePolicy`."""
-
-    settle: NonNegative = Field(default=5, description="Control steps in which the load is averaged [-]")
-    first: Positive = Field(default=4.0, description="Grip over load from which it is relaxed at first [-]")
-    keep: Fraction = Field(default=0.94, description="Fraction of the grip left a control step later [-]")
-    again: Positive = Field(
-        default=1.2, description="Grip over that of the last slip from which it falls again [-]"
-    )
-    keep_again: Fraction = Field(default=0.98, description="Fraction left a control step later then [-]")
-    fall: NonNegative = Field(default=0.1, description="Fall of the force that is a slip, over the force [-]")
-    noise: NonNegative = Field(default=0.08, description="Fall of the force that is always noise [N]")
-    speed: Positive = Field(default=2e-3, description="Speed that is a slip [m/s]")
-    pulse: Positive = Field(
-        default=6.0, description="Command in the control step of a catch, over the grip [-]"
-    )
-    catch: Positive = Field(default=1.6, description="Grip after a slip over that before [-]")
-    rest: NonNegative = Field(default=5, description="Control steps at it [-]")
-    margin: Positive = Field(default=2.0, description="mu_c times grip over load in a turn [-]")
-    ready: NonNegative = Field(default=4, description="Control steps until that grip is reached [-]")
-    turn: Positive = Field(default=2.6, description="Pitch rate of a turn [rad/s]")
-    jerk: Positive = Field(default=1.2, description="Change of it in the first control step [rad/s]")
-    push: Positive = Field(default=0.6, description="Change of it in those that follow [rad/s]")
-    brake: Positive = Field(default=0.3, description="The same at its end, if the object is to stick [rad/s]")
-    coast: NonNegative = Field(default=9, description="Control steps from the begin of a turn to its end [-]")
-    slips: NonNegative = Field(default=3, description="Slips at least [-]")
-    turns: NonNegative = Field(default=1, description="Turns at least [-]")
-    sure: Positive = Field(default=0.025, description="Relative deviation with which a value is known [-]")
-    ratio: Positive = Field(default=1.4, description="mu_s over mu_c until mu_c is known [-]")
-    slide: NonNegative = Field(default=1.6e-3, description="Path of the slip after which it rests [m]")
-    twist: NonNegative = Field(default=0.08, description="Path of the angle that turns may reach [rad]")
-
-
 class ExplorePolicy(GainPolicy[ExploreGains]):
     """Let the object slip in short bursts, by a falling grip and by turns of the wrist.
 
-    The grip falls until the object slips, which shows in the tangential force at the next control step; a
-    pulse of the grip catches it after a tenth of a millimetre or two. The estimator learns mu_s from the
-    load at which the slip began and mu_c from the slip. The next falls begin just above the grip of the
-    last slip and are slower, so that few samples show mu_s well.
+    Where the weight has a torque, the wrist pitches first, in a firm grip, until the centre of mass is below
+    the pads: then a break-away and a slide show mu_s and mu_c whatever the limit surface is. The grip falls
+    until the object slips, which shows in the tangential force at the next control step; a pulse of the grip
+    catches it after a tenth of a millimetre or two, where it slips slowly a control step later. The next
+    falls begin just above the grip of the last slip and are slower.
 
-    r needs a slip that turns. In a firm grip the wrist accelerates in pitch faster than friction can take
-    the object along:
+    r needs a slip that turns. In a grip of `margin` times the load over mu_c the wrist accelerates in pitch
+    faster than friction can take the object along:
 
         alpha > margin L r sqrt(1 - 1 / margin^2) / (I / 2)
 
     with the load L per finger. The object turns in the grip by a degree or two, while its weight slides
     it a little, and comes to rest on the turning wrist, which then brakes so slowly that it sticks, or as
-    fast again if the deviation of mu_c or r is still larger than `sure`. The turn begins in the direction
-    in which the torque of the weight helps friction. A slip that begins so fast shows no mu_s; its
-    deviation is stated as 1 until `slips` slips were caught.
+    fast again if the deviation of mu_c or r is still larger than `sure`. The larger `margin`, the purer the
+    turn, and the less r depends on the limit surface.
+
+    The guess combines the observed friction with what the forces have shown (`explore_forces`,
+    `force_friction`), each with the weight of its variance; its deviations are the smaller ones of both. That
+    of mu_s is stated as 1 until `slips` slips were caught. Sensors count as tared; where the fingers carry
+    unlike forces by more than noise, the sensors have errors, which half of it counts for.
 
     It goes on until all deviations are at most `sure` or the path of the measured slip is `slide`, and
     then rests. Friction without confidence is what the grip at the last slip shows. It reads the
@@ -120,60 +101,130 @@ class ExplorePolicy(GainPolicy[ExploreGains]):
     task = "Explore"
     action_mode = "grip_force_wrist_guess"
     Gains = ExploreGains
+    remembers_slips = True
+    without_friction: ClassVar[Mapping[str, Any]] = {"forces": False}
 
-    def initial_state(self, n: int) -> np.ndarray:
-        """`ExploreState`, (n, 14)."""
-        return np.zeros((n, len(ExploreState._fields)))
+    def initial_state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """`ExploreState`, (n, 17), and `Forces`, (n, 20)."""
+        return np.zeros((n, len(ExploreState._fields))), np.zeros((n, len(Forces._fields)))
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force, wrist velocity and guess, (n, 10), see `ForcePolicy.control`."""
-        g, s = self.gains, self._measured(columns, ExploreState(*np.asarray(state).T))
-        (mu_s, mu_c, r), deviations = self._friction(columns, s), self._deviations(columns)
-        deviations[0] = np.where((s.slips < g.slips) & (deviations[0] > 0.0), 1.0, deviations[0])
+        g, s = self.gains, ExploreState(*np.asarray(state[0]).T)
+        slips, fall = self._slips(columns, s)
+        s = self._measured(columns, s, slips)
+        forces = self._watched(columns, Forces(*np.asarray(state[1]).T), s, slips)
+        slow = np.where(slips, fall < g.slow, s.slow)
+        (mu_s, mu_c, r), deviations = self._known(columns, s, forces)
         load = np.hypot(s.force, s.torque / r)
 
         settled = (s.phase == SETTLE) & (s.count >= g.settle)
-        slips = self._slips(columns, s) & (s.phase == RELAX) & (s.count > 2)
+        hang = settled & (np.abs(s.torque) > g.lever * r * s.force)
+        pitch, pitched = self._hang(columns, s, r)
         blurred = np.maximum(deviations[1], deviations[2]) > g.sure
         rate, turned = self._rate(s, blurred & (2.0 * s.turned < g.twist))
-        free = settled | turned | ((s.phase == REST) & (s.count >= g.rest))
+        free = (settled & ~hang) | pitched | turned | ((s.phase == REST) & (s.count >= g.rest))
         turn = free & (s.slips > 0) & ((s.turns < g.turns) | blurred)
         turn &= s.turned * (1.0 + 1.0 / np.maximum(s.turns, 1.0)) < g.twist
-        relax = free & ~turn & ((s.slips < g.slips) | (deviations[0] > g.sure)) & (s.slid < g.slide)
+        unsure = deviations.max(axis=0) > g.sure
+        relax = free & ~turn & ((s.slips < g.slips) | unsure) & (s.slid < g.slide)
         hold = free & ~turn & ~relax
 
         keep = np.where(s.slips > 0, g.keep_again, g.keep)
-        level = np.where(slips, g.catch, np.where(s.phase == RELAX, keep, 1.0)) * s.level
+        caught = np.where(slow, (s.phase == REST) & (s.count == 0), slips)
+        falls = (s.phase == RELAX) & ~slips
+        level = np.where(caught, g.catch, np.where(falls, keep, 1.0)) * s.level
         begin = np.where(s.slips > 0, g.again * s.held, g.first * load)
         level = np.where(relax, begin, np.where(turn, g.margin * load / mu_c, level))
         level = np.where(hold, g.catch * load / mu_c, level)
-        force = np.where(slips, g.pulse * level, level)
-        force = np.where((s.phase == SETTLE) & ~settled, columns["commanded_force"], force)
+        force = np.where(caught, g.pulse * level, level)
+        waits = ((s.phase == SETTLE) | (s.phase == HANG)) & ~relax
+        force = np.where(waits, columns["commanded_force"], force)
+        rate = np.where(s.phase == HANG, pitch, rate)
 
         phase = s.phase
-        for chosen, new in ((relax, RELAX), (slips, REST), (turn, TURN), (hold, HOLD)):
+        for chosen, new in ((hang, HANG), (relax, RELAX), (slips, REST), (turn, TURN), (hold, HOLD)):
             phase = np.where(chosen, new, phase)
         s = s._replace(
             phase=phase, count=np.where(phase == s.phase, s.count + 1.0, 0.0) * ~turn, level=level, rate=rate,
-            held=np.where(slips, s.level, s.held), slips=s.slips + slips, turns=s.turns + turned,
+            braking=(s.phase == HANG) & (np.abs(rate) < np.abs(s.rate)),
+            held=np.where(slips, s.level, s.held), slips=s.slips + slips, slow=slow, turns=s.turns + turned,
         )  # fmt: skip
         still = np.zeros(len(columns))
         guess = np.log([mu_s, mu_c, r, *np.clip(deviations, *GUESSED_DEVIATION)]).T
-        return np.column_stack((force, still, still, rate, guess)), np.column_stack(s)
+        return np.column_stack((force, still, still, rate, guess)), (
+            np.column_stack(s),
+            np.column_stack(forces),
+        )
 
-    def _measured(self, columns: Columns, s: ExploreState) -> ExploreState:
+    def _watched(self, columns: Columns, past: Forces, s: ExploreState, slips: np.ndarray) -> Forces:
+        """Adds what the forces show."""
+        events = Events(
+            falls=np.where(s.phase == RELAX, s.count, -1.0),
+            keep=np.where(s.slips > 0, self.gains.keep_again, self.gains.keep),
+            slips=slips,
+            slides=(s.phase == REST) & (s.count <= s.slow),
+            turns=(s.phase == TURN) & (s.rate != 0.0),
+            force=s.force,
+            torque=s.torque,
+            r=self._radius(columns),
+        )
+        return watch(columns, past, self.gains, events)
+
+    def _radius(self, columns: Columns) -> np.ndarray:
+        """Contact radius as observed, or the prior's without confidence, (n,) [m]."""
+        return np.where(columns["confidence_r"] > 0.0, columns["r"], self.prior.r)
+
+    def _known(self, columns: Columns, s: ExploreState, forces: Forces) -> tuple[np.ndarray, np.ndarray]:
+        """mu_s, mu_c, r by the observed values and by forces, and their relative deviations, (3, n) each."""
+        g, observed, deviations = self.gains, np.array(self._friction(columns, s)), self._deviations(columns)
+        uneven = np.maximum(s.uneven**2 - (2.0 * g.sd_force) ** 2 / (g.settle + 1.0), 0.0)
+        shared = np.sqrt(g.sd_shared**2 + 0.25 * uneven / np.maximum(s.force, 1e-3) ** 2)
+        if not g.forces:
+            return observed, deviations
+        own = forces.found(s.turned > g.turned, self._radius(columns), shared)
+        values, merged = merge(observed, deviations, own)
+        merged[0] = np.where((s.slips < g.slips) & (deviations[0] > 0.0), 1.0, merged[0])
+        return values, merged
+
+    def _measured(self, columns: Columns, s: ExploreState, slips: np.ndarray) -> ExploreState:
         """Adds what the sensors show: the load at rest and the paths of the slip."""
         x, y, theta = (columns[f"measured_slip_{name}"] for name in ("x", "y", "theta"))
         slid, turned = s.slid + np.hypot(x - s.x, y - s.y), s.turned + np.abs(theta - s.theta)
-        weight = np.where(s.phase == SETTLE, 1.0 / (s.count + 1.0), 0.0)
+        first, falls = s.phase == SETTLE, (s.phase == RELAX) & ~slips
+        mean = 1.0 / (s.count + 1.0)
+        weight = np.where(first, mean, np.where(falls, self.gains.newest, 0.0))
         force = s.force + weight * (tangential(columns) - s.force)
+        weight = np.where(first | falls, mean, 0.0)
         torque = s.torque + weight * (both(columns, "tau") - s.torque)
-        return s._replace(x=x, y=y, theta=theta, slid=slid, turned=turned, force=force, torque=torque)
+        one, two = (np.hypot(columns[f"f_x_{f}"], columns[f"f_y_{f}"]) for f in (1, 2))
+        uneven = s.uneven + np.where(first, mean, 0.0) * (one - two - s.uneven)
+        return s._replace(
+            x=x, y=y, theta=theta, slid=slid, turned=turned, force=force, torque=torque,
+            uneven=uneven,
+        )  # fmt: skip
 
-    def _slips(self, columns: Columns, s: ExploreState) -> np.ndarray:
-        """Whether the object slips, (n,): the force falls at once, the speed shows later."""
-        fell = s.force - tangential(columns) > np.maximum(self.gains.fall * s.force, self.gains.noise)
-        return fell | (np.hypot(both(columns, "v_x"), both(columns, "v_y")) > self.gains.speed)
+    def _slips(self, columns: Columns, s: ExploreState) -> tuple[np.ndarray, np.ndarray]:
+        """Whether the object slips, and the fall of the force over it, (n,) each.
+
+        The force falls at once, the speed shows later.
+        """
+        fall = s.force - tangential(columns)
+        fell = fall > np.maximum(self.gains.fall * s.force, self.gains.noise)
+        fast = np.hypot(both(columns, "v_x"), both(columns, "v_y")) > self.gains.speed
+        return (fell | fast) & (s.phase == RELAX) & (s.count > 2), fall / np.maximum(s.force, 1e-3)
+
+    def _hang(self, columns: Columns, s: ExploreState, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pitch rate of a wrist that brings the centre of mass below the pads, and whether it has, (n,) each.
+
+        The grip is firm, and the rate changes so slowly that the object sticks.
+        """
+        g, size = self.gains, np.abs(s.rate)
+        whole = size >= g.turn
+        hangs = np.abs(both(columns, "tau")) < g.lever * r * s.force
+        brakes = (s.count >= g.longest) | (whole & hangs) | (s.braking > 0.0)
+        new = np.where(brakes, np.maximum(size - g.gently, 0.0), np.minimum(size + g.gently, g.turn))
+        return np.where(s.torque <= 0.0, new, -new), (s.phase == HANG) & brakes & (size == 0.0)
 
     def _rate(self, s: ExploreState, again: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pitch rate of the wrist (n,) [rad/s], and whether a turn has ended.

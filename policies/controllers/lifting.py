@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from pydantic import Field
@@ -12,7 +12,8 @@ from estimator.estimate import deviation_of
 from policies.controllers.base import Columns, State
 from policies.controllers.gains import Fraction, GainPolicy
 from policies.controllers.last_slip import combined, weight_of
-from policies.controllers.sensing import scaled_load, scaled_speed, tangential
+from policies.controllers.sensing import ConservativePrior, both, scaled_speed
+from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
 
 _STILL = 3
@@ -31,6 +32,9 @@ class LiftingGains(Frozen):
         default=0.2, description="Standard deviations by which mu_s is taken below its estimate [-]"
     )
     least: NonNegative = Field(default=0.8, description="Least grip [N]")
+    tare: Fraction = Field(
+        default=0.8, description="Part of the time on the support in which the forces are zeroed [-]"
+    )
     lead: NonNegative = Field(default=0.05, description="Time by which the grip leads a rising load [s]")
     smoothing: Fraction = Field(
         default=0.8, description="Weight of the old load in each control step while the wrist rests [-]"
@@ -64,8 +68,9 @@ class LiftingPolicy(GainPolicy[L]):
         f = share W / mu_s
 
     W is the load per finger in the scaled norm of the limit surface while the wrist rests, filtered, and led
-    by its rate while it rises; `share` is what the motion needs on top. mu_s is taken some deviations below
-    its estimate. While the object slips, mu_c takes its place.
+    by its rate while it rises; `share` is what the motion needs on top. What the sensors read while the
+    support bears the object is their zero error. mu_s is taken some deviations below its estimate. While the
+    object slips, mu_c takes its place.
 
     Before the first slip mu_s is taken as `guess`, more than what may come. The object then slips while the
     load is still small, which shows in the load at the next control step: the grip jumps to what the lightest
@@ -76,6 +81,17 @@ class LiftingPolicy(GainPolicy[L]):
 
     remembers_slips = True
 
+    def __init__(
+        self,
+        gains: L | None = None,
+        prior: ConservativePrior | None = None,
+        config: Overrides | None = None,
+        **parameters: Any,
+    ) -> None:
+        super().__init__(gains, prior, config, **parameters)
+        settings: Any = self.settings
+        self._tares = int(self.gains.tare * settings.settle * self.config.physics.control_rate)
+
     @abstractmethod
     def share(self, columns: Columns) -> np.ndarray:
         """Grip wanted over the least grip that holds the weight, (n,) [-]."""
@@ -83,21 +99,23 @@ class LiftingPolicy(GainPolicy[L]):
     def initial_state(self, n: int) -> np.ndarray:
         """Filtered load and last tangential force (negative: none yet), last grip and the one kept [N].
 
-        Then the control steps left without another catch, those since the wrist moved, and load over grip
-        before the last slip (0: none yet) [-]. Shape (n, 7).
+        Then the control steps left without another catch, those since the wrist moved, load over grip
+        before the last slip (0: none yet) [-], the zero errors (f_x, f_y, tau) and their samples. Shape
+        (n, 11).
         """
-        return np.tile([-1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0], (n, 1))
+        return np.tile([-1.0, -1.0, *(0.0 for _ in range(9))], (n, 1))
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
         g, share = self.gains, self.share(columns)
-        old, before, gripped, kept, rest, still, shown = np.asarray(state).T
-        r, pulled = self.prior.hold(columns, "r"), tangential(columns)
+        old, before, gripped, kept, rest, still, shown, *zero = np.asarray(state).T
+        (f_x, f_y, tau), zero = self._zeroed(columns, np.array(zero))
+        r, pulled = self.prior.hold(columns, "r"), np.hypot(f_x, f_y)
         slides = scaled_speed(columns, r) > g.speed
         moves = sum(np.abs(columns[f"wrist_{name}"]) for name in ("velocity_x", "velocity_z", "pitch_rate"))
         still = np.where(np.asarray(moves) == 0.0, still + 1.0, 0.0)
         rests = still > _STILL
-        weight, ahead = self._weight(scaled_load(columns, r), old, rests, slides, rest)
+        weight, ahead = self._weight(np.hypot(pulled, tau / r), old, rests, slides, rest)
         confidence = columns["confidence_mu_s"]
         trust = np.minimum(1.0, confidence / g.confidence)
         spread = deviation_of(np.clip(confidence, g.confidence, 1.0))
@@ -122,8 +140,16 @@ class LiftingPolicy(GainPolicy[L]):
         kept = np.where(caught, raised, g.decay * kept)
         rest = np.where(caught | slides, g.rest, rest - 1.0)
         force = np.maximum(force, kept)
-        memory = np.column_stack((weight, pulled, force, kept, rest, still, shown))
+        memory = np.column_stack((weight, pulled, force, kept, rest, still, shown, *zero))
         return np.where(caught, g.kick * force, force), memory
+
+    def _zeroed(self, columns: Columns, zero: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Mean force and torque per finger (3, n) [N, N, N m], less what it was on the support, and that."""
+        load = np.array([both(columns, name) for name in ("f_x", "f_y", "tau")])
+        samples = zero[3] + (zero[3] < self._tares)
+        weight = np.where(samples > zero[3], 1.0 / np.maximum(samples, 1.0), 0.0)
+        mean = zero[:3] + weight * (load - zero[:3])
+        return load - mean, np.vstack((mean, samples))
 
     def _weight(
         self, load: np.ndarray, old: np.ndarray, rests: np.ndarray, slides: np.ndarray, rest: np.ndarray

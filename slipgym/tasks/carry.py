@@ -26,9 +26,9 @@ without friction in the observation, with nominal, estimated and true friction, 
 
 | level | best constant | none | nominal | estimated | true |
 |---|---|---|---|---|---|
-| easy | 0 | 21 | 17.5 | 97.5 | 100 |
-| standard | 0 | 16.5 | 15 | 94.5 | 99 |
-| hard | 0 | 16 | 13 | 93 | 96.5 |
+| easy | 0 | 21 | 17.5 | 98.5 | 100 |
+| standard | 0 | 16.5 | 15 | 95 | 98 |
+| hard | 0 | 16 | 13 | 93.5 | 96.5 |
 
 The controller without friction keeps one guess for all episodes. With sensors alone and a memory of load over
 grip just before the last slip it solves about as many as with the estimate (docs/levels.md).

@@ -26,9 +26,9 @@ without friction in the observation, with nominal, estimated and true friction, 
 
 | level | best constant | none | nominal | estimated | true |
 |---|---|---|---|---|---|
-| easy | 43 | 38.5 | 36 | 98.5 | 100 |
-| standard | 26.5 | 24 | 25 | 97 | 100 |
-| hard | 20.5 | 17.5 | 19 | 92 | 100 |
+| easy | 43 | 38.5 | 36.5 | 98.5 | 100 |
+| standard | 26.5 | 23.5 | 25 | 96.5 | 100 |
+| hard | 20.5 | 17.5 | 19 | 93 | 100 |
 
 The controller without friction keeps one guess for all episodes. With sensors alone and a memory of load over
 grip just before the last slip it solves about as many as with the estimate (docs/levels.md).

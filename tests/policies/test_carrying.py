@@ -50,6 +50,34 @@ def test_it_is_so_with_pybullet(task):
     assert successes == 10
 
 
+@pytest.mark.parametrize("task", ["carry", "fragile_hold"])
+def test_what_the_sensors_read_on_the_support_is_their_zero_error(task):
+    """Constant errors of the forces that last from the start change no command."""
+    policy = policies.make(task)
+    envs = gym.make_vec(f"slipgym:{find(task).id}", 4, "vector_entry_point", friction_source="true")
+    observations, _ = envs.reset(seed=0)
+    error = np.zeros_like(observations)
+    for name, size in (("f_x_1", 0.1), ("f_y_1", -0.15), ("f_y_2", -0.1), ("tau_2", 1e-3)):
+        error[:, policy.index[name]] = size
+    state, other, difference = None, None, []
+    for _ in range(120):
+        actions, state = policy.predict(observations, state)
+        biased, other = policy.predict(observations + error, other)
+        difference.append(np.abs(biased - actions).max())
+        observations, *_ = envs.step(actions)
+    envs.close()
+    assert max(difference[30:]) < 1e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("task", ["carry", "fragile_hold"])
+def test_zero_errors_of_the_sensors_cost_little(task):
+    policy = policies.make(task)
+    true, _ = solved(task, policy, "true", level="hard", sensors="lab")
+    assert true >= 0.75
+    assert true >= solved(task, policies.make(task, tare=0.0), "true", level="hard", sensors="lab")[0] + 0.05
+
+
 def test_a_confidence_is_worth_its_deviation():
     sizes = np.array([0.0, 0.05, 0.1, 0.7])
     np.testing.assert_allclose(deviation_of(confidence_of(sizes**2)), sizes, atol=1e-9)

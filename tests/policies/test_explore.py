@@ -7,6 +7,7 @@ import pytest
 import policies
 from policies.controllers.explore import HOLD, ExploreState
 from policies.controllers.no_friction_info import NoFrictionInfo
+from policies.controllers.slip_memory import SlipMemory
 from policies.evaluation.play import play
 
 N = 60
@@ -20,9 +21,9 @@ def played(policy, **arguments):
     return found
 
 
-def test_estimates_that_fit_the_contact_find_friction_out():
+def test_friction_is_found_out_with_the_default_estimator():
     policy = policies.make("explore")
-    found = played(policy, estimator="joint", **DEVIATIONS)
+    found = played(policy, **DEVIATIONS)
     assert found.success.mean() >= 0.9
     assert not found.dropped.any()
     true = played(policy, friction_source="true", **DEVIATIONS)
@@ -30,11 +31,22 @@ def test_estimates_that_fit_the_contact_find_friction_out():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("level", ["standard", "hard"])
-def test_levels_are_harder(level):
-    found = played(policies.make("explore"), estimator="joint", level=level, **DEVIATIONS)
-    assert 0.6 <= found.success.mean() <= 0.97
+@pytest.mark.parametrize("estimator", ["adaptive", "joint"])
+@pytest.mark.parametrize("level", ["easy", "standard", "hard"])
+def test_friction_is_found_out_at_all_levels(level, estimator):
+    found = played(policies.make("explore"), estimator=estimator, level=level, **DEVIATIONS)
+    assert found.success.mean() >= 0.8
     assert not found.dropped.any()
+
+
+@pytest.mark.slow
+def test_sensors_alone_find_friction_out():
+    assert played(SlipMemory("explore"), friction_source="none").success.mean() >= 0.9
+
+
+@pytest.mark.slow
+def test_the_limit_surface_of_a_disc_does_no_harm():
+    assert played(policies.make("explore"), contact="disc", **DEVIATIONS).success.mean() >= 0.9
 
 
 @pytest.mark.slow
@@ -49,7 +61,6 @@ def test_it_rests_once_it_is_sure_and_keeps_to_the_budget():
     envs = gym.make_vec(
         "slipgym:slipgym/Explore-v0",
         N,
-        estimator="joint",
         config=config,
         autoreset_mode="Disabled",
         **DEVIATIONS,
@@ -61,7 +72,7 @@ def test_it_rests_once_it_is_sure_and_keeps_to_the_budget():
         observations, _, _, _, info = envs.step(actions)
         slips.append(info["slip"].copy())
     envs.close()
-    memory = ExploreState(*state.T)
+    memory = ExploreState(*state[0].T)
     assert (memory.phase == HOLD).mean() >= 0.95
     moved = np.abs(np.array(slips[-60:]) - slips[-1]).max(axis=(0, 2))
     assert np.mean(moved < 1e-5) >= 0.95

@@ -13,7 +13,7 @@ from policies.research.leaderboard.ablation import FULL, WITHOUT, worth
 from policies.research.leaderboard.delays import delays
 from policies.research.leaderboard.groups import GROUPS
 from policies.research.leaderboard.imperfect import opened
-from policies.research.leaderboard.one_imperfection import IMPERFECTIONS, one_imperfection
+from policies.research.leaderboard.one_imperfection import IMPERFECTIONS, one_imperfection, without
 from policies.research.leaderboard.ranking import ranked, winners
 from policies.research.leaderboard.replay import replay
 from policies.research.leaderboard.rubber import swinging
@@ -142,6 +142,23 @@ def test_single_imperfections_are_all_that_differs_between_the_presets():
     cases = one_imperfection()
     assert list(cases) == ["realistic", *IMPERFECTIONS, "lab"]
     assert cases["tilt"]["config"] == {"sensors": {"force_torque": {"tilt": lab["force_torque"]["tilt"]}}}
+
+
+def test_sensors_without_some_imperfections():
+    overrides = without(["scale", "late-velocity"])
+    sensors = load(overrides, sensors="lab").sensors
+    assert (sensors.slip.scale_error, sensors.slip.latency_samples, sensors.slip.latency_spread) == (
+        0.0,
+        1,
+        0,
+    )
+    assert sensors.force_torque == load(sensors="lab").sensors.force_torque
+    assert without(list(IMPERFECTIONS))["sensors"] != {}
+    everything = load(without(list(IMPERFECTIONS)), sensors="lab").sensors
+    assert everything == load(sensors="realistic").sensors
+    assert without([]) == {}
+    with pytest.raises(ValueError, match="imperfection"):
+        without(["weather"])
 
 
 def test_late_velocities_have_a_row_for_each_material_and_delay():

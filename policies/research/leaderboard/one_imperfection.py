@@ -1,11 +1,12 @@
-"""Which imperfection of the sensors "lab" makes which error: each alone, beside "realistic" and "lab"."""
+"""Which imperfection of the sensors "lab" makes which error: each alone, or all but some."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from slipgym.config import load
+from slipgym.config.errors import unknown
 
 Values = dict[str, dict[str, Any]]
 IMPERFECTIONS = {
@@ -31,10 +32,37 @@ def one_imperfection() -> Mapping[str, Mapping[str, Any]]:
     return cases | {"lab": {"sensors": "lab"}}
 
 
-def values_of(label: str) -> Values:
-    """What "lab" has for an imperfection: sensor -> parameter -> value."""
-    lab = load(sensors="lab").sensors
+def values_of(label: str, preset: str = "lab") -> Values:
+    """What a preset of the sensors has for an imperfection: sensor -> parameter -> value.
+
+    Args:
+        label: Of `IMPERFECTIONS`.
+        preset: Name of the preset.
+
+    Raises:
+        ValueError: There is no such imperfection.
+    """
+    if label not in IMPERFECTIONS:
+        raise ValueError(unknown("imperfection", label, IMPERFECTIONS))
+    sensors = load(sensors=preset).sensors
     return {
-        sensor: {name: getattr(getattr(lab, sensor), name) for name in names}
+        sensor: {name: getattr(getattr(sensors, sensor), name) for name in names}
         for sensor, names in IMPERFECTIONS[label].items()
     }
+
+
+def without(labels: Sequence[str]) -> Mapping[str, Any]:
+    """Overrides of the configuration that give sensors what "realistic" has instead of some imperfections.
+
+    Args:
+        labels: Of `IMPERFECTIONS`; hyphens may stand for spaces.
+
+    Raises:
+        ValueError: There is no such imperfection.
+    """
+    found: Values = {}
+    spaced = {label.replace(" ", "-"): label for label in IMPERFECTIONS}
+    for label in labels:
+        for sensor, values in values_of(spaced.get(label, label), "realistic").items():
+            found[sensor] = {**found.get(sensor, {}), **values}
+    return {"sensors": found} if found else {}
