@@ -209,11 +209,13 @@ class InfoCopies:
 def _prepared(terms: Sequence[str], count: int = 32) -> Iterator[tuple[np.ndarray, dict[str, Any]]]:
     """Rows of a new array, and infos whose arrays are parts of them; the other entries are yet to be set."""
     rows = np.empty((count, _WIDTH))
-    parts = [rows[:, part].reshape(count, *shape) for part, shape in _VIEWS.values()]
     blank, rewards = dict.fromkeys(_NAMES), dict.fromkeys(terms)
-    infos = [{**blank, **dict(zip(_VIEWS, arrays, strict=True))} for arrays in zip(*parts, strict=True)]
+    infos: list[dict[str, Any]] = [blank.copy() for _ in range(count)]
     for info in infos:
         info["reward_terms"] = rewards.copy()
+    for name, (part, shape) in _VIEWS.items():
+        for info, array in zip(infos, rows[:, part].reshape(count, *shape), strict=True):
+            info[name] = array
     return zip(rows, infos, strict=True)
 
 
