@@ -12,7 +12,9 @@ Examples:\n
   slipgym benchmark --env hold --pairs 100 --json figures.json
   slipgym benchmark --workloads
   slipgym benchmark --split
+  slipgym benchmark --split --estimator disc
   slipgym benchmark --bullet
+  slipgym benchmark --first-use
 \n
 docs/performance.md explains the figures.
 """
@@ -43,11 +45,22 @@ def main(
     bullet: Annotated[
         bool, typer.Option("--bullet", help="The environment with PyBullet and its bare loop alone.")
     ] = False,
+    estimator: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="With --split: also the headline with this estimator; repeatable.", show_default=False
+        ),
+    ] = None,
+    first_use: Annotated[
+        bool, typer.Option("--first-use", help="The first steps after an installation: compiling.")
+    ] = False,
     optimisations: Annotated[
         bool, typer.Option("--optimisations", help="The benefit of each optimisation instead.")
     ] = False,
 ) -> None:
     """Print the speed of an environment and of its parts."""
+    if estimator and not split:
+        raise typer.BadParameter("--estimator needs --split")
     from slipgym.tasks import find
 
     try:
@@ -65,7 +78,16 @@ def main(
         from slipgym.benchmarking.report import line, machine, publish
 
         typer.echo(line(machine()))
-        publish(headline_and_parts(env_id, max(3, pairs // 5)), json)
+        try:
+            publish(headline_and_parts(env_id, max(3, pairs // 5), estimator or ()), json)
+        except ValueError as error:
+            raise typer.BadParameter(str(error)) from error
+    elif first_use:
+        from slipgym.benchmarking.first_use import first_use as compiling
+        from slipgym.benchmarking.report import line, machine, publish
+
+        typer.echo(line(machine()))
+        publish(compiling(env_id), json)
     elif bullet:
         from slipgym.benchmarking.run import with_bullet
 

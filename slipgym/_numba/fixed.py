@@ -30,8 +30,10 @@ class FixedType(types.Type):
         self.kind = kind
 
 
-class Fixed:
+class Fixed(int):
     """A tuple of arrays, pointers and None as compiled functions use it; it keeps the arrays alive.
+
+    As a number it is the address of the copy that compiled functions read.
 
     Args:
         value: The tuple; tuples in it are allowed. An element that is replaced later is not noticed.
@@ -39,20 +41,24 @@ class Fixed:
 
     Attributes:
         kind: `FixedType`.
-        address: Of the copy that compiled functions read.
 
     Raises:
         TypeError: An element is of another type.
     """
 
-    def __init__(self, value: tuple[Any, ...], kind: Any = None) -> None:
+    kind: FixedType
+    _kept: tuple[Any, ...]
+
+    def __new__(cls, value: tuple[Any, ...], kind: Any = None) -> Fixed:
+        """Write the addresses and shapes down."""
         kind = kind or typeof(value)
-        self.kind, self._value = FixedType(kind), value
-        self._words = np.array([*_words(value)], dtype=np.int64)
+        words = np.array([*_words(value)], dtype=np.int64)
         context: Any = cpu_target.target_context
-        if self._words.nbytes != context.get_abi_sizeof(context.get_value_type(kind)):
+        if words.nbytes != context.get_abi_sizeof(context.get_value_type(kind)):
             raise TypeError(f"the value is not laid out as {kind}")
-        self.address = self._words.ctypes.data
+        fixed = super().__new__(cls, words.ctypes.data)
+        fixed.kind, fixed._kept = FixedType(kind), (value, words)
+        return fixed
 
 
 def _words(value: Any) -> Iterator[int]:
@@ -85,10 +91,7 @@ opened: Any = intrinsic(_opening)
 
 
 def _unbox_fixed(_: Any, fixed: Any, c: Any) -> NativeValue:
-    number = c.pyapi.object_getattr_string(fixed, "address")
-    address = c.pyapi.long_as_voidptr(number)
-    c.pyapi.decref(number)
-    return NativeValue(address)
+    return NativeValue(c.pyapi.long_as_voidptr(fixed))
 
 
 register_model(FixedType)(models.OpaqueModel)

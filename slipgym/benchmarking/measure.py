@@ -118,7 +118,7 @@ def against_bare(player: Player, pairs: int) -> list[Figure]:
     return [
         Figure("bare Bullet loop, per engine step", 1e6 * result.first, "us"),
         Figure("environment, per engine step", 1e6 * result.second, "us"),
-        Figure("environment / bare loop", middle, "-", "<= 1.4"),
+        Figure("environment / bare loop", middle, "-", "<= 1.3"),
         Figure("environment / bare loop, lower quartile", lower, "-"),
         Figure("environment / bare loop, upper quartile", upper, "-"),
         Figure("real-time factor of env.step", real_time, "-", ">= 40"),
@@ -206,7 +206,7 @@ def options(player: Player, env_id: str, pairs: int) -> list[Figure]:
         figures += [
             Figure(f"environment, {name}, per engine step", 1e6 * result.second, "us"),
             Figure(f"environment, {name} / without", result.quartiles[1], "-"),
-            Figure(f"environment, {name} / bare loop", bare.value, "-", "<= 1.4"),
+            Figure(f"environment, {name} / bare loop", bare.value, "-"),
         ]
     return figures
 

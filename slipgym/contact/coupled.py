@@ -29,6 +29,7 @@ from slipgym.contact.records import Pad, Pads, Pair, Symmetric, Vector
 
 MAX_NEWTON = 30
 MAX_HALVINGS = 8
+FROM_GUESS, FROM_REST, AGAIN = range(3)
 FORCE_TOLERANCE = 1e-10  # of the friction limit; rounding reaches about 1e-13
 
 
@@ -96,17 +97,22 @@ def solve_motion(
 
     If it does not converge from the guess, it is repeated from rest, which lies on the other side of the
     break-away; the better result is returned. It is the last that was evaluated: soft pads keep its results.
+    The equation stands once in the loops below: each copy of it would be compiled, and kept in the cache.
     """
     tolerance = 0.0
     for i in range(len(pads)):
         tolerance += FORCE_TOLERANCE * levels[i] * pads[i].normal
-    motion, error = iterate(pads, cells, levels, inertia, centre, free, motion, h, tolerance)
-    if error > tolerance:
-        other, rest = iterate(pads, cells, levels, inertia, centre, free, (0.0, 0.0, 0.0), h, tolerance)
-        if rest < error:
-            return other
-        assemble(pads, cells, levels, inertia, centre, free, motion, h)
-    return motion
+    best, least, attempt = motion, math.inf, FROM_GUESS
+    while True:
+        motion, error = iterate(pads, cells, levels, inertia, centre, free, motion, h, tolerance, attempt)
+        if not error > tolerance or attempt == AGAIN:
+            return motion
+        if attempt == FROM_REST:
+            if error < least:
+                return motion
+            motion, attempt = best, AGAIN
+        else:
+            best, least, motion, attempt = motion, error, (0.0, 0.0, 0.0), FROM_REST
 
 
 @compiled
@@ -120,28 +126,30 @@ def iterate(
     motion: Vector,
     h: float,
     tolerance: float,
+    attempt: int,
 ) -> tuple[Vector, float]:
-    """Newton iteration from a first guess; returns the motion and the norm of its residual [N]."""
+    """Newton iteration from a first guess; returns the motion and the norm of its residual [N].
+
+    With `attempt` AGAIN only the residual at the guess is evaluated.
+    """
     radius = pads[0].radius
-    residual, jacobian = assemble(pads, cells, levels, inertia, centre, free, motion, h)
-    error = norm(residual, radius)
-    for _ in range(MAX_NEWTON):
-        if error <= tolerance:
-            break
-        step = solve_symmetric(jacobian, residual)
-        part, start, before = 1.0, motion, error
-        for _ in range(MAX_HALVINGS):
-            motion = (
-                start[0] - part * step[0],
-                start[1] - part * step[1],
-                start[2] - part * step[2],
-            )
-            residual, jacobian = assemble(pads, cells, levels, inertia, centre, free, motion, h)
-            error = norm(residual, radius)
-            if error < before:
-                break
-            part *= 0.5
-    return motion, error
+    start, step, part, before, error = motion, (0.0, 0.0, 0.0), 1.0, math.inf, 0.0
+    steps, halvings = 0, 0
+    while True:
+        residual, jacobian = assemble(pads, cells, levels, inertia, centre, free, motion, h)
+        error = norm(residual, radius)
+        if steps > 0 and not error < before and halvings + 1 < MAX_HALVINGS:
+            halvings, part = halvings + 1, 0.5 * part
+        else:
+            if error <= tolerance or steps == MAX_NEWTON or attempt == AGAIN:
+                return motion, error
+            step = solve_symmetric(jacobian, residual)
+            part, start, before, steps, halvings = 1.0, motion, error, steps + 1, 0
+        motion = (
+            start[0] - part * step[0],
+            start[1] - part * step[1],
+            start[2] - part * step[2],
+        )
 
 
 @compiled
@@ -186,17 +194,19 @@ def step_pads(
     first = set_friction_level(pads[0], cells, 0, h)
     levels = first, first if len(pads) == 1 else set_friction_level(pads[-1], cells, -1, h)
     held = pads[0].normal > 0.0 or pads[-1].normal > 0.0
-    motion = solve_motion(pads, cells, levels, inertia, centre, free, guess, h) if held else free
-    slips = displacements(pads, cells, centre, motion)
-    if held:
+    motion, anew = guess, False
+    while True:  # at most twice; what is written once is compiled once
+        motion = solve_motion(pads, cells, levels, inertia, centre, free, motion, h) if held else free
+        slips = displacements(pads, cells, centre, motion)
+        if anew or not held:
+            break
         first = update_friction_level(pads[0], cells, 0, levels[0], before[0], slips[0], h)
         last = first
         if len(pads) > 1:
             last = update_friction_level(pads[-1], cells, -1, levels[1], before[1], slips[1], h)
-        if first != levels[0] or last != levels[1]:
-            levels = first, last
-            motion = solve_motion(pads, cells, levels, inertia, centre, free, motion, h)
-            slips = displacements(pads, cells, centre, motion)
+        if first == levels[0] and last == levels[1]:
+            break
+        levels, anew = (first, last), True
     for i in range(len(pads)):
         if pads[i].normal > 0.0:
             store_state(pads[i], cells, i, levels[i], slips[i], h)

@@ -128,11 +128,11 @@ class Actions:
                 f"got {array.shape}: {action!r}"
             )
         batch = self._batch
-        batch[0] = array
-        for k, value in enumerate(batch.tolist()[0]):
+        for k, value in enumerate(array.tolist()):
+            batch[0, k] = value
             if not math.isfinite(value):
                 name = self.columns[k].name
-                raise ValueError(f"action[{k}] ({name}) = {value!r} must be finite, within [-1, 1]")
+                raise ValueError(f"action[{k}] ({name}) = {float(value)} must be finite, within [-1, 1]")
         return batch
 
     def checked_batch(self, actions: Any, n: int) -> np.ndarray:

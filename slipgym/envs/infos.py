@@ -168,7 +168,7 @@ class InfoBuffer(NamedTuple):
 class InfoCopies:
     """Infos of one environment as `gymnasium.Env` returns them: the caller's own arrays, plain numbers.
 
-    The arrays of 32 infos share their memory, which lives as long as one of them.
+    32 infos are prepared together, with arrays that share their memory; it lives as long as one of them.
 
     Args:
         terms: Names of the reward terms.
@@ -176,15 +176,14 @@ class InfoCopies:
 
     def __init__(self, terms: Sequence[str]) -> None:
         self._terms = terms
-        self._rows: Iterator[tuple[np.ndarray, ...]] = iter(())
+        self._prepared: Iterator[tuple[np.ndarray, dict[str, Any]]] = iter(())
         self._buffer: InfoBuffer | None = None
         self._sources: list[np.ndarray] = []
 
     def take(self, buffer: InfoBuffer) -> tuple[dict[str, Any], bool, bool]:
         """Copy the infos of the first environment.
 
-        PyBullet's step leaves nothing in the processor's cache: few calls of numpy matter more here than
-        short ones.
+        PyBullet's step leaves nothing in the processor's cache: few calls matter more here than short ones.
 
         Returns:
             The info, whether the episode has ended early, and whether it has its full length.
@@ -192,22 +191,32 @@ class InfoCopies:
         if buffer is not self._buffer:
             self._buffer, self._sources = buffer, [array[0] for array in buffer]
         numbers, marks, terms = self._sources
-        views = next(self._rows, None)
-        if views is None:
-            self._rows = _rows()
-            views = next(self._rows)
-        row, *arrays = views
+        prepared = next(self._prepared, None)
+        if prepared is None:
+            self._prepared = _prepared(self._terms)
+            prepared = next(self._prepared)
+        row, info = prepared
         row[:] = numbers
-        *flags, early, late = marks.tolist()
-        rewards = dict(zip(self._terms, terms.tolist(), strict=True))
-        return dict(zip(_NAMES, (*arrays, row.item(_TIME), *flags, rewards), strict=True)), early, late
+        info["time"] = row.item(_TIME)
+        flags, values, rewards = marks.tolist(), terms.tolist(), info["reward_terms"]
+        for k, name in enumerate(_FLAG_NAMES):
+            info[name] = flags[k]
+        for k, name in enumerate(self._terms):
+            rewards[name] = values[k]
+        return info, flags[-2], flags[-1]
 
 
-def _rows(count: int = 32) -> Iterator[tuple[np.ndarray, ...]]:
-    """Rows of a new array, and the parts of each that `_VIEWS` names, made together: it costs less."""
+def _prepared(terms: Sequence[str], count: int = 32) -> Iterator[tuple[np.ndarray, dict[str, Any]]]:
+    """Rows of a new array, and infos whose arrays are parts of them; the other entries are yet to be set."""
     rows = np.empty((count, _WIDTH))
-    parts = (rows[:, part].reshape(count, *shape) for part, shape in _VIEWS.values())
-    return zip(rows, *parts, strict=True)
+    blank, rewards = dict.fromkeys(_NAMES), dict.fromkeys(terms)
+    infos: list[dict[str, Any]] = [blank.copy() for _ in range(count)]
+    for info in infos:
+        info["reward_terms"] = rewards.copy()
+    for name, (part, shape) in _VIEWS.items():
+        for info, array in zip(infos, rows[:, part].reshape(count, *shape), strict=True):
+            info[name] = array
+    return zip(rows, infos, strict=True)
 
 
 def _with_masks(infos: dict[str, Any], left: Iterator[np.ndarray]) -> dict[str, Any]:

@@ -43,9 +43,7 @@ class Observer:
         low, high = _bounds(self.columns)
         wrist = np.array(wrist_part(simulation.task, action_mode), dtype=np.int64)
         self._settings = wrist, _friction_part(simulation, friction_source), low, high
-        self.buffers = ObservationBuffers(
-            *self._settings, np.zeros((simulation.n, len(self.columns)), dtype=np.float32)
-        )
+        self._write_to(np.zeros((simulation.n, len(self.columns)), dtype=np.float32))
         if history:  # the newest observation comes last
             self._frames = np.zeros((simulation.n, history + 1, len(self.columns)), dtype=np.float32)
         policy = gym.spaces.Box(np.tile(low, history + 1), np.tile(high, history + 1))
@@ -94,7 +92,7 @@ class Observer:
         if self._history:
             self._frames = self._frames.copy()
         else:
-            self.buffers = ObservationBuffers(*self._settings, np.empty_like(self.buffers.out))
+            self._write_to(np.empty_like(self.buffers.out))
         if self.privileged:
             self._ground_truth = np.empty_like(self._ground_truth)
         return observations
@@ -102,7 +100,7 @@ class Observer:
     def first(self) -> Observation:
         """The observation of the first environment, owned by the caller."""
         if not self._history and not self.privileged:
-            return self.buffers.out[0].copy()
+            return self._first.copy()
         observations = self.present()
         if isinstance(observations, dict):
             return {group: values[0].copy() for group, values in observations.items()}
@@ -129,6 +127,10 @@ class Observer:
         """Restore the history of some rows (n,) bool; without one, the simulation's state suffices."""
         if self._history:
             self._frames[rows] = frames[rows]
+
+    def _write_to(self, out: np.ndarray) -> None:
+        """Have observations written to an array, (n, k)."""
+        self.buffers, self._first = ObservationBuffers(*self._settings, out), out[0]
 
     def _look(self, rows: np.ndarray) -> None:
         self._simulation.stages.look_at(rows, self._simulation.state, self.buffers)

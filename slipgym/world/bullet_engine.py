@@ -165,11 +165,11 @@ class BulletWorld:
         """
         bodies = self._client.checked(), self._body, self._gripper
         box, self._box = self.box, None
-        moving = self.rows.loads, self._reading, self._read, self._engine_steps
+        loads, before, steps = self.rows.loads, self._reading, self._engine_steps
         if self._plant.tilt is None:
-            reading = bullet_upright.step(*bodies, *moving, self._finger_inertia)
+            reading = bullet_upright.step(*bodies, loads, before, steps, self._finger_inertia)
         else:
-            reading = bullet_tilt.step(*bodies, *moving)
+            reading = bullet_tilt.step(*bodies, loads, before, self._read, steps)
         self._reading = reading
         self._place_links(bodies[0])
         self._box = box

@@ -128,13 +128,16 @@ def advance_substeps(
         for f in range(len(pads)):
             apply_due_commands(fingers[f], world.tick)
         stop = min(end, sample)
-        ticks = longest_common_substep(world, pads, cells, fingers, load, stop)
-        if ticks < stop - world.tick:  # then a command that falls due ends a sub-step, too
-            until = stop
+        cut = False
+        while True:  # at most twice: a short sub-step also ends with a command that falls due
+            ticks = longest_common_substep(world, pads, cells, fingers, load, stop)
+            if cut or ticks >= stop - world.tick:
+                break
+            until, cut = stop, True
             for f in range(len(pads)):
                 stop = world.tick + ticks_to_next_command(fingers[f], world.tick, stop - world.tick)
-            if stop < until:
-                ticks = longest_common_substep(world, pads, cells, fingers, load, stop)
+            if stop == until:
+                break
         calm = ticks > world.substep_ticks
         if calm:
             steps = -(-(stop - world.tick) // ticks)
