@@ -15,6 +15,7 @@ from estimator.augmented.change import follow
 from estimator.augmented.filtering import MOST
 from estimator.augmented.holding import least_friction
 from estimator.augmented.load import beside, limit, move
+from estimator.augmented.model_error import count_slip
 from estimator.augmented.scalar_update import correct
 from estimator.augmented.sliding import settle
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, STATES, TILT, ZERO, R
@@ -117,6 +118,7 @@ def _take(state, p, i, speed):
     correct(x, covariance, crossed, gain, innovation)
     limit(x, state.limits)
     follow(state, p, value, before)
+    count_slip(state, p, True, innovation, variance + noise, share)
     if state.updates_mu_c == 0:
         state.smooth[3] = f_n
     if share > TURNS:
