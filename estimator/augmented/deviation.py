@@ -51,6 +51,7 @@ def deviate(state, p, changed):
     """
     if not changed and state.samples % EVERY != 0:
         return
+    of_mu_c, of_mu_s = 0.0, 0.0
     if state.updates_mu_c > 0:
         state.mu_c = clamped(math.exp(state.x[MU]), p.mu_min, p.mu_max)
         if state.updates_r > 0:
@@ -69,6 +70,7 @@ def deviate(state, p, changed):
         unlearned = max(state.fall_error - state.covariance[FALLS, FALLS], 0.0)
         slips = of_slips(state, p)
         surface = slips + p.sd_surface * p.sd_surface + fall * fall * unlearned
+        of_mu_c = state.mu_c * state.mu_c * surface
         of_torque = state.variance_torque * (normal / (state.mu_c * state.r)) ** 2
         square = _squared(state, weights, hidden + of_normal + surface, 1.0, 0.0)
         state.sd_mu_c = state.mu_c * math.sqrt(square)
@@ -84,9 +86,10 @@ def deviate(state, p, changed):
         state.mu_s = clamped(state.mu_s, p.mu_min, p.mu_max)
         square = state.variance_mu_s + state.common_mu_s + of_exponent + max(state.scatter_mu_s, 0.0)
         step = math.log(state.load / state.event_load)
-        square += p.sd_surface * p.sd_surface
-        square += step * step * max(state.fall_error - state.covariance[FALLS, FALLS], 0.0)
-        square += p.sd_slip * p.sd_slip / state.events_mu_s
+        surface = p.sd_surface * p.sd_surface + p.sd_slip * p.sd_slip / state.events_mu_s
+        surface += step * step * max(state.fall_error - state.covariance[FALLS, FALLS], 0.0)
+        square += surface
+        of_mu_s = state.mu_s * state.mu_s * surface
         state.sd_mu_s = state.mu_s * math.sqrt(square)
         state.confidence_mu_s = _confidence(square)
-    order(state)
+    order(state, of_mu_c, of_mu_s)

@@ -18,6 +18,8 @@ from estimator._numba.caching import njit
 
 WHOLE = 12
 """Samples that count as a whole slip."""
+HALF = 0.2
+"""Relative deviation of r with which a slip under torque counts as half of one."""
 START = 0.5
 """Whole slips that the prior is worth."""
 FIRST = 4
@@ -43,29 +45,29 @@ def _compare(state, innovation, variance):
 
 
 @njit(error_model="numpy")
-def count_slip(state, p, begins, innovation, variance, share):
+def count_slip(state, begins, score, variance, rim, square):
     """Takes a sample of a slip into the number of slips and their differences.
 
     Args:
         state: Changed in place.
-        p: Parameters.
         begins: Whether it is the first one of a slip.
-        innovation: Of ln mu_c.
-        variance: That which the filter expects of it.
-        share: Of the torque in the squared load.
+        score: Normalised innovation of ln mu_c.
+        variance: Of the innovation, as the filter expects it.
+        rim: Part of the torque, or of the spin, in ...
+        square: ... the squared load, or slip speed, > 0.
     """
     if begins:
         state.slip_samples, state.innovation, state.expected, state.difference = 0, 0.0, 0.0, 0.0
     state.slip_samples += 1
     if state.slip_samples <= FIRST:
-        _compare(state, innovation, variance)
-    of_radius = share * state.sd_r / (state.r * p.sd_slip)
-    weight = 1.0 / (WHOLE * (1.0 + of_radius * of_radius))
+        _compare(state, score * math.sqrt(variance), variance)
+    known, unknown = state.r * HALF * square, state.sd_r * rim
+    weight = known * known / (WHOLE * (known * known + unknown * unknown))
     kept = 1.0 - (1.0 - MEMORY) * weight
     state.separate = kept * state.separate + weight
     more = weight * state.difference if state.slip_samples > WHOLE else 0.0
     state.contrast = kept * state.contrast + more
-    load, gain = math.log(state.load), LOADS if state.updates_mu_c > 0 else 1.0
+    load, gain = state.load, LOADS if state.updates_mu_c > 0 else 1.0
     state.lightest = min(load, state.lightest + gain * (load - state.lightest))
     state.heaviest = max(load, state.heaviest + gain * (load - state.heaviest))
 
@@ -79,8 +81,9 @@ def forget_slips(state):
 @njit(error_model="numpy")
 def beyond_slips(state):
     """How far ln f_n is outside the range at which slips were seen."""
-    load = math.log(state.load)
-    return max(load - state.heaviest, state.lightest - load, 0.0)
+    if state.load > state.heaviest:
+        return math.log(state.load / state.heaviest)
+    return math.log(state.lightest / state.load) if state.load < state.lightest else 0.0
 
 
 @njit(error_model="numpy")

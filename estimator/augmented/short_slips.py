@@ -118,12 +118,13 @@ def _take(state, p, i, speed):
     correct(x, covariance, crossed, gain, innovation)
     limit(x, state.limits)
     follow(state, p, value, before)
-    count_slip(state, p, True, innovation, variance + noise, share)
+    score = innovation / math.sqrt(variance + noise)
+    count_slip(state, True, score, variance + noise, share, 1.0)
     if state.updates_mu_c == 0:
         state.smooth[3] = f_n
     if share > TURNS:
         state.updates_r += 1
-    return innovation / math.sqrt(variance + noise)
+    return score
 
 
 @njit(error_model="numpy")

@@ -266,8 +266,7 @@ def slide(state, p):
         return False
     follow(state, p, value, variance)
     rim = (state.r * twist[2]) ** 2
-    share = rim / max(rim + twist[0] * twist[0] + twist[1] * twist[1], 1e-300)
-    count_slip(state, p, begins, score * math.sqrt(variance_mu), variance_mu, share)
+    count_slip(state, begins, score, variance_mu, rim, max(rim + square, 1e-150))
     state.slides += 1
     state.first = -1
     state.misfit += 0.05 * (min(squared, p.outlier) / 3.0 - state.misfit)

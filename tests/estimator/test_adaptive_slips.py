@@ -60,7 +60,7 @@ def test_a_load_at_which_nothing_slipped_is_not_known():
 def test_what_all_slips_share_remains():
     """Anisotropy is not seen by slips of one direction, however many."""
     _, after = course([0.4] * 20)
-    assert relative(after[-1]) > estimator.make("adaptive").batch.parameters.sd_surface
+    assert relative(after[-1]) > 0.05  # sd_surface
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
