@@ -4,7 +4,8 @@ import math
 
 from estimator._numba.caching import njit
 from estimator.augmented.load import static_at_load
-from estimator.augmented.slip_law import MU, SHAPE, ZERO, R
+from estimator.augmented.model_error import beyond_slips, of_slips
+from estimator.augmented.slip_law import FALLS, MU, SHAPE, ZERO, R
 from estimator.augmented.static_friction import order
 from estimator.estimate import confidence_of
 from estimator.sample import clamped
@@ -50,6 +51,7 @@ def deviate(state, p, changed):
     """
     if not changed and state.samples % EVERY != 0:
         return
+    of_mu_c, of_mu_s = 0.0, 0.0
     if state.updates_mu_c > 0:
         state.mu_c = clamped(math.exp(state.x[MU]), p.mu_min, p.mu_max)
         if state.updates_r > 0:
@@ -64,20 +66,30 @@ def deviate(state, p, changed):
         )
         hidden = (0.5 * state.leverage) ** 2 + p.sd_gain * p.sd_gain
         of_normal = state.variance_normal * normal * normal
+        fall = beyond_slips(state)
+        unlearned = max(state.fall_error - state.covariance[FALLS, FALLS], 0.0)
+        slips = of_slips(state, p)
+        surface = slips + p.sd_surface * p.sd_surface + fall * fall * unlearned
+        of_mu_c = state.mu_c * state.mu_c * surface
         of_torque = state.variance_torque * (normal / (state.mu_c * state.r)) ** 2
-        square = _squared(state, weights, hidden + of_normal, 1.0, 0.0)
+        square = _squared(state, weights, hidden + of_normal + surface, 1.0, 0.0)
         state.sd_mu_c = state.mu_c * math.sqrt(square)
         state.confidence_mu_c = _confidence(square)
-        square = _squared(state, weights, hidden + of_normal + of_torque, 1.0, 1.0)
+        square = _squared(state, weights, hidden + of_normal + of_torque + surface, 1.0, 1.0)
         state.sd_lever = state.mu_c * state.r * math.sqrt(square)
         if state.updates_r > 0:
-            square = _squared(state, weights, hidden + of_torque, 0.0, 1.0)
+            square = _squared(state, weights, hidden + of_torque + slips, 0.0, 1.0)
             state.sd_r = state.r * math.sqrt(square)
             state.confidence_r = _confidence(square)
     if state.events_mu_s > 0:
         state.mu_s, of_exponent = static_at_load(state, state.load)
         state.mu_s = clamped(state.mu_s, p.mu_min, p.mu_max)
         square = state.variance_mu_s + state.common_mu_s + of_exponent + max(state.scatter_mu_s, 0.0)
+        step = math.log(state.load / state.event_load)
+        surface = p.sd_surface * p.sd_surface + p.sd_slip * p.sd_slip / state.events_mu_s
+        surface += step * step * max(state.fall_error - state.covariance[FALLS, FALLS], 0.0)
+        square += surface
+        of_mu_s = state.mu_s * state.mu_s * surface
         state.sd_mu_s = state.mu_s * math.sqrt(square)
         state.confidence_mu_s = _confidence(square)
-    order(state)
+    order(state, of_mu_c, of_mu_s)

@@ -201,8 +201,8 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
         of_spin: Variance of omega.
 
     Returns:
-        Whether the states moved, the squared normalised innovation [-] and the normalised innovation in the
-        direction of mu_c, positive if mu_c seems too small [-].
+        Whether the states moved, the squared normalised innovation [-], the normalised innovation in the
+        direction of mu_c, positive if mu_c seems too small [-], and the variance of ln mu_c there.
     """
     x, covariance = state.x, state.covariance
     h, crossed, by_twist = matrix(3, STATES), matrix(3, STATES), matrix(3, 3)
@@ -211,7 +211,7 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
     uncertain = covariance[0, 0] > KNOWN or covariance[1, 1] > KNOWN
     for j in range(STATES):
         proposed[j] = x[j]
-    squared, score = 0.0, 0.0
+    squared, score, variance = 0.0, 0.0, 0.0
     smooth = state.smooth
     for iteration in range(ITERATIONS if uncertain else 1):
         mu, r = math.exp(proposed[MU]), math.exp(proposed[R])
@@ -232,7 +232,8 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
         if iteration == 0:
             squared = current
             u, v, z = _whitened(w, h[0, MU], h[1, MU], h[2, MU])
-            score = (u * a + v * b + z * c) / math.sqrt(u * u + v * v + z * z)
+            variance = 1.0 / (u * u + v * v + z * z)
+            score = (u * a + v * b + z * c) * math.sqrt(variance)
         if current > p.outlier:
             excess = current / p.outlier
             w = _whitening(
@@ -253,7 +254,7 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
         if settled and _settled(proposed[R] - before_r, covariance[R, R]):
             break
     if not (math.isfinite(squared) and math.isfinite(score)):
-        return False, 0.0, 0.0
+        return False, 0.0, 0.0, 0.0
     if not _reduce(x, covariance, w, crossed, proposed):
-        return False, 0.0, 0.0
-    return True, squared, score
+        return False, 0.0, 0.0, 0.0
+    return True, squared, score, variance

@@ -120,7 +120,9 @@ def bound_exponent(state, p, f_t, f_n):
     expected = state.event * math.exp(-state.x[FALLS] * step)
     margin = max(math.log(expected * (f_n + BAND * p.sd_normal) / held), 0.0)
     square = margin * margin + state.variance_mu_s + state.common_mu_s
-    _narrow(state.x, state.covariance, FALLS, square / (3.0 * step * step))
+    variance = square / (3.0 * step * step)
+    state.fall_error = min(state.fall_error, variance)
+    _narrow(state.x, state.covariance, FALLS, variance)
 
 
 @njit(error_model="numpy")

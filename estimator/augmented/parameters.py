@@ -60,6 +60,15 @@ class AdaptiveParameters(NoiseParameters):
     sd_gain: float = parameter(
         0.02, "Relative errors that no motion shows: gain and cross-talk of the forces.", "[0, inf)"
     )
+    sd_surface: float = parameter(
+        0.05, "Relative scatter of mu_c and mu_s that all slips share: anisotropy.", "[0, inf)"
+    )
+    sd_slip: float = parameter(
+        0.2, "Relative error of mu_c, mu_s and r that one slip has, before slips have shown it.", "(0, inf)"
+    )
+    sd_fall: float = parameter(
+        0.1, "Error of the exponent of the load that remains however long it is learned.", "[0, inf)"
+    )
     compliance: float = parameter(
         5e-5,
         "Smallest shear compliance of the pad that is assumed, however stiff it seems.",

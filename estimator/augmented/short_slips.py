@@ -15,6 +15,7 @@ from estimator.augmented.change import follow
 from estimator.augmented.filtering import MOST
 from estimator.augmented.holding import least_friction
 from estimator.augmented.load import beside, limit, move
+from estimator.augmented.model_error import count_slip
 from estimator.augmented.scalar_update import correct
 from estimator.augmented.sliding import settle
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, STATES, TILT, ZERO, R
@@ -117,11 +118,13 @@ def _take(state, p, i, speed):
     correct(x, covariance, crossed, gain, innovation)
     limit(x, state.limits)
     follow(state, p, value, before)
+    score = innovation / math.sqrt(variance + noise)
+    count_slip(state, True, score, variance + noise, share, 1.0)
     if state.updates_mu_c == 0:
         state.smooth[3] = f_n
     if share > TURNS:
         state.updates_r += 1
-    return innovation / math.sqrt(variance + noise)
+    return score
 
 
 @njit(error_model="numpy")

@@ -9,6 +9,7 @@ from estimator.augmented.change import follow, test_for_jump, widen
 from estimator.augmented.filtering import learn
 from estimator.augmented.holding import SAFETY, least_radius, may_slide
 from estimator.augmented.load import beside, move
+from estimator.augmented.model_error import count_slip
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
 from estimator.augmented.timing import LAST, correlate
@@ -94,8 +95,9 @@ def _shear(state, p, moves, elapsed):
     if beyond and (power * state.sign < 0.0 or not state.signed):
         if square > p.compliance_max * p.compliance_max * spring:  # no pad springs so far
             _direct(state, p, power)
-        else:  # against the force: it springs back
-            state.spring = min(SAFETY * math.sqrt(square / max(spring, 1e-9)), p.compliance_max)
+        else:
+            if state.signed:  # against the force: it springs back
+                state.spring = min(SAFETY * math.sqrt(square / max(spring, 1e-9)), p.compliance_max)
             beyond = False
     slips = beyond and _goes_on(state, p, r, elapsed, spring) and may_slide(state, p)
     state.beyond = state.beyond + 1 if slips else 0
@@ -238,7 +240,8 @@ def slide(state, p):
         return False
     of_speed = 0.5 * p.sd_speed * p.sd_speed + (d_x * d_x + d_y * d_y) / 12.0
     of_spin = 0.5 * p.sd_spin * p.sd_spin + d_omega * d_omega / 12.0
-    _follow(state, p, twist, wrench[2], state.slid != k - 1)
+    begins = state.slid != k - 1
+    _follow(state, p, twist, wrench[2], begins)
     state.slid = k
     # close to the pivot an error of the CoP turns the direction of the slip: not linear, so taken for noise
     lever = (MILLIMETRE * p.sd_cop * twist[2]) ** 2 + p.sd_speed * p.sd_speed
@@ -255,13 +258,15 @@ def slide(state, p):
         state.covariance[j, j] += (p.error_drift * state.x[j]) ** 2
     move(state, beside(state, p, i))
     value, variance = state.x[MU], state.covariance[MU, MU]
-    learned, squared, score = learn(state, p, state.sign, wrench, twist, of_speed, of_spin)
+    learned, squared, score, variance_mu = learn(state, p, state.sign, wrench, twist, of_speed, of_spin)
     for j in range(3):
         state.smooth[j] += SMOOTHING * (twist[j] - state.smooth[j])
     state.smooth[3] += SMOOTHING * (wrench[2] - state.smooth[3])
     if not learned:
         return False
     follow(state, p, value, variance)
+    rim = (state.r * twist[2]) ** 2
+    count_slip(state, begins, score, variance_mu, rim, max(rim + square, 1e-150))
     state.slides += 1
     state.first = -1
     state.misfit += 0.05 * (min(squared, p.outlier) / 3.0 - state.misfit)

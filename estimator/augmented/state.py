@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
 from estimator.augmented.load import MOST_FALL, MOST_GROWTH
+from estimator.augmented.model_error import forget_slips
 from estimator.augmented.slip_law import COP, FALLS, GROWS, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R
 from estimator.augmented.timing import CANDIDATES, NEWEST, RING
 from estimator.augmented.torsion import TURN
@@ -64,6 +65,15 @@ _IN_MOTION: list[tuple[Any, ...]] = [
     ("scatter", np.float64),
     ("shared", np.float64),
     ("smooth", np.float64, (4,)),
+    ("separate", np.float64),
+    ("contrast", np.float64),
+    ("difference", np.float64),
+    ("innovation", np.float64),
+    ("expected", np.float64),
+    ("slip_samples", np.int64),
+    ("lightest", np.float64),
+    ("heaviest", np.float64),
+    ("fall_error", np.float64),
     ("limits", np.float64, (8,)),
     ("covariance", np.float64, (STATES, STATES)),
 ]
@@ -132,6 +142,7 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
     for at, name in enumerate(("mu_min", "mu_max", "r_min", "r_max")):
         states["limits"][:, at] = np.log(parameters[name])
     states["limits"][:, 4:] = 0.0, MOST_FALL, 0.0, MOST_GROWTH
+    states["fall_error"] = parameters["sd_fall"] ** 2
     states["variance_normal"] = parameters["sd_zero"] ** 2
     states["variance_torque"] = parameters["sd_zero_torque"] ** 2
     states["delay"], states["spring"] = parameters["nominal_delay"], parameters["compliance_max"]
@@ -159,6 +170,7 @@ def restart(state, p):
     state.misfit, state.slides = 1.0, 0
     state.runs[:] = 0.0
     state.spring, state.torsion = p.compliance_max, 0.0
+    forget_slips(state)
 
 
 @njit

@@ -144,8 +144,14 @@ def learn_static_friction(state, p, f_t, f_n, tau, still, moves, halted):
 
 
 @njit(error_model="numpy")
-def order(state):
-    """Moves mu_s and mu_c, if both are measured and in the wrong order, to their weighted mean."""
+def order(state, shared_mu_c, shared_mu_s):
+    """Moves mu_s and mu_c, if both are measured and in the wrong order, to their weighted mean.
+
+    Args:
+        state: Changed in place.
+        shared_mu_c: Part of the variance of mu_c that the same slips make for mu_s, too: it has no weight.
+        shared_mu_s: As shared_mu_c, of mu_s.
+    """
     if state.events_mu_s == 0 or state.updates_mu_c == 0 or state.mu_c <= state.mu_s:
         return
     of_mu_c, of_mu_s = state.sd_mu_c * state.sd_mu_c, state.sd_mu_s * state.sd_mu_s
@@ -153,6 +159,7 @@ def order(state):
     if gap * gap > 4.0 * (of_mu_c + of_mu_s):  # a contradiction: neither is as sure as it says
         state.confidence_mu_c *= 0.5
         state.confidence_mu_s *= 0.5
+    of_mu_c, of_mu_s = max(of_mu_c - shared_mu_c, 0.0), max(of_mu_s - shared_mu_s, 0.0)
     weight = of_mu_s / max(of_mu_c + of_mu_s, 1e-300)
     mean = weight * state.mu_c + (1.0 - weight) * state.mu_s
     state.mu_c, state.mu_s = mean, mean

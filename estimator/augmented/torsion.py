@@ -12,6 +12,7 @@ import math
 
 from estimator._numba.caching import njit
 from estimator.augmented.holding import LOWEST
+from estimator.augmented.model_error import forget_slips
 from estimator.augmented.slip_law import MU, STATES, R
 from estimator.augmented.timing import LAST
 from estimator.sample import norm
@@ -139,6 +140,7 @@ def _forget(state, p):
     state.sd_mu_c, state.sd_r, state.sd_mu_s = p.mu_c0, p.r0, p.mu_s0
     state.sd_lever = math.sqrt(2.0) * p.mu_c0 * p.r0
     state.misfit, state.shared = 1.0, 0.0
+    forget_slips(state)
     state.confidence_mu_c, state.confidence_r, state.confidence_mu_s = 0.0, 0.0, 0.0
     state.updates_mu_c, state.updates_r, state.events_mu_s, state.slides = 0, 0, 0, 0
 

@@ -51,6 +51,7 @@ WITHOUT: dict[str, dict[str, object]] = {
     "exponent from sticks": {"exponent_from_sticks": False},
     "tilt from sticks": {"tilt_from_sticks": False},
     "torsion from turns": {"torsion_from_turns": False},
+    "what slips share": {"sd_slip": NONE, "sd_surface": 0.0, "sd_fall": 0.0},
     "drift of mu_s": {"drift_mu_s": 0.0},
     "new start of mu_s": {"jump_mu_s": float("inf")},
 }

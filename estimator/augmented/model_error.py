@@ -1,0 +1,93 @@
+"""Errors of the model that all samples of a slip share; separate slips show how large they are.
+
+A slip of a rubber pad is off by more than the noise of its samples: the pad springs and creeps meanwhile, the
+fingers share the load unevenly, friction depends on the direction, on the place and on the time in stick. All
+samples of a slip have much of that error in common, so that the noise of the filter does not contain it. Its
+variance is that of the prior, `sd_slip`, and the sum of the squared differences between a slip and those
+before it, as far as noise does not explain them; over the number of slips, for the mean of the variance, and
+over it again, for the mean of the slips. Slips that agree lower the deviation by their number, others by its
+square root. A slip counts in proportion to its length, as its beginning and end are off most, and a long one
+as several. A slip with a torque counts as little as r is known. What is common to all slips of a contact,
+such as anisotropy while they have one direction, is `sd_surface`, and lasts. So does an error of the exponent
+of the load, `sd_fall`, outside the normal forces at which slips were seen.
+"""
+
+import math
+
+from estimator._numba.caching import njit
+
+WHOLE = 12
+"""Samples that count as a whole slip."""
+HALF = 0.2
+"""Relative deviation of r with which a slip under torque counts as half of one."""
+START = 0.5
+"""Whole slips that the prior is worth."""
+FIRST = 4
+"""Samples of a slip whose mean is compared with the slips before."""
+MEMORY = 0.95
+"""Fading of the slips, per whole slip."""
+LOADS = 0.02
+"""Weight with which a sample narrows the range of normal forces at which slips were seen."""
+LARGEST = 1.0
+"""Size to which the difference of ln mu_c is clipped."""
+
+
+@njit(error_model="numpy")
+def _compare(state, innovation, variance):
+    """Takes one of the first samples of a slip into its squared difference from the slips before, once."""
+    n = state.slip_samples
+    state.innovation += (innovation - state.innovation) / n
+    state.expected += (variance - state.expected) / n
+    if state.separate > 0.0 and state.updates_mu_c >= n:
+        size = min(abs(state.innovation), LARGEST)
+        before, state.difference = state.difference, max(size * size - state.expected, 0.0)
+        state.contrast += state.difference - before
+
+
+@njit(error_model="numpy")
+def count_slip(state, begins, score, variance, rim, square):
+    """Takes a sample of a slip into the number of slips and their differences.
+
+    Args:
+        state: Changed in place.
+        begins: Whether it is the first one of a slip.
+        score: Normalised innovation of ln mu_c.
+        variance: Of the innovation, as the filter expects it.
+        rim: Part of the torque, or of the spin, in ...
+        square: ... the squared load, or slip speed, > 0.
+    """
+    if begins:
+        state.slip_samples, state.innovation, state.expected, state.difference = 0, 0.0, 0.0, 0.0
+    state.slip_samples += 1
+    if state.slip_samples <= FIRST:
+        _compare(state, score * math.sqrt(variance), variance)
+    known, unknown = state.r * HALF * square, state.sd_r * rim
+    weight = known * known / (WHOLE * (known * known + unknown * unknown))
+    kept = 1.0 - (1.0 - MEMORY) * weight
+    state.separate = kept * state.separate + weight
+    more = weight * state.difference if state.slip_samples > WHOLE else 0.0
+    state.contrast = kept * state.contrast + more
+    load, gain = state.load, LOADS if state.updates_mu_c > 0 else 1.0
+    state.lightest = min(load, state.lightest + gain * (load - state.lightest))
+    state.heaviest = max(load, state.heaviest + gain * (load - state.heaviest))
+
+
+@njit(error_model="numpy")
+def forget_slips(state):
+    """Forgets how many slips there were, and their disagreement."""
+    state.separate, state.contrast, state.difference, state.slip_samples = 0.0, 0.0, 0.0, 0
+
+
+@njit(error_model="numpy")
+def beyond_slips(state):
+    """How far ln f_n is outside the range at which slips were seen."""
+    if state.load > state.heaviest:
+        return math.log(state.load / state.heaviest)
+    return math.log(state.lightest / state.load) if state.load < state.lightest else 0.0
+
+
+@njit(error_model="numpy")
+def of_slips(state, p):
+    """Variance of ln mu_c, and of ln r, by the errors that the samples of a slip share."""
+    n = START + state.separate
+    return (p.sd_slip * p.sd_slip + state.contrast) / (n * n)
