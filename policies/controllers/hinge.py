@@ -85,7 +85,7 @@ class HingePolicy(GainPolicy[HingeGains]):
 
     task = "Hinge"
     Gains = HingeGains
-    prior_default = ConservativePrior(confidence=0.02)
+    prior_default = ConservativePrior(confidence=0.005)
     without_friction: ClassVar[Mapping[str, Any]] = {"known": 0.0}
 
     def __init__(

@@ -47,14 +47,30 @@ class _WatchedWorld(BulletWorld):
 
     mismatch = 0.0
 
-    def _read(self, client: int, body: int, gripper: int) -> tuple[Any, ...]:
-        reading = super()._read(client, body, gripper)
+    def move(self) -> tuple[Any, ...]:
+        """See `BulletWorld.move`."""
+        rows = self.rows
+        if not getattr(rows.loads, "watched", False):
+            rows.loads = self._watched(rows.loads)
+        reading = super().move()
+        self._note(reading[0])
+        return reading
+
+    def _watched(self, loads: Callable[..., Any]) -> Callable[..., Any]:
+        """`BulletRows.loads`, which is called before every engine step, with a look at the pose after the last."""
+
+        def look(pose: tuple[Any, ...], *others: Any) -> Any:
+            self._note(pose)
+            return loads(pose, *others)
+
+        look.watched = True  # type: ignore[attr-defined]
+        return look
+
+    def _note(self, pose: tuple[Any, ...]) -> None:
         world = self._plant.world[0]
         if world["tick"] > 0:
-            x, _, z = reading[0][0]
-            away = math.hypot(x - world["com"][0], z - world["com"][1])
-            self.mismatch = max(self.mismatch, away)
-        return reading
+            (x, _, z), _ = pose
+            self.mismatch = max(self.mismatch, math.hypot(x - world["com"][0], z - world["com"][1]))
 
 
 class Bench:
