@@ -57,7 +57,7 @@ class _WatchedWorld(BulletWorld):
         return reading
 
     def _watched(self, loads: Callable[..., Any]) -> Callable[..., Any]:
-        """`BulletRows.loads`, which is called before every engine step, with a look at the pose after the last."""
+        """`BulletRows.loads`, called before every engine step, with a look at the pose after the last."""
 
         def look(pose: tuple[Any, ...], *others: Any) -> Any:
             self._note(pose)
