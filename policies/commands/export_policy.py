@@ -21,7 +21,12 @@ def main(
     onnx: Annotated[Path, typer.Option(help="File to write, as an ONNX graph.")],
 ) -> None:
     """Write a learned policy as an ONNX graph, normalisation and clipping inside (extra `onnx`)."""
-    from policies.learned.onnx_graph import write_onnx
+    try:
+        from policies.learned.onnx_graph import write_onnx
+    except ModuleNotFoundError as error:
+        raise typer.BadParameter(
+            f"needs {error.name}: pip install 'slipgym[onnx]'", param_hint="--onnx"
+        ) from error
 
     try:
         write_onnx(policy, onnx)
