@@ -53,8 +53,8 @@ def count_slip(state, begins, score, variance, rim, square):
         begins: Whether it is the first one of a slip.
         score: Normalised innovation of ln mu_c.
         variance: Of the innovation, as the filter expects it.
-        rim: Part of the torque, or of the spin, in ...
-        square: ... the squared load, or slip speed, > 0.
+        rim: Squared load by the torque, or squared slip speed by the spin.
+        square: Squared load, or squared scaled slip speed; `rim` is a part of it. > 0.
     """
     if begins:
         state.slip_samples, state.innovation, state.expected, state.difference = 0, 0.0, 0.0, 0.0
