@@ -4,7 +4,7 @@ import math
 
 from estimator._numba.caching import njit
 from estimator.augmented.load import static_at_load
-from estimator.augmented.model_error import beyond_slips, of_slips
+from estimator.augmented.model_error import START, beyond_slips, doubt_of, of_slips
 from estimator.augmented.slip_law import FALLS, MU, SHAPE, ZERO, R
 from estimator.augmented.static_friction import order
 from estimator.estimate import confidence_of
@@ -52,6 +52,7 @@ def deviate(state, p, changed):
     if not changed and state.samples % EVERY != 0:
         return
     of_mu_c, of_mu_s = 0.0, 0.0
+    unlearned = max(state.fall_error - state.covariance[FALLS, FALLS], 0.0)
     if state.updates_mu_c > 0:
         state.mu_c = clamped(math.exp(state.x[MU]), p.mu_min, p.mu_max)
         if state.updates_r > 0:
@@ -67,9 +68,9 @@ def deviate(state, p, changed):
         hidden = (0.5 * state.leverage) ** 2 + p.sd_gain * p.sd_gain
         of_normal = state.variance_normal * normal * normal
         fall = beyond_slips(state)
-        unlearned = max(state.fall_error - state.covariance[FALLS, FALLS], 0.0)
         slips = of_slips(state, p)
-        surface = slips + p.sd_surface * p.sd_surface + fall * fall * unlearned
+        doubt = 0.0 if state.certain else doubt_of(p, state.mu_c, p.mu_c0)
+        surface = doubt + slips + p.sd_surface * p.sd_surface + fall * fall * unlearned
         of_mu_c = state.mu_c * state.mu_c * surface
         of_torque = state.variance_torque * (normal / (state.mu_c * state.r)) ** 2
         square = _squared(state, weights, hidden + of_normal + surface, 1.0, 0.0)
@@ -86,8 +87,8 @@ def deviate(state, p, changed):
         state.mu_s = clamped(state.mu_s, p.mu_min, p.mu_max)
         square = state.variance_mu_s + state.common_mu_s + of_exponent + max(state.scatter_mu_s, 0.0)
         step = math.log(state.load / state.event_load)
-        surface = p.sd_surface * p.sd_surface + p.sd_slip * p.sd_slip / state.events_mu_s
-        surface += step * step * max(state.fall_error - state.covariance[FALLS, FALLS], 0.0)
+        surface = p.sd_surface * p.sd_surface + p.sd_slip * p.sd_slip / (START + state.events_mu_s)
+        surface += state.doubt + step * step * unlearned
         square += surface
         of_mu_s = state.mu_s * state.mu_s * surface
         state.sd_mu_s = state.mu_s * math.sqrt(square)

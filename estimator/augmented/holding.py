@@ -89,10 +89,22 @@ def may_slide(state, p):
         load = load_size(True, norm(w[0], w[1]), abs(w[3]) / r)
         if load > w[2] * least_friction(state, p, w[2]):
             return True
-    moved, spring = 0.0, 0.0
+    return longer_than_springs(state, p, p.compliance_max)
+
+
+@njit(error_model="numpy")
+def longer_than_springs(state, p, compliance):
+    """Whether the motion is longer than twice what a pad springs by the whole load.
+
+    Args:
+        state: Record of the motion.
+        p: Parameters.
+        compliance: Of the pad in shear [m/N].
+    """
+    r, moved, spring = least_radius(state), 0.0, 0.0
     for j in range(3):
         noise, scale = (p.sd_force, 1.0) if j < 2 else (p.sd_torque, r)
         force = max(abs(state.lowest[j]), abs(state.highest[j])) + NOISE * noise
         moved += (state.moved_by[j] * scale) ** 2
         spring += (force / scale) ** 2
-    return moved > (2.0 * p.compliance_max) ** 2 * spring
+    return moved > (2.0 * compliance) ** 2 * spring

@@ -10,17 +10,21 @@ square root. A slip counts in proportion to its length, as its beginning and end
 as several. A slip with a torque counts as little as r is known. What is common to all slips of a contact,
 such as anisotropy while they have one direction, is `sd_surface`, and lasts. So does an error of the exponent
 of the load, `sd_fall`, outside the normal forces at which slips were seen.
+
+A motion that is no longer than a pad may spring may be no slip at all. Then its load is only a bound, which
+`doubt_of` takes into account until a longer motion is seen.
 """
 
 import math
 
 from estimator._numba.caching import njit
+from estimator.augmented.holding import LOWEST
 
 WHOLE = 12
 """Samples that count as a whole slip."""
 HALF = 0.2
 """Relative deviation of r with which a slip under torque counts as half of one."""
-START = 0.5
+START = 1.0
 """Whole slips that the prior is worth."""
 FIRST = 4
 """Samples of a slip whose mean is compared with the slips before."""
@@ -28,6 +32,8 @@ MEMORY = 0.95
 """Fading of the slips, per whole slip."""
 LOADS = 0.02
 """Weight with which a sample narrows the range of normal forces at which slips were seen."""
+SPRINGS = 0.25
+"""Share of springs of the pad among the motions that pass for slips and are short enough to be one."""
 LARGEST = 1.0
 """Size to which the difference of ln mu_c is clipped."""
 
@@ -73,9 +79,30 @@ def count_slip(state, begins, score, variance, rim, square):
 
 
 @njit(error_model="numpy")
+def doubt_of(p, value, expected):
+    """Expected square of the error of ln mu by a slip that may have been the spring of the pad.
+
+    If it was one, the load is no more than a bound, and friction is what was expected before. The logarithm
+    is then as probable anywhere between the smallest that counts and the expected one; that of a true slip is
+    normally distributed about the expected one.
+
+    Args:
+        p: Parameters.
+        value: mu_s or mu_c that was measured.
+        expected: Its start value.
+    """
+    below = max(math.log(expected / value), 0.0)
+    z = below / p.sd_log_mu_c0
+    spring = SPRINGS / LOWEST
+    slip = (1.0 - SPRINGS) * math.exp(-0.5 * z * z) / math.sqrt(2.0 * math.pi)
+    return below * below * spring / (spring + slip)
+
+
+@njit(error_model="numpy")
 def forget_slips(state):
     """Forgets how many slips there were, and their disagreement."""
     state.separate, state.contrast, state.difference, state.slip_samples = 0.0, 0.0, 0.0, 0
+    state.certain = False
 
 
 @njit(error_model="numpy")

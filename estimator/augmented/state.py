@@ -91,6 +91,8 @@ STATE = np.dtype(
         ("variance_torque", np.float64),
         ("event", np.float64),
         ("event_load", np.float64),
+        ("doubt", np.float64),
+        ("certain", np.bool_),
         *EVENT_STATE,
     ],
     align=True,
@@ -111,7 +113,9 @@ innovations; `scatter`: mean square of all; `load`: normal force at which ln mu_
 row at rest; `rest`: f_x, f_y, f_n at one of them [N], of number `rest_sample`; `restless`: mean squared
 change of the load at rest [N^2]; `turn`: regression of the torque on the angle, see
 `estimator.augmented.torsion`; `torsion`: compliance that the pad has shown there [rad/(N m)],
-0 for none; `event`, `event_load`: mu_s of the last events, and its normal force [-, N]."""
+0 for none; `event`, `event_load`: mu_s of the last events, and its normal force [-, N];
+`doubt`: expected squared error of ln mu_s, as they may have been springs of the pad; `certain`: whether a
+motion was longer than that."""
 
 
 RESTLESS = 0.1

@@ -3,8 +3,8 @@
 The largest load over f_n in a stick that ends in a slip is a measurement of mu_s whose variance is known:
 noise of the forces, the uncertain radius under torque and the ramp between two samples. A scalar filter
 averages such events; an event that contradicts the average beyond its deviation, and a stick that carries
-clearly more than mu_s f_n, start it afresh. Errors that are common to all events (zero, tilt) are added to
-the stated deviation.
+clearly more than mu_s f_n, start it afresh. Errors that are common to all events (zero, tilt), their
+disagreement and the doubt whether they were slips are added to the stated deviation.
 """
 
 import math
@@ -12,7 +12,9 @@ import math
 import numpy as np
 
 from estimator._numba.caching import njit
+from estimator.augmented.holding import longer_than_springs
 from estimator.augmented.load import static_at_load
+from estimator.augmented.model_error import doubt_of
 from estimator.augmented.short_slips import load_of
 from estimator.augmented.slip_law import TILT, ZERO, R
 from estimator.augmented.timing import LAST
@@ -31,6 +33,31 @@ LEFT = 0.2
 
 
 @njit(error_model="numpy")
+def _of_radius(state, torque_share):
+    """Variance of the logarithm of a load by the uncertain radius.
+
+    The share of the torque grows as r falls. So it is the change of the load for an r that is one deviation
+    smaller: the derivative by ln r, at an r that is too large, is that of a load without a torque.
+
+    Args:
+        state: Record with `covariance`.
+        torque_share: Fraction of the squared load that is torque.
+    """
+    change = 0.5 * math.log1p(torque_share * math.expm1(2.0 * math.sqrt(state.covariance[R, R])))
+    return change * change
+
+
+@njit(error_model="numpy")
+def _disagree(state, excess):
+    """Takes what noise does not explain of a squared change of ln mu_s into the scatter of the events.
+
+    The variance that is expected before any, `sd_slip` squared, counts as one event.
+    """
+    weight = max(1.0 / (state.events_mu_s + 1.0), SCATTER_GAIN)
+    state.scatter_mu_s += weight * (excess - state.scatter_mu_s)
+
+
+@njit(error_model="numpy")
 def _event(state, p, value, f_n, torque_share):
     """Takes one measured mu_s into the average.
 
@@ -42,13 +69,12 @@ def _event(state, p, value, f_n, torque_share):
         torque_share: Fraction of the squared load that is torque.
     """
     noise = (p.sd_normal / f_n) ** 2 + (p.sd_force / (value * f_n)) ** 2 + SAMPLING * SAMPLING
-    noise += torque_share * torque_share * state.covariance[R, R]
+    noise += _of_radius(state, torque_share)
     present, of_exponent = static_at_load(state, f_n) if state.events_mu_s > 0 else (state.mu_s, 0.0)
     change = math.log(value / present)
     prior = state.variance_mu_s + p.drift_mu_s * p.drift_mu_s + of_exponent
     if state.events_mu_s > 0:
-        excess = min(change * change, 1.0) - prior - noise
-        state.scatter_mu_s += SCATTER_GAIN * (excess - state.scatter_mu_s)
+        _disagree(state, min(change * change, 1.0) - prior - noise)
     if state.events_mu_s == 0 or abs(change) > max(p.jump_mu_s, 3.0 * math.sqrt(prior + noise)):
         gain = 1.0
         state.variance_mu_s = noise
@@ -57,6 +83,8 @@ def _event(state, p, value, f_n, torque_share):
         state.variance_mu_s = (1.0 - gain) * prior
     state.event = min(max(present * math.exp(gain * change), p.mu_min), p.mu_max)
     state.event_load = f_n
+    doubt = 0.0 if longer_than_springs(state, p, state.spring) else doubt_of(p, value, p.mu_s0)
+    state.doubt += gain * (doubt - state.doubt)
     state.shared *= 1.0 - gain
     _common(state, p, f_n)
     state.events_mu_s += 1
@@ -75,13 +103,15 @@ def _held(state, p, value, f_n, torque_share):
     """
     present, of_exponent = static_at_load(state, f_n)
     noise = (p.sd_normal / f_n) ** 2 + (p.sd_force / (value * f_n)) ** 2
-    noise += torque_share * torque_share * state.covariance[R, R]
+    noise += _of_radius(state, torque_share)
     change = 1.0 / f_n - 1.0 / state.event_load
     noise += state.covariance[ZERO, ZERO] * (change / (p.caution * value)) ** 2
     if not value > present * (1.0 + SURE * math.sqrt(noise)):
         return
-    prior = state.variance_mu_s + of_exponent
+    prior, change = state.variance_mu_s + of_exponent, math.log(value / present)
+    _disagree(state, min(change * change, 1.0) - prior - noise)
     state.event, state.event_load, state.shared = value, f_n, 0.0
+    state.doubt = min(state.doubt, doubt_of(p, value, p.mu_s0))
     state.variance_mu_s = min(prior, max(noise + SAMPLING * SAMPLING, LEFT * prior))
     _common(state, p, f_n)
     state.events_mu_s += 1
@@ -136,6 +166,8 @@ def learn_static_friction(state, p, f_t, f_n, tau, still, moves, halted):
         if state.above >= HELD and p.mu_s_from_sticks:
             _held(state, p, min(state.least, p.mu_max), f_n, torque_share)
             state.above = 0
+    if moves and (state.doubt > 0.0 or not state.certain) and longer_than_springs(state, p, state.spring):
+        state.doubt, state.certain = 0.0, True
     starts, stops = transition(state, p, still, moves)
     if starts and not halted and state.buffer_size >= p.n_a:
         _event(state, p, take_event(state, p), _heaviest(state, p, f_n), direction_cosines(f_t, rim)[1] ** 2)

@@ -66,12 +66,16 @@ def main(
         typer.echo(markdown(found, 1 if closed_loop else 2))
         return
     if closed_loop:
+        from policies.research.leaderboard.closed_loop import pooled
         from policies.research.leaderboard.tables import markdown
 
         rows = _in_the_loop(
             closed_loop, seed, estimators, task, parameter or [], imperfections, randomization
         )
         typer.echo(markdown(rows, 1))
+        if rows["task"].nunique() > 1:
+            typer.echo("Over the tasks, each with its own controller:\n")
+            typer.echo(markdown(pooled(rows), 1))
         return
     if delays:
         from policies.research.leaderboard.delays import delays as late

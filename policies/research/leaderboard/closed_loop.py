@@ -79,8 +79,8 @@ def played(
     Returns:
         `solved` and `dropped` [%]; for each of mu_s, mu_c, r the share of ends, of both fingers, with a
         confidence above SURE [%], the median of the error's size there [%], and the share of instants, from
-        the first update on, within one and within two stated deviations [%]; `reversed`: instants with a
-        published mu_c above mu_s [%].
+        the first update on, within one and within two stated deviations [%], and the `episodes` with such
+        instants; `reversed`: instants with a published mu_c above mu_s [%].
     """
     policy = policies.make(controller or find(task).key)
     env: Any = gym.make_vec(task, num_envs=episodes, **policies.modes(policy), **arguments).unwrapped
@@ -99,6 +99,7 @@ class _Tally:
 
     def __init__(self, episodes: int) -> None:
         self._instants = {name: np.zeros(3) for name in VALUES}  # seen, within one, within two
+        self._seen = {name: np.zeros(episodes, dtype=bool) for name in VALUES}
         self._errors: dict[str, list[float]] = {name: [] for name in VALUES}
         self._all, self._reversed, self._solved, self._dropped, self._episodes = 0, 0, 0, 0, episodes
 
@@ -111,6 +112,7 @@ class _Tally:
         for name in VALUES:
             known = estimates[f"confidence_{name}"] > 0.0
             off = np.abs(estimates[name] - truth[name])[known] / estimates[f"sd_{name}"][known]
+            self._seen[name][alive] |= known.any(axis=1)
             self._instants[name] += off.size, np.count_nonzero(off <= 1.0), np.count_nonzero(off <= 2.0)
 
     def end(self, simulation: Any, over: np.ndarray, infos: Mapping[str, Any]) -> None:
@@ -134,7 +136,33 @@ class _Tally:
             row[f"{name} error"] = float(np.median(self._errors[name])) if self._errors[name] else np.nan
             row[f"{name} in 1 sd"] = 100.0 * one / seen if seen else np.nan
             row[f"{name} in 2 sd"] = 100.0 * two / seen if seen else np.nan
+            row[f"{name} episodes"] = int(np.count_nonzero(self._seen[name]))
         return {**row, "reversed": 100.0 * self._reversed / self._all}
+
+
+def pooled(table: pd.DataFrame) -> pd.DataFrame:
+    """Shares within the stated deviations over all tasks, each with its own controller.
+
+    Args:
+        table: Of `closed_loop`.
+
+    Returns:
+        A row for each estimator, sensor preset and quantity: the mean of the shares of the tasks, weighted by
+        their `episodes`, and its binomial standard error, as if an episode were one instant [%].
+    """
+    further = [key for keys in FURTHER.values() for key in keys]
+    rows = []
+    for (name, sensors), group in table[~table["task"].isin(further)].groupby(["estimator", "sensors"]):
+        for value in VALUES:
+            n = group[f"{value} episodes"].to_numpy(float)
+            row = {"estimator": name, "sensors": sensors, "quantity": value, "episodes": int(n.sum())}
+            for key in ("in 1 sd", "in 2 sd"):
+                share = group[f"{value} {key}"].fillna(0.0).to_numpy() / 100.0
+                row[key] = 100.0 * np.sum(n * share) / n.sum() if n.any() else np.nan
+                error = np.sqrt(np.sum(n * share * (1.0 - share)))
+                row[f"± {key}"] = 100.0 * error / n.sum() if n.any() else np.nan
+            rows.append(row)
+    return pd.DataFrame(rows)
 
 
 def present(pads: np.ndarray) -> dict[str, np.ndarray]:
