@@ -1,9 +1,10 @@
 """Estimators in the loop: what the table says of them."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from policies.research.leaderboard.closed_loop import played, present
+from policies.research.leaderboard.closed_loop import played, pooled, present
 from slipgym.contact.records import pads
 
 
@@ -25,3 +26,22 @@ def test_ideal_sensors_are_learned_from_and_solved_with():
     assert 0.0 <= row["mu_c in 1 sd"] <= row["mu_c in 2 sd"] <= 100.0
     assert np.isnan(row["r error"])  # it does not turn
     assert row["reversed"] == 0.0
+
+
+def test_pooled_shares_count_a_task_by_its_episodes_and_its_own_controller_only():
+    row = {"estimator": "adaptive", "sensors": "lab", "mu_s episodes": 0, "mu_s in 1 sd": np.nan}
+    row |= {f"{name} in 2 sd": 100.0 for name in ("mu_s", "mu_c", "r")} | {
+        "r episodes": 0,
+        "r in 1 sd": np.nan,
+    }
+    shares = {"Hold": (10, 50.0), "Hinge": (30, 90.0), "linear_slip_leaps": (60, 0.0)}
+    table = pd.DataFrame(
+        [
+            row | {"task": task, "mu_c episodes": n, "mu_c in 1 sd": share}
+            for task, (n, share) in shares.items()
+        ]
+    )
+    found = pooled(table).set_index("quantity")
+    assert found.loc["mu_c", ["episodes", "in 1 sd", "in 2 sd"]].tolist() == [40, 80.0, 100.0]
+    assert found.loc["mu_c", "± in 1 sd"] == pytest.approx(100.0 * np.sqrt(10 * 0.25 + 30 * 0.09) / 40)
+    assert np.isnan(found.loc["mu_s", "in 1 sd"])
