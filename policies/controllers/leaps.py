@@ -140,8 +140,7 @@ def leap(state: LeapState, slip: Slip, gains: LeapGains, force_max: float) -> tu
     ratio = np.where(slip.begins, gains.start * slip.f_slip, state.ratio)
     load = np.where(slip.begins | (state.load == 0.0), slip.load, state.load)
     falls, rests, measured = slip.wanted & (state.clock == 0.0), state.clock < 0.0, state.clock == -1.0
-    loose = np.maximum(gains.fall * np.maximum(load, LEAST_LOAD), gains.deviations * state.noise)
-    lost = (load - slip.load > loose) | (slip.speed > gains.speed)
+    lost = (load - slip.load > break_away(load, state.noise, gains)) | (slip.speed > gains.speed)
     breaks = falls & lost
     runs = (state.clock > 0.0) | breaks
     steps = np.where(breaks, _steps(state, slip, gains), state.steps)
@@ -152,12 +151,11 @@ def leap(state: LeapState, slip: Slip, gains: LeapGains, force_max: float) -> tu
     reach, brake = _learned(state, slip, gains, measured)
     new = np.where(falls & ~lost, gains.keep * ratio, np.where(measured, gains.again * ratio, ratio))
     calm = (falls & ~lost) | (rests & (state.clock > -0.4 * gains.rest)) | ~(slip.wanted | runs)
-    change = np.minimum(np.abs(slip.load - state.last) / 1.13, gains.quiet * load)  # 1.13: mean of |x1 - x2|
     steady = (state.last > 0.0) & (state.clock == 0.0) & ~lost
     memory = LeapState(
         load=np.where(calm, load + 0.3 * (slip.load - load), load),
         last=slip.load,
-        noise=np.where(steady, state.noise + 0.05 * (change - state.noise), state.noise),
+        noise=np.where(steady, noise_of(slip.load, state.last, load, state.noise, gains), state.noise),
         ratio=new,
         clock=clock,
         steps=steps,
@@ -171,6 +169,33 @@ def leap(state: LeapState, slip: Slip, gains: LeapGains, force_max: float) -> tu
     force = np.where(rests, np.where(state.clock < gains.firm - gains.rest, doubled, resting), force)
     force = np.where(runs & slip.turning, state.brake * ratio * memory.load, force)
     return np.where(caught, force_max, force), memory
+
+
+def break_away(load: np.ndarray, noise: np.ndarray, gains: LeapGains) -> np.ndarray:
+    """Fall of the load that is a break-away, (n,) [N].
+
+    Args:
+        load: Smoothed load at rest, (n,) [N].
+        noise: Standard deviation of the measured load, (n,) [N].
+        gains: The gains.
+    """
+    return np.maximum(gains.fall * np.maximum(load, LEAST_LOAD), gains.deviations * noise)
+
+
+def noise_of(
+    now: np.ndarray, last: np.ndarray, load: np.ndarray, noise: np.ndarray, gains: LeapGains
+) -> np.ndarray:
+    """Standard deviation of the measured load after another control step at rest, (n,) [N].
+
+    Args:
+        now: Measured load, (n,) [N].
+        last: That of the control step before, (n,) [N].
+        load: Smoothed load, (n,) [N].
+        noise: The standard deviation before, (n,) [N].
+        gains: The gains.
+    """
+    change = np.minimum(np.abs(now - last) / 1.13, gains.quiet * load)  # 1.13: mean of |x1 - x2|
+    return noise + 0.05 * (change - noise)
 
 
 def _steps(state: LeapState, slip: Slip, gains: LeapGains) -> np.ndarray:

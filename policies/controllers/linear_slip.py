@@ -1,47 +1,34 @@
-"""Controls linear slip along gravity by grip force alone."""
+"""Controls linear slip along gravity by grip force alone, in leaps if the slip velocity is late."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-from pydantic import Field
 
 from policies.controllers.base import Columns, State
-from policies.controllers.gains import Fraction, GainPolicy
-from policies.controllers.sensing import ConservativePrior, both, tangential
+from policies.controllers.gains import GainPolicy
+from policies.controllers.lateness import Lateness, LatenessGains, watched
+from policies.controllers.linear_slip_continuous import ContinuousLinearSlipGains, ContinuousLinearSlipPolicy
+from policies.controllers.linear_slip_leaps import LinearSlipLeapPolicy
+from policies.controllers.sensing import ConservativePrior, scaled_speed, tangential
 from slipgym.config import Overrides
-from slipgym.config.base import Frozen, NonNegative, Positive
 
 
-class LinearSlipGains(Frozen):
-    """Gains of `LinearSlipPolicy`."""
-
-    k_x: NonNegative = Field(default=2.0, description="Position gain [1/s]")
-    k_e: NonNegative = Field(default=1000.0, description="Integral gain [N/m]")
-    k_a: NonNegative = Field(default=0.1, description="Feed-forward of the reference acceleration [s^2/m]")
-    k_v: NonNegative = Field(default=50.0, description="Velocity gain over f_slip [s/m]")
-    stop_band: NonNegative = Field(
-        default=0.001, description="Distance left at the end that is not worth another slip [m]"
-    )
-    hold_margin: Positive = Field(
-        default=1.3, description="Grip there, over what the load needs at Coulomb friction [-]"
-    )
-    smoothing: Fraction = Field(default=0.95, description="Weight of the old f_slip in each control step [-]")
+class LinearSlipGains(LatenessGains, ContinuousLinearSlipGains):
+    """Gains of `LinearSlipPolicy`, those of the continuous slip among them."""
 
 
 class LinearSlipPolicy(GainPolicy[LinearSlipGains]):
-    """Slip controller of the gripper's paper (arXiv 2410.19660) with the friction of the observation.
+    """Slips continuously (`ContinuousLinearSlipPolicy`), and in leaps once the velocity was late.
 
-    The force that balances the load at Coulomb friction, f_slip, is filtered from the
-    tangential force; the integral of the velocity error moves the grip around it:
-
-        v_cmd = v_d + k_x (x_d - x),     e' = v_cmd - v,
-        f = f_slip - k_e e + k_a f_slip a_d + k_v f_slip (v - v_cmd).
-
-    Stick-slip moves the object in leaps of about 2 mm. When the reference rests and less than
-    half a leap is left, another one would only overshoot, so the object is then held.
+    It watches the slips (`policies.controllers.lateness`): if the velocity shows a slip later than `prompt`
+    after the force has fallen, or a slip overtakes the reference by `longest`, it goes on in leaps
+    (`LinearSlipLeapPolicy`). With a prompt velocity it is the continuous controller. That also slips at the
+    load of the hold, so that an estimator is sure of friction there.
 
     Args:
-        gains: See `LinearSlipGains`; each is a keyword argument of its own, too.
+        gains: See `LinearSlipGains`; each is a keyword argument of its own, too; leaps have the defaults.
         prior: Friction assumed until the estimate has confidence.
         config: Overrides of the environment's configuration.
 
@@ -57,30 +44,37 @@ class LinearSlipPolicy(GainPolicy[LinearSlipGains]):
         gains: LinearSlipGains | None = None,
         prior: ConservativePrior | None = None,
         config: Overrides | None = None,
-        **parameters: float,
+        **parameters: Any,
     ) -> None:
         super().__init__(gains, prior, config, **parameters)
+        chosen = {name: getattr(self.gains, name) for name in ContinuousLinearSlipGains.model_fields}
+        self._continuous = ContinuousLinearSlipPolicy(prior=self.prior, config=config, **chosen)
+        self._leaps = LinearSlipLeapPolicy(prior=self.prior, config=config)
         self._dt = 1.0 / self.config.physics.control_rate
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Integral e [m] and f_slip [N]; a negative f_slip has no sample yet. Shape (n, 2)."""
-        return np.tile([0.0, -1.0], (n, 1))
+        """Columns of `Lateness`, then the memories of the continuous slip and of the leaps, (n, 19)."""
+        watch = np.zeros((n, len(Lateness._fields)))
+        return np.column_stack((watch, self._continuous.initial_state(n), self._leaps.initial_state(n)))
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
-        g = self.gains
-        error, f_slip = np.asarray(state).T
-        x, v = -columns["measured_slip_y"], -both(columns, "v_y")
-        acceleration = columns["reference_acceleration"]
-        load = tangential(columns)
-        balance = load / self.prior.blend(columns, "mu_c")
-        kept = np.where(acceleration < 0.1, g.smoothing, 1.0)
-        f_slip = np.where(f_slip < 0.0, balance, kept * f_slip + (1.0 - kept) * balance)
-        v_cmd = columns["reference_velocity"] + g.k_x * (columns["reference_position"] - x)
-        distance = columns["distance"]
-        arrived = (columns["reference_position"] >= distance) & (x >= distance - g.stop_band)
-        error = np.where(arrived, error, error + (v_cmd - v) * self._dt)
-        force = f_slip * (1.0 + g.k_a * acceleration + g.k_v * (v - v_cmd)) - g.k_e * error
-        firm = g.hold_margin * load / self.prior.hold(columns, "mu_c")
-        force = np.where(arrived, np.maximum(force, firm), force)
-        return force, np.column_stack((error, f_slip))
+        own = len(Lateness._fields)
+        both = own + self._continuous.initial_state(1).shape[1]
+        watch, slip, leap = np.split(np.asarray(state), (own, both), axis=1)
+        speed = scaled_speed(columns, self.prior.blend(columns, "r"))
+        seen = watched(
+            Lateness(*watch.T),
+            tangential(columns),
+            speed,
+            -columns["measured_slip_y"] - columns["reference_position"],
+            self.gains,
+            self._leaps.gains,
+            self._dt,
+        )
+        late = seen.late > 0.0
+        slipping, slip = self._continuous.control(columns, slip)
+        leaping, leapt = self._leaps.control(columns, leap)
+        ready = self._leaps.caught(columns, seen.load)
+        force = np.where(late, leaping, slipping)
+        return force, np.column_stack((*seen, slip, np.where(late[:, None], leapt, ready)))

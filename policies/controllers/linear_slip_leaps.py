@@ -60,6 +60,23 @@ class LinearSlipLeapPolicy(GainPolicy[LinearSlipLeapGains]):
         """Whether a leap is wanted (0 or 1), last reference [m], columns of `LeapState`, (n, 11)."""
         return np.column_stack((np.zeros((n, 2)), *leaps.begin(n, self._leaps)))
 
+    def caught(self, columns: Columns, load: np.ndarray) -> np.ndarray:
+        """Memory, as of `initial_state`, as if a leap were caught now.
+
+        Args:
+            columns: n observations.
+            load: Load per finger at rest, (n,) [N].
+        """
+        n, reference = len(columns), columns["reference_position"]
+        slips = leaps.begin(n, self._leaps)._replace(
+            load=load,
+            ratio=self.gains.start / self.prior.blend(columns, "mu_c"),
+            clock=np.full(n, -float(self._leaps.rest)),
+            steps=np.full(n, float(self._leaps.slide_steps)),
+            left=reference + columns["measured_slip_y"],
+        )
+        return np.column_stack((np.ones(n), reference, *slips))
+
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
         memory = np.asarray(state).T

@@ -22,6 +22,7 @@ CLASSES = {
     "explore": "policies.controllers.explore:ExplorePolicy",
     "pivot_to": "policies.controllers.pivot_to:PivotToPolicy",
     "linear_slip": "policies.controllers.linear_slip:LinearSlipPolicy",
+    "linear_slip_continuous": "policies.controllers.linear_slip_continuous:ContinuousLinearSlipPolicy",
     "linear_slip_leaps": "policies.controllers.linear_slip_leaps:LinearSlipLeapPolicy",
 }
 """Name -> module:class; imported on first use."""

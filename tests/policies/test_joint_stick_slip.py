@@ -10,7 +10,7 @@ from slipgym.envs import LinearSlipEnv
 def means_in_slip(material, estimator):
     """Mean mu_s and mu_c over both fingers' samples in slip after the first second, by their truth."""
     env = LinearSlipEnv(friction_source="estimated", material=material, estimator=estimator)
-    policy, kept = policies.make("linear_slip"), []
+    policy, kept = policies.make("linear_slip_continuous"), []
     for seed, duration in enumerate((2.0, 5.0)):
         observation, info = env.reset(seed=seed, options={"distance": 0.04, "duration": duration})
         state, over, step = None, False, 0

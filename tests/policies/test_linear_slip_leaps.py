@@ -33,7 +33,7 @@ def test_it_is_solved_however_late_the_velocity_is(latency, play_batch):
     late = {"randomization": {"slip_latency": {"choices": [latency]}}, "friction_source": "estimated"}
     assert play_batch(LINEAR, policies.make("linear_slip_leaps"), 200, 40_000, **late).success >= 0.97
     if latency == 4:
-        assert play_batch(LINEAR, policies.make("linear_slip"), 100, 40_000, **late).success < 0.7
+        assert play_batch(LINEAR, policies.make("linear_slip_continuous"), 100, 40_000, **late).success < 0.7
 
 
 @pytest.mark.slow

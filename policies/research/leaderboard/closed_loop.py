@@ -22,7 +22,7 @@ from slipgym.tasks import find
 VALUES = "mu_s", "mu_c", "r"
 SURE = 0.5
 """Confidence from which an estimate at an episode's end counts."""
-FURTHER = {"linear_slip": ("linear_slip_leaps",)}
+FURTHER = {"linear_slip": ("linear_slip_continuous", "linear_slip_leaps")}
 """Task -> controllers that are played beside its own."""
 
 

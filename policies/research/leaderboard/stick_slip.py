@@ -38,7 +38,7 @@ def linear_slip_trace(material: str, distance: float, duration: float, seed: int
         material=material,
         disable_env_checker=True,
     )
-    controller = policies.make("linear_slip")
+    controller = policies.make("linear_slip_continuous")
     try:
         observation, first = env.reset(seed=seed, options={"distance": distance, "duration": duration})
         infos = [step.info for step in steps(env, controller, observation)]

@@ -76,7 +76,7 @@ def record_linear(
         contact: Friction model of the pads.
         config: Overrides of the environment's configuration.
     """
-    policy = policies.make("linear_slip")
+    policy = policies.make("linear_slip_continuous")
     chosen: dict[str, Any] = {"friction_source": friction_source, "contact": contact, "config": config}
     env = LinearSlipEnv(**chosen, material=scenario["material"])
     try:

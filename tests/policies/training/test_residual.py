@@ -11,7 +11,7 @@ from policies.learned import LearnedPolicy
 from policies.training import folder, run, vector
 from policies.training import model as learners
 
-RESIDUAL = {"controller": "linear_slip", "reach": 0.2}
+RESIDUAL = {"controller": "linear_slip_continuous", "reach": 0.2}
 
 
 def controlled(config, envs, controller, steps):
@@ -26,7 +26,7 @@ def controlled(config, envs, controller, steps):
 def test_without_a_change_the_controller_acts(small):
     config = small(residual=RESIDUAL, engine_threads=1)
     slower = {"physics": {"control_rate": 30}, "sensors": {"slip": {"rate": 30}}}
-    controller = policies.make("linear_slip", config=slower)
+    controller = policies.make("linear_slip_continuous", config=slower)
     envs, alone = vector.make(config, 3, 4), vector.make(small(engine_threads=1), 3, 4)
     found, ends = envs.reset(), 0
     for observations, actions, state in controlled(config, alone, controller, 40):
@@ -49,7 +49,7 @@ def test_a_change_is_added_up_to_the_reach(small):
 def test_an_episodes_last_observation_goes_with_what_the_controller_would_do(small):
     config = small(residual=RESIDUAL, engine_threads=1)
     controller = policies.make(
-        "linear_slip", config={"physics": {"control_rate": 30}, "sensors": {"slip": {"rate": 30}}}
+        "linear_slip_continuous", config={"physics": {"control_rate": 30}, "sensors": {"slip": {"rate": 30}}}
     )
     envs = vector.make(config, 3, 2)
     seen, state, starts = envs.reset(), None, np.ones(2, bool)
@@ -76,7 +76,7 @@ def test_the_file_acts_as_the_learner(small, tmp_path, source):
     assert isinstance(policy, LearnedPolicy)
     residual = policy.description.residual
     assert residual is not None
-    assert (residual.controller, residual.reach, residual.memory) == ("linear_slip", 0.2, 2)
+    assert (residual.controller, residual.reach, residual.memory) == ("linear_slip_continuous", 0.2, 2)
     model = learners.make(config, learners.normalised(config, vector.make(config, 0), training=False), 3)
     from policies.training import checkpoint_io, checkpoints
 
@@ -115,7 +115,9 @@ def test_a_crafted_file_is_refused(small, tmp_path, monkeypatch):
         values["residual"] = {**RESIDUAL, "parameters": {}, "memory": 2}
         file.write_text(json.dumps(values))
     policies.load(file.parent)
-    monkeypatch.setattr(policies.find("linear_slip"), "initial_state", lambda _, n: np.zeros((n, 5)))
+    monkeypatch.setattr(
+        policies.find("linear_slip_continuous"), "initial_state", lambda _, n: np.zeros((n, 5))
+    )
     with pytest.raises(ValueError, match="had 2 numbers in training, in this version of slipgym it has 5"):
         policies.load(file.parent)
 

@@ -1,0 +1,96 @@
+"""Finds out whether the slip velocity is late: the force falls at once, the velocity shows it later.
+
+A break-away is a fall of the load, as in the leaps (`policies.controllers.leaps`). The time from there until
+the measured speed rises is the delay of the velocity, less that of the force. A slip that gets longer than asked
+for shows the same: it was caught late.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from policies.controllers import leaps
+from policies.controllers.leaps import LeapGains
+from slipgym.config.base import Frozen, NonNegative, Positive
+
+RESTS, SHOWN = 0.0, -1.0
+"""Of `Lateness.waited`: no break-away since the last rest; the velocity has shown the slip."""
+
+
+class LatenessGains(Frozen):
+    """When a velocity counts as late."""
+
+    prompt: NonNegative = Field(
+        default=0.02,
+        description="Time from the fall of the force, after which a velocity that shows it is late [s]",
+    )
+    seen: Positive = Field(
+        default=0.004, description="Scaled slip speed that shows a slip; at half of it the object rests [m/s]"
+    )
+    longest: Positive = Field(
+        default=0.0025, description="Length of a slip, beside what is asked for, beyond which it was late [m]"
+    )
+
+
+class Lateness(NamedTuple):
+    """Memory, arrays (n,); all 0 at the start."""
+
+    late: np.ndarray
+    """1 once the velocity has been late, else 0."""
+    waited: np.ndarray
+    """Control steps since the break-away that the velocity has not shown, from 1 on; or `RESTS`, `SHOWN`."""
+    begun: np.ndarray
+    """Measured distance beyond the reference at the last rest [m]."""
+    load: np.ndarray
+    """Smoothed load per finger at rest [N]."""
+    last: np.ndarray
+    """Load at the last control step [N]."""
+    noise: np.ndarray
+    """Standard deviation of the measured load [N]."""
+
+
+def watched(
+    past: Lateness,
+    load: np.ndarray,
+    speed: np.ndarray,
+    ahead: np.ndarray,
+    gains: LatenessGains,
+    slips: LeapGains,
+    dt: float,
+) -> Lateness:
+    """The memory after the present observation.
+
+    Args:
+        past: The memory before.
+        load: Measured load per finger, (n,) [N].
+        speed: Measured scaled slip speed, (n,) [m/s].
+        ahead: Measured distance slid, less the reference's, (n,) [m].
+        gains: When a velocity is late.
+        slips: What a break-away is.
+        dt: Control step [s].
+    """
+    smoothed = np.where(past.load == 0.0, load, past.load)
+    rested, fall = past.waited == RESTS, smoothed - load
+    least = leaps.break_away(smoothed, past.noise, slips)
+    slow = speed < gains.seen
+    calm = rested & (fall <= least) & slow
+    waited = np.where(past.waited > 0.0, past.waited + 1.0, past.waited)
+    waited = np.where(rested & (fall > least) & slow, 1.0, waited)
+    back = (past.waited > 0.0) & (fall < 0.5 * least)
+    late = ((waited - 1.0) * dt > gains.prompt) & ~back
+    late |= ~slow & (ahead - past.begun > gains.longest)
+    waited = np.where(~slow, SHOWN, np.where(back, RESTS, waited))
+    stops = (past.waited == SHOWN) & (speed < 0.5 * gains.seen)
+    noise = leaps.noise_of(load, past.last, smoothed, past.noise, slips)
+    smoothed = np.where(calm, smoothed + 0.3 * (load - smoothed), smoothed)
+    return Lateness(
+        late=np.where(late, 1.0, past.late),
+        waited=np.where(stops, RESTS, waited),
+        begun=np.where(slow, ahead, past.begun),
+        load=np.where(stops, load, smoothed),
+        last=load,
+        noise=np.where(calm & (past.last > 0.0), noise, past.noise),
+    )
