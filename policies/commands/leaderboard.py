@@ -73,7 +73,7 @@ def main(
             closed_loop, seed, estimators, task, parameter or [], imperfections, randomization
         )
         typer.echo(markdown(rows, 1))
-        if rows["task"].nunique() > 1:
+        if len(set(rows["task"])) > 1:
             typer.echo("Over the tasks, each with its own controller:\n")
             typer.echo(markdown(pooled(rows), 1))
         return

@@ -151,17 +151,20 @@ def pooled(table: pd.DataFrame) -> pd.DataFrame:
         their `episodes`, and its binomial standard error, as if an episode were one instant [%].
     """
     further = [key for keys in FURTHER.values() for key in keys]
+    own = [row for row in table.to_dict("records") if row["task"] not in further]
     rows = []
-    for (name, sensors), group in table[~table["task"].isin(further)].groupby(["estimator", "sensors"]):
+    for pair in dict.fromkeys((row["estimator"], row["sensors"]) for row in own):
+        group = [row for row in own if (row["estimator"], row["sensors"]) == pair]
         for value in VALUES:
-            n = group[f"{value} episodes"].to_numpy(float)
-            row = {"estimator": name, "sensors": sensors, "quantity": value, "episodes": int(n.sum())}
+            seen = [row for row in group if row[f"{value} episodes"] > 0]
+            n = np.array([row[f"{value} episodes"] for row in seen], dtype=float)
+            found = {"estimator": pair[0], "sensors": pair[1], "quantity": value, "episodes": int(n.sum())}
             for key in ("in 1 sd", "in 2 sd"):
-                share = group[f"{value} {key}"].fillna(0.0).to_numpy() / 100.0
-                row[key] = 100.0 * np.sum(n * share) / n.sum() if n.any() else np.nan
-                error = np.sqrt(np.sum(n * share * (1.0 - share)))
-                row[f"± {key}"] = 100.0 * error / n.sum() if n.any() else np.nan
-            rows.append(row)
+                share = np.array([row[f"{value} {key}"] for row in seen], dtype=float) / 100.0
+                square = float(np.sum(n * share * (1.0 - share)))
+                found[key] = 100.0 * float(n @ share) / n.sum() if seen else np.nan
+                found[f"± {key}"] = 100.0 * square**0.5 / n.sum() if seen else np.nan
+            rows.append(found)
     return pd.DataFrame(rows)
 
 
