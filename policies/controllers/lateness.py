@@ -1,8 +1,8 @@
 """Finds out whether the slip velocity is late: the force falls at once, the velocity shows it later.
 
 A break-away is a fall of the load, as in the leaps (`policies.controllers.leaps`). The time from there until
-the measured speed rises is the delay of the velocity, less that of the force. A slip that gets longer than asked
-for shows the same: it was caught late.
+the measured speed rises is the delay of the velocity, less that of the force. A slip that gets longer than
+the reference asks for shows the same: it was caught late.
 """
 
 from __future__ import annotations

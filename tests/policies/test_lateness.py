@@ -1,5 +1,7 @@
 """LinearSlip's controller finds out whether the slip velocity is late, and then moves in leaps."""
 
+from typing import Any
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -18,8 +20,8 @@ def watch(loads, speeds, lengths=None):
     past, seen = Lateness(*np.zeros((len(Lateness._fields), 1))), []
     for k, (load, speed) in enumerate(zip(loads, speeds, strict=True)):
         position = 0.0 if lengths is None else lengths[k]
-        now = np.array([[load], [speed], [position]])
-        past = watched(past, *now, LatenessGains(), LeapGains(), DT)
+        now = (np.array([value]) for value in (load, speed, position))
+        past = watched(past, next(now), next(now), next(now), LatenessGains(), LeapGains(), DT)
         seen.append(past)
     return seen
 
@@ -48,10 +50,10 @@ def test_a_slip_that_gets_long_was_caught_late():
 
 def played(name, n, **arguments):
     """The actions of a controller in a batch, its last memory and whether the episodes were solved."""
-    policy = policies.make(name)
-    env = gym.make_vec(LINEAR, num_envs=n, **policies.modes(policy), **arguments).unwrapped
+    policy: Any = policies.make(name)
+    env: Any = gym.make_vec(LINEAR, num_envs=n, **policies.modes(policy), **arguments).unwrapped
     observations, _ = env.reset(seed=50_000)
-    actions = []
+    actions, solved = [], np.zeros(n, dtype=bool)
     for step in batch_steps(env, policy, observations):
         actions.append(step.observations[:, policy.index["commanded_force"]])
         solved = step.infos["is_success"]
