@@ -62,7 +62,7 @@ def training_seeds(outcomes: pd.DataFrame) -> list[str]:
     rows = [["task", "preset", "policy", "friction", "success over seeds [%]", "of each [%]"]]
     if "seeds" not in outcomes:
         return []
-    for row in outcomes[outcomes["seeds_low"].notna()].to_dict("records"):
+    for row in records(outcomes.dropna(subset=["seeds_low"])):
         known = " ".join(str(row[name]) for name in FRICTION if row[name] == row[name])
         each = " ".join(f"{100.0 * float(share):.0f}" for share in row["blocks"].split())
         rows.append([row["task"], row["preset"], row["kind"], known, _text(row, "seeds", "[%]"), each])
