@@ -15,8 +15,9 @@ Examples:\n
   slipgym study full --episodes 20 --task linear_slip --task hold
   slipgym study my_study.yaml --learned runs/policies
 \n
-A study is a YAML file; configs/studies/ holds quick, short and full, and docs/study.md says what their keys
-mean. A study that was broken off goes on where it stopped; one that has changed runs only what is new.
+A study is a YAML file; configs/studies/ holds quick, short, full, hard and hard_lab, and docs/study.md says
+what their keys mean. A study that was broken off goes on where it stopped; one that has changed runs only
+what is new.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
@@ -32,7 +33,7 @@ def main(
         typer.Option(help="Keep only this task: linear_slip, also LinearSlip or its id; repeatable."),
     ] = None,
     kind: Annotated[
-        list[str] | None, typer.Option(help="Only classic, learned or imitation; repeatable.")
+        list[str] | None, typer.Option(help="Only classic, memory, learned or imitation; repeatable.")
     ] = None,
     learned: Annotated[str, typer.Option(help="Folder of learned policies instead of those shipped.")] = "",
     imitation: Annotated[str, typer.Option(help="Folder of the runs of slipgym imitate.")] = "",

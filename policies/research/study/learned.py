@@ -61,11 +61,15 @@ def _keep(seeds: dict[int, Path], seed: int, folder: Path) -> None:
 
 
 def missing(study: Study, found: Shelf) -> list[str]:
-    """In words, the policies that a study would need and that are not there."""
+    """In words, the policies that a study would need and that are not there.
+
+    Of imitations it needs those that see sensors alone.
+    """
     lacking = []
     for kind, place in folders(study).items():
+        wanted = ("none",) if kind == "imitation" else SOURCES
         for task in study.tasks:
-            sources = [source for source in SOURCES if (kind, task, TRAINED_WITH[source]) not in found]
+            sources = [source for source in wanted if (kind, task, TRAINED_WITH[source]) not in found]
             if sources:
                 where = "the policies that come with slipgym" if place == pretrained.FOLDER else place
                 lacking.append(

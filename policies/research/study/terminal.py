@@ -44,12 +44,30 @@ def words(study: Study, folder: Path) -> str:
             rows.append([row["task"], row["preset"], row["kind"], row["figure"], share, row["verdict"]])
         parts.append(aligned(rows))
     parts += _benefits(where(benefits, world=world))
+    parts += training_seeds(outcomes[(outcomes["world"] == world) & outcomes["change"].isna()])
     rows = [["task", "force [N]", "success [%]", "dropped [%]", "return, mean"]]
     for row in pd.read_csv(folder / "constant_grip.csv").to_dict("records"):
         figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
         rows.append([row["task"], f"{row['force_N']:.2f}", *figures])
     parts += ["The best constant grip, without any sensor, planar engine:", aligned(rows)]
     return "\n\n".join([*parts, f"Look at:\n  {folder / 'report.html'}"])
+
+
+def training_seeds(outcomes: pd.DataFrame) -> list[str]:
+    """Success of the policies that have several training seeds, over the seeds and of each; [] without any.
+
+    Args:
+        outcomes: From `policies.research.study.tables.outcomes`.
+    """
+    rows = [["task", "preset", "policy", "friction", "success over seeds [%]", "of each [%]"]]
+    if "seeds" not in outcomes:
+        return []
+    for row in records(outcomes.dropna(subset=["seeds_low"])):
+        known = " ".join(str(row[name]) for name in FRICTION if row[name] == row[name])
+        each = " ".join(f"{100.0 * float(share):.0f}" for share in row["blocks"].split())
+        rows.append([row["task"], row["preset"], row["kind"], known, _text(row, "seeds", "[%]"), each])
+    title = "Interquartile mean over the training seeds, with an interval over the seeds:"
+    return [title, aligned(rows)] if rows[1:] else []
 
 
 def _benefits(benefits: pd.DataFrame) -> list[str]:

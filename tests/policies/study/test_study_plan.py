@@ -110,6 +110,9 @@ def test_imitations_are_a_kind_of_their_own(small, shelf):
         ("imitation", "LinearSlip", "none"): [0, 3],
         ("imitation", "LinearSlip", "estimated"): [0],
     }
+    assert missing(study, found) == []
+    (notice,) = missing(small(imitation="nowhere", kinds=["imitation"]), {})
+    assert "no policy of kind imitation for none;" in notice
     with pytest.raises(ValueError, match="needs the folder"):
         small(kinds=["imitation"])
 

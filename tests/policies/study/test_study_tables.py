@@ -7,6 +7,7 @@ from policies.evaluation.statistics import share_interval
 from policies.research.study.benefit import benefits
 from policies.research.study.statistics import over_seeds
 from policies.research.study.tables import ALL, outcomes, shares, transfer
+from policies.research.study.terminal import training_seeds
 
 BULLET, CORE = "PyBullet, ellipsoid", "core"
 CLEAR = {"none": 2, "estimated": 9, "true": 10}
@@ -107,4 +108,8 @@ def test_the_mean_over_seeds_leaves_the_extremes_out(invented):
     assert np.isnan(one_seed.low)
     rows = outcomes(pd.concat([invented(CLEAR), invented({"none": 6}, kind="imitation")]))
     assert one(rows, kind="imitation")["seeds"] == pytest.approx(0.6)
+    said = "".join(training_seeds(rows))
+    assert said.count("60 60 60") == 1
+    assert "classic" not in said
+    assert training_seeds(outcomes(invented(CLEAR))) == []
     assert where(rows, kind="classic")["seeds"].isna().all()
