@@ -10,7 +10,7 @@ from time import process_time
 from slipgym.benchmarking.measure import Player
 from slipgym.benchmarking.processors import on_either
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.split import COMPILED, parts, watched
+from slipgym.benchmarking.split import COMPILED, RESETS, parts, watched
 from slipgym.benchmarking.timing import Comparison, compare
 from slipgym.benchmarking.twins import Twins
 from slipgym.benchmarking.vector_player import SLIP_LIMIT, VectorPlayer
@@ -48,6 +48,7 @@ def headline(env_id: str, repeats: int = 7, estimator: str = "") -> list[Figure]
             rates[name].append(steps / seconds)
     per_cpu: dict[str, list[float]] = {name: [] for name in WORKLOADS}
     compiled: dict[str, list[float]] = {name: [] for name in WORKLOADS}
+    resets: dict[str, list[float]] = {name: [] for name in WORKLOADS}
     for _ in range(repeats):
         for name, player in single.items():
             with watched(player) as watches:
@@ -55,12 +56,14 @@ def headline(env_id: str, repeats: int = 7, estimator: str = "") -> list[Figure]
                 _, steps = player.block(16 * n)
                 per_cpu[name].append(steps / (process_time() - start))
             compiled[name].append(watches.spent[COMPILED] / steps)
+            resets[name].append(watches.spent[RESETS] / steps)
     for name in WORKLOADS:
         title = f"batch of {n}, {name}{ending}"
         figures += [
             Figure(f"{title}: steps per second", median(rates[name]), "1/s", REQUIRED[name]),
             Figure(f"{title}: the same, one thread, per second of CPU time", median(per_cpu[name]), "1/s"),
             Figure(f"{title}: the compiled step, one thread, CPU time", 1e9 * median(compiled[name]), "ns"),
+            Figure(f"{title}: resets, one thread, CPU time", 1e9 * median(resets[name]), "ns"),
             Figure(f"{title}: slipping rows", players[name].slipping(), "-"),
         ]
     about, firm = WORKLOADS

@@ -41,6 +41,8 @@ RESETS = "resets"
 REST = "Gymnasium"
 COMPILED = "all of these, the compiled step"
 FLOOR = "their contact kernel alone"
+REGIMES = "stick", "stick near break-away", "slide", "slip begins or ends"
+"""What a contact does in a step. Near break-away it takes more sub-steps than an object that rests needs."""
 
 
 def watched(player: VectorPlayer) -> Stopwatches:
@@ -56,6 +58,9 @@ class Split:
 
     Args:
         player: Plays the environment in one thread.
+
+    Attributes:
+        tally: Steps and sub-steps of each of `REGIMES` since the start, (4, 2).
     """
 
     def __init__(self, player: VectorPlayer) -> None:
@@ -63,7 +68,7 @@ class Split:
         simulation, n = player.env.simulation, player.n
         stages, state, rows = simulation.stages, simulation.state, (0, n)
         linked, calls = stages.linked, stages.calls
-        self.counted = 0
+        self.tally = np.zeros((len(REGIMES), 2))
         self._action = np.empty((n, 1)), player.env._actions.table, np.ones(n, dtype=bool)
         sensors, buffers, infos = (
             simulation.plant.force_torque,
@@ -86,7 +91,7 @@ class Split:
         with watched(player) as watches:
             start = process_time()
             _, steps = player.block(STEPS * n)
-            whole, self.counted = (process_time() - start) / steps, 0
+            whole, before = (process_time() - start) / steps, self.tally[:, 1].sum()
         compiled, resets = (watches.spent[label] / steps for label in (COMPILED, RESETS))
         spent = dict.fromkeys(STAGES, 0.0)
         for _ in range(STEPS):
@@ -95,7 +100,7 @@ class Split:
                 start = process_time()
                 self._run[program]()
                 spent[part] += (process_time() - start) / (STEPS * n)
-        substeps = self.counted / (STEPS * n)
+        substeps = (self.tally[:, 1].sum() - before) / (STEPS * n)
         floor = substeps * self._contact_step()
         rest = {BETWEEN: compiled - sum(spent.values()), RESETS: resets, REST: whole - compiled - resets}
         return {"": whole, **spent, **rest, COMPILED: compiled, "sub-steps": substeps, FLOOR: floor}
@@ -104,7 +109,7 @@ class Split:
         simulation = self._player.env.simulation
         plant = simulation.plant
         bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
-        self.counted += _advance(*bodies, simulation.commands)
+        _advance(*bodies, simulation.commands, self.tally)
 
     def _contact_step(self, repeats: int = 4) -> float:
         """CPU time of a contact step of an environment [s], the median of some; the state stays as it is."""
@@ -138,19 +143,37 @@ def parts(player: VectorPlayer, pairs: int) -> list[Figure]:
         Figure(f"batch step: {COMPILED}", 1e9 * middle[COMPILED], "ns"),
         *(Figure(f"batch step: {name}", 1e9 * middle[name], "ns") for name in (RESETS, REST)),
         Figure("sub-steps per step", middle["sub-steps"], "-"),
+        *_regimes(split.tally),
         Figure(FLOOR, 1e9 * middle[FLOOR], "ns"),
         Figure("batch step / its contact kernel", ratios[1], "-"),
         *(Figure(f"batch step / its contact kernel, {name}", ratio, "-") for name, ratio in ends),
     ]
 
 
+def _regimes(tally: np.ndarray) -> list[Figure]:
+    """Fraction of the steps and sub-steps per step of each of `REGIMES`."""
+    steps, figures = tally[:, 0].sum(), []
+    for regime, (count, substeps) in zip(REGIMES, tally.tolist(), strict=True):
+        figures.append(Figure(f"sub-steps per step, {regime}", substeps / max(count, 1.0), "-"))
+        figures.append(Figure(f"fraction of the steps, {regime}", count / steps, "-"))
+    return figures
+
+
 @unlocked
-def _advance(worlds, pads, cells, fingers, force_torque, slip_sensors, commands):
-    """A control step of all worlds; sub-steps that it took."""
-    done = 0
+def _advance(worlds, pads, cells, fingers, force_torque, slip_sensors, commands, tally):
+    """A control step of all worlds; the sub-steps that it took are added to a `Split.tally`."""
     for i in range(worlds.shape[0]):
-        done += step_world(worlds, pads, cells, fingers, force_torque, slip_sensors, commands[i, 0], i)
-    return done
+        before = pads[i, 0].slip_rate != 0.0
+        done = step_world(worlds, pads, cells, fingers, force_torque, slip_sensors, commands[i, 0], i)
+        after = pads[i, 0].slip_rate != 0.0
+        if before != after:
+            regime = 3
+        elif after:
+            regime = 2
+        else:
+            regime = 1 if done * worlds[i].calm_ticks > worlds[i].control_ticks else 0
+        tally[regime, 0] += 1
+        tally[regime, 1] += done
 
 
 @unlocked

@@ -52,3 +52,14 @@ def test_every_figure_has_a_name_of_its_own(player):
     assert len(set(names)) == len(names)
     assert names[0].startswith("batch step")
     assert "batch step / its contact kernel" in names
+
+
+def test_every_step_belongs_to_a_regime(player):
+    taken = split.Split(player)
+    for _ in range(2):
+        taken.pair()
+    steps, substeps = taken.tally.T
+    assert steps.sum() == 2 * split.STEPS * player.n
+    assert (substeps >= steps).all()
+    shares = [figure.value for figure in split._regimes(taken.tally) if figure.name.startswith("fraction")]
+    assert sum(shares) == pytest.approx(1.0)
