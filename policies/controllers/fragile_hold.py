@@ -11,11 +11,16 @@ from pydantic import Field
 from policies.controllers.base import Columns
 from policies.controllers.gains import Fraction
 from policies.controllers.lifting import LiftingGains, LiftingPolicy
+from slipgym.config.base import NonNegative, Positive
 
 
 class FragileHoldGains(LiftingGains):
     """Gains of `FragileHoldPolicy`."""
 
+    confidence: Positive = Field(default=0.01, description="Confidence from which mu_s is taken as it is [-]")
+    deviations: NonNegative = Field(
+        default=0.12, description="Standard deviations by which mu_s is taken below its estimate [-]"
+    )
     place: Fraction = Field(
         default=0.45, description="Place of the grip between least and breaking force, logarithmic [-]"
     )

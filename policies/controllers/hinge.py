@@ -39,7 +39,7 @@ class HingeGains(Frozen):
         default=0.005, description="Turn from which the object counts as turning in the grip [rad]"
     )
     known: NonNegative = Field(
-        default=0.02, description="Confidence up to which friction is explored before the turn; 0: never [-]"
+        default=0.005, description="Confidence up to which friction is explored before the turn; 0: never [-]"
     )
     smoothing: Fraction = Field(
         default=0.9, description="Weight of the old tangential force in each control step [-]"

@@ -18,7 +18,7 @@ from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
 
 _EXPLORATION = ActiveExploration()
-_FIRST = 0.01  # confidence: less than that of one update, 0.02
+_FIRST = 0.003  # confidence: less than that of any update
 _DEVIATIONS = 0.3
 
 
