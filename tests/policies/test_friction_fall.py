@@ -79,7 +79,7 @@ def test_without_doubt_the_memory_is_that_of_the_exploration():
 
 @pytest.mark.slow
 def test_after_a_fall_of_friction_it_holds_more_often_than_without_doubt(play_batch):
-    """In 95 % of the episodes, at no more than 1.15 times the grip of the truth; `doubt` halves the failures."""
+    """In 95 % of the episodes, at no more than 1.15 times the grip of the truth; half as many failures."""
     keywords = {"randomization": JUMP, "friction_source": "estimated"}
     hold = "slipgym/Hold-v0"
     found = play_batch(hold, HoldPolicy(), 300, 50_000, **keywords)
