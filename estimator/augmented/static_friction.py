@@ -104,8 +104,8 @@ def _held(state, p, value, f_n, torque_share):
     present, of_exponent = static_at_load(state, f_n)
     noise = (p.sd_normal / f_n) ** 2 + (p.sd_force / (value * f_n)) ** 2
     noise += _of_radius(state, torque_share)
-    change = 1.0 / f_n - 1.0 / state.event_load
-    noise += state.covariance[ZERO, ZERO] * (change / (p.caution * value)) ** 2
+    further = 1.0 / f_n - 1.0 / state.event_load
+    noise += state.covariance[ZERO, ZERO] * (further / (p.caution * value)) ** 2
     if not value > present * (1.0 + SURE * math.sqrt(noise)):
         return
     prior, change = state.variance_mu_s + of_exponent, math.log(value / present)

@@ -18,7 +18,7 @@ from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
 
 _EXPLORATION = ActiveExploration()
-_FIRST = 0.003  # confidence: less than that of any update
+_FIRST = 0.003  # confidence of a relative deviation of 1.8
 _DEVIATIONS = 0.3
 
 

@@ -72,9 +72,9 @@ def watched(
         slips: What a break-away is.
         dt: Control step [s].
     """
-    smoothed = np.where(past.load == 0.0, load, past.load)
-    rested, fall = past.waited == RESTS, smoothed - load
-    least = leaps.break_away(smoothed, past.noise, slips)
+    at_rest = np.where(past.load == 0.0, load, past.load)
+    rested, fall = past.waited == RESTS, at_rest - load
+    least = leaps.break_away(at_rest, past.noise, slips)
     slow = speed < gains.seen
     calm = rested & (fall <= least) & slow
     waited = np.where(past.waited > 0.0, past.waited + 1.0, past.waited)
@@ -84,13 +84,13 @@ def watched(
     late |= ~slow & (ahead - past.begun > gains.longest)
     waited = np.where(~slow, SHOWN, np.where(back, RESTS, waited))
     stops = (past.waited == SHOWN) & (speed < 0.5 * gains.seen)
-    noise = leaps.noise_of(load, past.last, smoothed, past.noise, slips)
-    smoothed = np.where(calm, smoothed + 0.3 * (load - smoothed), smoothed)
+    noise = leaps.noise_of(load, past.last, at_rest, past.noise, slips)
+    at_rest = np.where(calm, leaps.smoothed(at_rest, load), at_rest)
     return Lateness(
         late=np.where(late, 1.0, past.late),
         waited=np.where(stops, RESTS, waited),
         begun=np.where(slow, ahead, past.begun),
-        load=np.where(stops, load, smoothed),
+        load=np.where(stops, load, at_rest),
         last=load,
         noise=np.where(calm & (past.last > 0.0), noise, past.noise),
     )

@@ -153,7 +153,7 @@ def leap(state: LeapState, slip: Slip, gains: LeapGains, force_max: float) -> tu
     calm = (falls & ~lost) | (rests & (state.clock > -0.4 * gains.rest)) | ~(slip.wanted | runs)
     steady = (state.last > 0.0) & (state.clock == 0.0) & ~lost
     memory = LeapState(
-        load=np.where(calm, load + 0.3 * (slip.load - load), load),
+        load=np.where(calm, smoothed(load, slip.load), load),
         last=slip.load,
         noise=np.where(steady, noise_of(slip.load, state.last, load, state.noise, gains), state.noise),
         ratio=new,
@@ -169,6 +169,11 @@ def leap(state: LeapState, slip: Slip, gains: LeapGains, force_max: float) -> tu
     force = np.where(rests, np.where(state.clock < gains.firm - gains.rest, doubled, resting), force)
     force = np.where(runs & slip.turning, state.brake * ratio * memory.load, force)
     return np.where(caught, force_max, force), memory
+
+
+def smoothed(load: np.ndarray, now: np.ndarray) -> np.ndarray:
+    """Smoothed load at rest after another measured one, (n,) [N]."""
+    return load + 0.3 * (now - load)
 
 
 def break_away(load: np.ndarray, noise: np.ndarray, gains: LeapGains) -> np.ndarray:

@@ -51,6 +51,8 @@ class LinearSlipPolicy(GainPolicy[LinearSlipGains]):
         self._continuous = ContinuousLinearSlipPolicy(prior=self.prior, config=config, **chosen)
         self._leaps = LinearSlipLeapPolicy(prior=self.prior, config=config)
         self._dt = 1.0 / self.config.physics.control_rate
+        own = len(Lateness._fields)
+        self._parts = own, own + self._continuous.initial_state(1).shape[1]  # where the other memories begin
 
     def initial_state(self, n: int) -> np.ndarray:
         """Columns of `Lateness`, then the memories of the continuous slip and of the leaps, (n, 19)."""
@@ -59,9 +61,7 @@ class LinearSlipPolicy(GainPolicy[LinearSlipGains]):
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
-        own = len(Lateness._fields)
-        both = own + self._continuous.initial_state(1).shape[1]
-        watch, slip, leap = np.split(np.asarray(state), (own, both), axis=1)
+        watch, slip, leap = np.split(np.asarray(state), self._parts, axis=1)
         speed = scaled_speed(columns, self.prior.blend(columns, "r"))
         seen = watched(
             Lateness(*watch.T),
