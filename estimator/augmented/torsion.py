@@ -5,7 +5,8 @@ it has shown otherwise: the torque has grown along a turn, in proportion to the 
 its noise. Friction does not do that: a slip keeps its torque, or changes it with the normal force, and so the
 torque that friction at the start would have is subtracted. A stick without a turn, followed by a slip, leaves
 a residual. A slide in which the share of the turn grows has a displacement, too. What was learned from slides
-before that is forgotten: turns of the spring were among them.
+before that is forgotten, as turns of the spring were among them, unless one of them was a slip for certain:
+longer than twice what a pad springs by the whole load, with the smallest r that is plausible.
 """
 
 import math
@@ -117,7 +118,7 @@ def _look(state, p, grown):
     possible = shown < SAFETY * p.compliance_max / (least * least)
     if not (along and straight and turned and grown and possible):
         return
-    if state.torsion == 0.0 and state.slides > 0:
+    if state.torsion == 0.0 and state.slides > 0 and not state.certain:
         _forget(state, p)
     state.torsion = SAFETY * shown
 

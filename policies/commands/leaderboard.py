@@ -32,6 +32,7 @@ def main(
         list[str] | None, typer.Option(help="Those in the loop; all if none.", show_default=False)
     ] = None,
     randomization: Annotated[str, typer.Option(help="Preset of the episodes in the loop.")] = "none",
+    contact: Annotated[str, typer.Option(help="Friction model of the pads in the loop.")] = "ellipsoid",
     task: Annotated[
         list[str] | None, typer.Option(help="Tasks in the loop; all if none.", show_default=False)
     ] = None,
@@ -51,8 +52,10 @@ def main(
     costs: Annotated[bool, typer.Option("--costs", help="Only print what an update costs.")] = False,
 ) -> None:
     """Runs all estimators on all scenarios; writes a folder with tables and a picture."""
-    if not closed_loop and (estimators or task or parameter or imperfections or randomization != "none"):
-        named = "--estimators, --task, --parameter, --imperfections and --randomization"
+    environments = {"randomization": randomization, "contact": contact}
+    changed = environments != {"randomization": "none", "contact": "ellipsoid"}
+    if not closed_loop and (estimators or task or parameter or imperfections or changed):
+        named = "--estimators, --task, --parameter, --imperfections, --randomization and --contact"
         raise typer.BadParameter(f"{named} are for episodes in the loop: --closed-loop 64")
     if ablation:
         from policies.research.leaderboard import ablation as removing
@@ -60,7 +63,7 @@ def main(
         from policies.research.leaderboard.tables import markdown
 
         if closed_loop:
-            found = removing.in_the_loop(closed_loop, seed, randomization=randomization, tasks=_ids(task))
+            found = removing.in_the_loop(closed_loop, seed, tasks=_ids(task), **environments)
         else:
             found = removing.worth(removing.ablation(effort_of(quick, seed)))
         typer.echo(markdown(found, 1 if closed_loop else 2))
@@ -69,9 +72,7 @@ def main(
         from policies.research.leaderboard.closed_loop import pooled
         from policies.research.leaderboard.tables import markdown
 
-        rows = _in_the_loop(
-            closed_loop, seed, estimators, task, parameter or [], imperfections, randomization
-        )
+        rows = _in_the_loop(closed_loop, seed, estimators, task, parameter or [], imperfections, environments)
         typer.echo(markdown(rows, 1))
         if len(set(rows["task"])) > 1:
             typer.echo("Over the tasks, each with its own controller:\n")
@@ -104,7 +105,7 @@ def _in_the_loop(
     tasks: list[str] | None,
     parameters: list[str],
     imperfections: bool,
-    randomization: str,
+    environments: dict[str, str],
 ) -> pd.DataFrame:
     import estimator
     from estimator.records import parse_settings
@@ -115,7 +116,7 @@ def _in_the_loop(
         changed = parse_settings(parameters)
         chosen = {name: {"name": name, **changed} for name in estimators or estimator.names()}
         sensors = one_imperfection() if imperfections else ("realistic", "lab")
-        return closed_loop(chosen, episodes, sensors, seed, _ids(tasks), randomization=randomization)
+        return closed_loop(chosen, episodes, sensors, seed, _ids(tasks), **environments)
     except ValueError as error:
         raise typer.BadParameter(str(error)) from error
 

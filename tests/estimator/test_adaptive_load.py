@@ -169,3 +169,27 @@ def test_scatter_is_no_jump():
             seen.append(est.estimate.mu_c)
         spread[evidence] = np.std(np.log(seen[50:]))
     assert spread[12.0] < 0.5 * spread[0.0]
+
+
+@pytest.mark.parametrize("certain", [True, False])
+def test_a_spring_that_shows_itself_late_forgets_only_what_may_have_been_one(certain):
+    """A slip and turn, then the pad springs in torsion under a firm grip; r of a certain slip is kept."""
+    rng, est = np.random.default_rng(2), estimator.make("adaptive")
+    share, r, mu_c, f_n = 2.0**-0.5, 0.005, 0.4, 4.0
+    slip = (0.0, mu_c * f_n * share, f_n, mu_c * f_n * r * share)
+    for k in range(180):
+        slips = 60 <= k < 120
+        wrench = np.array(slip if slips else (0.0, 1.0, f_n, 0.0)) + rng.normal(size=4) * NOISE
+        speed = 0.01 * slips
+        est.update((k + 1) / RATE, wrench, (0.0, share * speed, share * speed / r))
+    learned, states = est.estimate, est.batch.states
+    assert states["certain"][0]
+    assert learned.r == pytest.approx(r, rel=0.15)
+    states["certain"] = certain
+    for k in range(180, 420):
+        phase = 2.0 * np.pi * k / RATE
+        wrench = np.array([0.0, 1.0, 20.0, 0.03 * np.sin(phase)]) + rng.normal(size=4) * NOISE
+        est.update((k + 1) / RATE, wrench, (0.0, 0.0, 0.06 * 2.0 * np.pi * np.cos(phase)))
+    assert states["torsion"][0] > 0.0
+    assert est.estimate.updates_r == (learned.updates_r if certain else 0)
+    assert est.estimate.r == pytest.approx(learned.r if certain else 0.01, rel=0.15)

@@ -78,9 +78,10 @@ def played(
 
     Returns:
         `solved` and `dropped` [%]; for each of mu_s, mu_c, r the share of ends, of both fingers, with a
-        confidence above SURE [%], the median of the error's size there [%], and the share of instants, from
-        the first update on, within one and within two stated deviations [%], and the `episodes` with such
-        instants; `reversed`: instants with a published mu_c above mu_s [%].
+        confidence above SURE [%], the median of the error's size there [%], the same of the ends with any
+        confidence (`seen`, `seen error`), and the share of instants, from the first update on, within one and
+        within two stated deviations [%], and the `episodes` with such instants; `reversed`: instants with a
+        published mu_c above mu_s [%].
     """
     policy = policies.make(controller or find(task).key)
     env: Any = gym.make_vec(task, num_envs=episodes, **policies.modes(policy), **arguments).unwrapped
@@ -100,7 +101,8 @@ class _Tally:
     def __init__(self, episodes: int) -> None:
         self._instants = {name: np.zeros(3) for name in VALUES}  # seen, within one, within two
         self._seen = {name: np.zeros(episodes, dtype=bool) for name in VALUES}
-        self._errors: dict[str, list[float]] = {name: [] for name in VALUES}
+        self._errors: dict[str, list[float]] = {name: [] for name in VALUES}  # of ends with confidence > SURE
+        self._seen_errors: dict[str, list[float]] = {name: [] for name in VALUES}  # > 0
         self._all, self._reversed, self._solved, self._dropped, self._episodes = 0, 0, 0, 0, episodes
 
     def add(self, simulation: Any, alive: np.ndarray) -> None:
@@ -119,8 +121,12 @@ class _Tally:
         """The ends of episodes."""
         estimates = simulation.estimator.estimates.reshape(-1, 2)[over]
         for name, value in present(simulation.plant.pads).items():
-            sure = estimates[f"confidence_{name}"] > SURE
-            self._errors[name] += (100.0 * np.abs(estimates[name] / value[over] - 1.0))[sure].tolist()
+            error, confidence = (
+                100.0 * np.abs(estimates[name] / value[over] - 1.0),
+                estimates[f"confidence_{name}"],
+            )
+            self._errors[name] += error[confidence > SURE].tolist()
+            self._seen_errors[name] += error[confidence > 0.0].tolist()
         self._solved += np.count_nonzero(infos["is_success"][over])
         self._dropped += np.count_nonzero(infos["dropped"][over])
 
@@ -132,8 +138,10 @@ class _Tally:
         }
         for name in VALUES:
             seen, one, two = self._instants[name]
-            row[f"{name} sure"] = 50.0 * len(self._errors[name]) / self._episodes
-            row[f"{name} error"] = float(np.median(self._errors[name])) if self._errors[name] else np.nan
+            for kind, errors in (("", self._errors[name]), ("seen ", self._seen_errors[name])):
+                share = 50.0 * len(errors) / self._episodes
+                row[f"{name} {kind.strip() or 'sure'}"] = share
+                row[f"{name} {kind}error"] = float(np.median(errors)) if errors else np.nan
             row[f"{name} in 1 sd"] = 100.0 * one / seen if seen else np.nan
             row[f"{name} in 2 sd"] = 100.0 * two / seen if seen else np.nan
             row[f"{name} episodes"] = int(np.count_nonzero(self._seen[name]))

@@ -9,6 +9,7 @@ import pandas as pd
 
 import estimator
 from policies.research.leaderboard.tables import markdown
+from policies.research.pushes.excess import REFERENCES, beyond_best, within_best
 from policies.research.pushes.extract import Pushes
 from policies.research.pushes.fit import fit, friction_of_each, harmonic, misfit
 from policies.research.pushes.replay import replay
@@ -100,8 +101,9 @@ def deviations(logs: Iterable[Pushes], number: int, seed: int) -> pd.DataFrame:
         seed: Of the resamples.
 
     Returns:
-        `log`, `support`, `estimator`, and for "mu_c", "mu_c_wrench" (from least squares) and "r" the arrays
-        (1 + number,) of deviations [%], first that of the log as it is.
+        `log`, `support`, `estimator`, and for "mu_c", "mu_c_wrench" (from least squares), "r" and "r_fitted"
+        (from geometry with the fitted lengths) the arrays (1 + number,) of deviations [%], first that of the
+        log as it is.
     """
     rows = []
     for pushes in logs:
@@ -117,6 +119,7 @@ def deviations(logs: Iterable[Pushes], number: int, seed: int) -> pd.DataFrame:
                     "mu_c": 100.0 * (found_mu_c / reference.mu_c - 1.0),
                     "mu_c_wrench": 100.0 * (found_mu_c / reference.mu_c_wrench - 1.0),
                     "r": 100.0 * (found_r / r - 1.0),
+                    "r_fitted": 100.0 * (found_r / (reference.scale * r) - 1.0),
                 }
             )
     return pd.DataFrame(rows)
@@ -183,4 +186,8 @@ def run_pushes(logs: list[Pushes], number: int = 400, seed: int = 0) -> str:
     for quantity, against in zip(QUANTITIES, ("the fit", "geometry"), strict=True):
         parts += [f"## Deviation of {quantity} from {against} [%]", markdown(by_log(found, quantity))]
     parts += ["## Largest deviations [%]", markdown(worst(found), 1)]
+    for quantity, meaning in REFERENCES.items():
+        title = f"## Deviation of {meaning} beyond that of the best of four [percent points]"
+        parts += [title, markdown(beyond_best(found, quantity))]
+    parts += ["## Logs beyond the best of four", markdown(within_best(found), 1)]
     return "\n\n".join(part.rstrip() for part in parts) + "\n"
