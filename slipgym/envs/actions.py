@@ -120,7 +120,8 @@ class Actions:
             ValueError: It is not numeric, has the wrong shape or is not finite; the message names the
                 component.
         """
-        array = _real(action, "action")
+        usual = type(action) is np.ndarray and action.dtype.kind == "f"  # without another call
+        array = action if usual else _real(action, "action")
         if array.shape != self._shape:
             meaning = ", ".join(column.name for column in self.columns)
             raise ValueError(

@@ -1,7 +1,7 @@
 """Infos: a table of their entries, and the buffers that hold them for all environments.
 
-The numbers of an environment are one row of a plain array. A structured array would be slower: numpy copies
-its records field by field.
+The numbers of an environment are one row of a plain array, vectors of three first: the row is also a table of
+three columns. A structured array would be slower: numpy copies its records field by field.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ NUMBERS = (
          "episodes[i].reference[{0}]"),
     Info("time", (), "s", "time since reset", "episodes[i].step * episodes[i].step_time"),
 )  # fmt: skip
-"""Entries that are numbers, in the order of a row. The reward terms come on top."""
+"""Entries that are numbers. The reward terms come on top."""
 
 FLAGS = (
     Info("is_success", (), "", "whether the task is solved; see Episode End", "episodes[i].success"),
@@ -97,16 +97,18 @@ FLAGS = (
 _ENDS = "episodes[i].dropped or episodes[i].ended", "episodes[i].step >= episodes[i].steps"
 """Whether the episode has ended early, and whether it has its full length: they follow the flags in a row."""
 
-_SIZES = [math.prod(info.shape) for info in NUMBERS]
-_WIDTH = sum(_SIZES)
+_LAYOUT = sorted(NUMBERS, key=lambda info: info.shape[-1:] != (3,))
+"""`NUMBERS` in the order of a row."""
+_SIZES = [math.prod(info.shape) for info in _LAYOUT]
+_WIDTH = -(-sum(_SIZES) // 3) * 3
 _STOPS = np.cumsum(_SIZES).tolist()
-_PARTS = {
-    info.name: slice(stop - size, stop) for info, stop, size in zip(NUMBERS, _STOPS, _SIZES, strict=True)
+PARTS = {
+    info.name: slice(stop - size, stop) for info, stop, size in zip(_LAYOUT, _STOPS, _SIZES, strict=True)
 }
-_VIEWS = {info.name: (_PARTS[info.name], info.shape) for info in NUMBERS if info.shape}
-_TIME = _PARTS["time"].start
+"""Where the entries of `NUMBERS` are in a row."""
 _FLAG_NAMES = [info.name for info in FLAGS]
-_NAMES = (*_VIEWS, "time", *_FLAG_NAMES, "reward_terms")
+INFO_NAMES = (*(info.name for info in NUMBERS), *_FLAG_NAMES, "reward_terms")
+"""Keys of an info, in order."""
 
 
 class InfoBuffer(NamedTuple):
@@ -138,7 +140,7 @@ class InfoBuffer(NamedTuple):
         """
         numbers, flags, values = self
         infos: dict[str, Any] = {
-            info.name: numbers[:, _PARTS[info.name]].reshape(-1, *info.shape) for info in NUMBERS
+            info.name: numbers[:, PARTS[info.name]].reshape(-1, *info.shape) for info in NUMBERS
         }
         infos |= {name: flags[:, k] for k, name in enumerate(_FLAG_NAMES)}
         scaled = {name: values[:, k] for k, name in enumerate(terms)}
@@ -163,60 +165,6 @@ class InfoBuffer(NamedTuple):
         for mine, other in zip(copy, self, strict=True):
             mine[rows] = other[rows]
         return copy.every(terms, mask)
-
-
-class InfoCopies:
-    """Infos of one environment as `gymnasium.Env` returns them: the caller's own arrays, plain numbers.
-
-    32 infos are prepared together, with arrays that share their memory; it lives as long as one of them.
-
-    Args:
-        terms: Names of the reward terms.
-    """
-
-    def __init__(self, terms: Sequence[str]) -> None:
-        self._terms = terms
-        self._prepared: Iterator[tuple[np.ndarray, dict[str, Any]]] = iter(())
-        self._buffer: InfoBuffer | None = None
-        self._sources: list[np.ndarray] = []
-
-    def take(self, buffer: InfoBuffer) -> tuple[dict[str, Any], bool, bool]:
-        """Copy the infos of the first environment.
-
-        PyBullet's step leaves nothing in the processor's cache: few calls matter more here than short ones.
-
-        Returns:
-            The info, whether the episode has ended early, and whether it has its full length.
-        """
-        if buffer is not self._buffer:
-            self._buffer, self._sources = buffer, [array[0] for array in buffer]
-        numbers, marks, terms = self._sources
-        prepared = next(self._prepared, None)
-        if prepared is None:
-            self._prepared = _prepared(self._terms)
-            prepared = next(self._prepared)
-        row, info = prepared
-        row[:] = numbers
-        info["time"] = row.item(_TIME)
-        flags, values, rewards = marks.tolist(), terms.tolist(), info["reward_terms"]
-        for k, name in enumerate(_FLAG_NAMES):
-            info[name] = flags[k]
-        for k, name in enumerate(self._terms):
-            rewards[name] = values[k]
-        return info, flags[-2], flags[-1]
-
-
-def _prepared(terms: Sequence[str], count: int = 32) -> Iterator[tuple[np.ndarray, dict[str, Any]]]:
-    """Rows of a new array, and infos whose arrays are parts of them; the other entries are yet to be set."""
-    rows = np.empty((count, _WIDTH))
-    blank, rewards = dict.fromkeys(_NAMES), dict.fromkeys(terms)
-    infos: list[dict[str, Any]] = [blank.copy() for _ in range(count)]
-    for info in infos:
-        info["reward_terms"] = rewards.copy()
-    for name, (part, shape) in _VIEWS.items():
-        for info, array in zip(infos, rows[:, part].reshape(count, *shape), strict=True):
-            info[name] = array
-    return zip(rows, infos, strict=True)
 
 
 def _with_masks(infos: dict[str, Any], left: Iterator[np.ndarray]) -> dict[str, Any]:
@@ -248,10 +196,10 @@ def final(observations: Any, infos: dict[str, Any], rows: np.ndarray, n: int) ->
 _ARRAYS = "worlds", "pads", "fingers", "episodes", "ground_truth", "estimated", "per_finger"
 _write_numbers = row_writer(
     "_write_numbers",
-    [read for info in NUMBERS for read in info.reads],
+    [read for info in _LAYOUT for read in info.reads],
     _ARRAYS,
     __file__,
-    "Write `NUMBERS` of environment i.",
+    "Write `NUMBERS` of environment i, as they are in a row.",
 )
 _write_flags = row_writer(
     "_write_flags",

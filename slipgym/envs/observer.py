@@ -32,13 +32,14 @@ class Observer:
         privileged: Columns of the group "privileged"; empty unless the mode is "dict".
         space: The observation space of one environment.
         buffers: Buffers that the simulation writes the observations to.
+        history: As given.
     """
 
     def __init__(
         self, simulation: Simulation, friction_source: str, action_mode: str, mode: str, history: int
     ) -> None:
         self._simulation = simulation
-        self._history = history
+        self.history = history
         self.columns = columns(simulation.config, simulation.task, friction_source, action_mode, mode)
         low, high = _bounds(self.columns)
         wrist = np.array(wrist_part(simulation.task, action_mode), dtype=np.int64)
@@ -59,7 +60,7 @@ class Observer:
     def begin(self, rows: np.ndarray) -> None:
         """Observe some environments after a reset; the first observation fills their whole history."""
         self._look(rows)
-        if self._history:
+        if self.history:
             self._frames[rows] = self.buffers.out[rows, np.newaxis]
 
     def next(self, active: np.ndarray) -> None:
@@ -68,7 +69,7 @@ class Observer:
         Args:
             active: Environments that made a step, (n,) bool.
         """
-        if self._history:
+        if self.history:
             self._frames[active, :-1] = self._frames[active, 1:]
             self._frames[active, -1] = self.buffers.out[active]
 
@@ -78,7 +79,7 @@ class Observer:
 
     def present(self) -> Observation:
         """Views of the observations of all environments, (n, k) each; the next step or reset changes them."""
-        policy = self._frames.reshape(self._simulation.n, -1) if self._history else self.buffers.out
+        policy = self._frames.reshape(self._simulation.n, -1) if self.history else self.buffers.out
         if not self.privileged:
             return policy
         plant, (low, high) = self._simulation.plant, self._privileged_bounds
@@ -89,7 +90,7 @@ class Observer:
     def read(self) -> Observation:
         """Observations of all environments, owned by the caller; the next ones are written to new arrays."""
         observations = self.present()
-        if self._history:
+        if self.history:
             self._frames = self._frames.copy()
         else:
             self._write_to(np.empty_like(self.buffers.out))
@@ -99,7 +100,7 @@ class Observer:
 
     def first(self) -> Observation:
         """The observation of the first environment, owned by the caller."""
-        if not self._history and not self.privileged:
+        if not self.history and not self.privileged:
             return self._first.copy()
         observations = self.present()
         if isinstance(observations, dict):
@@ -108,7 +109,7 @@ class Observer:
 
     def get_state(self) -> np.ndarray:
         """The last observations (n, history + 1, m), the newest one last."""
-        if self._history:
+        if self.history:
             return self._frames.copy()
         self.again()
         return self.buffers.out[:, np.newaxis].copy()
@@ -120,12 +121,12 @@ class Observer:
             frames: (n, history + 1, m).
             rows: Environments that have an episode, (n,) bool.
         """
-        shape = len(rows), self._history + 1, len(self.columns)
+        shape = len(rows), self.history + 1, len(self.columns)
         check_finite("frames", check_array("frames", frames, np.float32, shape)[rows])
 
     def set_state(self, frames: np.ndarray, rows: np.ndarray) -> None:
         """Restore the history of some rows (n,) bool; without one, the simulation's state suffices."""
-        if self._history:
+        if self.history:
             self._frames[rows] = frames[rows]
 
     def _write_to(self, out: np.ndarray) -> None:

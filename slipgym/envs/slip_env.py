@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.envs.arguments import ScalarArguments, complete, documented
-from slipgym.envs.infos import InfoCopies
+from slipgym.envs.info_copies import info_reader
 from slipgym.envs.setup import MakeSimulation, Setup
 from slipgym.envs.simulation import Simulation
 from slipgym.envs.state import EnvState, checked, restored_generator, restored_seed
@@ -72,7 +72,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self.action_columns = self._actions.columns
         self.action_space, self.observation_space = self._actions.space, self._observer.space
         self._arguments = {**setup.arguments, "engine": engine}
-        self._copies = InfoCopies(self.task.term_names)
+        self._report = info_reader(self.simulation.infos, self.task.term_names)
         self._renderer: Any = None
         if render_mode is not None:
             from slipgym.rendering import Renderer
@@ -107,7 +107,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             if self._renderer is not None:
                 self._renderer.begin()
             self._observer.begin(_FIRST)
-            drawn, (info, _, _) = self.simulation.drawn.one(0), self._report()
+            drawn, (info, *_) = self.simulation.drawn.one(0), self._report()
             observation = self._observer.first()
         except BaseException:
             if generator is not None:
@@ -138,12 +138,12 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             simulation.step(actions, self._actions.table, self._frame_skip, _ONE, observer.buffers)
         else:
             self._step_in_pictures(actions)
-        observer.next(_ONE)
-        info, terminated, timed_out = self._report()
-        reward, truncated = sum(info["reward_terms"].values()), timed_out and not terminated
+        if observer.history:
+            observer.next(_ONE)
+        info, reward, terminated, timed_out = self._report()
         observation = observer.first()
         self._ready = True
-        return observation, reward, terminated, truncated, info
+        return observation, reward, terminated, timed_out and not terminated, info
 
     def _step_in_pictures(self, actions: np.ndarray) -> None:
         """`Simulation.step` with every control step in the pictures' strip."""
@@ -230,10 +230,6 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self.simulation.check_open()
         if self.simulation.boxes[0] is None:
             raise RuntimeError("call reset() first: there is no object yet")
-
-    def _report(self) -> tuple[dict[str, Any], bool, bool]:
-        """See `InfoCopies.take`."""
-        return self._copies.take(self.simulation.infos)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make an independent environment in the same state."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
-from numba import njit
 from numba.core.dispatcher import Dispatcher
 
 from slipgym._numba.compiled import compiled
@@ -30,15 +29,8 @@ class _Column(Protocol):
 
 
 def inlined(function: Any) -> Any:
-    """Compile a function for use in compiled ones; return it unchanged if it is compiled already.
-
-    It is not cached on disk, unlike the functions that use it, whose cache depends on its source file.
-    """
-    return (
-        function
-        if isinstance(function, Dispatcher)
-        else njit(error_model="numpy", forceinline=True, fastmath=False)(function)
-    )
+    """Compile a function as a part of compiled ones; return it unchanged if it is compiled already."""
+    return function if isinstance(function, Dispatcher) else compiled(function)
 
 
 def compile_script_wrist(key: str, wrist_velocity: Callable[..., Any] | None, file: str) -> Any:

@@ -137,7 +137,7 @@ class BulletWorld:
         Args:
             mass: That of the planar world [kg].
         """
-        box = self.box
+        box = self._box or self.box  # a property takes longer
         if mass != box.mass:
             self._box = None
             box = replace(box, mass=mass, inertia=self._plant.world["inertia"].item())
@@ -164,7 +164,7 @@ class BulletWorld:
             RuntimeError: The world is closed, needs a reset, or its physics client is gone.
         """
         bodies = self._client.checked(), self._body, self._gripper
-        box, self._box = self.box, None
+        box, self._box = self._box or self.box, None
         loads, before, steps = self.rows.loads, self._reading, self._engine_steps
         if self._plant.tilt is None:
             reading = bullet_upright.step(*bodies, loads, before, steps, self._finger_inertia)
