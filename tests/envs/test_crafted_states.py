@@ -175,19 +175,20 @@ def test_the_part_of_pybullet(make, path):
         env.reset(seed=4)
 
 
-def test_a_damaged_file_of_pybullet_does_not_crash(make):
+@pytest.mark.parametrize("tries", [2, pytest.param(8, marks=pytest.mark.slow)])
+def test_a_damaged_file_of_pybullet_does_not_crash(make, tries):
     env = make()
     env.reset(seed=4)
     whole = env.get_state().simulation.engine.engine
     rng, refused = np.random.default_rng(0), 0
-    for k in range(4):
+    for k in range(tries):
         content = bytearray(whole if k % 2 else whole[: rng.integers(len(whole))])
         for at in rng.integers(len(content), size=3):
             content[at] ^= 1 << rng.integers(8)
         state = with_parts(env.get_state(), "simulation.engine.engine", bytes(content))
         refused += "PyBullet cannot restore" in refusal(env, state)
         env.reset(seed=4)
-    assert refused >= 2
+    assert refused >= tries // 2
 
 
 def test_a_batch_refuses_them_too(make_vec):

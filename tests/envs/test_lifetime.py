@@ -12,6 +12,15 @@ pytestmark = pytest.mark.quick_tasks
 CLIENTS = range(200)
 
 
+@pytest.fixture(scope="module", autouse=True)
+def quick_collections():
+    """What other tests and the compiler left takes a second to look through, each time."""
+    gc.collect()
+    gc.freeze()
+    yield
+    gc.unfreeze()
+
+
 def open_clients() -> int:
     """Number of connected physics clients; those of forgotten environments are collected first."""
     gc.collect()

@@ -11,7 +11,7 @@ import pytest
 
 pytestmark = pytest.mark.quick_tasks
 
-ACTIONS = np.random.default_rng(0).uniform(-1.0, 0.3, (200, 1)).astype(np.float32)
+ACTIONS = np.random.default_rng(0).uniform(-1.0, 0.3, (120, 1)).astype(np.float32)
 CONTINUE = "import pickle, sys; env, actions = pickle.load(sys.stdin.buffer); import numpy as np; " + (
     "np.set_printoptions(precision=17, floatmode='unique'); "
     "print([repr(env.step(a)) for a in actions]); env.close()"
@@ -82,12 +82,12 @@ def test_copies_have_a_world_of_their_own(midway, duplicate):
 def test_in_another_process(midway, env_id, engine, exact_printing):
     if (engine == "bullet") != (env_id == "slipgym/Hold-v0"):
         pytest.skip("one process a task is enough")
-    content = pickle.dumps((midway, ACTIONS[60:120]))
+    content = pickle.dumps((midway, ACTIONS[60:]))
     root = Path(__file__).resolve().parents[2]
     done = subprocess.run(
         [sys.executable, "-c", CONTINUE], input=content, capture_output=True, cwd=root, check=True
     )
-    assert done.stdout.decode().strip() == repr(go_on(midway, ACTIONS[60:120]))
+    assert done.stdout.decode().strip() == repr(go_on(midway, ACTIONS[60:]))
 
 
 def test_before_the_first_reset_and_after_closing(make, env_id, engine):

@@ -8,7 +8,10 @@ from gymnasium.wrappers.vector import RecordVideo
 ID = "slipgym/LinearSlip-v0"
 
 
-@pytest.mark.parametrize("chosen", [{}, {"render_rows": [0, 1]}, {"render_rows": range(2)}])
+@pytest.mark.quick_cases("range")
+@pytest.mark.parametrize(
+    "chosen", [{}, {"render_rows": [0, 1]}, {"render_rows": range(2)}], ids=["all", "list", "range"]
+)
 def test_a_short_video(tmp_path, chosen):
     pytest.importorskip("moviepy")
     envs = gym.make_vec(ID, num_envs=2, render_mode="rgb_array", threads=1, **chosen)

@@ -19,7 +19,8 @@ def actions(steps: int, envs: int) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("vector", "env_id"),
-    [(SyncVectorEnv, name) for name in IDS] + [(partial(AsyncVectorEnv, context="spawn"), IDS[0])],
+    [(SyncVectorEnv, name) for name in IDS]
+    + [pytest.param(partial(AsyncVectorEnv, context="spawn"), IDS[0], marks=pytest.mark.slow)],
 )
 def test_vector_environments_equal_single_ones(make, env_id, vector):
     envs = vector([partial(gym.make, f"slipgym:{env_id}", action_mode="grip_force") for _ in range(2)])

@@ -40,6 +40,7 @@ def test_an_edited_shared_function_is_compiled_again(tmp_path):
     assert gamma_t() == pytest.approx(0.5 * before)
 
 
+@pytest.mark.slow  # quick: tests/house/test_program_cache.py
 def test_a_touched_file_with_the_same_contents_keeps_the_cache(tmp_path, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     copy = tmp_path / "estimator"

@@ -53,7 +53,7 @@ def test_rendering_does_not_change_the_simulation(make, env_id, mode, hidden_scr
         env = make(env_id, render_mode=mode)
         with np.printoptions(precision=17, floatmode="unique"):
             said = [repr(env.reset(seed=1))]
-            for action in np.random.default_rng(1).uniform(-1.0, 1.0, (60, 1)):
+            for action in np.random.default_rng(1).uniform(-1.0, 1.0, (30, 1)):
                 said.append(repr(env.step(action)))
                 env.render()
             return said

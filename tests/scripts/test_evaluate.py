@@ -1,12 +1,5 @@
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-SCRIPT = ROOT / "scripts" / "evaluate.py"
 EXPERIMENT = """
 name: small
 task: LinearSlip
@@ -15,18 +8,6 @@ options: {duration: 0.2, settle: 0.0, hold: 0.0}
 policies: [{name: constant_force}]
 friction: [{source: estimated}]
 """
-
-
-def call(folder, *arguments):
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100"}
-    return subprocess.run(
-        [sys.executable, SCRIPT, *arguments],
-        cwd=folder,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
 
 
 def test_help_teaches(invoke):
@@ -52,10 +33,11 @@ def test_mistakes_are_explained_without_a_traceback(tmp_path, invoke, arguments,
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_experiment_of_ones_own_runs_in_any_folder(tmp_path):
+def test_an_experiment_of_ones_own_runs_in_any_folder(tmp_path, invoke, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "100")
     (tmp_path / "mine.yaml").write_text(EXPERIMENT)
-    done = call(tmp_path, "mine.yaml", "--trials", "1", "--jobs", "1", "--seed", "7")
-    assert done.returncode == 0, done.stderr
+    done = invoke("evaluate", "mine.yaml", "--trials", "1", "--jobs", "1", "--seed", "7")
+    assert done.exit_code == 0, done.stderr
     (run,) = (tmp_path / "runs").iterdir()
     assert run.name.startswith("small__7__")
     for name in ("tracking_constant_force.png", "summary.md"):

@@ -203,6 +203,7 @@ def test_another_environment_or_algorithm_is_refused(venv, tmp_path):
         export.save(model, tmp_path / "no", ENV, {})
 
 
+@pytest.mark.slow  # quick: test_learned_policy.py
 def test_acting_loads_no_torch(venv, tmp_path):
     folder = export.save(made("PPO", venv), tmp_path / "ppo", ENV, ARGUMENTS, venv)
     code = (

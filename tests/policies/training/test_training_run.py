@@ -177,25 +177,15 @@ def test_ray_does_the_same(tmp_path):
     assert done.stdout.strip().endswith("[16384, 32768]"), done.stderr
 
 
-def test_the_command_trains(small, tmp_path):
+def test_the_command_trains(small, tmp_path, monkeypatch):
     from policies.training.files import text
 
     (tmp_path / "mine.yaml").write_text(text(small(budget=32)))
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "120"}
-
-    def call(*arguments):
-        script = ROOT / "scripts" / "train.py"
-        return subprocess.run(
-            [sys.executable, script, *arguments],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-
-    done = call("mine.yaml", "--seeds", "4", "--set", "ppo.gamma=0.9", "num_envs=1")
-    assert done.returncode == 0, done.stderr
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "120")
+    words = ["mine.yaml", "--seeds", "4", "--set", "ppo.gamma=0.9", "num_envs=1"]
+    done = CliRunner().invoke(app, words, catch_exceptions=False)
+    assert done.exit_code == 0, done.stderr
     ((run_folder),) = (tmp_path / "runs").glob("*/estimated__4")
     config, seed = folder.order(run_folder)
     assert (seed, config.ppo.gamma, config.num_envs) == (4, 0.9, 1)
