@@ -128,8 +128,11 @@ def test_reset_by_mask_equals_scalar_resets_and_leaves_the_rest(env_id):
         masks = [np.array([k % 2 == 0, False, True]) for _ in made]
         for steps, env, mask in zip(said, made, masks, strict=True):
             steps.append(env.step(actions))
+            ended = steps[-1][2] | steps[-1][3]  # Explore's agent can end an episode
             if k % 20 == 9:
-                steps.append(env.reset(seed=[k, k + 1, None], options={"reset_mask": mask}))
+                steps.append(env.reset(seed=[k, k + 1, None], options={"reset_mask": mask | ended}))
+            elif ended.any():
+                steps.append(env.reset(seed=[k, k + 1, None], options={"reset_mask": ended}))
     assert_equal(*said)
     for env in made:
         env.close()

@@ -137,7 +137,7 @@ def test_depths(make, env_id):
     assert depth.shape == (480, 448)
     assert depth.dtype == np.float32
     seen = np.isfinite(depth)
-    assert 0.02 < seen.mean() < 0.5
+    assert 0.01 < seen.mean() < 0.5  # least in PivotTo, whose camera leaves room for strokes of the wrist
     assert np.all(depth[seen] > 0.3)
     assert np.all(depth[seen] < 3.0)
 
