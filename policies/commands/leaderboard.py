@@ -17,6 +17,7 @@ Examples:\n
   slipgym leaderboard --closed-loop 16 --estimators adaptive --task hold
   slipgym leaderboard --costs
 """
+_USUAL = {"randomization": "none", "contact": "ellipsoid"}  # of the environments in the loop
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
@@ -31,8 +32,10 @@ def main(
     estimators: Annotated[
         list[str] | None, typer.Option(help="Those in the loop; all if none.", show_default=False)
     ] = None,
-    randomization: Annotated[str, typer.Option(help="Preset of the episodes in the loop.")] = "none",
-    contact: Annotated[str, typer.Option(help="Friction model of the pads in the loop.")] = "ellipsoid",
+    randomization: Annotated[str, typer.Option(help="Preset of the episodes in the loop.")] = _USUAL[
+        "randomization"
+    ],
+    contact: Annotated[str, typer.Option(help="Friction model of the pads in the loop.")] = _USUAL["contact"],
     task: Annotated[
         list[str] | None, typer.Option(help="Tasks in the loop; all if none.", show_default=False)
     ] = None,
@@ -53,8 +56,7 @@ def main(
 ) -> None:
     """Runs all estimators on all scenarios; writes a folder with tables and a picture."""
     environments = {"randomization": randomization, "contact": contact}
-    changed = environments != {"randomization": "none", "contact": "ellipsoid"}
-    if not closed_loop and (estimators or task or parameter or imperfections or changed):
+    if not closed_loop and (estimators or task or parameter or imperfections or environments != _USUAL):
         named = "--estimators, --task, --parameter, --imperfections, --randomization and --contact"
         raise typer.BadParameter(f"{named} are for episodes in the loop: --closed-loop 64")
     if ablation:

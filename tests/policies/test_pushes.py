@@ -1,7 +1,6 @@
 """Pushes on known supports: reading and reduction of a log, exact supports, fits, streams."""
 
 import numpy as np
-import pandas as pd
 import pytest
 from scipy.integrate import dblquad
 
@@ -9,7 +8,6 @@ import estimator
 from estimator.limit_surface import DISC_RADIUS, disc_friction
 from policies.research.pushes import EXTRACT, read, write
 from policies.research.pushes import extract as extracting
-from policies.research.pushes.excess import REFERENCES, excesses
 from policies.research.pushes.extract import COLUMNS, Pushes
 from policies.research.pushes.fit import expected, fit, friction_of_each, harmonic, misfit
 from policies.research.pushes.logs import parse, reduced
@@ -263,28 +261,6 @@ def test_the_tables_have_a_column_for_every_estimator():
     assert page.count(header) == 2
     assert "| board, tiny | 40 of 40 | 0.300 [0.300, 0.300] |" in page
     assert page.count("| log | best | in [%] | adaptive | ukf | disc | joint | rls |") == 3
-
-
-def test_the_excess_is_that_over_the_best_of_each_resample():
-    sizes = {
-        "adaptive": [4.0, -1.0],
-        "ukf": [-1.0, 3.0],
-        "disc": [2.0, 2.0],
-        "joint": [5.0, 5.0],
-        "rls": [9.0, 9.0],
-    }
-    rows = [
-        {"log": "one", "estimator": name, **dict.fromkeys(REFERENCES, np.array(v))}
-        for name, v in sizes.items()
-    ]
-    own = excesses(pd.DataFrame(rows), "r")["one"]
-    assert {name: excess.tolist() for name, excess in own.items()} == {
-        "adaptive": [3.0, -1.0],
-        "ukf": [0.0, 1.0],
-        "disc": [1.0, 0.0],
-        "joint": [4.0, 3.0],
-        "rls": [8.0, 7.0],
-    }
 
 
 @needs_extract

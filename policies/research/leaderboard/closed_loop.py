@@ -121,10 +121,8 @@ class _Tally:
         """The ends of episodes."""
         estimates = simulation.estimator.estimates.reshape(-1, 2)[over]
         for name, value in present(simulation.plant.pads).items():
-            error, confidence = (
-                100.0 * np.abs(estimates[name] / value[over] - 1.0),
-                estimates[f"confidence_{name}"],
-            )
+            error = 100.0 * np.abs(estimates[name] / value[over] - 1.0)
+            confidence = estimates[f"confidence_{name}"]
             self._errors[name] += error[confidence > SURE].tolist()
             self._seen_errors[name] += error[confidence > 0.0].tolist()
         self._solved += np.count_nonzero(infos["is_success"][over])
@@ -138,10 +136,12 @@ class _Tally:
         }
         for name in VALUES:
             seen, one, two = self._instants[name]
-            for kind, errors in (("", self._errors[name]), ("seen ", self._seen_errors[name])):
-                share = 50.0 * len(errors) / self._episodes
-                row[f"{name} {kind.strip() or 'sure'}"] = share
-                row[f"{name} {kind}error"] = float(np.median(errors)) if errors else np.nan
+            for share, size, errors in (
+                ("sure", "error", self._errors[name]),
+                ("seen", "seen error", self._seen_errors[name]),
+            ):
+                row[f"{name} {share}"] = 50.0 * len(errors) / self._episodes
+                row[f"{name} {size}"] = float(np.median(errors)) if errors else np.nan
             row[f"{name} in 1 sd"] = 100.0 * one / seen if seen else np.nan
             row[f"{name} in 2 sd"] = 100.0 * two / seen if seen else np.nan
             row[f"{name} episodes"] = int(np.count_nonzero(self._seen[name]))
