@@ -168,10 +168,10 @@ class BulletSimulation(Simulation):
             fresh: Whether the reward terms start at 0.
         """
         world, calls = self.world, self._calls
-        world.update_mass(calls.begin(action, fresh))
+        mass = calls.begin(action, fresh)
         if self.plant.tilt is not None:
             shake_tilt(self.episode, self.plant.tilt)
-        pose, _, wrist, normals, _ = world.move()
+        pose, _, wrist, normals, _ = world.move(mass)
         bad = calls.finish(pose, wrist, normals, self._guard.next())
         if bad > 0:
             world.discard()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, NoReturn
@@ -137,7 +138,7 @@ class BulletWorld:
         Args:
             mass: That of the planar world [kg].
         """
-        box = self._box or self.box  # a property takes longer
+        box = self.box
         if mass != box.mass:
             self._box = None
             box = replace(box, mass=mass, inertia=self._plant.world["inertia"].item())
@@ -154,8 +155,12 @@ class BulletWorld:
         pose, _, wrist, normals, _ = self.move()
         read_engine(self._plant.world, self._plant.fingers, pose, wrist, normals)
 
-    def move(self) -> tuple[Any, ...]:
+    def move(self, mass: float | None = None) -> tuple[Any, ...]:
         """Advance the bodies by one control step; the planar world has yet to take over the `reading`.
+
+        Args:
+            mass: Of the object in the planar world, which the engine's box takes over first; None: as it is
+                [kg].
 
         Returns:
             `reading`.
@@ -163,17 +168,22 @@ class BulletWorld:
         Raises:
             RuntimeError: The world is closed, needs a reset, or its physics client is gone.
         """
-        bodies = self._client.checked(), self._body, self._gripper
+        client = self._client.checked()
+        if mass is not None and mass != (self._box or self.box).mass:
+            self.update_mass(mass)
         box, self._box = self._box or self.box, None
-        loads, before, steps = self.rows.loads, self._reading, self._engine_steps
-        if self._plant.tilt is None:
-            reading = bullet_upright.step(*bodies, loads, before, steps, self._finger_inertia)
-        else:
-            reading = bullet_tilt.step(*bodies, loads, before, self._read, steps)
-        self._reading = reading
-        self._place_links(bodies[0])
+        reading = self._reading = self._advance(self._reading)
+        self._place_links(client)
         self._box = box
         return reading
+
+    @cached_property
+    def _advance(self) -> Callable[[tuple[Any, ...]], tuple[Any, ...]]:
+        """Advances the bodies by the engine steps of a control step, for a reading; new for other bodies."""
+        given = self._client.number, self._body, self._gripper, self.rows, self._engine_steps
+        if self._plant.tilt is None:
+            return bullet_upright.stepper(*given, self._finger_inertia)
+        return bullet_tilt.stepper(*given, self._read)
 
     @cached_property
     def rows(self) -> BulletRows:
@@ -183,6 +193,7 @@ class BulletWorld:
     def bind(self) -> None:
         """Find the compiled functions anew, after an array of the plant was replaced."""
         self.rows = BulletRows(self._plant)
+        self.__dict__.pop("_advance", None)
 
     def get_state(self) -> EngineState:
         """Everything that the engine's next step depends on, except the plant's arrays.
@@ -260,6 +271,7 @@ class BulletWorld:
     def _build(self, box: Box) -> None:
         client = self.client
         self._mass_set = None
+        self.__dict__.pop("_advance", None)
         self._client.unmark()
         scene.clear(client, self._config)
         self._gripper = scene.add_gripper(client, self._config, box.size[1])
