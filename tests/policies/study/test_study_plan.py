@@ -111,6 +111,8 @@ def test_imitations_are_a_kind_of_their_own(small, shelf):
         ("imitation", "LinearSlip", "estimated"): [0],
     }
     assert missing(study, found) == []
+    sources = {one.source for one in conditions(study, found) if one.kind == "imitation"}
+    assert sources == {"none", "estimated"}
     (notice,) = missing(small(imitation="nowhere", kinds=["imitation"]), {})
     assert "no policy of kind imitation for none;" in notice
     with pytest.raises(ValueError, match="needs the folder"):
