@@ -235,9 +235,6 @@ def test_another_user_on_a_read_only_installation(tmp_path):
         shutil.copytree(ROOT / name, tmp_path / "installed" / name, ignore=ignored)
     for folder in (tmp_path, *tmp_path.parents[:2]):
         folder.chmod(0o755)
-    temporary = tmp_path / "temporary"
-    temporary.mkdir()
-    temporary.chmod(0o1777)
     code = (
         "import gymnasium as gym, slipgym, tempfile, estimator\n"
         "estimator.make('disc').update(0.0, (0.1, 0.0, 5.0, 0.0), (0.0, 0.0, 0.0))\n"
@@ -255,12 +252,7 @@ def test_another_user_on_a_read_only_installation(tmp_path):
     ]
     done = subprocess.run(
         ["setpriv", *nobody, sys.executable, "-W", "error::UserWarning:estimator", "-c", code],
-        env={
-            "PYTHONPATH": str(tmp_path / "installed"),
-            "PATH": os.environ["PATH"],
-            "OMP_NUM_THREADS": "1",
-            "TMPDIR": str(temporary),
-        },
+        env={"PYTHONPATH": str(tmp_path / "installed"), "PATH": os.environ["PATH"], "OMP_NUM_THREADS": "1"},
         cwd="/",
         capture_output=True,
         text=True,
@@ -268,4 +260,3 @@ def test_another_user_on_a_read_only_installation(tmp_path):
     )
     assert done.stdout.strip() == "fine", done.stderr
     assert not list((tmp_path / "installed").rglob("__pycache__"))
-    assert list(temporary.rglob("*.nbc"))
