@@ -7,6 +7,7 @@ from policies.evaluation import load_experiment
 from policies.evaluation.engines import Replay, Tape, apart, compare, evenly, halved
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import make_policy, record
+from policies.research.reproduction.published import TABLES
 
 # PyBullet's bench and the planar one are 0.1 mm apart after 5 s of stick-slip (validation/planar.py); an
 # episode of half a second that does not stick meanwhile has a tenth of it
@@ -60,14 +61,32 @@ def test_refusals(small):
         small(engine="mujoco")
 
 
+DISTINCT = {"linear_slip": 16, "rotational_slip": 32, "hinge": 32}
+"""Episodes that differ if sensors are ideal; a turn to the other side is the mirror image."""
+
+
+def acceptance(name, sensors):
+    """Experiment and number of episodes: 200, or those that differ, each once."""
+    experiment = load_experiment(name).model_copy(update={"sensors": sensors})
+    if sensors == "realistic" or name not in DISTINCT:
+        return experiment, 200
+    vary = {**experiment.vary, **({"direction": [1]} if name == "hinge" else {})}
+    experiment = experiment.model_copy(update={"materials": list(TABLES["linear"]), "vary": vary})
+    assert len(experiment.materials) * len(experiment.combinations()) == DISTINCT[name]
+    return experiment, DISTINCT[name]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("sensors", ["realistic", "ideal"])
 @pytest.mark.parametrize("name", ["linear_slip", "rotational_slip", "hinge", "planar_slip", "hold"])
 def test_acceptance_of_the_planar_engine(name, sensors):
-    """200 episodes of each."""
-    experiment = load_experiment(name).model_copy(update={"sensors": sensors})
-    table = compare(experiment, 200, progress=False).set_index("against PyBullet")
+    """Hinge with ideal sensors amplifies differences: PyBullet's steps matter more there than the engine."""
+    amplifies = (name, sensors) == ("hinge", "ideal")
+    table = compare(*acceptance(name, sensors), progress=False, halving=amplifies)
+    table = table.set_index("against PyBullet")
     closed, same = table.loc["planar, same controller"], table.loc["planar, same actions"]
     bounds = {"median [mm]": 0.2, "median [deg]": 0.2, "95 % [mm]": 0.5, "95 % [deg]": 0.5}
+    if amplifies:
+        bounds["95 % [deg]"] = 0.5 * table.loc["PyBullet halved, same actions", "95 % [deg]"]
     assert {line: same[line] for line, bound in bounds.items() if not same[line] < bound} == {}
     assert abs(closed["success [%]"] - closed["success, PyBullet [%]"]) <= 2.0
