@@ -252,7 +252,8 @@ class BulletWorld:
             scene.set_mass(self.client, self._body, mass, inertia, self._plant.tilt is not None)
             self._mass_set = mass, inertia
 
-    def _read(self, client: int, body: int, gripper: int) -> tuple[Any, ...]:
+    @staticmethod
+    def _read(client: int, body: int, gripper: int) -> tuple[Any, ...]:
         """Pose and velocity of the box, positions of the wrist's joints, speeds of all."""
         pose = p.getBasePositionAndOrientation(body, client)
         velocity = p.getBaseVelocity(body, client)
