@@ -112,7 +112,7 @@ def compare(
         experiment: Its first policy and friction take part.
         n: Trials.
         progress: Whether to show a progress bar.
-        halving: Whether to compare also with halved steps, which takes more than half of the time.
+        halving: Whether to compare also with halved steps.
 
     Returns:
         A row for each comparison: how far apart the episodes end, median and 95 % quantile [mm, deg], and

@@ -43,8 +43,6 @@ class BulletWorld:
         self._gripper = self._body = self._saved = -1
         self._mass_set: tuple[float, float] | None = None
         self._reading: tuple[Any, ...] = ()
-        self._engine_steps = config.physics.engine_steps
-        self._finger_inertia = config.gripper.finger_mass * config.physics.engine_rate  # [kg/s]
 
     @property
     def client(self) -> int:
@@ -159,8 +157,7 @@ class BulletWorld:
         """Advance the bodies by one control step; the planar world has yet to take over the `reading`.
 
         Args:
-            mass: Of the object in the planar world, which the engine's box takes over first; None: as it is
-                [kg].
+            mass: As for `update_mass`, which is called first if it has changed; None: unchanged [kg].
 
         Returns:
             `reading`.
@@ -180,9 +177,10 @@ class BulletWorld:
     @cached_property
     def _advance(self) -> Callable[[tuple[Any, ...]], tuple[Any, ...]]:
         """Advances the bodies by the engine steps of a control step, for a reading; new for other bodies."""
-        given = self._client.number, self._body, self._gripper, self.rows, self._engine_steps
+        physics = self._config.physics
+        given = self._client.number, self._body, self._gripper, self.rows, physics.engine_steps
         if self._plant.tilt is None:
-            return bullet_upright.stepper(*given, self._finger_inertia)
+            return bullet_upright.stepper(*given, self._config.gripper.finger_mass * physics.engine_rate)
         return bullet_tilt.stepper(*given, self._read)
 
     @cached_property

@@ -87,6 +87,7 @@ def test_acceptance_of_the_planar_engine(name, sensors):
     closed, same = table.loc["planar, same controller"], table.loc["planar, same actions"]
     bounds = {"median [mm]": 0.2, "median [deg]": 0.2, "95 % [mm]": 0.5, "95 % [deg]": 0.5}
     if amplifies:
+        # half is no derived figure: in its 64 episodes the engines were 0.72 deg apart, the steps 3.0 deg
         bounds["95 % [deg]"] = 0.5 * table.loc["PyBullet halved, same actions", "95 % [deg]"]
     assert {line: same[line] for line, bound in bounds.items() if not same[line] < bound} == {}
     assert abs(closed["success [%]"] - closed["success, PyBullet [%]"]) <= 2.0
