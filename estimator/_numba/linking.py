@@ -43,10 +43,6 @@ class _PartLibrary(JITCodeLibrary):
         for library in self._linking_libraries:
             self._reload_init.update(library._reload_init)
 
-    def _optimize_functions(self, ll_module: Any) -> None:
-        """Leaves the optimisation to the program."""
-        ll_module.data_layout = self._codegen._data_layout
-
     @property
     def has_dynamic_globals(self) -> bool:
         """Whether the code holds addresses of this process."""
@@ -92,6 +88,11 @@ class _ProgramLibrary(JITCodeLibrary):
         passes, builder = self._codegen._module_pass_manager(opt=2)
         passes.run(self._final_module, builder)
         self._final_module = without_counts_of_arguments(self._final_module)
+
+
+def _leave_to_the_program(self: JITCodeLibrary, ll_module: Any) -> None:
+    """`JITCodeLibrary._optimize_functions`: functions are optimised with the program that they are parts of."""
+    ll_module.data_layout = self._codegen._data_layout
 
 
 def _is_ours(name: str) -> bool:
@@ -166,7 +167,7 @@ class _Part(CPUDispatcher):
 @contextmanager
 def _compiling() -> Iterator[None]:
     """Functions of numba itself, such as `min` for two types, are compiled as parts meanwhile."""
-    before = jit_registry[cpu_target]
+    before, optimize = jit_registry[cpu_target], JITCodeLibrary._optimize_functions
 
     def decorator(**options: Any) -> Any:
         def part(function: Any) -> Any:
@@ -177,21 +178,30 @@ def _compiling() -> Iterator[None]:
 
     with global_compiler_lock, resting(), quick_compiler():
         dict.__setitem__(jit_registry, cpu_target, decorator)
+        JITCodeLibrary._optimize_functions = _leave_to_the_program
         try:
             yield
         finally:
             dict.__setitem__(jit_registry, cpu_target, before)
+            JITCodeLibrary._optimize_functions = optimize
 
 
 @contextmanager
 def resting() -> Iterator[None]:
-    """The garbage collector rests: the compiler makes millions of objects that live until it is done."""
+    """The garbage collector rests: the compiler makes millions of objects that live until it is done.
+
+    They count as old afterwards: what is garbage among them goes with the next full collection, and the next
+    small one does not look through all of them.
+    """
     collecting = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
         if collecting:
+            if not gc.get_freeze_count():  # what a program has frozen stays so
+                gc.freeze()
+                gc.unfreeze()
             gc.enable()
 
 

@@ -5,22 +5,26 @@ They apply while a program is compiled.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from types import NoneType
 from typing import Any
 
 from numba.core import errors, ir
+from numba.core.base import BaseContext
 from numba.core.targetconfig import TargetConfig
 from numba.core.types import Boolean, Function, Number, Record
 from numba.core.types.functions import BaseFunction
+from numba.core.typing import context
 
 _compare = TargetConfig.__eq__
 _variables = ir.Inst._rec_list_vars
 _describe = Record.__repr__
 _resolve = BaseFunction.get_call_type
 _resolved: dict[Any, Any] = {}
+_size = BaseContext.get_abi_sizeof
+_sizes: dict[tuple[str, Any], int] = {}
 
 
 @contextmanager
@@ -33,6 +37,9 @@ def quick_compiler() -> Iterator[None]:
         (ir.Inst, "_rec_list_vars", _list_variables),
         (Record, "__repr__", _record_text),
         (errors, "termcolor", _Plain),
+        (BaseContext, "get_abi_sizeof", _size_of_type),
+        (BaseContext, "refresh", _only_news(BaseContext.refresh)),
+        (context.BaseContext, "refresh", _only_news(context.BaseContext.refresh)),
     )
     before = [getattr(owner, name) for owner, name, _ in shortcuts]
     for owner, name, shortcut in shortcuts:
@@ -111,3 +118,32 @@ class _Plain:
         return text
 
     code = errmsg = filename = indicate = highlight = reset = _same
+
+
+def _size_of_type(own: BaseContext, kind: Any) -> int:
+    """`BaseContext.get_abi_sizeof`, for which LLVM reads a program with one variable each time."""
+    key = str(own.target_data), kind
+    if key not in _sizes:
+        _sizes[key] = _size(own, kind)
+    return _sizes[key]
+
+
+def _only_news(refresh: Callable[[Any], None]) -> Callable[[Any], None]:
+    """`refresh` of a context if there is something new, for which it looks through all registries."""
+
+    def refreshed(own: Any) -> None:
+        if getattr(own, "_refreshed_at", -1) != _declarations(own):
+            refresh(own)
+            own._refreshed_at = _declarations(own)
+
+    return refreshed
+
+
+def _declarations(own: Any) -> int:
+    """Number of declarations in the registries of a context and of its typing context."""
+    count = sum(
+        len(getattr(registry, name))
+        for registry, loader in own._registries.items()
+        for name in loader.registry_items
+    )
+    return count + (_declarations(own.typing_context) if isinstance(own, BaseContext) else 0)

@@ -1,9 +1,16 @@
 """Shortcuts of numba's compiler compute what the originals do."""
 
+import gc
+
+import numba
 import numpy as np
 from numba import from_dtype
-from numba.core import compiler, errors
+from numba.core import compiler, errors, types
+from numba.core.registry import cpu_target
+from numba.extending import intrinsic, overload
 
+from estimator._numba.caching import njit
+from estimator._numba.linking import resting
 from estimator._numba.quicker import quick_compiler
 
 
@@ -49,3 +56,66 @@ def test_errors_inside_are_plain_text_and_colours_come_back():
         error = errors.TypingError("no such function").add_context("typing of a call")
         assert str(error) == "no such function\nDuring: typing of a call"
     assert errors.termcolor is before
+
+
+def test_sizes_of_types_are_the_same():
+    target = cpu_target.target_context
+    kinds = [types.float64, types.boolean, types.Array(types.float64, 2, "C"), types.UniTuple(types.int8, 3)]
+    values = [target.get_value_type(kind) for kind in kinds]
+    expected = [target.get_abi_sizeof(value) for value in values]
+    assert len({*expected}) == len(kinds)
+    with quick_compiler():
+        assert [target.get_abi_sizeof(value) for value in (*values, *values)] == [*expected, *expected]
+
+
+def test_what_is_declared_while_programs_are_compiled_is_found():
+    @njit
+    def earlier(x):
+        return x + 1.0
+
+    assert earlier(1.0) == 2.0
+
+    def _double(_, x):
+        def generate(context, builder, signature, arguments):
+            return builder.fadd(arguments[0], arguments[0])
+
+        return x(x), generate
+
+    double = intrinsic(_double)
+
+    def tenfold(x):
+        raise NotImplementedError
+
+    @overload(tenfold)
+    def _(x):
+        return lambda x: 10.0 * x
+
+    @njit
+    def later(x):
+        return double(x) + tenfold(x) + earlier(x)
+
+    assert later(2.0) == 4.0 + 20.0 + 3.0
+    assert numba.njit(lambda x: double(x) + tenfold(x))(2.0) == 24.0
+
+
+def test_garbage_of_the_compiler_is_old_and_goes_with_a_full_collection():
+    class Member:
+        left = 0
+
+        def __init__(self):
+            self.own = self
+
+        def __del__(self):
+            Member.left += 1
+
+    gc.collect()
+    with resting():
+        assert not gc.isenabled()
+        for _ in range(20_000):
+            Member()
+        assert len(gc.get_objects(generation=0)) > 20_000
+    assert gc.isenabled()
+    assert len(gc.get_objects(generation=0)) < 5000
+    assert Member.left == 0
+    gc.collect()
+    assert Member.left == 20_000
