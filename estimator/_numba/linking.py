@@ -91,7 +91,7 @@ class _ProgramLibrary(JITCodeLibrary):
 
 
 def _leave_to_the_program(self: JITCodeLibrary, ll_module: Any) -> None:
-    """`JITCodeLibrary._optimize_functions`: functions are optimised with the program that they are parts of."""
+    """`JITCodeLibrary._optimize_functions`: functions are optimised with the program they are in."""
     ll_module.data_layout = self._codegen._data_layout
 
 

@@ -76,10 +76,10 @@ def _players(env_id: str, size: int) -> Iterator[tuple[str, Act, dict[str, Any]]
     task = find(env_id)
     for name, forces in RANDOM.items():
         yield name, _random(env_id, forces, size), {}
-    for name in (task.key, f"{task.key}_estimated"):
+    kinds = {task.key: "controller", f"{task.key}_estimated": "learned policy"}
+    for name in sorted(kinds.keys() & {*policies.names()}):  # not every task has a learned policy
         policy = policies.make(name)
-        kind = "controller" if name == task.key else "learned policy"
-        yield f"{kind} {name}", _Acting(policy), policies.modes(policy)
+        yield f"{kinds[name]} {name}", _Acting(policy), policies.modes(policy)
 
 
 def _random(env_id: str, forces: tuple[float, float], size: int) -> Act:

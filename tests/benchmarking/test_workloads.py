@@ -2,6 +2,7 @@
 
 import pytest
 
+import policies
 from policies.evaluation.workloads import workloads
 
 
@@ -16,3 +17,14 @@ def test_every_workload_is_measured(env_id):
     assert firm < 0.02
     assert limit > 0.25
     assert all(value > 0.0 for name, value in figures.items() if name not in shares)
+
+
+def test_a_task_without_a_learned_policy_is_measured_with_its_controller():
+    assert "fragile_hold_estimated" not in policies.names()
+    names = [figure.name for figure in workloads("slipgym/FragileHold-v0", blocks=1, size=8, steps=2)]
+    assert [name.split(", ")[1].split(":")[0] for name in names[::2]] == [
+        "held firmly",
+        "about the slip limit",
+        "all forces",
+        "controller fragile_hold",
+    ]
