@@ -187,7 +187,7 @@ def test_ten_kills_at_random_moments_lose_nothing_but_an_interval(small, tmp_pat
     begin = ("mine.yaml", "--seeds", "2", "--output")
     process = script(*begin, "whole", cwd=tmp_path)
     to_first = waited(process, until=lambda: any(tmp_path.glob("whole/*/*/curve.csv")))
-    waited(process)
+    between = waited(process) / 300
     assert process.returncode == 0, (tmp_path / "errors").read_text()
     (whole,) = tmp_path.glob("whole/*/estimated__2")
     rows = folder.read_curve(whole)
@@ -200,7 +200,7 @@ def test_ten_kills_at_random_moments_lose_nothing_but_an_interval(small, tmp_pat
         kills, more = kills + 1, max(int(random.integers(-5, 20)), 0)  # evaluations; of 300 at most 200
         goal = evaluations(tmp_path) + more
         waited(process, until=lambda goal=goal: evaluations(tmp_path) >= goal)
-        time.sleep(random.uniform(0.0, 0.1 if more else to_first))
+        time.sleep(random.uniform(0.0, 5.0 * between if more else to_first))
         process.send_signal(signal.SIGKILL)
         assert process.wait() == -signal.SIGKILL, (tmp_path / "errors").read_text()
         for killed in tmp_path.glob("killed/*/estimated__2"):
