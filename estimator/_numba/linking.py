@@ -186,12 +186,16 @@ def _compiling() -> Iterator[None]:
             JITCodeLibrary._optimize_functions = optimize
 
 
+MANY = 100_000
+"""Objects that the compiler makes for some functions; a program that is loaded makes far fewer."""
+
+
 @contextmanager
 def resting() -> Iterator[None]:
     """The garbage collector rests: the compiler makes millions of objects that live until it is done.
 
-    They count as old afterwards: what is garbage among them goes with the next full collection, and the next
-    small one does not look through all of them.
+    If it made that many, they count as old afterwards: what is garbage among them goes with the next full
+    collection, and the next small one does not look through all of them.
     """
     collecting = gc.isenabled()
     gc.disable()
@@ -199,7 +203,8 @@ def resting() -> Iterator[None]:
         yield
     finally:
         if collecting:
-            if not gc.get_freeze_count():  # what a program has frozen stays so
+            made, *_ = gc.get_count()
+            if made > MANY and not gc.get_freeze_count():  # what a program has frozen stays so
                 gc.freeze()
                 gc.unfreeze()
             gc.enable()

@@ -96,9 +96,11 @@ GROWTH = """
         for k in range(times):
             {body}
     use({warm_up})
-    before = resident()
-    use({times})
-    print(resident() - before)
+    seen = [resident()]
+    for block in range(3):
+        use({times} // 3)
+        seen.append(resident())
+    print(*np.diff(seen))
 """
 RESET = "env.reset(seed=k); env.step(np.zeros(1, np.float32))"
 REBUILD = 'env.reset(options={"object_size": (0.4 + 0.001 * (k % 7), 0.02, 0.26)})'
@@ -115,5 +117,8 @@ MAKE = (
     ids=["reset", "rebuild", "make"],
 )
 def test_memory_does_not_grow(python, env_id, body, warm_up, times):
+    """A leak grows in each of three blocks; the allocator keeps more memory once, in some processes by 23 MiB."""
     code = textwrap.dedent(GROWTH).format(env_id=env_id, body=body, warm_up=warm_up, times=times)
-    assert float(python("-c", code)) < 5.0  # MiB
+    growth = [float(each) for each in python("-c", code).split()]
+    assert len(growth) == 3
+    assert min(growth) < 5.0 / 3.0  # MiB

@@ -4,13 +4,14 @@ import gc
 
 import numba
 import numpy as np
+import pytest
 from numba import from_dtype
 from numba.core import compiler, errors, types
 from numba.core.registry import cpu_target
 from numba.extending import intrinsic, overload
 
 from estimator._numba.caching import njit
-from estimator._numba.linking import resting
+from estimator._numba.linking import MANY, resting
 from estimator._numba.quicker import quick_compiler
 
 
@@ -98,24 +99,29 @@ def test_what_is_declared_while_programs_are_compiled_is_found():
     assert numba.njit(lambda x: double(x) + tenfold(x))(2.0) == 24.0
 
 
-def test_garbage_of_the_compiler_is_old_and_goes_with_a_full_collection():
-    class Member:
-        left = 0
+class _Ring:
+    """Garbage that only the collector finds."""
 
-        def __init__(self):
-            self.own = self
+    collected = 0
 
-        def __del__(self):
-            Member.left += 1
+    def __init__(self):
+        self.own = self
 
+    def __del__(self):
+        _Ring.collected += 1
+
+
+@pytest.mark.parametrize(("made", "old"), [(MANY + 1000, True), (2000, False)])
+def test_much_garbage_of_the_compiler_waits_for_a_full_collection_and_little_does_not(made, old):
     gc.collect()
+    _Ring.collected = 0
     with resting():
         assert not gc.isenabled()
-        for _ in range(20_000):
-            Member()
-        assert len(gc.get_objects(generation=0)) > 20_000
+        for _ in range(made):
+            _Ring()
     assert gc.isenabled()
-    assert len(gc.get_objects(generation=0)) < 5000
-    assert Member.left == 0
+    young = [[] for _ in range(2000)]  # starts a small collection
+    assert _Ring.collected == (0 if old else made)
+    del young
     gc.collect()
-    assert Member.left == 20_000
+    assert _Ring.collected == made
