@@ -166,7 +166,10 @@ class _Part(CPUDispatcher):
 
 @contextmanager
 def _compiling() -> Iterator[None]:
-    """Functions of numba itself, such as `min` for two types, are compiled as parts meanwhile."""
+    """Functions of numba itself, such as `min` for two types, are compiled as parts meanwhile.
+
+    No function is optimised before the program that it is in.
+    """
     before, optimize = jit_registry[cpu_target], JITCodeLibrary._optimize_functions
 
     def decorator(**options: Any) -> Any:
