@@ -3,9 +3,9 @@
 import math
 
 from estimator._numba.caching import njit
-from estimator.augmented.load import static_at_load
-from estimator.augmented.model_error import START, beyond_slips, doubt_of, of_slips
-from estimator.augmented.slip_law import FALLS, MU, SHAPE, ZERO, R
+from estimator.augmented.load import exponents
+from estimator.augmented.model_error import START, doubt_of, of_slips
+from estimator.augmented.slip_law import FALLS, GROWS, MU, SHAPE, ZERO, R
 from estimator.augmented.static_friction import order
 from estimator.estimate import confidence_of
 from estimator.sample import clamped
@@ -41,6 +41,12 @@ def _squared(state, weights, hidden, mu, r):
 
 
 @njit(error_model="numpy")
+def _share(state, i, j):
+    """Change of state i that goes with a change of state j."""
+    return state.covariance[i, j] / state.covariance[j, j]
+
+
+@njit(error_model="numpy")
 def deviate(state, p, changed):
     """Standard deviations and confidence; the order of mu_s and mu_c.
 
@@ -52,11 +58,15 @@ def deviate(state, p, changed):
     if not changed and state.samples % EVERY != 0:
         return
     of_mu_c, of_mu_s = 0.0, 0.0
-    unlearned = max(state.fall_error - state.covariance[FALLS, FALLS], 0.0)
+    n, of_n, b, of_b = exponents(state, p)
     if state.updates_mu_c > 0:
-        state.mu_c = clamped(math.exp(state.x[MU]), p.mu_min, p.mu_max)
+        share, step = _share(state, MU, FALLS), n - state.x[FALLS]
+        state.mu_c = clamped(math.exp(state.x[MU] + share * step), p.mu_min, p.mu_max)
+        of_fall = share * share * (of_n - state.covariance[FALLS, FALLS])
+        share, step = _share(state, R, GROWS), b - state.x[GROWS]
         if state.updates_r > 0:
-            state.r = clamped(math.exp(state.x[R]), p.r_min, p.r_max)
+            state.r = clamped(math.exp(state.x[R] + share * step), p.r_min, p.r_max)
+        of_growth = share * share * (of_b - state.covariance[GROWS, GROWS])
         assumed = p.caution * p.caution
         factor, normal = (1.0 - assumed) / (assumed * assumed), 1.0 / state.smooth[3]
         weights = (
@@ -67,28 +77,26 @@ def deviate(state, p, changed):
         )
         hidden = (0.5 * state.leverage) ** 2 + p.sd_gain * p.sd_gain
         of_normal = state.variance_normal * normal * normal
-        fall = beyond_slips(state)
         slips = of_slips(state, p)
         doubt = 0.0 if state.certain else doubt_of(p, state.mu_c, p.mu_c0)
-        surface = doubt + slips + p.sd_surface * p.sd_surface + fall * fall * unlearned
+        surface = doubt + slips + p.sd_surface * p.sd_surface
         of_mu_c = state.mu_c * state.mu_c * surface
         of_torque = state.variance_torque * (normal / (state.mu_c * state.r)) ** 2
-        square = _squared(state, weights, hidden + of_normal + surface, 1.0, 0.0)
+        square = _squared(state, weights, hidden + of_normal + surface + of_fall, 1.0, 0.0)
         state.sd_mu_c = state.mu_c * math.sqrt(square)
         state.confidence_mu_c = _confidence(square)
         square = _squared(state, weights, hidden + of_normal + of_torque + surface, 1.0, 1.0)
         state.sd_lever = state.mu_c * state.r * math.sqrt(square)
         if state.updates_r > 0:
-            square = _squared(state, weights, hidden + of_torque + slips, 0.0, 1.0)
+            square = _squared(state, weights, hidden + of_torque + slips + of_growth, 0.0, 1.0)
             state.sd_r = state.r * math.sqrt(square)
             state.confidence_r = _confidence(square)
     if state.events_mu_s > 0:
-        state.mu_s, of_exponent = static_at_load(state, state.load)
-        state.mu_s = clamped(state.mu_s, p.mu_min, p.mu_max)
-        square = state.variance_mu_s + state.common_mu_s + of_exponent + max(state.scatter_mu_s, 0.0)
         step = math.log(state.load / state.event_load)
+        state.mu_s = clamped(state.event * math.exp(-n * step), p.mu_min, p.mu_max)
+        square = state.variance_mu_s + state.common_mu_s + max(state.scatter_mu_s, 0.0)
         surface = p.sd_surface * p.sd_surface + p.sd_slip * p.sd_slip / (START + state.events_mu_s)
-        surface += state.doubt + step * step * unlearned
+        surface += state.doubt + step * step * of_n
         square += surface
         of_mu_s = state.mu_s * state.mu_s * surface
         state.sd_mu_s = state.mu_s * math.sqrt(square)

@@ -135,3 +135,48 @@ def _narrow(x, covariance, j, variance):
     for k in range(STATES):
         crossed[k] = covariance[j, k]
     correct(x, covariance, crossed, (before - variance) / (before * before), 0.0)
+
+
+@njit(error_model="numpy")
+def exponents(state, p):
+    """Exponents of mu_c and of r that are published, with their variances.
+
+    Args:
+        state: Record with `x`, `covariance` and `fall_error`.
+        p: Parameters.
+
+    Returns:
+        Exponent with which mu_c falls, its variance, exponent with which r grows, its variance.
+    """
+    n, of_n = _said(state, FALLS, p.load_exponent0, p.sd_load_exponent)
+    b, of_b = _said(state, GROWS, p.radius_exponent0, p.sd_radius_exponent)
+    odds = _odds(n, of_n, p.load_exponent0, p.sd_load_exponent)
+    odds *= _odds(b, of_b, p.radius_exponent0, p.sd_radius_exponent)
+    rubber = 1.0 / (1.0 + p.hard / (1.0 - p.hard) * odds)
+    n, of_n = _mixed(rubber, n, of_n, p.load_exponent0, p.sd_load_exponent)
+    b, of_b = _mixed(rubber, b, of_b, p.radius_exponent0, p.sd_radius_exponent)
+    return n, of_n, b, of_b
+
+
+@njit(error_model="numpy")
+def _said(state, j, expected, spread):
+    """What the data alone say of exponent j, and its variance with the error that remains."""
+    before, now = 1.0 / (spread * spread), 1.0 / state.covariance[j, j]
+    information = max(now - before, 1e-6 * before)
+    return (now * state.x[j] - before * expected) / information, 1.0 / information + state.fall_error
+
+
+@njit(error_model="numpy")
+def _odds(said, variance, expected, spread):
+    """Likelihood of what the data say if the exponent is 0, over that if it has its prior."""
+    both = variance + spread * spread
+    off = said - expected
+    return math.sqrt(both / variance) * math.exp(0.5 * (off * off / both - said * said / variance))
+
+
+@njit(error_model="numpy")
+def _mixed(rubber, said, variance, expected, spread):
+    """Mean and variance of an exponent that has its prior with the probability `rubber`, and else is 0."""
+    weight = spread * spread / (spread * spread + variance)
+    mean = expected + weight * (said - expected)
+    return rubber * mean, rubber * (weight * variance + (1.0 - rubber) * mean * mean)

@@ -53,6 +53,9 @@ class AdaptiveParameters(NoiseParameters):
         0.0, "Exponent of the normal force with which mu_c and mu_s are expected to fall.", "[0, 0.5]"
     )
     sd_load_exponent: float = parameter(0.15, "Spread of this exponent before it is seen.", "(0, 1]")
+    hard: float = parameter(
+        0.5, "Probability of a hard pad: its friction and radius do not depend on the load.", "[0, 1)"
+    )
     radius_exponent0: float = parameter(
         0.0, "Exponent of the normal force with which r is expected to grow.", "[0, 0.34]"
     )
@@ -67,7 +70,7 @@ class AdaptiveParameters(NoiseParameters):
         0.2, "Relative error of mu_c, mu_s and r that one slip has, before slips have shown it.", "(0, inf)"
     )
     sd_fall: float = parameter(
-        0.1, "Error of the exponent of the load that remains however long it is learned.", "[0, inf)"
+        0.05, "Error of the exponent of the load that remains however long it is learned.", "[0, inf)"
     )
     compliance: float = parameter(
         5e-5,

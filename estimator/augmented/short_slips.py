@@ -18,7 +18,7 @@ from estimator.augmented.load import beside, limit, move
 from estimator.augmented.model_error import count_slip
 from estimator.augmented.scalar_update import correct
 from estimator.augmented.sliding import settle
-from estimator.augmented.slip_law import COP, MILLIMETRE, MU, STATES, TILT, ZERO, R
+from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SIGMA, STATES, TILT, ZERO, R
 from estimator.augmented.timing import EARLIEST, LAST, LATEST
 from estimator.limit_surface.inverse import load_size
 from estimator.sample import direction_cosines, norm
@@ -37,6 +37,8 @@ EXCESS = 0.35
 """What a slow slip still has of static friction, over mu_c: of 0.35 exp(-(v / SLOW)^2) nothing is known."""
 SLOW = 3e-3
 """Speed [m/s]; twice the usual Stribeck velocity."""
+MEAN_SPEED = 0.5
+"""Speed after the fall over the largest of the slip: friction contains sigma_2 times the speed."""
 TURNS = 0.1
 """Share of the torque in the squared load from which r is seen, too."""
 BEYOND = 9.0
@@ -94,7 +96,7 @@ def _take(state, p, i, speed):
     h, crossed = matrix(1, STATES)[0], matrix(1, STATES)[0]
     for j in range(STATES):
         h[j] = 0.0
-    h[MU], h[R] = 1.0, share
+    h[MU], h[R], h[SIGMA] = 1.0, share, MEAN_SPEED * speed / math.exp(x[MU])
     noise = (p.sd_normal / f_n) ** 2 + SHARP * SHARP + (share * p.sd_torque / (state.r * size)) ** 2
     noise += (p.sd_force / size) ** 2 + (EXCESS * math.exp(-((speed / SLOW) ** 2))) ** 2
     if f_t > 0.0:
@@ -107,7 +109,7 @@ def _take(state, p, i, speed):
         for k in range(STATES):
             crossed[j] += covariance[j, k] * h[k]
         variance += h[j] * crossed[j]
-    innovation = math.log(ratio) - x[MU]
+    innovation = math.log(ratio) - x[MU] - h[SIGMA] * x[SIGMA]
     square = innovation * innovation / (variance + noise)
     noise *= max(square / BEYOND, 1.0)
     gain = 1.0 / (variance + noise)

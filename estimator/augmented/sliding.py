@@ -7,13 +7,15 @@ import numpy as np
 from estimator._numba.caching import njit
 from estimator.augmented.change import follow, test_for_jump, widen
 from estimator.augmented.filtering import learn
-from estimator.augmented.holding import SAFETY, least_radius, may_slide
+from estimator.augmented.holding import SAFETY, least_friction, least_radius, may_slide
 from estimator.augmented.load import beside, move
 from estimator.augmented.model_error import count_slip
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
 from estimator.augmented.state import restart
 from estimator.augmented.timing import LAST, correlate
 from estimator.augmented.torsion import learn_torsion, torsion_radius
+from estimator.limit_surface.inverse import load_size
+from estimator.sample import norm
 
 MARGIN = 4
 """Velocities in a row that moved: two about an instant, one on either side; one more if repeated."""
@@ -237,6 +239,9 @@ def slide(state, p):
     d_x, d_y, d_omega = after[0] - before[0], after[1] - before[1], after[2] - before[2]
     largest = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2]), abs(wrench[3]))
     if not (largest < LOAD_MAX and abs(twist[0]) + abs(twist[1]) + abs(twist[2]) < TWIST_MAX):
+        return False
+    load = load_size(True, norm(wrench[0], wrench[1]), abs(wrench[3]) / least_radius(state))
+    if not load > wrench[2] * least_friction(state, p, wrench[2]):  # it sticks: the velocity is another one's
         return False
     of_speed = 0.5 * p.sd_speed * p.sd_speed + (d_x * d_x + d_y * d_y) / 12.0
     of_spin = 0.5 * p.sd_spin * p.sd_spin + d_omega * d_omega / 12.0
