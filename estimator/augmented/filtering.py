@@ -15,6 +15,9 @@ from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZE
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
 
+LEAST = 2
+"""Linearisations otherwise: the second is at the twist that the first has corrected."""
+
 ENOUGH = 1e-4
 """Error of a linearisation, over the standard deviation of the state, after which no further one is made."""
 
@@ -186,7 +189,7 @@ def _reduce(x, covariance, w, crossed, proposed):
 
 
 @fused
-def learn(state, p, sign, wrench, twist, of_speed, of_spin):
+def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
     """Moves the states by one measurement of a slip; a step that is not finite is refused.
 
     A measurement whose squared normalised innovation exceeds `p.outlier` gets as much more noise.
@@ -212,20 +215,25 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
     for j in range(STATES):
         proposed[j] = x[j]
     squared, score, variance = 0.0, 0.0, 0.0
-    smooth = state.smooth
-    for iteration in range(ITERATIONS if uncertain else 1):
+    n = state.smooth[3]
+    v_x, v_y, omega = state.smooth[0], state.smooth[1], state.smooth[2]
+    for iteration in range(ITERATIONS if uncertain or fresh > 0.05 else 1):
         mu, r = math.exp(proposed[MU]), math.exp(proposed[R])
-        f_x, f_y, tau = predict_at(
-            proposed, mu, r, sign, f_n, twist[0], twist[1], twist[2], False, h, by_twist
-        )
+        f_x, f_y, tau = predict_at(proposed, mu, r, sign, n, v_x, v_y, omega, True, h, by_twist)
         n_11, n_12, n_13, n_22, n_23, n_33 = measurement_noise(
-            p, by_twist, h[0, MU], h[1, MU], h[2, MU], f_n, of_speed, of_spin
+            p, by_twist, h[0, MU], h[1, MU], h[2, MU], n, of_speed, of_spin
         )
-        y_1, y_2, y_3 = wrench[0] - f_x, wrench[1] - f_y, wrench[3] - tau
-        predict_at(proposed, mu, r, sign, smooth[3], smooth[0], smooth[1], smooth[2], True, h, by_twist)
-        y_1, y_2, y_3 = _shifted(y_1, y_2, y_3, h, smooth[3], x, proposed)
-        _cross(covariance, h, smooth[3], crossed)
-        s_11, s_12, s_13, s_22, s_23, s_33 = _spread(h, crossed, smooth[3])
+        d_x, d_y, d_omega = twist[0] - v_x, twist[1] - v_y, twist[2] - omega
+        more = f_n / n
+        y_1 = wrench[0] - proposed[ZERO] - more * (f_x - proposed[ZERO])
+        y_2 = wrench[1] - proposed[ZERO + 1] - more * (f_y - proposed[ZERO + 1])
+        y_3 = wrench[3] - more * tau
+        y_1 -= by_twist[0, 0] * d_x + by_twist[0, 1] * d_y + by_twist[0, 2] * d_omega
+        y_2 -= by_twist[1, 0] * d_x + by_twist[1, 1] * d_y + by_twist[1, 2] * d_omega
+        y_3 -= by_twist[2, 0] * d_x + by_twist[2, 1] * d_y + by_twist[2, 2] * d_omega
+        y_1, y_2, y_3 = _shifted(y_1, y_2, y_3, h, n, x, proposed)
+        _cross(covariance, h, n, crossed)
+        s_11, s_12, s_13, s_22, s_23, s_33 = _spread(h, crossed, n)
         w = _whitening(s_11 + n_11, s_12 + n_12, s_13 + n_13, s_22 + n_22, s_23 + n_23, s_33 + n_33)
         a, b, c = _whitened(w, y_1, y_2, y_3)
         current = a * a + b * b + c * c
@@ -246,12 +254,18 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin):
             )
             a, b, c = _whitened(w, y_1, y_2, y_3)
         z_1, z_2, z_3 = _weighted(w, a, b, c)
+        l_x = twist[0] + of_speed * (by_twist[0, 0] * z_1 + by_twist[1, 0] * z_2 + by_twist[2, 0] * z_3)
+        l_y = twist[1] + of_speed * (by_twist[0, 1] * z_1 + by_twist[1, 1] * z_2 + by_twist[2, 1] * z_3)
+        l_omega = twist[2] + of_spin * (by_twist[0, 2] * z_1 + by_twist[1, 2] * z_2 + by_twist[2, 2] * z_3)
+        v_x += fresh * (l_x - v_x)
+        v_y += fresh * (l_y - v_y)
+        omega += fresh * (l_omega - omega)
         before_mu, before_r = proposed[MU], proposed[R]
         for j in range(STATES):
             proposed[j] = x[j] + crossed[0, j] * z_1 + crossed[1, j] * z_2 + crossed[2, j] * z_3
         limit(proposed, state.limits)
         settled = _settled(proposed[MU] - before_mu, covariance[MU, MU])
-        if settled and _settled(proposed[R] - before_r, covariance[R, R]):
+        if iteration > 0 and settled and _settled(proposed[R] - before_r, covariance[R, R]):
             break
     if not (math.isfinite(squared) and math.isfinite(score)):
         return False, 0.0, 0.0, 0.0

@@ -32,6 +32,8 @@ CHANGED = 8.0
 LOAD_MAX, TWIST_MAX = 1e4, 1e3
 """No gripper sees so large a wrench [N, N m] or twist [m/s, rad/s]: nothing is learned from it."""
 
+NEAR = 9.0
+""""""
 RECENT = 3
 """Newest samples whose displacement must exceed what the pad springs: it swings on after a slip has ended."""
 
@@ -214,7 +216,8 @@ def _follow(state, p, twist, f_n, begins):
     innovation, each sample would pull along the combinations of states that the motion does not show.
     """
     noise = p.sd_speed, p.sd_speed, p.sd_spin, p.sd_normal
-    newest = twist[0], twist[1], twist[2], f_n
+    newest, n = (twist[0], twist[1], twist[2], f_n), state.slip_samples
+    fresh = 1.0 if begins else 1.0 / (1.0 + n)
     for j in range(4):
         change = newest[j] - state.smooth[j]
         square = change * change
@@ -223,6 +226,9 @@ def _follow(state, p, twist, f_n, begins):
             state.smooth[j] = newest[j]
         elif math.isfinite(square):
             state.smooth[j] += beyond * beyond * change
+            if j < 3:
+                fresh = max(fresh, beyond * beyond)
+    return fresh
 
 
 @njit(error_model="numpy")
@@ -246,7 +252,7 @@ def slide(state, p):
     of_speed = 0.5 * p.sd_speed * p.sd_speed + (d_x * d_x + d_y * d_y) / 12.0
     of_spin = 0.5 * p.sd_spin * p.sd_spin + d_omega * d_omega / 12.0
     begins = state.slid != k - 1
-    _follow(state, p, twist, wrench[2], begins)
+    fresh = _follow(state, p, twist, wrench[2], begins)
     state.slid = k
     # close to the pivot an error of the CoP turns the direction of the slip: not linear, so taken for noise
     lever = (MILLIMETRE * p.sd_cop * twist[2]) ** 2 + p.sd_speed * p.sd_speed
@@ -256,6 +262,7 @@ def slide(state, p):
     unknown = 0.5 * (state.covariance[COP, COP] + state.covariance[COP + 1, COP + 1])
     unknown *= (MILLIMETRE * twist[2] / p.caution) ** 2
     of_speed += ALIKE * unknown * min(unknown / (square + p.sd_speed * p.sd_speed), 1.0) ** 2
+    fresh *= NEAR * of_speed / (NEAR * of_speed + square)
     walk = p.drift * p.drift
     widen(state, walk, p.sd_log_mu_c0**2)
     state.covariance[R, R] += max(min(walk, p.sd_log_r0**2 - state.covariance[R, R]), 0.0)
@@ -263,7 +270,9 @@ def slide(state, p):
         state.covariance[j, j] += (p.error_drift * state.x[j]) ** 2
     move(state, beside(state, p, i))
     value, variance = state.x[MU], state.covariance[MU, MU]
-    learned, squared, score, variance_mu = learn(state, p, state.sign, wrench, twist, of_speed, of_spin)
+    learned, squared, score, variance_mu = learn(
+        state, p, state.sign, wrench, twist, of_speed, of_spin, fresh
+    )
     for j in range(3):
         state.smooth[j] += SMOOTHING * (twist[j] - state.smooth[j])
     state.smooth[3] += SMOOTHING * (wrench[2] - state.smooth[3])
