@@ -2,7 +2,8 @@
 
 Source: Bell & Cathey, The iterated Kalman filter update as a Gauss-Newton method, IEEE Transactions on
 Automatic Control 38(2), 1993. The noise of the twist, of the normal force and of the law of friction enters
-the covariance of the measurement by its effect on it.
+the covariance of the measurement by its effect on it. Close to the pivot of a slip the twist's noise turns
+its direction: there the twist is an unknown, too, and the next linearisation is at the most probable one.
 """
 
 import math
@@ -15,8 +16,8 @@ from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZE
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
 
-LEAST = 2
-"""Linearisations otherwise: the second is at the twist that the first has corrected."""
+BARELY = 0.05
+"""Part of the way to the corrected twist below which another linearisation there is not worth its time."""
 
 ENOUGH = 1e-4
 """Error of a linearisation, over the standard deviation of the state, after which no further one is made."""
@@ -189,10 +190,32 @@ def _reduce(x, covariance, w, crossed, proposed):
 
 
 @fused
+def _corrected(by_twist, twist, of_speed, of_spin, z_1, z_2, z_3):
+    """Twist that the measured one and the wrench together make most probable.
+
+    Args:
+        by_twist: (3, 3), derivatives of f_x, f_y, tau by the twist.
+        twist: Measured v_x, v_y, omega [m/s, m/s, rad/s].
+        of_speed: Variance of v_x and of v_y.
+        of_spin: Variance of omega.
+        z_1: First innovation, weighted by the inverse of the innovations' covariance.
+        z_2: As z_1.
+        z_3: As z_1.
+    """
+    return (
+        twist[0] + of_speed * (by_twist[0, 0] * z_1 + by_twist[1, 0] * z_2 + by_twist[2, 0] * z_3),
+        twist[1] + of_speed * (by_twist[0, 1] * z_1 + by_twist[1, 1] * z_2 + by_twist[2, 1] * z_3),
+        twist[2] + of_spin * (by_twist[0, 2] * z_1 + by_twist[1, 2] * z_2 + by_twist[2, 2] * z_3),
+    )
+
+
+@fused
 def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
     """Moves the states by one measurement of a slip; a step that is not finite is refused.
 
-    A measurement whose squared normalised innovation exceeds `p.outlier` gets as much more noise.
+    The law is linear about the mean of recent twists, or, as far as `fresh`, about the twist that the wrench
+    has corrected. A measurement whose squared normalised innovation exceeds `p.outlier` gets as much more
+    noise.
 
     Args:
         state: Record with `x`, `covariance`, `limits` and `smooth`; changed in place.
@@ -202,6 +225,7 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
         twist: v_x, v_y, omega [m/s, m/s, rad/s].
         of_speed: Variance of v_x and of v_y.
         of_spin: Variance of omega.
+        fresh: Part of the way from the mean of recent twists to the corrected one, in [0, 1].
 
     Returns:
         Whether the states moved, the squared normalised innovation [-], the normalised innovation in the
@@ -215,22 +239,20 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
     for j in range(STATES):
         proposed[j] = x[j]
     squared, score, variance = 0.0, 0.0, 0.0
-    n = state.smooth[3]
-    v_x, v_y, omega = state.smooth[0], state.smooth[1], state.smooth[2]
-    for iteration in range(ITERATIONS if uncertain or fresh > 0.05 else 1):
+    v_x, v_y, omega, n = state.smooth[0], state.smooth[1], state.smooth[2], state.smooth[3]
+    more, again = f_n / n, uncertain or fresh > BARELY
+    for iteration in range(ITERATIONS if again else 1):
         mu, r = math.exp(proposed[MU]), math.exp(proposed[R])
         f_x, f_y, tau = predict_at(proposed, mu, r, sign, n, v_x, v_y, omega, True, h, by_twist)
         n_11, n_12, n_13, n_22, n_23, n_33 = measurement_noise(
             p, by_twist, h[0, MU], h[1, MU], h[2, MU], n, of_speed, of_spin
         )
-        d_x, d_y, d_omega = twist[0] - v_x, twist[1] - v_y, twist[2] - omega
-        more = f_n / n
         y_1 = wrench[0] - proposed[ZERO] - more * (f_x - proposed[ZERO])
         y_2 = wrench[1] - proposed[ZERO + 1] - more * (f_y - proposed[ZERO + 1])
         y_3 = wrench[3] - more * tau
-        y_1 -= by_twist[0, 0] * d_x + by_twist[0, 1] * d_y + by_twist[0, 2] * d_omega
-        y_2 -= by_twist[1, 0] * d_x + by_twist[1, 1] * d_y + by_twist[1, 2] * d_omega
-        y_3 -= by_twist[2, 0] * d_x + by_twist[2, 1] * d_y + by_twist[2, 2] * d_omega
+        for j, off in enumerate((twist[0] - v_x, twist[1] - v_y, twist[2] - omega)):
+            a, b, c = by_twist[0, j] * off, by_twist[1, j] * off, by_twist[2, j] * off
+            y_1, y_2, y_3 = y_1 - a, y_2 - b, y_3 - c
         y_1, y_2, y_3 = _shifted(y_1, y_2, y_3, h, n, x, proposed)
         _cross(covariance, h, n, crossed)
         s_11, s_12, s_13, s_22, s_23, s_33 = _spread(h, crossed, n)
@@ -254,18 +276,17 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
             )
             a, b, c = _whitened(w, y_1, y_2, y_3)
         z_1, z_2, z_3 = _weighted(w, a, b, c)
-        l_x = twist[0] + of_speed * (by_twist[0, 0] * z_1 + by_twist[1, 0] * z_2 + by_twist[2, 0] * z_3)
-        l_y = twist[1] + of_speed * (by_twist[0, 1] * z_1 + by_twist[1, 1] * z_2 + by_twist[2, 1] * z_3)
-        l_omega = twist[2] + of_spin * (by_twist[0, 2] * z_1 + by_twist[1, 2] * z_2 + by_twist[2, 2] * z_3)
-        v_x += fresh * (l_x - v_x)
-        v_y += fresh * (l_y - v_y)
-        omega += fresh * (l_omega - omega)
+        if again:
+            at_x, at_y, spin = _corrected(by_twist, twist, of_speed, of_spin, z_1, z_2, z_3)
+            v_x, v_y = v_x + fresh * (at_x - v_x), v_y + fresh * (at_y - v_y)
+            omega += fresh * (spin - omega)
         before_mu, before_r = proposed[MU], proposed[R]
         for j in range(STATES):
             proposed[j] = x[j] + crossed[0, j] * z_1 + crossed[1, j] * z_2 + crossed[2, j] * z_3
         limit(proposed, state.limits)
         settled = _settled(proposed[MU] - before_mu, covariance[MU, MU])
-        if iteration > 0 and settled and _settled(proposed[R] - before_r, covariance[R, R]):
+        settled &= _settled(proposed[R] - before_r, covariance[R, R])
+        if settled and (iteration > 0 or fresh <= BARELY):
             break
     if not (math.isfinite(squared) and math.isfinite(score)):
         return False, 0.0, 0.0, 0.0

@@ -6,6 +6,10 @@ friction limit surfaces for soft fingers, IJRR 18(9), 1999); friction in proport
 gives n of 1/3, silicone on PLA 0.31. ln mu_c and ln r of the filter are those at the normal force
 `state.load`, which follows the measured one. The step from one force to another is linear in the states, so
 the covariance with the exponents carries their uncertainty to the new force, and back without a loss.
+
+Many pads are hard: both exponents are 0. Noise would make those of the filter small positive numbers, which
+are a large error of mu_c at a load far from that of the slips. So what is published is the mean of two
+hypotheses, a hard pad and one of rubber, by how probable what the slips say of the exponents is on either.
 """
 
 import math
@@ -24,6 +28,8 @@ OF_THREE = 1.5**0.5
 """Deviation of a sample less the mean of two others, over that of a sample."""
 MOST_FALL, MOST_GROWTH = 0.5, 1.0 / 3.0
 """Largest exponents of mu_c and of r."""
+CERTAIN = 100.0
+"""Logarithm of odds beyond which they are not followed."""
 HEAVIER = 0.25
 """Change of the logarithm of the normal force from which a held load says something about the exponent."""
 
@@ -150,9 +156,9 @@ def exponents(state, p):
     """
     n, of_n = _said(state, FALLS, p.load_exponent0, p.sd_load_exponent)
     b, of_b = _said(state, GROWS, p.radius_exponent0, p.sd_radius_exponent)
-    odds = _odds(n, of_n, p.load_exponent0, p.sd_load_exponent)
-    odds *= _odds(b, of_b, p.radius_exponent0, p.sd_radius_exponent)
-    rubber = 1.0 / (1.0 + p.hard / (1.0 - p.hard) * odds)
+    evidence = _evidence(n, of_n, p.load_exponent0, p.sd_load_exponent)
+    evidence += _evidence(b, of_b, p.radius_exponent0, p.sd_radius_exponent)
+    rubber = 1.0 / (1.0 + p.hard / (1.0 - p.hard) * math.exp(min(evidence, CERTAIN)))
     n, of_n = _mixed(rubber, n, of_n, p.load_exponent0, p.sd_load_exponent)
     b, of_b = _mixed(rubber, b, of_b, p.radius_exponent0, p.sd_radius_exponent)
     return n, of_n, b, of_b
@@ -167,11 +173,11 @@ def _said(state, j, expected, spread):
 
 
 @njit(error_model="numpy")
-def _odds(said, variance, expected, spread):
-    """Likelihood of what the data say if the exponent is 0, over that if it has its prior."""
+def _evidence(said, variance, expected, spread):
+    """Logarithm of how probable what the data say is if the exponent is 0, over that if it has its prior."""
     both = variance + spread * spread
     off = said - expected
-    return math.sqrt(both / variance) * math.exp(0.5 * (off * off / both - said * said / variance))
+    return 0.5 * (math.log(both / variance) + off * off / both - said * said / variance)
 
 
 @njit(error_model="numpy")

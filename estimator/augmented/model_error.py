@@ -8,8 +8,7 @@ before it, as far as noise does not explain them; over the number of slips, for 
 over it again, for the mean of the slips. Slips that agree lower the deviation by their number, others by its
 square root. A slip counts in proportion to its length, as its beginning and end are off most, and a long one
 as several. A slip with a torque counts as little as r is known. What is common to all slips of a contact,
-such as anisotropy while they have one direction, is `sd_surface`, and lasts. So does an error of the exponent
-of the load, `sd_fall`, outside the normal forces at which slips were seen.
+such as anisotropy while they have one direction, is `sd_surface`, and lasts.
 
 A motion that is no longer than a pad may spring may be no slip at all. Then its load is only a bound, which
 `doubt_of` takes into account until a longer motion is seen.
@@ -30,8 +29,6 @@ FIRST = 4
 """Samples of a slip whose mean is compared with the slips before."""
 MEMORY = 0.95
 """Fading of the slips, per whole slip."""
-LOADS = 0.02
-"""Weight with which a sample narrows the range of normal forces at which slips were seen."""
 SPRINGS = 0.25
 """Share of springs of the pad among the motions that pass for slips and are short enough to be one."""
 LARGEST = 1.0
@@ -73,9 +70,6 @@ def count_slip(state, begins, score, variance, rim, square):
     state.separate = kept * state.separate + weight
     more = weight * state.difference if state.slip_samples > WHOLE else 0.0
     state.contrast = kept * state.contrast + more
-    load, gain = state.load, LOADS if state.updates_mu_c > 0 else 1.0
-    state.lightest = min(load, state.lightest + gain * (load - state.lightest))
-    state.heaviest = max(load, state.heaviest + gain * (load - state.heaviest))
 
 
 @njit(error_model="numpy")
@@ -103,14 +97,6 @@ def forget_slips(state):
     """Forgets how many slips there were, and their disagreement."""
     state.separate, state.contrast, state.difference, state.slip_samples = 0.0, 0.0, 0.0, 0
     state.certain = False
-
-
-@njit(error_model="numpy")
-def beyond_slips(state):
-    """How far ln f_n is outside the range at which slips were seen."""
-    if state.load > state.heaviest:
-        return math.log(state.load / state.heaviest)
-    return math.log(state.lightest / state.load) if state.load < state.lightest else 0.0
 
 
 @njit(error_model="numpy")

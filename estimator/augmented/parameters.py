@@ -70,7 +70,7 @@ class AdaptiveParameters(NoiseParameters):
         0.2, "Relative error of mu_c, mu_s and r that one slip has, before slips have shown it.", "(0, inf)"
     )
     sd_fall: float = parameter(
-        0.05, "Error of the exponent of the load that remains however long it is learned.", "[0, inf)"
+        0.05, "Error of what slips say of the exponents of the load, however many there are.", "[0, inf)"
     )
     compliance: float = parameter(
         5e-5,

@@ -10,7 +10,7 @@ from estimator.augmented.filtering import learn
 from estimator.augmented.holding import SAFETY, least_friction, least_radius, may_slide
 from estimator.augmented.load import beside, move
 from estimator.augmented.model_error import count_slip
-from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, ZERO, R
+from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, TILT, ZERO, R
 from estimator.augmented.state import restart
 from estimator.augmented.timing import LAST, correlate
 from estimator.augmented.torsion import learn_torsion, torsion_radius
@@ -33,7 +33,8 @@ LOAD_MAX, TWIST_MAX = 1e4, 1e3
 """No gripper sees so large a wrench [N, N m] or twist [m/s, rad/s]: nothing is learned from it."""
 
 NEAR = 9.0
-""""""
+"""Squared speed, over the variance of a velocity, below which noise decides the direction of a slip."""
+
 RECENT = 3
 """Newest samples whose displacement must exceed what the pad springs: it swings on after a slip has ended."""
 
@@ -214,10 +215,13 @@ def _follow(state, p, twist, f_n, begins):
 
     The derivatives are taken there: with those at the noisy sample itself, whose noise is also in the
     innovation, each sample would pull along the combinations of states that the motion does not show.
+
+    Returns:
+        How little the mean twist is a mean, in [0, 1]: 1 at the start of a slide or after a change.
     """
     noise = p.sd_speed, p.sd_speed, p.sd_spin, p.sd_normal
-    newest, n = (twist[0], twist[1], twist[2], f_n), state.slip_samples
-    fresh = 1.0 if begins else 1.0 / (1.0 + n)
+    newest = twist[0], twist[1], twist[2], f_n
+    fresh = 1.0 if begins else 1.0 / (1.0 + state.slip_samples)
     for j in range(4):
         change = newest[j] - state.smooth[j]
         square = change * change
@@ -246,8 +250,10 @@ def slide(state, p):
     largest = max(abs(wrench[0]), abs(wrench[1]), abs(wrench[2]), abs(wrench[3]))
     if not (largest < LOAD_MAX and abs(twist[0]) + abs(twist[1]) + abs(twist[2]) < TWIST_MAX):
         return False
-    load = load_size(True, norm(wrench[0], wrench[1]), abs(wrench[3]) / least_radius(state))
-    if not load > wrench[2] * least_friction(state, p, wrench[2]):  # it sticks: the velocity is another one's
+    x, f_n = state.x, wrench[2]
+    f_t = norm(wrench[0] - x[ZERO] - f_n * x[TILT], wrench[1] - x[ZERO + 1] - f_n * x[TILT + 1])
+    load = load_size(True, f_t, abs(wrench[3]) / least_radius(state))
+    if not load > f_n * least_friction(state, p, f_n):  # it sticks: the velocity is one of another instant
         return False
     of_speed = 0.5 * p.sd_speed * p.sd_speed + (d_x * d_x + d_y * d_y) / 12.0
     of_spin = 0.5 * p.sd_spin * p.sd_spin + d_omega * d_omega / 12.0
@@ -262,7 +268,8 @@ def slide(state, p):
     unknown = 0.5 * (state.covariance[COP, COP] + state.covariance[COP + 1, COP + 1])
     unknown *= (MILLIMETRE * twist[2] / p.caution) ** 2
     of_speed += ALIKE * unknown * min(unknown / (square + p.sd_speed * p.sd_speed), 1.0) ** 2
-    fresh *= NEAR * of_speed / (NEAR * of_speed + square)
+    noisy = NEAR * of_speed
+    fresh *= noisy / (noisy + square)
     walk = p.drift * p.drift
     widen(state, walk, p.sd_log_mu_c0**2)
     state.covariance[R, R] += max(min(walk, p.sd_log_r0**2 - state.covariance[R, R]), 0.0)

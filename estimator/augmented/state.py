@@ -71,8 +71,6 @@ _IN_MOTION: list[tuple[Any, ...]] = [
     ("innovation", np.float64),
     ("expected", np.float64),
     ("slip_samples", np.int64),
-    ("lightest", np.float64),
-    ("heaviest", np.float64),
     ("fall_error", np.float64),
     ("limits", np.float64, (8,)),
     ("covariance", np.float64, (STATES, STATES)),
