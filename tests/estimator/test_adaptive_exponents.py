@@ -76,7 +76,7 @@ def test_a_prior_that_the_data_refute_does_not_overflow():
 
 
 def held_at(f_n, exponent, seed=0):
-    """Slips at 2 and 4 N, then a rest under another load; the estimate over the truth at it, its deviation."""
+    """Slips at 2 and 4 N, then a rest under another load; the estimate over the truth, and its sd."""
     est, rng, k = estimator.make("adaptive"), np.random.default_rng(seed), 0
     for load in (2.0, 4.0) * 4:
         mu_c = 0.4 * load**-exponent
