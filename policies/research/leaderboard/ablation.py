@@ -45,6 +45,7 @@ WITHOUT: dict[str, dict[str, object]] = {
         "radius_exponent0": 0.0,
         "sd_radius_exponent": NONE,
     },
+    "hard pads": {"hard": 0.0},
     "evidence of jumps": {"jump_evidence": 0.0},
     "mu_s from sticks": {"mu_s_from_sticks": False},
     "mu_s with changes of mu_c": {"mu_s_follows": False},
