@@ -5,18 +5,21 @@ They apply while a program is compiled.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from types import NoneType
 from typing import Any
 
-from numba.core import errors, ir
+from numba.core import errors, ir, lowering, typeinfer, types
 from numba.core.base import BaseContext
 from numba.core.targetconfig import TargetConfig
-from numba.core.types import Boolean, Function, Number, Record
+from numba.core.types import Function, Record
 from numba.core.types.functions import BaseFunction
 from numba.core.typing import context
+
+from estimator._numba import passes, translation
 
 _compare = TargetConfig.__eq__
 _variables = ir.Inst._rec_list_vars
@@ -25,11 +28,13 @@ _resolve = BaseFunction.get_call_type
 _resolved: dict[Any, Any] = {}
 _size = BaseContext.get_abi_sizeof
 _sizes: dict[tuple[str, Any], int] = {}
+_errors: Any = errors
+_in_context = _errors.new_error_context
 
 
 @contextmanager
 def quick_compiler() -> Iterator[None]:
-    """Numba's compiler with the shortcuts of this file."""
+    """Numba's compiler with the shortcuts of this file, `passes` and `translation`."""
     shortcuts = (
         (TargetConfig, "__eq__", _same_options),
         (TargetConfig, "__hash__", _options_hash),
@@ -37,9 +42,14 @@ def quick_compiler() -> Iterator[None]:
         (ir.Inst, "_rec_list_vars", _list_variables),
         (Record, "__repr__", _record_text),
         (errors, "termcolor", _Plain),
+        (errors, "new_error_context", _Context),
+        (lowering, "new_error_context", _Context),
+        (typeinfer, "new_error_context", _Context),
         (BaseContext, "get_abi_sizeof", _size_of_type),
         (BaseContext, "refresh", _only_news(BaseContext.refresh)),
         (context.BaseContext, "refresh", _only_news(context.BaseContext.refresh)),
+        *passes.SHORTCUTS,
+        *translation.SHORTCUTS,
     )
     before = [getattr(owner, name) for owner, name, _ in shortcuts]
     for owner, name, shortcut in shortcuts:
@@ -73,9 +83,26 @@ def _options_hash_of(kind: type[TargetConfig]) -> int:
     return hash(tuple(sorted(kind.options)))
 
 
+_ACCESS = {operator.getitem, operator.setitem}
+_ARRAYS = {types.Array, types.NestedArray}
+_PLAIN = {
+    *(types.Integer, types.IntegerLiteral, types.Float, types.Complex, types.Boolean, types.BooleanLiteral),
+    *(types.SliceType, types.Record),
+}
+"""Types of arguments that decide alone what a function of numba's gives."""
+
+
+def _is_plain(kind: Any) -> bool:
+    own = type(kind)
+    return own in _PLAIN or (own in (types.Tuple, types.UniTuple) and all(map(_is_plain, kind)))
+
+
 def _call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
     """`BaseFunction.get_call_type`, which tries all that numba knows of an operator at each of its uses."""
-    if kws or type(function) is not Function or not all(isinstance(kind, Number | Boolean) for kind in args):
+    if kws or type(function) is not Function:
+        return _resolve(function, context, args, kws)
+    plain = args[1:] if function.typing_key in _ACCESS and type(args[0]) in _ARRAYS else args
+    if not all(map(_is_plain, plain)):
         return _resolve(function, context, args, kws)
     key = function, args
     if key not in _resolved:
@@ -109,6 +136,30 @@ def _record_text(own: Record) -> str:
     except AttributeError:
         own._text = text = _describe(own)  # type: ignore[attr-defined]
         return text
+
+
+class _Context:
+    """`new_error_context`, a generator, for what raises nothing.
+
+    Args:
+        fmt_: What is done, for the message.
+        *args: For `fmt_`.
+        **kwargs: Likewise.
+    """
+
+    __slots__ = ("_arguments",)
+
+    def __init__(self, fmt_: str, *args: Any, **kwargs: Any) -> None:
+        self._arguments = fmt_, args, kwargs
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: Any, error: Any, traceback: Any) -> None:
+        if error is not None:
+            fmt_, args, kwargs = self._arguments
+            with _in_context(fmt_, *args, **kwargs):
+                raise error
 
 
 class _Plain:
