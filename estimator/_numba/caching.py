@@ -43,16 +43,19 @@ VARIANTS = 16
 _UNREADABLE = (OSError, EOFError, ValueError, TypeError, LookupError, AttributeError, ImportError)
 
 
-def compiler(variant: tuple[str, ...] = (), **options: Any) -> Callable[[Callable[..., Any]], Any]:
+def compiler(
+    variant: tuple[str, ...] = (), kind: type[Kernel] = Kernel, **options: Any
+) -> Callable[[Callable[..., Any]], Any]:
     """Returns a decorator that compiles on first use and keeps the result on disk.
 
     Args:
         variant: Distinguishes programs of the same sources.
+        kind: `Kernel`, or `Pointed` for functions that Python does not call.
         **options: Options of `numba.njit`.
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
-        dispatcher: Any = Kernel(function, targetoptions={"nopython": True, "boundscheck": None, **options})
+        dispatcher: Any = kind(function, targetoptions={"nopython": True, "boundscheck": None, **options})
         cache = ProgramCache(dispatcher, variant)
         dispatcher._cache = cache  # numba has no public option for another cache
         dispatcher.alone = cache.alone

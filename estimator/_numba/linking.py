@@ -8,6 +8,7 @@ its parts.
 from __future__ import annotations
 
 import gc
+import inspect
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
@@ -24,13 +25,11 @@ from estimator._numba.quicker import quick_compiler
 from estimator._numba.references import without_counts_of_arguments
 
 
-def _shared(module: Any) -> Any:
-    """A copy of a module whose functions may be defined in several modules that are linked."""
-    copy = module.clone()
-    for function in copy.functions:
+def _share(module: Any) -> None:
+    """Let the functions of a module be defined in several modules that are linked."""
+    for function in module.functions:
         if not function.is_declaration and function.linkage == binding.Linkage.external:
             function.linkage = "linkonce_odr"
-    return copy
 
 
 class _PartLibrary(JITCodeLibrary):
@@ -52,7 +51,8 @@ class _PartLibrary(JITCodeLibrary):
         """The function's own code, to be linked."""
         self._ensure_finalized()
         if self._shared_module is None:
-            self._shared_module = _shared(self._final_module)
+            _share(self._final_module)
+            self._shared_module = self._final_module
         return self._shared_module
 
     def _get_module_for_linking(self) -> Any:
@@ -230,6 +230,7 @@ class Kernel(CPUDispatcher):
     """Of a signature: keeps other processes from compiling the same program at the same time."""
 
     def __init__(self, py_func: Any, locals: Any = None, targetoptions: Any = None) -> None:
+        py_func.__signature__ = inspect.signature(py_func)  # numba asks for it four times
         super().__init__(py_func, locals, targetoptions, pipeline_class=_ProgramCompiler)
         self.part = _Part(py_func, locals, targetoptions, pipeline_class=_PartCompiler)
 
@@ -252,3 +253,14 @@ class Kernel(CPUDispatcher):
     def is_compiling(self) -> Any:
         """Whether the function is being compiled, so that a call to it is a recursion."""
         return super().is_compiling or self.part.is_compiling
+
+
+class Pointed(Kernel):
+    """A compiled function that programs call through pointers, not Python: numba writes no call for it."""
+
+    def __init__(self, py_func: Any, locals: Any = None, targetoptions: Any = None) -> None:
+        super().__init__(py_func, locals, {**(targetoptions or {}), "no_cpython_wrapper": True})
+
+    def __call__(self, *_: Any) -> Any:
+        """Refuse the call."""
+        raise TypeError(f"{self.__name__} is called through pointers only; its Python source is its py_func")

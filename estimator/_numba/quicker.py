@@ -5,6 +5,7 @@ They apply while a program is compiled.
 
 from __future__ import annotations
 
+import hashlib
 import operator
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -12,7 +13,7 @@ from functools import cache
 from types import NoneType
 from typing import Any
 
-from numba.core import errors, ir, lowering, typeinfer, types
+from numba.core import errors, ir, itanium_mangler, lowering, typeinfer, types
 from numba.core.base import BaseContext
 from numba.core.targetconfig import TargetConfig
 from numba.core.types import Function, Record
@@ -26,6 +27,9 @@ _variables = ir.Inst._rec_list_vars
 _describe = Record.__repr__
 _resolve = BaseFunction.get_call_type
 _resolved: dict[Any, Any] = {}
+_attribute = context.BaseContext.resolve_getattr
+_attributes: dict[tuple[Any, Any, str], Any] = {}
+_identifier = itanium_mangler.mangle_identifier
 _size = BaseContext.get_abi_sizeof
 _sizes: dict[tuple[str, Any], int] = {}
 _errors: Any = errors
@@ -42,6 +46,8 @@ def quick_compiler() -> Iterator[None]:
         (ir.Inst, "_rec_list_vars", _list_variables),
         (Record, "__repr__", _record_text),
         (errors, "termcolor", _Plain),
+        (itanium_mangler, "mangle_identifier", _short_identifier),
+        (context.BaseContext, "resolve_getattr", _attribute_type),
         (errors, "new_error_context", _Context),
         (lowering, "new_error_context", _Context),
         (typeinfer, "new_error_context", _Context),
@@ -108,6 +114,29 @@ def _call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
     if key not in _resolved:
         _resolved[key] = _resolve(function, context, args, kws)
     return _resolved[key]
+
+
+def _attribute_type(own: Any, kind: Any, attribute: str) -> Any:
+    """`BaseContext.resolve_getattr`, which asks all that numba knows for each use of a field of a record."""
+    if type(kind) is not Record:
+        return _attribute(own, kind, attribute)
+    key = own, kind, attribute
+    found = _attributes.get(key)
+    if found is None and (found := _attribute(own, kind, attribute)) is not None:
+        _attributes[key] = found
+    return found
+
+
+LONG = 200
+"""Length of a type's text from which a hash stands for it in the names of functions."""
+
+
+def _short_identifier(text: str, *rest: Any, **options: Any) -> str:
+    """`mangle_identifier`, which puts texts of types, up to 100 kB, into the names of functions."""
+    if len(text) > LONG:
+        text = f"long_{hashlib.sha256(text.encode()).hexdigest()[:32]}"
+    name: str = _identifier(text, *rest, **options)
+    return name
 
 
 _NO_VARIABLES = {str, int, float, bool, NoneType, ir.Loc, ir.Const, ir.Global, ir.FreeVar}

@@ -15,6 +15,7 @@ import math
 import numpy as np
 
 from estimator._numba.caching import fused
+from estimator._numba.uncompiled import uncompiled
 from estimator.limit_surface.disc import DISC_RADIUS, disc_friction
 
 MU, R, SIGMA, ZERO, TILT, COP, SHAPE, FALLS, GROWS = 0, 1, 2, 3, 5, 7, 9, 10, 11
@@ -35,7 +36,7 @@ def _table() -> np.ndarray:
     knots = np.linspace(0.0, 1.0, _INTERVALS + 1)
     inner = knots[1:-1]
     ratio = DISC_RADIUS * np.sqrt(inner / (1.0 - inner))
-    force, torque = np.array([disc_friction.py_func(x) for x in ratio]).T
+    force, torque = np.array([*map(uncompiled(disc_friction), ratio.tolist())]).T
     phi = np.concatenate([[DISC_RADIUS], force / np.sqrt(inner), [1.0]])
     psi = np.concatenate([[1.0], torque / (DISC_RADIUS * np.sqrt(1.0 - inner)), [0.25 / DISC_RADIUS**2]])
     return np.column_stack([phi, np.gradient(phi, knots), psi, np.gradient(psi, knots)])

@@ -14,6 +14,7 @@ import math
 import numpy as np
 
 from estimator._numba.caching import njit
+from estimator._numba.uncompiled import uncompiled
 from estimator.limit_surface.disc import DISC_RADIUS, disc_friction
 
 _INTERVALS = 512
@@ -29,7 +30,7 @@ def _factors() -> tuple[np.ndarray, np.ndarray]:
     ratio = np.concatenate(
         [np.geomspace(1e-4, 0.5, 400), np.linspace(0.5, 2.0, 1200), np.geomspace(2.0, 1e4, 400)]
     )
-    force, torque = np.array([disc_friction.py_func(x) for x in ratio]).T
+    force, torque = np.array([*map(uncompiled(disc_friction), ratio.tolist())]).T
     q = torque / (force * ratio)
     tilt = torque / (DISC_RADIUS * force)  # (tau / r) / f_t
     knots = np.linspace(0.0, 1.0, _INTERVALS + 1)

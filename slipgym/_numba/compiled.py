@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from typing import Any, ParamSpec, Protocol, TypeVar
 
 from estimator._numba.caching import compiler
-from estimator._numba.linking import resting
+from estimator._numba.linking import Pointed, resting
 from slipgym._numba.switches import DISABLED
 
 P = ParamSpec("P")
@@ -41,6 +41,8 @@ compiled = _decorator(forceinline=True, fastmath=False)
 compiles it first: results would depend on what was compiled before."""
 unlocked = _decorator(nogil=True, forceinline=True, fastmath=False)
 """`compiled` for functions that several threads run at the same time: it releases Python's lock."""
+pointed = _decorator(kind=Pointed, nogil=True, forceinline=True, fastmath=False)
+"""`unlocked` for functions that other programs call through pointers, and Python does not."""
 compiled_call = _decorator(forceinline=False, fastmath=False)
 """`compiled` for a large function that few callers need: it is called, not copied into them."""
 compiled_sum = _decorator(fastmath={"reassoc"})

@@ -60,6 +60,10 @@ class Fixed(int):
         fixed.kind, fixed._kept = FixedType(kind), (value, words)
         return fixed
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A copy has addresses of its own."""
+        return Fixed, (self._kept[0], self.kind.kind)
+
 
 def _words(value: Any) -> Iterator[int]:
     """What numba's models of these types hold; nothing owns an array, so that references are not counted."""

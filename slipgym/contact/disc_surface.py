@@ -18,6 +18,7 @@ import math
 
 import numpy as np
 
+from estimator._numba.uncompiled import uncompiled
 from estimator.limit_surface import DISC_RADIUS, disc_friction
 from slipgym._numba.compiled import compiled
 from slipgym.contact.records import Symmetric, Vector
@@ -35,11 +36,13 @@ def _support() -> np.ndarray:
     s = np.linspace(0.0, 1.0, INTERVALS + 1)
     step = 1.0 / INTERVALS
 
+    plain = uncompiled(disc_friction)
+
     def curve(positions: np.ndarray) -> np.ndarray:
         # v_t / (r omega) = s / (1 - s), and r is DISC_RADIUS of the disc's
         with np.errstate(divide="ignore"):
             ratios = DISC_RADIUS * positions / (1.0 - positions)
-        return np.array([disc_friction.py_func(float(ratio)) for ratio in ratios]) / (1.0, DISC_RADIUS)
+        return np.array([plain(float(ratio)) for ratio in ratios]) / (1.0, DISC_RADIUS)
 
     points = curve(s)
     value = s * points[:, 0] + (1.0 - s) * points[:, 1]

@@ -141,18 +141,14 @@ class BulletSimulation(Simulation):
 
     def _reset(self, starts: np.ndarray, values: np.ndarray) -> None:
         force, episode = starts["force"].item(), self.episode
-        self.stages.equip(
-            starts, values, *self._hardware, self.state, self.plant.cells, self.plant.force_torque
-        )
+        self._calls.equip(starts, values, *self._hardware, self.plant.cells)
         x, z, pitch = episode["wrist_start"][0].tolist()
         self.world.reset(self.boxes[0], force, (x, z, pitch), episode["wrist_roll"].item())
         bear_all(episode, self.plant.world)
         self._guard.reset()
         for _ in range(WARM_UP_STEPS):
             self._settle(force)
-        self.stages.open(starts, self._fresh, self.state, self.plant.force_torque, self.infos.terms)
-        self.stages.evaluate(self.state, 0, 1)
-        self._write_infos()
+        self._calls.open(starts, self._fresh)
 
     def _bind(self, buffers: ObservationBuffers) -> None:
         """Have control steps write the observations to these buffers."""

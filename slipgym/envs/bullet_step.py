@@ -1,8 +1,7 @@
-"""The stages of a control step with PyBullet, in two calls: before and after it moves the bodies."""
+"""The stages of a control step with PyBullet, before and after it moves the bodies, and of a reset."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
 
@@ -15,7 +14,21 @@ from slipgym._numba.fixed import Fixed, FixedType, opened
 from slipgym.envs.control_step import BatchState
 from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import ObservationBuffers
-from slipgym.envs.stages import ACTION, BUFFERS, F2, INFOS, STATE, WHOLE, Stages, array, compiled_stages
+from slipgym.envs.reset_kernels import HARDWARE, START
+from slipgym.envs.stages import (
+    ACTION,
+    BUFFERS,
+    F2,
+    F3,
+    FRESH,
+    INFOS,
+    STATE,
+    VALUES_TYPE,
+    WHOLE,
+    array,
+    cells_type,
+    compiled_stages,
+)
 from slipgym.world.bullet_rows import PAIR, POSE, VECTOR, queue, read_engine
 
 
@@ -68,13 +81,29 @@ def _finish(fixed, pose, wrist, normals, at):
     return stages.note(kept, at, state, 0)
 
 
+@compiled
+def _equip(fixed, starts, values, hardware, patches, cells):
+    """Prepare an episode, see `slipgym.envs.reset_kernels.equip_rows`; `fixed` as in `BulletStep`."""
+    stages, state, force_torque, _, _, _ = opened(fixed)
+    stages.equip(starts, values, hardware, patches, state, cells, force_torque)
+
+
+@compiled
+def _open(fixed, starts, fresh):
+    """Begin an episode of a world that has settled, see `slipgym.envs.reset_kernels.open_episodes`."""
+    stages, state, force_torque, _, infos, _ = opened(fixed)
+    stages.open(stages.update, starts, fresh, state, force_torque, infos.terms)
+    stages.evaluate(stages.evaluate_step, state, 0, 1)
+    stages.report(state, infos.numbers, infos.flags, 0, 1)
+
+
 def fixed_action(actions: np.ndarray, components: np.ndarray, active: np.ndarray) -> Fixed:
     """An action as in `slipgym.envs.control_step.begin`, whose arrays are not taken apart at each call."""
     return Fixed((actions, components, active), ACTION)
 
 
 class BulletStep:
-    """The two calls of a control step, for the arrays of one simulation.
+    """The two calls of a control step, and those of a reset, for the arrays of one simulation.
 
     Args:
         kinds: Arguments of `slipgym.envs.stages.compiled_stages`.
@@ -87,6 +116,8 @@ class BulletStep:
     Attributes:
         begin: Takes the arguments of `_begin` after the first.
         finish: Takes those of `_finish`.
+        equip: Takes those of `_equip`.
+        open: Takes those of `_open`.
         buffers: As given.
     """
 
@@ -99,20 +130,27 @@ class BulletStep:
         infos: InfoBuffer,
         kept: np.ndarray,
     ) -> None:
-        stages, kind, begin, finish = _compiled_step(*kinds)
+        stages, kind, *programs = _compiled_step(*kinds)
         fixed = Fixed((stages.linked, state, force_torque, buffers, infos, kept), kind)
-        self.begin, self.finish, self.buffers = partial(begin, fixed), partial(finish, fixed), buffers
+        self.begin, self.finish, self.equip, self.open = (partial(program, fixed) for program in programs)
+        self.buffers = buffers
 
 
 @cache
-def _compiled_step(
-    task: Any, update: Any, force_torque: np.dtype, cells: int
-) -> tuple[Stages, Any, Callable[..., Any], Callable[..., Any]]:
-    """The stages, the type of what is fixed, and the machine code of `_begin` and `_finish`."""
+def _compiled_step(task: Any, update: Any, force_torque: np.dtype, cells: int) -> tuple[Any, ...]:
+    """The stages, the type of what is fixed, and the machine code of the four functions of this file."""
     stages = compiled_stages(task, update, force_torque, cells)
     kind = types.Tuple([stages.kind, STATE, array(force_torque, 2), BUFFERS, INFOS, F2])
-    fixed = FixedType(kind)
-    with patience(f"the control step of {task.name} with PyBullet", 2) as one_more:
-        begin = entry_point(_begin, (fixed, FixedType(ACTION), types.boolean))
-        one_more()
-        return stages, kind, begin, entry_point(_finish, (fixed, POSE, VECTOR, PAIR, WHOLE))
+    starts = array(START)
+    arguments = {
+        _begin: (FixedType(ACTION), types.boolean),
+        _finish: (POSE, VECTOR, PAIR, WHOLE),
+        _equip: (starts, VALUES_TYPE, array(HARDWARE), F3, cells_type(cells)),
+        _open: (starts, FRESH),
+    }
+    programs = []
+    with patience(f"the control step of {task.name} with PyBullet", len(arguments)) as one_more:
+        for function, others in arguments.items():
+            programs.append(entry_point(function, (FixedType(kind), *others)))
+            one_more()
+    return stages, kind, *programs

@@ -1,8 +1,8 @@
 """The stages of a control step of many environments: begin, move, measure, estimate, evaluate, report.
 
 Each is a program of its own, see `slipgym.envs.stages`: the planar engine calls them for blocks of rows,
-through pointers, PyBullet's simulation for one row, from Python. Functions that differ between tasks and
-estimators are called through pointers, too, so that one program serves all of them.
+through pointers, PyBullet's simulation for one row. Functions that differ between tasks and estimators are
+called through pointers, too, so that one program serves all of them.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from slipgym._numba.compiled import unlocked
+from slipgym._numba.compiled import pointed, unlocked
+from slipgym._numba.fixed import opened
 from slipgym.envs.actions import interpret
 from slipgym.envs.infos import write_infos
 from slipgym.envs.observation import combine, guess, observe
@@ -58,7 +59,7 @@ class BatchState(NamedTuple):
     """True friction now, columns as `estimated`, (n, 11)."""
 
 
-@unlocked
+@pointed
 def begin(script_wrist, state, action, lo, hi):
     """Take the actions of rows lo to hi, apply disturbances and script the wrist, before the bodies move.
 
@@ -77,7 +78,7 @@ def begin(script_wrist, state, action, lo, hi):
     script_wrist(state.episodes[rows], state.worlds[rows])
 
 
-@unlocked
+@pointed
 def measure_rows(state, force_torque, lo, hi):
     """Read the sensors of rows lo to hi.
 
@@ -94,7 +95,7 @@ def measure_rows(state, force_torque, lo, hi):
     )  # fmt: skip
 
 
-@unlocked
+@pointed
 def estimate(update, state, lo, hi):
     """Count the control step, and update the estimators of rows lo to hi, after `measure_rows`.
 
@@ -117,7 +118,7 @@ def estimate(update, state, lo, hi):
         )  # fmt: skip
 
 
-@unlocked
+@pointed
 def evaluate(evaluate_step, state, lo, hi):
     """Merge the estimates and evaluate the task in rows lo to hi.
 
@@ -135,7 +136,7 @@ def evaluate(evaluate_step, state, lo, hi):
     evaluate_step(state.episodes[rows], state.worlds[rows], state.fingers[rows], state.task_part[rows])
 
 
-@unlocked
+@pointed
 def look(state, buffers, lo, hi):
     """Write the observations of rows lo to hi.
 
@@ -155,12 +156,13 @@ def look(state, buffers, lo, hi):
 
 @unlocked
 def look_at(look_rows, rows, state, buffers):
-    """`look`, passed as a pointer, for some rows (m,)."""
+    """`look`, passed as a pointer, for some rows (m,) of a `Fixed` `BatchState`."""
+    arrays = opened(state)
     for i in rows:
-        look_rows(state, buffers, i, i + 1)
+        look_rows(arrays, buffers, i, i + 1)
 
 
-@unlocked
+@pointed
 def report(state, numbers, flags, lo, hi):
     """Write the infos of rows lo to hi.
 

@@ -27,11 +27,16 @@ class Info(NamedTuple):
     read: str
     """Expression for environment i in terms of the arguments of `write_infos`; {0} and {1} are replaced by an
     element's indices."""
+    fields: tuple[str, ...] = ()
+    """What the last index is replaced by, if these are not numbers."""
 
     @property
     def reads(self) -> list[str]:
         """An expression for every element, in C order."""
-        return [self.read.format(*index) for index in product(*map(range, self.shape))]
+        indices: list[Sequence[Any]] = [range(length) for length in self.shape]
+        if self.fields:
+            indices[-1] = self.fields
+        return [self.read.format(*index) for index in product(*indices)]
 
 
 NUMBERS = (
@@ -43,7 +48,8 @@ NUMBERS = (
         (2, 3),
         "-, -, m",
         "true (mu_s, mu_c, r) of each finger now",
-        "(pads[i, {0}].mu_s, pads[i, {0}].mu_c, pads[i, {0}].r)[{1}]",
+        "pads[i, {0}].{1}",
+        ("mu_s", "mu_c", "r"),
     ),
     Info(
         "estimated",

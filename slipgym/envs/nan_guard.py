@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from slipgym._numba.compiled import unlocked
+from slipgym._numba.compiled import pointed
 from slipgym.envs.dumps import write_dump
 from slipgym.envs.readings import finite_check, row_writer
 
@@ -104,7 +104,7 @@ sound = finite_check(
 )
 
 
-@unlocked
+@pointed
 def note(rows, at, state, i):
     """Write the time and the quantities of environment i.
 

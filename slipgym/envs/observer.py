@@ -134,7 +134,7 @@ class Observer:
         self.buffers, self._first = ObservationBuffers(*self._settings, out), out[0]
 
     def _look(self, rows: np.ndarray) -> None:
-        self._simulation.stages.look_at(rows, self._simulation.state, self.buffers)
+        self._simulation.stages.look_at(rows, self._simulation.fixed_state, self.buffers)
 
 
 def _friction_part(simulation: Simulation, source: str) -> np.ndarray:

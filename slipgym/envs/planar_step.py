@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numba import types
 
-from slipgym._numba.compiled import patience, unlocked
+from slipgym._numba.compiled import patience, pointed, unlocked
 from slipgym._numba.prefetch import fetch
 from slipgym.envs.nan_guard import sound
 from slipgym.envs.reset_kernels import HARDWARE, START, WARM_UP_STEPS, grip
@@ -35,7 +35,7 @@ BLOCK = 16
 to prefetch each array."""
 
 
-@unlocked
+@pointed
 def _move(state, cells, force_torque, lo, hi):
     """Move the bodies of rows lo to hi with the planar engine, and prefetch those of the next block.
 

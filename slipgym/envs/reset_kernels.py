@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipgym._numba.compiled import compiled, unlocked
+from slipgym._numba.compiled import compiled, pointed
 from slipgym.contact.anisotropy import friction_axes, stretch
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
@@ -141,7 +141,7 @@ def set_patches(starts, patches, pads, cells):
                 stretch(patch, pads[starts[k].row, f].axes)
 
 
-@unlocked
+@pointed
 def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
     """`equip` for the arrays of a `BatchState`, and two that are passed apart."""
     equip(
@@ -179,7 +179,7 @@ def show_open_gripper(update, state, force_torque, i):
         )  # fmt: skip
 
 
-@unlocked
+@pointed
 def open_episodes(update, starts, fresh, state, force_torque, terms):
     """Reset measured slip, estimators, commands and reward terms, after grip and sensors have settled.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +11,9 @@ from numba import from_dtype, types
 
 from estimator.estimate import ESTIMATE
 from slipgym._numba.calls import entry_point
-from slipgym._numba.compiled import patience
+from slipgym._numba.compiled import patience, unlocked
+from slipgym._numba.fixed import FixedType
+from slipgym._numba.generate import generate
 from slipgym._numba.pointers import Known, Pointer
 from slipgym.contact.records import PAD
 from slipgym.envs import control_step
@@ -72,8 +74,16 @@ UPDATE = types.void(_HEADS, _HEADS, types.float64, F2, F2, _TYPES.estimates)
 """Signature of an estimator's update, the same for all: its records are given by their first bytes."""
 
 
+@cache
+def _forward(count: int) -> Any:
+    """Compiled function that calls one, which is passed as a pointer, with so many arguments."""
+    names = [f"a{k}" for k in range(count)]
+    body, doc = [f"return function({', '.join(names)})"], "Call `function`."
+    return generate(f"_forward_{count}", ["function", *names], body, {}, unlocked, __file__, doc)
+
+
 class Program:
-    """A function compiled for one signature.
+    """A `pointed` function compiled for one signature.
 
     Args:
         function: The function.
@@ -82,13 +92,20 @@ class Program:
     Attributes:
         known: Type of the pointer.
         pointer: For other programs.
-        call: For Python.
     """
 
     def __init__(self, function: Any, signature: Any) -> None:
         function.compile(signature)
         self.known, self.pointer = Known(signature), Pointer(function, signature)
-        self.call: Callable[..., Any] = entry_point(function, signature.args)
+        self._arguments = signature.args
+
+    def call(self, *arguments: Any) -> Any:
+        """Call it from Python, which compiles a program for that at first."""
+        return self._entry(self.pointer, *arguments)
+
+    @cached_property
+    def _entry(self) -> Callable[..., Any]:
+        return entry_point(_forward(len(self._arguments)), (self.known, *self._arguments))
 
 
 def cells_type(ndim: int) -> Any:
@@ -133,12 +150,9 @@ class Stages:
         linked: Pointers to them, for programs.
         kind: Type of `linked`.
         calls: The programs by name, called from Python with all their arguments.
-        evaluate: From Python: `slipgym.envs.control_step.evaluate` without its first argument.
-        look_at: Likewise `look_at`.
+        look_at: `slipgym.envs.control_step.look_at` without its first argument.
         report: `slipgym.envs.control_step.report`.
         note: `slipgym.envs.nan_guard.note`.
-        equip: `slipgym.envs.reset_kernels.equip_rows`.
-        open: Likewise `slipgym.envs.reset_kernels.open_episodes`.
     """
 
     def __init__(self, task: Any, update: Any, force_torque: np.dtype, cells: int) -> None:
@@ -173,12 +187,9 @@ class Stages:
             )
             known = {name: program.known for name, program in programs.items()}
             self.kind = types.NamedTuple([*Linked(wrist, judge, learn, **known)], Linked)
-            look_at = Program(control_step.look_at, void(known["look"], WHOLES, STATE, BUFFERS))
-        self.evaluate = partial(programs["evaluate"].call, self.linked.evaluate_step)
-        self.look_at = partial(look_at.call, self.linked.look)
-        self.report, self.note = programs["report"].call, programs["note"].call
-        self.equip = programs["equip"].call
-        self.open = partial(programs["open"].call, self.linked.update)
+            look_at = entry_point(control_step.look_at, (known["look"], WHOLES, FixedType(STATE), BUFFERS))
+        self.look_at = partial(look_at, self.linked.look)
+        self.report, self.note = self.calls["report"], self.calls["note"]
 
     def program(self, function: Any, returned: Any, *arguments: Any) -> Callable[..., Any]:
         """Compile a function that takes `Linked` first; returns a function of its other arguments.
@@ -188,7 +199,8 @@ class Stages:
             returned: Type of its result.
             *arguments: Types of its other arguments.
         """
-        return partial(Program(function, returned(self.kind, *arguments)).call, self.linked)
+        function.compile(returned(self.kind, *arguments))
+        return partial(entry_point(function, (self.kind, *arguments)), self.linked)
 
 
 @cache
