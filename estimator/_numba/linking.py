@@ -25,19 +25,15 @@ from estimator._numba.quicker import quick_compiler
 from estimator._numba.references import without_counts_of_arguments
 
 
-def _share(module: Any) -> None:
-    """Let the functions of a module be defined in several modules that are linked."""
-    for function in module.functions:
-        if not function.is_declaration and function.linkage == binding.Linkage.external:
-            function.linkage = "linkonce_odr"
-
-
 class _PartLibrary(JITCodeLibrary):
     """Translated code of a function, neither optimised nor made executable."""
 
     def finalize(self) -> None:
         """Ends the translation."""
         self._finalize_dynamic_globals()
+        for function in self._final_module.functions:  # may be defined in several modules that are linked
+            if not function.is_declaration and function.linkage == binding.Linkage.external:
+                function.linkage = "linkonce_odr"
         self._finalized = True
         for library in self._linking_libraries:
             self._reload_init.update(library._reload_init)
@@ -50,10 +46,7 @@ class _PartLibrary(JITCodeLibrary):
     def own_module(self) -> Any:
         """The function's own code, to be linked."""
         self._ensure_finalized()
-        if self._shared_module is None:
-            _share(self._final_module)
-            self._shared_module = self._final_module
-        return self._shared_module
+        return self._final_module
 
     def _get_module_for_linking(self) -> Any:
         """The function's code and that of its parts, for callers that are compiled by numba itself."""

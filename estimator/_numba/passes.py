@@ -44,6 +44,7 @@ def _assigned(code: Any) -> Iterator[tuple[ir.Var, Any]]:
 
 
 _INLINED = functools, functools.reduce, numba, numba.stencil
+"""Globals of a function that may hold a call that the pass replaces."""
 
 
 def _inline_closures(own: Any) -> None:
@@ -58,7 +59,8 @@ def _inline_closures(own: Any) -> None:
             return
 
 
-_OF_ARRAYS = {"unary", "binop", "inplace_binop", "call", "arrayexpr"}
+_OF_ARRAYS = {"unary", "binop", "inplace_binop", "call"}
+"""Operations whose result, if it is an array, the pass may join with others in one loop."""
 
 
 def _rewrite_typed(own: Any, state: Any) -> bool:

@@ -7,10 +7,12 @@ from typing import TypeAlias
 import gymnasium as gym
 import numpy as np
 
+from slipgym._numba.fixed import Fixed
 from slipgym.envs import privileged
 from slipgym.envs.observation import DEVIATIONS, ObservationBuffers, columns, wrist_part
 from slipgym.envs.record_checks import check_array, check_finite
 from slipgym.envs.simulation import Simulation
+from slipgym.envs.stages import STATE
 from slipgym.tasks.task import Column
 
 Observation: TypeAlias = np.ndarray | dict[str, np.ndarray]
@@ -38,7 +40,7 @@ class Observer:
     def __init__(
         self, simulation: Simulation, friction_source: str, action_mode: str, mode: str, history: int
     ) -> None:
-        self._simulation = simulation
+        self._simulation, self._state = simulation, Fixed(simulation.state, STATE)
         self.history = history
         self.columns = columns(simulation.config, simulation.task, friction_source, action_mode, mode)
         low, high = _bounds(self.columns)
@@ -134,7 +136,7 @@ class Observer:
         self.buffers, self._first = ObservationBuffers(*self._settings, out), out[0]
 
     def _look(self, rows: np.ndarray) -> None:
-        self._simulation.stages.look_at(rows, self._simulation.fixed_state, self.buffers)
+        self._simulation.stages.look_at(rows, self._state, self.buffers)
 
 
 def _friction_part(simulation: Simulation, source: str) -> np.ndarray:

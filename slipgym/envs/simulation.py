@@ -11,7 +11,6 @@ import numpy as np
 
 import estimator as estimators
 from estimator.registry import specification
-from slipgym._numba.fixed import Fixed
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
 from slipgym.envs.control_step import BatchState
@@ -23,7 +22,7 @@ from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, Observ
 from slipgym.envs.randomizer import Randomizer
 from slipgym.envs.record_checks import damaged
 from slipgym.envs.simulation_state import SimulationState
-from slipgym.envs.stages import STATE, compiled_stages
+from slipgym.envs.stages import compiled_stages
 from slipgym.envs.state_checks import check_arrays, check_objects, check_plant
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
@@ -62,7 +61,6 @@ class Simulation(ABC):
         estimator_choice: Name and parameters of the estimators; `velocity_delay` only if the user gave it.
         step_time: Length of a control step [s].
         state: Views of these arrays, for compiled functions.
-        fixed_state: The same as compiled functions read it at an address.
         stages: Compiled stages of a control step.
     """
 
@@ -111,7 +109,6 @@ class Simulation(ABC):
             task_part=self.task_part,
             ground_truth=self.ground_truth,
         )
-        self.fixed_state = Fixed(self.state, STATE)
         self._hardware = hardware
         self._fresh = self.state.estimator_states[:2].copy(), learned.estimates[:2].copy()
         self._choose_programs()
