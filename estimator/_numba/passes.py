@@ -28,11 +28,19 @@ def _post_process(own: PostProcessor, emit_dels: bool = False, extend_lifetimes:
     if code.is_generator:
         _process(own, emit_dels, extend_lifetimes)
         return
-    code.blocks = canonicalize_cfg(code.blocks)
+    canonicalize(code)
     code.variable_lifetime = VariableLifetime(code.blocks)
     code.generator_info = None
     if emit_dels:
         own._insert_var_dels(extend_lifetimes=extend_lifetimes)
+
+
+def canonicalize(code: Any) -> None:
+    """Make loops have one edge back each, unless nothing has changed since they had."""
+    edges = {label: block.body[-1].get_targets() for label, block in code.blocks.items()}
+    if getattr(code, "_canonical", None) != edges:
+        code.blocks = canonicalize_cfg(code.blocks)
+        code._canonical = {label: block.body[-1].get_targets() for label, block in code.blocks.items()}
 
 
 def _assigned(code: Any) -> Iterator[tuple[ir.Var, Any]]:

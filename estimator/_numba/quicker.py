@@ -6,30 +6,25 @@ They apply while a program is compiled.
 from __future__ import annotations
 
 import hashlib
-import operator
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
-from types import NoneType
+from types import FunctionType, NoneType
 from typing import Any
 
-from numba.core import errors, ir, itanium_mangler, lowering, typeinfer, types
+from numba.core import base, errors, funcdesc, ir, itanium_mangler, lowering, typeinfer
 from numba.core.base import BaseContext
 from numba.core.targetconfig import TargetConfig
-from numba.core.types import Function, Record
-from numba.core.types.functions import BaseFunction
+from numba.core.types import Record
 from numba.core.typing import context
 
-from estimator._numba import passes, translation
+from estimator._numba import announcements, known, passes, structures, translation
 
 _compare = TargetConfig.__eq__
 _variables = ir.Inst._rec_list_vars
 _describe = Record.__repr__
-_resolve = BaseFunction.get_call_type
-_resolved: dict[Any, Any] = {}
-_attribute = context.BaseContext.resolve_getattr
-_attributes: dict[tuple[Any, Any, str], Any] = {}
 _identifier = itanium_mangler.mangle_identifier
+_name = funcdesc.default_mangler
 _size = BaseContext.get_abi_sizeof
 _sizes: dict[tuple[str, Any], int] = {}
 _errors: Any = errors
@@ -38,23 +33,26 @@ _in_context = _errors.new_error_context
 
 @contextmanager
 def quick_compiler() -> Iterator[None]:
-    """Numba's compiler with the shortcuts of this file, `passes` and `translation`."""
+    """Numba's compiler with the shortcuts of this file and of those that it imports."""
     shortcuts = (
         (TargetConfig, "__eq__", _same_options),
         (TargetConfig, "__hash__", _options_hash),
-        (BaseFunction, "get_call_type", _call_type),
         (ir.Inst, "_rec_list_vars", _list_variables),
         (Record, "__repr__", _record_text),
         (errors, "termcolor", _Plain),
         (itanium_mangler, "mangle_identifier", _short_identifier),
-        (context.BaseContext, "resolve_getattr", _attribute_type),
+        (funcdesc, "default_mangler", _short_name),
+        (base, "_has_loc", _has_place),
         (errors, "new_error_context", _Context),
         (lowering, "new_error_context", _Context),
         (typeinfer, "new_error_context", _Context),
         (BaseContext, "get_abi_sizeof", _size_of_type),
         (BaseContext, "refresh", _only_news(BaseContext.refresh)),
         (context.BaseContext, "refresh", _only_news(context.BaseContext.refresh)),
+        *announcements.SHORTCUTS,
         *passes.SHORTCUTS,
+        *known.SHORTCUTS,
+        *structures.SHORTCUTS,
         *translation.SHORTCUTS,
     )
     before = [getattr(owner, name) for owner, name, _ in shortcuts]
@@ -89,42 +87,17 @@ def _options_hash_of(kind: type[TargetConfig]) -> int:
     return hash(tuple(sorted(kind.options)))
 
 
-_ACCESS = {operator.getitem, operator.setitem}
-_ARRAYS = {types.Array, types.NestedArray}
-_PLAIN = {
-    *(types.Integer, types.IntegerLiteral, types.Float, types.Complex, types.Boolean, types.BooleanLiteral),
-    *(types.SliceType, types.Record),
-}
-"""Types of arguments that decide alone what a function of numba's gives."""
+_place = base._has_loc
+_PLACES = {"__wrapped__", "__signature__"}
+"""Attributes of a function that tell other arguments than its own."""
 
 
-def _is_plain(kind: Any) -> bool:
-    own = type(kind)
-    return own in _PLAIN or (own in (types.Tuple, types.UniTuple) and all(map(_is_plain, kind)))
-
-
-def _call_type(function: Any, context: Any, args: Any, kws: Any) -> Any:
-    """`BaseFunction.get_call_type`, which tries all that numba knows of an operator at each of its uses."""
-    if kws or type(function) is not Function:
-        return _resolve(function, context, args, kws)
-    plain = args[1:] if function.typing_key in _ACCESS and type(args[0]) in _ARRAYS else args
-    if not all(map(_is_plain, plain)):
-        return _resolve(function, context, args, kws)
-    key = function, args
-    if key not in _resolved:
-        _resolved[key] = _resolve(function, context, args, kws)
-    return _resolved[key]
-
-
-def _attribute_type(own: Any, kind: Any, attribute: str) -> Any:
-    """`BaseContext.resolve_getattr`, which asks all that numba knows for each use of a field of a record."""
-    if type(kind) is not Record:
-        return _attribute(own, kind, attribute)
-    key = own, kind, attribute
-    found = _attributes.get(key)
-    if found is None and (found := _attribute(own, kind, attribute)) is not None:
-        _attributes[key] = found
-    return found
+def _has_place(function: Any) -> bool:
+    """`_has_loc`, whether a function takes an argument `loc`, asked for each operation."""
+    if type(function) is not FunctionType or not _PLACES.isdisjoint(vars(function)):
+        return bool(_place(function))
+    code = function.__code__
+    return "loc" in code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
 
 
 LONG = 200
@@ -137,6 +110,18 @@ def _short_identifier(text: str, *rest: Any, **options: Any) -> str:
         text = f"long_{hashlib.sha256(text.encode()).hexdigest()[:32]}"
     name: str = _identifier(text, *rest, **options)
     return name
+
+
+SHOWN = 60
+"""Characters of a function's name, with the types of its arguments, that are kept of a long one."""
+
+
+def _short_name(name: str, argtypes: Any, *, abi_tags: Any = (), uid: Any = None) -> str:
+    """`default_mangler`: the name of a function stands in the text of each function that calls it."""
+    whole: str = _name(name, argtypes, abi_tags=abi_tags, uid=uid)
+    if len(whole) <= 2 * SHOWN:
+        return whole
+    return f"{whole[:SHOWN]}_{hashlib.sha256(whole.encode()).hexdigest()[:32]}"
 
 
 _NO_VARIABLES = {str, int, float, bool, NoneType, ir.Loc, ir.Const, ir.Global, ir.FreeVar}
@@ -221,9 +206,13 @@ def _only_news(refresh: Callable[[Any], None]) -> Callable[[Any], None]:
 
 def _declarations(own: Any) -> int:
     """Number of declarations in the registries of a context and of its typing context."""
-    count = sum(
-        len(getattr(registry, name))
-        for registry, loader in own._registries.items()
-        for name in loader.registry_items
-    )
+    registries = own._registries
+    if getattr(own, "_count_of_declared", -1) != len(registries):
+        own._count_of_declared = len(registries)
+        own._declared = [
+            getattr(registry, name)
+            for registry, loader in registries.items()
+            for name in loader.registry_items
+        ]
+    count = sum(map(len, own._declared))
     return count + (_declarations(own.typing_context) if isinstance(own, BaseContext) else 0)

@@ -16,11 +16,14 @@ from numba.core.runtime.context import NRTContext
 from numba.cpython import slicing
 from numba.np import arrayobj
 
+from estimator._numba import structures
+
 _delete = Lower.delvar
 _store = Lower.storevar
 _index = arrayobj.basic_indexing
 _populate = arrayobj.populate_array
 _pack = cgutils.pack_array
+_fix, _length, _stride = slicing.fix_slice, slicing.get_slice_length, slicing.fix_stride
 _counted: dict[tuple[Any, Any], bool] = {}
 _LENGTH = ir.IntType(64)
 
@@ -28,8 +31,8 @@ _LENGTH = ir.IntType(64)
 def _is_counted(models: Any, kind: Any) -> bool:
     """Whether values of a type hold references that numba counts."""
     key = models, kind
-    if key not in _counted:
-        _counted[key] = models[kind].contains_nrt_meminfo()
+    if key not in _counted:  # an array in a record is a part of it, of which numba counts nothing
+        _counted[key] = type(kind) is not types.NestedArray and models[kind].contains_nrt_meminfo()
     return _counted[key]
 
 
@@ -37,6 +40,8 @@ def _counted_parts(own: NRTContext, builder: Any, kind: Any, value: Any) -> list
     """`NRTContext.get_meminfos`, which takes a value apart to its last number; here only what is counted."""
     models = own._context.data_model_manager
     model = models[kind]
+    if not _is_counted(models, kind):
+        return []
     found = [(kind, model.get_nrt_meminfo(builder, value))] if model.has_nrt_meminfo() else []
     for part, getter in model.traverse(builder):
         if _is_counted(models, part):
@@ -92,7 +97,15 @@ def _basic_indexing(
         place = term if place is None else builder.add(place, term)
         if axis:
             step = shape[axis] if step is None else _product(builder, step, shape[axis])
-    return builder.gep(array.data, [place]), [], []
+    return builder.gep(_field(builder, array, "data"), [place]), [], []
+
+
+def _field(builder: Any, array: Any, name: str) -> Any:
+    """Field of an array's record, of its value if that was not changed."""
+    value = structures.given(array)
+    if value is None:
+        return getattr(array, name)
+    return builder.extract_value(value, array._datamodel.get_field_position(name))
 
 
 class _Shape:
@@ -111,6 +124,10 @@ class _Shape:
     def __getitem__(self, axis: int) -> Any:
         if self._known is not None:
             return _LENGTH(self._known[axis])
+        value = structures.given(self._array)
+        if value is not None:
+            place = self._array._datamodel.get_field_position("shape")
+            return self._builder.extract_value(value, [place, axis])
         pointer = cgutils.gep_inbounds(self._builder, self._array._get_ptr_by_name("shape"), 0, axis)
         length = self._builder.load(pointer)
         arrayobj.mark_positive(self._builder, length)
@@ -125,6 +142,33 @@ def _product(builder: Any, one: Any, other: Any) -> Any:
     if _is_number(one) and _is_number(other):
         return one.type(one.constant * other.constant)
     return builder.mul(one, other)
+
+
+def _fix_slice(builder: Any, slice: Any, size: Any) -> None:
+    """`fix_slice`, which puts the bounds of a slice in order, without a branch for negative steps."""
+    if slice._fe_type.has_step:
+        _fix(builder, slice, size)
+        return
+    nothing = size.type(0)
+    for name in ("start", "stop"):
+        bound = slicing.fix_index(builder, getattr(slice, name), size)
+        bound = builder.select(builder.icmp_signed("<", bound, nothing), nothing, bound)
+        bound = builder.select(builder.icmp_signed(">=", bound, size), size, bound)
+        setattr(slice, name, bound)
+
+
+def _slice_length(builder: Any, slicestruct: Any) -> Any:
+    """`get_slice_length`, which divides by the step."""
+    if slicestruct._fe_type.has_step:
+        return _length(builder, slicestruct)
+    length = builder.sub(slicestruct.stop, slicestruct.start)
+    nothing = length.type(0)
+    return builder.select(builder.icmp_signed("<=", length, nothing), nothing, length)
+
+
+def _fix_stride(builder: Any, slice: Any, stride: Any) -> Any:
+    """`fix_stride`."""
+    return _stride(builder, slice, stride) if slice._fe_type.has_step else stride
 
 
 def _pack_array(builder: Any, values: Any, ty: Any = None) -> Any:
@@ -159,12 +203,40 @@ def _populate_array(
     return array
 
 
+def _write_block(own: ir.Block, lines: list[str]) -> None:
+    """`Block.descr`, which keeps the text of each instruction."""
+    lines.append(f"{own._format_name()}:\n")
+    for one in own.instructions:
+        parts = ["  "] if isinstance(one.type, ir.VoidType) else ["  ", one.get_reference(), " = "]
+        one.descr(parts)
+        lines.append("".join(parts).rstrip() + "\n")
+
+
+def _name_value(own: ir.values.NamedValue, name: str) -> None:
+    """`NamedValue._set_name`, by way of four functions for each instruction."""
+    scope = own.parent.scope
+    if own.deduplicate_name:
+        used, first = scope._useset, name
+        while name in used:
+            scope._basenamemap[first] = count = scope._basenamemap[first] + 1
+            name = f"{first}.{count}"
+        used.add(name)
+        own._name = name
+    else:
+        own._name = scope.register(name)
+
+
 SHORTCUTS: tuple[tuple[Any, str, Any], ...] = (
     (NRTContext, "get_meminfos", _counted_parts),
     (Lower, "delvar", _delete_variable),
     (Lower, "storevar", _store_variable),
     (arrayobj, "basic_indexing", _basic_indexing),
     (arrayobj, "populate_array", _populate_array),
+    (slicing, "fix_slice", _fix_slice),
+    (slicing, "get_slice_length", _slice_length),
+    (slicing, "fix_stride", _fix_stride),
     (cgutils, "pack_array", _pack_array),
+    (ir.Block, "descr", _write_block),
+    (ir.values.NamedValue, "_set_name", _name_value),
 )
 """What is replaced: owner, name, replacement."""

@@ -48,7 +48,7 @@ def test_a_pass_is_charged_without_those_within_it(monkeypatch):
 
 
 def test_the_table_states_what_is_required():
-    step = {"seconds": 10.0, **dict.fromkeys(PARTS, 2.0), "functions": ["m.f", "m.f", "m.g"]}
+    step = {"seconds": 9.0, "recorded": 10.0, **dict.fromkeys(PARTS, 2.0), "functions": ["m.f", "m.f", "m.g"]}
     figures = {figure.name: figure for figure in first_use._figures("batch", [step, step, step], 20.0)}
     assert figures["first step, batch: CPU time"].met
     assert figures["first step, batch: imports, hashing, storing, the step"].value == pytest.approx(2.0)

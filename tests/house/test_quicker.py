@@ -1,12 +1,15 @@
 """Shortcuts of numba's compiler compute what the originals do."""
 
+import functools
 import gc
+import math
 
+import llvmlite.ir
 import numba
 import numpy as np
 import pytest
 from numba import from_dtype
-from numba.core import compiler, errors, types
+from numba.core import base, compiler, errors, lowering, types
 from numba.core.registry import cpu_target
 from numba.extending import intrinsic, overload
 
@@ -97,6 +100,58 @@ def test_what_is_declared_while_programs_are_compiled_is_found():
 
     assert later(2.0) == 4.0 + 20.0 + 3.0
     assert numba.njit(lambda x: double(x) + tenfold(x))(2.0) == 24.0
+
+
+def _placed(x, *, loc=None):
+    return x, loc
+
+
+def _unplaced(x):
+    loc = x
+    return loc
+
+
+_renamed = functools.wraps(_placed)(lambda *x, **y: _placed(*x, **y))
+
+
+@pytest.mark.parametrize("function", [_placed, _unplaced, _renamed, functools.partial(_placed, 1), len])
+def test_whether_a_function_takes_a_place_is_found(function):
+    with quick_compiler():
+        found = base._has_loc(function)
+    assert found == base._has_loc(function) == (function not in (_unplaced, len))
+
+
+@pytest.mark.parametrize(
+    "value", [np, math.sin, len, float, np.float32, 1.5, -0.0, True, 3, 2**40, "a", np.add]
+)
+def test_types_of_values_are_the_same(value):
+    context = cpu_target.typing_context
+    context.refresh()
+    expected = context.resolve_value_type(value), lowering._lit_or_omitted(value)
+    with quick_compiler():
+        for _ in range(2):
+            assert (context.resolve_value_type(value), lowering._lit_or_omitted(value)) == expected
+
+
+def test_a_text_for_llvm_is_the_same():
+    def text():
+        module = llvmlite.ir.Module("m")
+        number = llvmlite.ir.DoubleType()
+        function = llvmlite.ir.Function(module, llvmlite.ir.FunctionType(number, [number, number]), "f")
+        builder = llvmlite.ir.IRBuilder(function.append_basic_block("entry block"))
+        one, other = function.args
+        place = builder.alloca(number, name="x")
+        with builder.if_else(builder.fcmp_ordered("<", one, other)) as (then, otherwise):
+            for branch, value in ((then, one), (otherwise, other)):
+                with branch:
+                    builder.store(builder.fadd(value, one, name="x", flags=["fast"]), place)
+        builder.ret(builder.fmul(builder.load(place, name="x"), other))
+        return str(module)
+
+    expected = text()
+    with quick_compiler():
+        assert text() == expected
+    assert expected.count("x.") > 5
 
 
 class _Ring:
