@@ -10,7 +10,7 @@ import math
 
 from estimator._numba.caching import fused
 from estimator._numba.memory import matrix
-from estimator.augmented.load import limit
+from estimator.augmented.load import confine, limit
 from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict_at
 
 ITERATIONS = 4
@@ -283,7 +283,7 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
         before_mu, before_r = proposed[MU], proposed[R]
         for j in range(STATES):
             proposed[j] = x[j] + crossed[0, j] * z_1 + crossed[1, j] * z_2 + crossed[2, j] * z_3
-        limit(proposed, state.limits)
+        confine(proposed, state.limits)
         settled = _settled(proposed[MU] - before_mu, covariance[MU, MU])
         settled &= _settled(proposed[R] - before_r, covariance[R, R])
         if settled and (iteration > 0 or fresh <= BARELY):
@@ -292,4 +292,5 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
         return False, 0.0, 0.0, 0.0
     if not _reduce(x, covariance, w, crossed, proposed):
         return False, 0.0, 0.0, 0.0
+    limit(x, covariance, state.limits)
     return True, squared, score, variance

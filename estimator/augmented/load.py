@@ -35,12 +35,39 @@ HEAVIER = 0.25
 
 
 @njit(error_model="numpy")
-def limit(x, limits):
-    """Keeps ln mu_c, ln r and the exponents in their bounds."""
+def limit(x, covariance, limits):
+    """Keeps ln mu_c, ln r and the exponents in their bounds.
+
+    An exponent beyond its bound moves there with the states that its covariance ties to it, as a measurement
+    without noise would move them (D. Simon, Kalman filtering with state constraints, IET Control Theory &
+    Applications 4(8), 2010, projection).
+
+    Args:
+        x: (12,) states, changed in place.
+        covariance: (12, 12).
+        limits: (8,) bounds.
+    """
+    _project(x, covariance, FALLS, min(max(x[FALLS], limits[4]), limits[5]))
+    _project(x, covariance, GROWS, min(max(x[GROWS], limits[6]), limits[7]))
+    x[FALLS] = min(max(x[FALLS], limits[4]), limits[5])
+    confine(x, limits)
+
+
+@njit(error_model="numpy")
+def confine(x, limits):
+    """Keeps ln mu_c and ln r in their bounds."""
     x[MU] = min(max(x[MU], limits[0]), limits[1])
     x[R] = min(max(x[R], limits[2]), limits[3])
-    x[FALLS] = min(max(x[FALLS], limits[4]), limits[5])
-    x[GROWS] = min(max(x[GROWS], limits[6]), limits[7])
+
+
+@njit(error_model="numpy")
+def _project(x, covariance, j, bounded):
+    """Moves state j to a value, and the others with it."""
+    if bounded != x[j]:
+        share = (bounded - x[j]) / covariance[j, j]
+        for k in range(STATES):
+            x[k] += share * covariance[j, k]
+        x[j] = bounded
 
 
 @njit(error_model="numpy")

@@ -118,7 +118,7 @@ def _take(state, p, i, speed):
             return math.nan
     value, before = x[MU], covariance[MU, MU]
     correct(x, covariance, crossed, gain, innovation)
-    limit(x, state.limits)
+    limit(x, state.covariance, state.limits)
     follow(state, p, value, before)
     score = innovation / math.sqrt(variance + noise)
     count_slip(state, True, score, variance + noise, share, 1.0)

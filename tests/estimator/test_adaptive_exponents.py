@@ -5,9 +5,9 @@ import pytest
 from scipy.stats import norm
 
 import estimator
-from estimator.augmented.load import exponents
+from estimator.augmented.load import exponents, limit
 from estimator.augmented.parameters import AdaptiveParameters
-from estimator.augmented.slip_law import FALLS, GROWS
+from estimator.augmented.slip_law import FALLS, GROWS, STATES
 from slipgym.validation.records import RATE
 
 P = AdaptiveParameters()
@@ -97,3 +97,41 @@ def test_a_hard_pad_and_rubber_are_told_apart():
     assert rubber[0] == pytest.approx(1.0, abs=1.5 * rubber[1])
     assert rubber[0] < 1.3  # a hard pad's friction would be 1.6 times as large
     assert rubber[1] > hard[1]
+
+
+def limited(x, covariance, limits=(-9.0, 9.0, -9.0, 9.0, 0.0, 0.5, 0.0, 1.0 / 3.0)):
+    """`limit`, of a copy of the states."""
+    moved = np.array(x)
+    limit(moved, np.ascontiguousarray(covariance), np.array(limits))
+    return moved
+
+
+@pytest.mark.parametrize(
+    ("exponent", "beyond", "bound"),
+    [(FALLS, -0.07, 0.0), (FALLS, 0.6, 0.5), (GROWS, -0.2, 0.0), (GROWS, 0.5, 1.0 / 3.0)],
+)
+def test_an_exponent_beyond_its_bound_takes_the_other_states_along(exponent, beyond, bound):
+    """The mean of all states, if the exponent is known to be at the bound."""
+    rng = np.random.default_rng(exponent)
+    root = 0.1 * rng.normal(size=(STATES, STATES))
+    covariance, x = root @ root.T, rng.normal(size=STATES)
+    x[FALLS] = x[GROWS] = 0.1
+    x[exponent] = beyond
+    others = [j for j in range(STATES) if j != exponent]
+    known = np.linalg.inv(covariance)
+    expected = x.copy()
+    expected[exponent] = bound
+    expected[others] -= np.linalg.solve(
+        known[np.ix_(others, others)], known[others, exponent] * (bound - beyond)
+    )
+    other = FALLS + GROWS - exponent
+    found = limited(x, covariance)
+    rest = [j for j in range(STATES) if j != other]
+    assert found[rest] == pytest.approx(expected[rest], rel=1e-6)
+
+
+def test_within_the_bounds_nothing_moves():
+    rng = np.random.default_rng(0)
+    root, x = rng.normal(size=(STATES, STATES)), rng.normal(size=STATES)
+    x[FALLS], x[GROWS] = 0.2, 0.1
+    assert np.array_equal(limited(x, root @ root.T), x)

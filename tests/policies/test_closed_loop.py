@@ -45,3 +45,14 @@ def test_pooled_shares_count_a_task_by_its_episodes_and_its_own_controller_only(
     assert found.loc["mu_c", ["episodes", "in 1 sd", "in 2 sd"]].tolist() == [40, 80.0, 100.0]
     assert found.loc["mu_c", "± in 1 sd"] == pytest.approx(100.0 * np.sqrt(10 * 0.25 + 30 * 0.09) / 40)
     assert np.isnan(found.loc["mu_s", "in 1 sd"])
+
+
+@pytest.mark.slow
+def test_adaptive_finds_the_friction_of_planar_slip_on_either_surface():
+    """Slips of all directions at 1.5 to 5 N tell it at the 20 N that hold the object afterwards."""
+    for contact, error in (("ellipsoid", 6.0), ("disc", 3.0)):
+        row = played(
+            "slipgym/PlanarSlip-v0", 48, 0, estimator="adaptive", sensors="realistic", contact=contact
+        )
+        assert row["mu_c seen error"] < error
+        assert row["r seen error"] < 6.0
