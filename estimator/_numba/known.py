@@ -75,6 +75,7 @@ def _value_type(own: Any, value: Any) -> Any:
 
 
 _LITERAL = {int, bool, str}
+"""Types of constants that are types of their own."""
 
 
 def _literal_type(value: Any) -> Any:

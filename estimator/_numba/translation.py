@@ -213,7 +213,7 @@ def _write_block(own: ir.Block, lines: list[str]) -> None:
 
 
 def _name_value(own: ir.values.NamedValue, name: str) -> None:
-    """`NamedValue._set_name`, by way of four functions for each instruction."""
+    """`NamedValue._set_name`, which calls four functions for each instruction."""
     scope = own.parent.scope
     if own.deduplicate_name:
         used, first = scope._useset, name
