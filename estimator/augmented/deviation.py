@@ -3,9 +3,10 @@
 import math
 
 from estimator._numba.caching import njit
-from estimator.augmented.load import exponents
+from estimator._numba.memory import matrix
+from estimator.augmented.exponents import by_groups, exponents, group_weights
 from estimator.augmented.model_error import START, doubt_of, of_slips
-from estimator.augmented.slip_law import FALLS, GROWS, MU, SHAPE, ZERO, R
+from estimator.augmented.slip_law import FALLS, GROWS, MU, STATES, R
 from estimator.augmented.static_friction import order
 from estimator.estimate import confidence_of
 from estimator.sample import clamped
@@ -16,34 +17,45 @@ EVERY = 8
 
 
 @njit(error_model="numpy")
-def _squared(state, weights, hidden, mu, r):
-    """Variance of mu ln mu_c + r ln r: of the filter, and from errors larger than it assumes.
-
-    The error that a linear filter makes for a unit error of the prior mean of another state is the covariance
-    with that state over its prior variance.
+def _condition(covariance, known):
+    """Rows of ln mu_c and ln r in the filter's covariance if both exponents were known.
 
     Args:
-        state: Record with `covariance` and `misfit`.
-        weights: Of the squared covariances with zero error, tilt, CoP and shape.
-        hidden: What is added.
-        mu: Factor of ln mu_c.
-        r: Factor of ln r.
+        covariance: (12, 12).
+        known: Output (2, 12).
+
+    Returns:
+        Change of ln mu_c for one of its exponent and of that of r, and the same of ln r.
     """
-    first, second = state.covariance[MU], state.covariance[R]
-    filtered = mu * mu * first[MU] + 2.0 * mu * r * first[R] + r * r * second[R]
-    square = hidden + max(state.misfit, state.scatter, 1.0) * max(filtered, 0.0)
-    for group in range(3):
-        at = ZERO + 2 * group
-        a, b = mu * first[at] + r * second[at], mu * first[at + 1] + r * second[at + 1]
-        square += weights[group] * (a * a + b * b)
-    a = mu * first[SHAPE] + r * second[SHAPE]
-    return square + weights[3] * a * a
+    a, b, c = covariance[FALLS, FALLS], covariance[FALLS, GROWS], covariance[GROWS, GROWS]
+    scale = 1.0 / (a * c - b * b)
+    mu_n = scale * (c * covariance[MU, FALLS] - b * covariance[MU, GROWS])
+    mu_b = scale * (a * covariance[MU, GROWS] - b * covariance[MU, FALLS])
+    r_n = scale * (c * covariance[R, FALLS] - b * covariance[R, GROWS])
+    r_b = scale * (a * covariance[R, GROWS] - b * covariance[R, FALLS])
+    for j in range(STATES):
+        falls, grows = covariance[FALLS, j], covariance[GROWS, j]
+        known[0, j] = covariance[MU, j] - mu_n * falls - mu_b * grows
+        known[1, j] = covariance[R, j] - r_n * falls - r_b * grows
+    return mu_n, mu_b, r_n, r_b
 
 
 @njit(error_model="numpy")
-def _share(state, i, j):
-    """Change of state i that goes with a change of state j."""
-    return state.covariance[i, j] / state.covariance[j, j]
+def _squared(state, known, weights, mu, r):
+    """Variance of mu ln mu_c + r ln r with known exponents: of the filter, and of larger errors.
+
+    Args:
+        state: Record with `misfit` and `scatter`.
+        known: (2, 12), from `_condition`.
+        weights: From `group_weights`.
+        mu: Factor of ln mu_c.
+        r: Factor of ln r.
+    """
+    first, second = known[0], known[1]
+    filtered = mu * mu * first[MU] + 2.0 * mu * r * first[R] + r * r * second[R]
+    square = max(state.misfit, state.scatter, 1.0) * max(filtered, 0.0)
+    larger = mu * mu * by_groups(weights, first, first) + r * r * by_groups(weights, second, second)
+    return square + larger + 2.0 * mu * r * by_groups(weights, first, second)
 
 
 @njit(error_model="numpy")
@@ -58,23 +70,19 @@ def deviate(state, p, changed):
     if not changed and state.samples % EVERY != 0:
         return
     of_mu_c, of_mu_s = 0.0, 0.0
-    n, of_n, b, of_b = exponents(state, p)
+    weights, known = matrix(1, 4)[0], matrix(2, STATES)
+    group_weights(p, weights)
+    n, b, of_n, of_both, of_b = exponents(state, p, weights)
     if state.updates_mu_c > 0:
-        share, step = _share(state, MU, FALLS), n - state.x[FALLS]
-        state.mu_c = clamped(math.exp(state.x[MU] + share * step), p.mu_min, p.mu_max)
-        of_fall = share * share * (of_n - state.covariance[FALLS, FALLS])
-        share, step = _share(state, R, GROWS), b - state.x[GROWS]
+        mu_n, mu_b, r_n, r_b = _condition(state.covariance, known)
+        off_n, off_b = n - state.x[FALLS], b - state.x[GROWS]
+        state.mu_c = clamped(math.exp(state.x[MU] + mu_n * off_n + mu_b * off_b), p.mu_min, p.mu_max)
         if state.updates_r > 0:
-            state.r = clamped(math.exp(state.x[R] + share * step), p.r_min, p.r_max)
-        of_growth = share * share * (of_b - state.covariance[GROWS, GROWS])
-        assumed = p.caution * p.caution
-        factor, normal = (1.0 - assumed) / (assumed * assumed), 1.0 / state.smooth[3]
-        weights = (
-            factor / (p.sd_zero * p.sd_zero),
-            factor / (p.sd_tilt * p.sd_tilt),
-            factor / (p.sd_cop * p.sd_cop),
-            factor / (p.sd_shape * p.sd_shape),
-        )
+            state.r = clamped(math.exp(state.x[R] + r_n * off_n + r_b * off_b), p.r_min, p.r_max)
+        of_fall = mu_n * mu_n * of_n + 2.0 * mu_n * mu_b * of_both + mu_b * mu_b * of_b
+        of_growth = r_n * r_n * of_n + 2.0 * r_n * r_b * of_both + r_b * r_b * of_b
+        of_either = mu_n * r_n * of_n + (mu_n * r_b + mu_b * r_n) * of_both + mu_b * r_b * of_b
+        normal = 1.0 / state.smooth[3]
         hidden = (0.5 * state.leverage) ** 2 + p.sd_gain * p.sd_gain
         of_normal = state.variance_normal * normal * normal
         slips = of_slips(state, p)
@@ -82,13 +90,14 @@ def deviate(state, p, changed):
         surface = doubt + slips + p.sd_surface * p.sd_surface
         of_mu_c = state.mu_c * state.mu_c * surface
         of_torque = state.variance_torque * (normal / (state.mu_c * state.r)) ** 2
-        square = _squared(state, weights, hidden + of_normal + surface + of_fall, 1.0, 0.0)
+        square = hidden + of_normal + surface + of_fall + _squared(state, known, weights, 1.0, 0.0)
         state.sd_mu_c = state.mu_c * math.sqrt(square)
         state.confidence_mu_c = _confidence(square)
-        square = _squared(state, weights, hidden + of_normal + of_torque + surface, 1.0, 1.0)
+        square = hidden + of_normal + of_torque + surface + of_fall + 2.0 * of_either + of_growth
+        square += _squared(state, known, weights, 1.0, 1.0)
         state.sd_lever = state.mu_c * state.r * math.sqrt(square)
         if state.updates_r > 0:
-            square = _squared(state, weights, hidden + of_torque + slips + of_growth, 0.0, 1.0)
+            square = hidden + of_torque + slips + of_growth + _squared(state, known, weights, 0.0, 1.0)
             state.sd_r = state.r * math.sqrt(square)
             state.confidence_r = _confidence(square)
     if state.events_mu_s > 0:

@@ -11,7 +11,8 @@ import math
 from estimator._numba.caching import fused
 from estimator._numba.memory import matrix
 from estimator.augmented.load import confine, limit
-from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict_at
+from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict
+from estimator.augmented.stribeck import static_friction, uncertain
 
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
@@ -33,7 +34,7 @@ KNOWN = 0.01
 
 
 @fused
-def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin):
+def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin, of_law):
     """Covariance (11, 12, 13, 22, 23, 33) of the measured f_x, f_y, tau about the law.
 
     Args:
@@ -45,8 +46,9 @@ def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin):
         f_n: Normal force [N].
         of_speed: Variance of v_x and of v_y.
         of_spin: Variance of omega.
+        of_law: Variance of the logarithm of all three by the law.
     """
-    normal = (p.sd_normal / f_n) ** 2
+    normal = (p.sd_normal / f_n) ** 2 + of_law
     law = p.law_error * p.law_error
     force = p.sd_force * p.sd_force + law * (f_x * f_x + f_y * f_y)
     torque = p.sd_torque * p.sd_torque + law * tau * tau
@@ -235,17 +237,21 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
     h, crossed, by_twist = matrix(3, STATES), matrix(3, STATES), matrix(3, 3)
     proposed = matrix(1, STATES)[0]
     f_n = wrench[2]
-    uncertain = covariance[0, 0] > KNOWN or covariance[1, 1] > KNOWN
+    unsure = covariance[0, 0] > KNOWN or covariance[1, 1] > KNOWN
     for j in range(STATES):
         proposed[j] = x[j]
     squared, score, variance = 0.0, 0.0, 0.0
     v_x, v_y, omega, n = state.smooth[0], state.smooth[1], state.smooth[2], state.smooth[3]
-    more, again = f_n / n, uncertain or fresh > BARELY
+    more, again = f_n / n, unsure or fresh > BARELY
+    static, seen, of_mu_s = static_friction(state, p)
     for iteration in range(ITERATIONS if again else 1):
-        mu, r = math.exp(proposed[MU]), math.exp(proposed[R])
-        f_x, f_y, tau = predict_at(proposed, mu, r, sign, n, v_x, v_y, omega, True, h, by_twist)
+        f_x, f_y, tau, of_static, slows = predict(
+            p, proposed, static, seen, sign, n, v_x, v_y, omega, h, by_twist
+        )
+        of_law = uncertain(p, of_mu_s, of_static, slows)
+        dry = 1.0 / (1.0 - seen * of_static)  # friction over its derivative by ln mu_c
         n_11, n_12, n_13, n_22, n_23, n_33 = measurement_noise(
-            p, by_twist, h[0, MU], h[1, MU], h[2, MU], n, of_speed, of_spin
+            p, by_twist, dry * h[0, MU], dry * h[1, MU], dry * h[2, MU], n, of_speed, of_spin, of_law
         )
         y_1 = wrench[0] - proposed[ZERO] - more * (f_x - proposed[ZERO])
         y_2 = wrench[1] - proposed[ZERO + 1] - more * (f_y - proposed[ZERO + 1])

@@ -6,10 +6,6 @@ friction limit surfaces for soft fingers, IJRR 18(9), 1999); friction in proport
 gives n of 1/3, silicone on PLA 0.31. ln mu_c and ln r of the filter are those at the normal force
 `state.load`, which follows the measured one. The step from one force to another is linear in the states, so
 the covariance with the exponents carries their uncertainty to the new force, and back without a loss.
-
-Many pads are hard: both exponents are 0. Noise would make those of the filter small positive numbers, which
-are a large error of mu_c at a load far from that of the slips. So what is published is the mean of two
-hypotheses, a hard pad and one of rubber, by how probable what the slips say of the exponents is on either.
 """
 
 import math
@@ -28,8 +24,6 @@ OF_THREE = 1.5**0.5
 """Deviation of a sample less the mean of two others, over that of a sample."""
 MOST_FALL, MOST_GROWTH = 0.5, 1.0 / 3.0
 """Largest exponents of mu_c and of r."""
-CERTAIN = 100.0
-"""Logarithm of odds beyond which they are not followed."""
 HEAVIER = 0.25
 """Change of the logarithm of the normal force from which a held load says something about the exponent."""
 
@@ -168,48 +162,3 @@ def _narrow(x, covariance, j, variance):
     for k in range(STATES):
         crossed[k] = covariance[j, k]
     correct(x, covariance, crossed, (before - variance) / (before * before), 0.0)
-
-
-@njit(error_model="numpy")
-def exponents(state, p):
-    """Exponents of mu_c and of r that are published, with their variances.
-
-    Args:
-        state: Record with `x`, `covariance` and `fall_error`.
-        p: Parameters.
-
-    Returns:
-        Exponent with which mu_c falls, its variance, exponent with which r grows, its variance.
-    """
-    n, of_n = _said(state, FALLS, p.load_exponent0, p.sd_load_exponent)
-    b, of_b = _said(state, GROWS, p.radius_exponent0, p.sd_radius_exponent)
-    evidence = _evidence(n, of_n, p.load_exponent0, p.sd_load_exponent)
-    evidence += _evidence(b, of_b, p.radius_exponent0, p.sd_radius_exponent)
-    rubber = 1.0 / (1.0 + p.hard / (1.0 - p.hard) * math.exp(min(evidence, CERTAIN)))
-    n, of_n = _mixed(rubber, n, of_n, p.load_exponent0, p.sd_load_exponent)
-    b, of_b = _mixed(rubber, b, of_b, p.radius_exponent0, p.sd_radius_exponent)
-    return n, of_n, b, of_b
-
-
-@njit(error_model="numpy")
-def _said(state, j, expected, spread):
-    """What the data alone say of exponent j, and its variance with the error that remains."""
-    before, now = 1.0 / (spread * spread), 1.0 / state.covariance[j, j]
-    information = max(now - before, 1e-6 * before)
-    return (now * state.x[j] - before * expected) / information, 1.0 / information + state.fall_error
-
-
-@njit(error_model="numpy")
-def _evidence(said, variance, expected, spread):
-    """Logarithm of how probable what the data say is if the exponent is 0, over that if it has its prior."""
-    both = variance + spread * spread
-    off = said - expected
-    return 0.5 * (math.log(both / variance) + off * off / both - said * said / variance)
-
-
-@njit(error_model="numpy")
-def _mixed(rubber, said, variance, expected, spread):
-    """Mean and variance of an exponent that has its prior with the probability `rubber`, and else is 0."""
-    weight = spread * spread / (spread * spread + variance)
-    mean = expected + weight * (said - expected)
-    return rubber * mean, rubber * (weight * variance + (1.0 - rubber) * mean * mean)

@@ -26,6 +26,13 @@ class AdaptiveParameters(NoiseParameters):
     sd_viscosity: float = parameter(
         0.1, "Spread of the viscous friction before it is seen.", "(0, inf)", "s/m"
     )
+    stribeck_velocity: float = parameter(
+        1e-3, "Speed v_s below which a slip has a part of static friction.", "(0, inf)", "m/s"
+    )
+    sd_log_stribeck: float = parameter(0.5, "Standard deviation of ln v_s.", "[0, inf)")
+    sd_log_ratio: float = parameter(
+        0.2, "Standard deviation of ln (mu_s / mu_c) about that of the start values.", "(0, inf)"
+    )
     sd_zero: float = parameter(0.13, "Spread of the zero error of each force.", "(0, inf)", "N")
     sd_zero_torque: float = parameter(1e-3, "Spread of the zero error of the torque.", "(0, inf)", "N m")
     walk_force: float = parameter(

@@ -16,6 +16,7 @@ import numpy as np
 
 from estimator._numba.caching import fused
 from estimator._numba.uncompiled import uncompiled
+from estimator.augmented.stribeck import level
 from estimator.limit_surface.disc import DISC_RADIUS, disc_friction
 
 MU, R, SIGMA, ZERO, TILT, COP, SHAPE, FALLS, GROWS = 0, 1, 2, 3, 5, 7, 9, 10, 11
@@ -63,33 +64,26 @@ def surface(s, shape):
 
 
 @fused
-def predict(x, sign, f_n, v_x, v_y, omega, by_state, by_twist):
-    """`predict_at` with mu_c and r from the states, and all derivatives."""
-    return predict_at(
-        x, math.exp(x[MU]), math.exp(x[R]), sign, f_n, v_x, v_y, omega, True, by_state, by_twist
-    )
-
-
-@fused
-def predict_at(x, mu, r, sign, f_n, v_x, v_y, omega, complete, by_state, by_twist):
+def predict(p, x, static, seen, sign, f_n, v_x, v_y, omega, by_state, by_twist):
     """Measured (f_x, f_y, tau) [N, N, N m] that the states explain.
 
     Args:
+        p: Parameters.
         x: (12,) states.
-        mu: mu_c of the states.
-        r: r of the states [m].
+        static: Friction of slow slips, see `stribeck.static_friction`.
+        seen: As static.
         sign: 1 if the wrench is that on the finger, -1 if on the object.
         f_n: Normal force [N].
         v_x: Slip velocity at the assumed centre of pressure [m/s].
         v_y: As v_x.
         omega: Slip rate [rad/s].
-        complete: Whether all of `by_state` is wanted, or the derivative by ln mu_c alone.
         by_state: Output (3, 12), derivatives by x. Those by the exponents are 0 and not written.
         by_twist: Output (3, 3), derivatives by v_x, v_y, omega.
 
     Returns:
-        f_x, f_y, tau.
+        f_x, f_y, tau, and the derivatives of the logarithm of dry friction by ln mu_s and ln v_s.
     """
+    mu, r = math.exp(x[MU]), math.exp(x[R])
     c_x, c_y = MILLIMETRE * x[COP], MILLIMETRE * x[COP + 1]
     u_x, u_y = v_x - omega * c_y, v_y + omega * c_x
     rim = r * omega
@@ -97,15 +91,16 @@ def predict_at(x, mu, r, sign, f_n, v_x, v_y, omega, complete, by_state, by_twis
     w = math.sqrt(square)
     s = (u_x * u_x + u_y * u_y) / square
     phi, d_phi, psi, d_psi, phi_shape, psi_shape = surface(s, x[SHAPE])
-    dry, viscous = sign * mu * f_n / w, sign * x[SIGMA] * f_n
+    friction, of_mu, of_static, slows = level(p, static, seen, x[MU], square)
+    dry, viscous = sign * mu * friction * f_n / w, sign * x[SIGMA] * f_n
     r_2 = r * r
     g, k = dry * phi, dry * psi * r_2  # f = (g + viscous) u, tau = (k + viscous 9/8 r^2) omega
     force, turn = g + viscous, k + viscous * MEAN_SQUARE_RADIUS * r_2
     f_x, f_y, tau = force * u_x, force * u_y, turn * omega
     # relative changes of g and k with the slip velocity (times u), with omega and with ln r
     a, b = 2.0 * (1.0 - s) * d_phi / phi, 2.0 * (1.0 - s) * d_psi / psi
-    g_u, k_u = g * (a - 1.0) / square, k * (b - 1.0) / square
-    a, b = 2.0 * s * d_phi / phi + 1.0, 2.0 * s * d_psi / psi + 1.0
+    g_u, k_u = g * (a - 1.0 - slows) / square, k * (b - 1.0 - slows) / square
+    a, b = 2.0 * s * d_phi / phi + 1.0 + slows, 2.0 * s * d_psi / psi + 1.0 + slows
     turned = (1.0 - s) if omega != 0.0 else 0.0
     g_r, k_r = -g * a * turned, k * (2.0 - b * turned) + 2.0 * (turn - k)
     spin = r_2 * omega / square
@@ -116,28 +111,27 @@ def predict_at(x, mu, r, sign, f_n, v_x, v_y, omega, complete, by_state, by_twis
     by_twist[2, 2] = turn - k * b * spin * omega
     for i in range(3):
         by_twist[i, 2] += c_x * by_twist[i, 1] - c_y * by_twist[i, 0]
-    by_state[0, MU], by_state[1, MU] = g * u_x, g * u_y
-    by_state[2, MU] = k * omega + c_x * by_state[1, MU] - c_y * by_state[0, MU]
-    if complete:
-        load = sign * f_n
-        by_state[0, R], by_state[1, R], by_state[2, R] = g_r * u_x, g_r * u_y, k_r * omega
-        by_state[0, SIGMA], by_state[1, SIGMA] = load * u_x, load * u_y
-        by_state[2, SIGMA] = load * MEAN_SQUARE_RADIUS * r_2 * omega
-        for i in range(3):
-            by_state[i, COP] = MILLIMETRE * omega * by_twist[i, 1]
-            by_state[i, COP + 1] = -MILLIMETRE * omega * by_twist[i, 0]
-        by_state[0, SHAPE], by_state[1, SHAPE] = dry * phi_shape * u_x, dry * phi_shape * u_y
-        by_state[2, SHAPE] = dry * psi_shape * r_2 * omega
-        # the torque is measured about the assumed centre of pressure
-        for j in range(R, SIGMA + 1):
-            by_state[2, j] += c_x * by_state[1, j] - c_y * by_state[0, j]
-        for j in range(COP, SHAPE + 1):
-            by_state[2, j] += c_x * by_state[1, j] - c_y * by_state[0, j]
-        by_state[2, COP] += MILLIMETRE * f_y
-        by_state[2, COP + 1] -= MILLIMETRE * f_x
-        by_state[0, ZERO], by_state[1, ZERO + 1] = 1.0, 1.0
-        by_state[0, TILT], by_state[1, TILT + 1] = f_n, f_n
+    by_state[0, MU], by_state[1, MU] = of_mu * g * u_x, of_mu * g * u_y
+    by_state[2, MU] = of_mu * k * omega + c_x * by_state[1, MU] - c_y * by_state[0, MU]
+    load = sign * f_n
+    by_state[0, R], by_state[1, R], by_state[2, R] = g_r * u_x, g_r * u_y, k_r * omega
+    by_state[0, SIGMA], by_state[1, SIGMA] = load * u_x, load * u_y
+    by_state[2, SIGMA] = load * MEAN_SQUARE_RADIUS * r_2 * omega
+    for i in range(3):
+        by_state[i, COP] = MILLIMETRE * omega * by_twist[i, 1]
+        by_state[i, COP + 1] = -MILLIMETRE * omega * by_twist[i, 0]
+    by_state[0, SHAPE], by_state[1, SHAPE] = dry * phi_shape * u_x, dry * phi_shape * u_y
+    by_state[2, SHAPE] = dry * psi_shape * r_2 * omega
+    # the torque is measured about the assumed centre of pressure
+    for j in range(R, SIGMA + 1):
+        by_state[2, j] += c_x * by_state[1, j] - c_y * by_state[0, j]
+    for j in range(COP, SHAPE + 1):
+        by_state[2, j] += c_x * by_state[1, j] - c_y * by_state[0, j]
+    by_state[2, COP] += MILLIMETRE * f_y
+    by_state[2, COP + 1] -= MILLIMETRE * f_x
+    by_state[0, ZERO], by_state[1, ZERO + 1] = 1.0, 1.0
+    by_state[0, TILT], by_state[1, TILT + 1] = f_n, f_n
     for j in range(3):
         by_twist[2, j] += c_x * by_twist[1, j] - c_y * by_twist[0, j]
     zero_x, zero_y = x[ZERO] + f_n * x[TILT], x[ZERO + 1] + f_n * x[TILT + 1]
-    return f_x + zero_x, f_y + zero_y, tau + c_x * f_y - c_y * f_x
+    return f_x + zero_x, f_y + zero_y, tau + c_x * f_y - c_y * f_x, of_static, slows

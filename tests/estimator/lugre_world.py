@@ -46,18 +46,27 @@ def patch(kind: str, radius: float = 0.012, n: int = 11) -> tuple[np.ndarray, np
 def stick_slip(mu_c, mu_s, force=4.0, speed=8e-3, stiffness=300.0, spin=0.2, kind="disc", time=6.0) -> Trace:
     """A spring pulls the object: it sticks and slips."""
     drive = (0.0, speed, spin, stiffness, 0.0)
-    return _run(kind, mu_c, mu_s, (force, force), drive, (math.inf, 1.0), time)
+    return _run(patch(kind), mu_c, mu_s, (force, force), drive, (math.inf, 1.0), time)
 
 
 def planar(
-    mu_c, mu_s, forces=(5.0, 9.0), speed=0.02, spin=1.5, turn=0.0, kind="disc", jump=(math.inf, 1.0), time=6.0
+    mu_c,
+    mu_s,
+    forces=(5.0, 9.0),
+    speed=0.02,
+    spin=1.5,
+    turn=0.0,
+    kind="disc",
+    jump=(math.inf, 1.0),
+    time=6.0,
+    radius=0.012,
 ) -> Trace:
     """The object slides and spins; friction is multiplied by jump[1] at the time jump[0]."""
-    return _run(kind, mu_c, mu_s, forces, (1.0, speed, spin, 0.0, turn), jump, time)
+    return _run(patch(kind, radius), mu_c, mu_s, forces, (1.0, speed, spin, 0.0, turn), jump, time)
 
 
-def _run(kind, mu_c, mu_s, forces, drive, jump, time) -> Trace:
-    cells, share, r = patch(kind)
+def _run(support, mu_c, mu_s, forces, drive, jump, time) -> Trace:
+    cells, share, r = support
     out = np.zeros((int(time * FORCE_RATE), 8))
     _integrate(out, cells, share, mu_c, mu_s, np.array(forces), np.array(drive), np.array(jump))
     return Trace(out[:, 0], out[:, 1:5], out[:, 5:], mu_c, r)

@@ -1,12 +1,21 @@
 """The measurement model of "adaptive": against the limit surfaces, its own differences, and rigid shifts."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import estimator
+from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict, surface
+from estimator.augmented.stribeck import static_friction
 from estimator.limit_surface import slip_friction
+
+P = AdaptiveParameters().as_array().view(np.recarray)[0]
+STATIC = math.log(1.4) + 0.5 * math.log(0.5), 0.5, 0.01
+"""As of `static_friction`: mu_s is 0.7 at a mu_c of 0.5, and follows it with the exponent one half."""
 
 states = st.tuples(
     st.floats(-1.6, 0.5),
@@ -20,12 +29,23 @@ states = st.tuples(
     st.floats(0.0, 0.3),
 )
 twists = st.tuples(st.floats(0.004, 0.05), st.floats(-0.05, 0.05), st.floats(-3.0, 3.0))
+slow_states = st.tuples(
+    st.floats(-1.6, -0.1),
+    st.floats(-5.8, -4.8),
+    st.floats(0.0, 0.3),
+    *[st.just(0.0)] * 4,
+    *[st.floats(-0.3, 0.3)] * 2,
+    st.floats(-0.3, 1.0),
+    *[st.just(0.0)] * 2,
+)
+slow_twists = st.tuples(st.floats(4e-4, 2e-3), st.floats(-1e-3, 1e-3), st.floats(-0.2, 0.2))
 
 
 def predicted(x, twist, f_n=5.0, sign=1.0):
     by_state, by_twist = np.zeros((3, STATES)), np.zeros((3, 3))
-    wrench = predict(np.array(x, float), sign, f_n, *twist, by_state, by_twist)
-    return np.array(wrench), by_state, by_twist
+    static, seen, _ = STATIC
+    wrench = predict(P, np.array(x, float), static, seen, sign, f_n, *twist, by_state, by_twist)
+    return np.array(wrench[:3]), by_state, by_twist
 
 
 def ideal(mu_c=0.4, r=0.008, sigma_2=0.0, shape=0.0):
@@ -97,3 +117,43 @@ def test_derivatives(x, twist):
 def test_the_shape_interpolates_between_disc_and_ellipsoid():
     phi, _, psi, _, to_phi, to_psi = surface(0.4, 0.0)
     assert (phi + to_phi, psi + to_psi) == (1.0, 1.0)
+
+
+@pytest.mark.parametrize("speed", [0.0002, 0.0005, 0.001, 0.002, 0.005])
+def test_a_slow_slip_has_a_part_of_static_friction(speed):
+    """mu_c + (mu_s - mu_c) exp(-(w / v_s)^2), with v_s of 1 mm/s."""
+    mu_s = math.exp(STATIC[0] + (1.0 - STATIC[1]) * math.log(0.4))
+    level = 0.4 + (mu_s - 0.4) * math.exp(-((speed / 1e-3) ** 2))
+    found, _, _ = predicted(ideal(), (speed, 0.0, 0.0))
+    assert found[0] == pytest.approx(5.0 * level, rel=1e-6)
+
+
+@settings(deadline=None, max_examples=60)
+@given(slow_states, slow_twists)
+def test_derivatives_of_slow_slips(x, twist):
+    """As above; the law is curved within a fraction of v_s, so the steps are a hundredth of it."""
+    _, by_state, by_twist = predicted(x, twist)
+    scale = np.array([1.0, 1.0, 0.01]) * 5.0 * np.exp(x[MU])
+    for j in (MU, R, SIGMA, COP, COP + 1, SHAPE):
+        step = np.zeros(STATES)
+        step[j] = 1e-3
+        slope = (predicted(x + step, twist)[0] - predicted(x - step, twist)[0]) / (2 * step[j])
+        assert np.abs((slope - by_state[:, j]) / scale).max() < 0.03 * max(1.0, np.abs(slope / scale).max())
+    for j, size in enumerate((1e-5, 1e-5, 1e-3)):
+        step = np.zeros(3)
+        step[j] = size
+        change = (predicted(x, twist + step)[0] - predicted(x, twist - step)[0]) / 2
+        assert np.abs((change - by_twist[:, j] * size) / scale).max() < 2e-3
+
+
+def test_static_friction_is_that_of_the_break_aways_as_far_as_it_is_known():
+    batch = estimator.make_batch("adaptive", 1)
+    state = batch.states.view(np.recarray)[0]
+    ratio = math.log(P.mu_s0 / P.mu_c0)
+    assert static_friction(state, P) == pytest.approx((ratio, 0.0, P.sd_log_ratio**2))
+    state.events_mu_s, state.mu_s, state.sd_mu_s = 3, 0.6, 0.6e-6
+    assert static_friction(state, P) == pytest.approx((math.log(0.6), 1.0, 0.0), abs=1e-9)
+    state.sd_mu_s = 0.6 * P.sd_log_ratio
+    assert static_friction(state, P) == pytest.approx(
+        (0.5 * (math.log(0.6) + ratio), 0.5, 0.5 * P.sd_log_ratio**2)
+    )

@@ -77,6 +77,20 @@ def test_a_jump_of_friction(material, factor):
     np.testing.assert_allclose(after, factor * trace.mu_c, rtol=0.05)
 
 
+@pytest.mark.parametrize(("speed", "spin"), [(6e-4, 0.3), (4e-4, 0.2), (3e-4, 0.4)])
+@pytest.mark.parametrize(("material", "kind"), PATCHES)
+def test_slips_slower_than_the_stribeck_velocity(material, kind, speed, spin):
+    """A small pad turns slowly: friction is up to 30 % above mu_c.
+
+    A part of 0.3 to 0.5 of it is static friction; mu_s over mu_c is expected with a deviation of 20 %.
+    """
+    trace = lugre_world.planar(
+        *MATERIALS[material], (6.0, 6.0), speed, spin, 1.0, kind, time=8.0, radius=0.004
+    )
+    times, values = estimates(trace)
+    assert values[times > 6.0, 0].mean() == pytest.approx(trace.mu_c, rel=0.1)
+
+
 def test_the_simulation_slides_as_analysis_says():
     """A steady slide carries mu_c f_n and viscous friction; a disc's equivalent radius is 2/3 of its own."""
     trace = lugre_world.planar(0.4, 0.5, (8.0, 8.0), speed=0.02, spin=0.0, time=3.0)

@@ -56,3 +56,19 @@ def test_adaptive_finds_the_friction_of_planar_slip_on_either_surface():
         )
         assert row["mu_c seen error"] < error
         assert row["r seen error"] < 6.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("contact", ["ellipsoid", "disc"])
+def test_errors_of_the_sensors_do_not_pass_for_an_exponent_of_the_load(contact):
+    """With "lab" sensors mu_c of hard pads is that of the slips, also at the 20 N of the last grip."""
+    row = played("slipgym/PlanarSlip-v0", 96, 0, estimator="adaptive", sensors="lab", contact=contact)
+    assert row["mu_c seen error"] < 6.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("contact", "error"), [("ellipsoid", 12.0), ("disc", 6.0)])
+def test_a_hinge_slips_slowly_and_shows_mu_c_all_the_same(contact, error):
+    """Slips at 0.9 mm/s, where almost half of the friction above mu_c is left."""
+    row = played("slipgym/Hinge-v0", 48, 0, estimator="adaptive", sensors="realistic", contact=contact)
+    assert row["mu_c seen error"] < error
