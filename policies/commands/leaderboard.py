@@ -46,6 +46,10 @@ def main(
     imperfections: Annotated[
         bool, typer.Option("--imperfections", help='In the loop: each imperfection of "lab" alone.')
     ] = False,
+    smoother: Annotated[
+        bool,
+        typer.Option("--smoother", help="In the loop of PlanarSlip: a fit that knows all but the unknowns."),
+    ] = False,
     delays: Annotated[
         bool, typer.Option("--delays", help='Only print "adaptive" in stick-slip with late velocities.')
     ] = False,
@@ -56,8 +60,9 @@ def main(
 ) -> None:
     """Runs all estimators on all scenarios; writes a folder with tables and a picture."""
     environments = {"randomization": randomization, "contact": contact}
-    if not closed_loop and (estimators or task or parameter or imperfections or environments != _USUAL):
-        named = "--estimators, --task, --parameter, --imperfections, --randomization and --contact"
+    further = estimators or task or parameter or imperfections or smoother or environments != _USUAL
+    if further and not closed_loop:
+        named = "--estimators, --task, --parameter, --imperfections, --smoother, --randomization, --contact"
         raise typer.BadParameter(f"{named} are for episodes in the loop: --closed-loop 64")
     if ablation:
         from policies.research.leaderboard import ablation as removing
@@ -69,6 +74,12 @@ def main(
         else:
             found = removing.worth(removing.ablation(effort_of(quick, seed)))
         typer.echo(markdown(found, 1 if closed_loop else 2))
+        return
+    if smoother:
+        from policies.research.leaderboard.smoother import compared
+        from policies.research.leaderboard.tables import markdown
+
+        typer.echo(markdown(compared(closed_loop, seed), 1))
         return
     if closed_loop:
         from policies.research.leaderboard.closed_loop import pooled
