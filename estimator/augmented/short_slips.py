@@ -16,8 +16,8 @@ from estimator.augmented.filtering import MOST
 from estimator.augmented.holding import least_friction
 from estimator.augmented.load import beside, limit, move
 from estimator.augmented.model_error import count_slip
+from estimator.augmented.pad_spring import settle
 from estimator.augmented.scalar_update import correct
-from estimator.augmented.sliding import settle
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SIGMA, STATES, TILT, ZERO, R
 from estimator.augmented.timing import EARLIEST, LAST, LATEST
 from estimator.limit_surface.inverse import load_size
