@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import TASKS, Tasks
+from policies.commands.several import Tasks
 
 EPILOG = """
 Examples:\n
@@ -28,13 +28,13 @@ def main(
     from policies.research.leaderboard.tables import markdown
 
     try:
-        for task in tasks or TASKS:
+        for task in tasks or compare_learned.learned_tasks():
             found = compare_learned.trials_of(task, trials, engine, randomization, jobs)
             tables = (
                 compare_learned.outcomes(found),
                 compare_learned.gains(found),
                 compare_learned.benefit(found),
             )
-            typer.echo("\n".join([f"\n{task}\n", *map(markdown, tables)]))
+            typer.echo("\n".join([f"\n{task}\n", *(markdown(table) for table in tables if len(table))]))
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error

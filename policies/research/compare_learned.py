@@ -22,11 +22,18 @@ from policies.evaluation.statistics import Interval, mean_interval, share_interv
 from policies.evaluation.trial import run_trials
 from policies.learned import pretrained
 from slipgym.config.yaml_model import validate
+from slipgym.registration import TASK_MODULES
 from slipgym.tasks import find
 
 SOURCES = ("estimated", "true", "none")
 CONTROLLER, LEARNED, CONSTANT = "controller", "learned", "constant grip"
 _OUTCOMES = {"success": "success [%]", "return": "sum of rewards", "mean_force_N": "grip force [N]"}
+
+
+def learned_tasks() -> list[str]:
+    """Keys of the tasks that have learned policies."""
+    keys = [find(task).key for task in TASK_MODULES]
+    return [key for key in keys if any(f"{key}_{source}" in pretrained.folders() for source in SOURCES)]
 
 
 def trials_of(
@@ -53,9 +60,12 @@ def trials_of(
         episodes (`policies.evaluation.constant_grip`).
 
     Raises:
-        ValueError: The task, or a value, is unknown, or the learned policies act at different rates.
+        ValueError: The task, or a value, is unknown, the task has no learned policies, or these act at
+            different rates.
     """
     key = find(task).key
+    if key not in learned_tasks():
+        raise ValueError(f"{key} has no learned policies; tasks that have: {', '.join(learned_tasks())}")
     base = load_experiment(f"{key}_train")
     per_condition = -(-trials // len(base.combinations()))
     names = {source: f"{key}_{source}" for source in SOURCES if f"{key}_{source}" in pretrained.folders()}
@@ -132,14 +142,17 @@ def benefit(trials: pd.DataFrame) -> pd.DataFrame:
     """The benefit of knowing friction to the learned policies, over paired episodes.
 
     Args:
-        trials: From `trials_of`; needs learned policies of all three sources.
+        trials: From `trials_of`.
 
     Returns:
-        For success [%] and the sum of rewards: the difference of the policy with true friction to the one
+        Nothing unless there are learned policies of all three sources. Else,
+        for success [%] and the sum of rewards: the difference of the policy with true friction to the one
         without friction information, that of the policy with estimates, and the latter over the former;
         no share where the former's 95 % interval holds 0.
     """
     learned = trials[trials["policy"] == LEARNED]
+    if not set(SOURCES) <= set(learned["friction"]):
+        return pd.DataFrame()
     rows = []
     for column, scale in (("success", 100.0), ("return", 1.0)):
         table = learned.pivot(index=["options", "trial"], columns="friction", values=column).astype(float)

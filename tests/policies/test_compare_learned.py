@@ -67,3 +67,17 @@ def test_the_controller_runs_in_the_experiments_episodes():
     assert list(controller["seed"])[:2] == list(controller["seed"])[2:]
     with pytest.raises(ValueError, match="hole"):
         compare_learned.trials_of("hole")
+
+
+def test_a_task_without_learned_policies_is_named_with_those_that_have():
+    tasks = compare_learned.learned_tasks()
+    assert tasks == ["linear_slip", "rotational_slip", "hinge", "planar_slip", "hold"]
+    with pytest.raises(
+        ValueError, match=r"carry has no learned policies; tasks that have: linear_slip, .*hold"
+    ):
+        compare_learned.trials_of("carry", 2)
+
+
+def test_without_all_sources_there_is_no_share():
+    some = table([1.0, 2.0], [1.0, 2.0], [1.0, 2.0])
+    assert compare_learned.benefit(some[some["friction"] != "true"]).empty
