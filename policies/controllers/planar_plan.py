@@ -75,6 +75,9 @@ class PlanGains(Frozen):
     ready: Positive = Field(
         default=0.02, description="Error of the wrist's angle at which the box may slip [rad]"
     )
+    astray: Positive = Field(
+        default=0.006, description="Distance of the pads from their goal from which a turn is given up [m]"
+    )
     hold_margin: Positive = Field(default=1.4, description="Grip while holding, over the largest need [-]")
     wrist_rate: Positive = Field(default=2.0, description="Largest pitch rate of the wrist [rad/s]")
     wrist_acceleration: Positive = Field(
@@ -94,7 +97,8 @@ class PlanarPlanPolicy(GainPolicy[P], Generic[P]):
     r^2 / |b| per radian along the arc (docs/environments/planar_slip.md). So the first slide goes to where
     that creep will begin, a little short; the turn follows with the centre of mass about level with the
     pads; then the box hangs again and slides the rest. Every stage uses the measured slip, so that
-    each one corrects what the one before has left over. Subclasses say how the object slips.
+    each one corrects what the one before has left over. A turn in which the pads go astray is given up:
+    the box would slide on until it falls. Subclasses say how the object slips.
 
     Args:
         gains: Gains of the class; each is a keyword argument of its own, too.
@@ -172,6 +176,8 @@ class PlanarPlanPolicy(GainPolicy[P], Generic[P]):
         aligned = (np.abs(off) < self.gains.ready) & (np.abs(columns["wrist_pitch_rate"]) < 0.1)
         free = self.interruptible(slips)
         stage, slipping = self._decide(past, turning, distance, speed, aligned, free)
+        lost = free & turning & (np.hypot(*way) > self.gains.astray)  # it slides more than it turns
+        stage, slipping = np.where(lost, DONE, stage), slipping & ~lost
         lever = np.hypot(*place) + self.gains.short
         need = np.hypot(1.0, lever / self.prior.hold(columns, "r")) / self.prior.hold(columns, "mu_c")
         held = self.gains.hold_margin * past.weight * need

@@ -72,3 +72,10 @@ def test_a_hinge_slips_slowly_and_shows_mu_c_all_the_same(contact, error):
     """Slips at 0.9 mm/s, where almost half of the friction above mu_c is left."""
     row = played("slipgym/Hinge-v0", 48, 0, estimator="adaptive", sensors="realistic", contact=contact)
     assert row["mu_c seen error"] < error
+
+
+@pytest.mark.slow
+def test_a_turn_in_planar_slip_that_goes_astray_does_not_end_in_a_fall():
+    """On rubber a turn often slides on; without a limit one object in six falls."""
+    row = played("slipgym/PlanarSlip-v0", 64, 0, estimator="adaptive", sensors="lab", randomization="lab")
+    assert row["dropped"] == 0.0
