@@ -93,6 +93,9 @@ class AdaptiveParameters(NoiseParameters):
     torsion_from_turns: bool = parameter(
         True, "Whether a turn to which the torque is proportional shows how far the pad springs in torsion."
     )
+    grip_noise: bool = parameter(
+        True, "Whether the twist of a slip on which the grip closes is uncertain by its whole change."
+    )
     short_slips: bool = parameter(
         True, "Whether mu_c is learned from slips of fewer than four samples, by the force alone."
     )

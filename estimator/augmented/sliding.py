@@ -130,7 +130,7 @@ def slide(state, p):
     load = load_size(True, f_t, abs(wrench[3]) / least_radius(state))
     if not load > f_n * least_friction(state, p, f_n):  # it sticks: the velocity is one of another instant
         return False
-    part, last = EVEN, _before_grip(state, p, i)
+    part, last = EVEN, _before_grip(state, p, i) if p.grip_noise else -1
     if last >= 0:  # it brakes within a sample, and the instant may be one before or after
         w, newest, part = state.wrenches[last & LAST], state.twists[k & LAST], 1.0
         d_x, d_y, d_omega = newest[0] - before[0], newest[1] - before[1], newest[2] - before[2]

@@ -37,6 +37,8 @@ WITHOUT: dict[str, dict[str, object]] = {
     "drift of mu_c and r": {"drift": NONE, "drift_at_rest": 0.0},
     "test for jumps": {"jump_limit": NEVER},
     "noise for outliers": {"outlier": NEVER},
+    "noise where the grip closes": {"grip_noise": False},
+    "static friction of slow slips": {"stribeck_velocity": NONE},
     "short slips": {"short_slips": False},
     "compliance of the pad": {"compliance": 0.0, "compliance_max": 0.0},
     "dependence on the load": {
