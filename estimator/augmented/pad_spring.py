@@ -1,4 +1,4 @@
-"""Tells a slip from a spring of the pad: how far the object moved, and how far the pad can have sprung."""
+"""Whether a motion is a slip or a spring of the pad: how far the object moved, how far a pad can spring."""
 
 import math
 

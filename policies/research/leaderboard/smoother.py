@@ -2,7 +2,7 @@
 
 It fits the law of friction to all instants of an episode that "adaptive" learned from at once, with errors in
 both force and velocity (Gauss-Newton; the true twist of every instant is an unknown of its own, as in
-orthogonal distance regression: Boggs & Rogers, Contemporary Mathematics 112, 1990). It is told the limit
+orthogonal distance regression: Boggs & Rogers, Contemporary Mathematics 112, 1990). It knows the limit
 surface of the pads, that they are hard, their mu_s, sigma_2 and v_s, the structure of the sensors' errors and
 how they are sampled: it lacks only mu_c, r and the errors of the episode. Readings that are lost, late by
 chance or drift are noise to it, too.
