@@ -1,8 +1,8 @@
 """One step of the iterated extended Kalman filter of "adaptive": three measurements, twelve states.
 
 Source: Bell & Cathey, The iterated Kalman filter update as a Gauss-Newton method, IEEE Transactions on
-Automatic Control 38(2), 1993. The noise of the twist, of the normal force and of the law of friction enters
-the covariance of the measurement by its effect on it. Close to the pivot of a slip the twist's noise turns
+Automatic Control 38(2), 1993. Noise of the twist, the normal force and the law enters the covariance of
+the measurement by its effect on it. Close to the pivot of a slip the twist's noise turns
 its direction: there the twist is an unknown, too, and the next linearisation is at the most probable one.
 """
 
@@ -294,9 +294,8 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
         settled &= _settled(proposed[R] - before_r, covariance[R, R])
         if settled and (iteration > 0 or fresh <= BARELY):
             break
-    if not (math.isfinite(squared) and math.isfinite(score)):
-        return False, 0.0, 0.0, 0.0
-    if not _reduce(x, covariance, w, crossed, proposed):
+    finite = math.isfinite(squared) and math.isfinite(score)
+    if not (finite and _reduce(x, covariance, w, crossed, proposed)):
         return False, 0.0, 0.0, 0.0
     limit(x, covariance, state.limits)
     return True, squared, score, variance
