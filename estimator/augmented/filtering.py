@@ -1,9 +1,9 @@
 """One step of the iterated extended Kalman filter of "adaptive": three measurements, twelve states.
 
 Source: Bell & Cathey, The iterated Kalman filter update as a Gauss-Newton method, IEEE Transactions on
-Automatic Control 38(2), 1993. Noise of the twist, the normal force and the law enters the covariance of
-the measurement by its effect on it. Close to the pivot of a slip the twist's noise turns
-its direction: there the twist is an unknown, too, and the next linearisation is at the most probable one.
+Automatic Control 38(2), 1993. Noise of the twist, the normal force and the law enters the covariance of the
+measurement by its effect on it. Close to the pivot of a slip the twist's noise turns its direction: there the
+twist is an unknown, too, and the next linearisation is at the most probable one.
 """
 
 import math
