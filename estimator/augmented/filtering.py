@@ -48,8 +48,7 @@ def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin, of_law
         of_spin: Variance of omega.
         of_law: Variance of the logarithm of all three by the law.
     """
-    normal = (p.sd_normal / f_n) ** 2 + of_law
-    law = p.law_error * p.law_error
+    normal, law = (p.sd_normal / f_n) ** 2 + of_law, p.law_error * p.law_error
     force = p.sd_force * p.sd_force + law * (f_x * f_x + f_y * f_y)
     torque = p.sd_torque * p.sd_torque + law * tau * tau
     a, b, c = by_twist[0], by_twist[1], by_twist[2]
