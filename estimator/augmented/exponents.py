@@ -2,13 +2,13 @@
 
 Many pads are hard: mu_c and r do not depend on the normal force, both exponents are 0. Noise would make those
 of the filter small positive numbers, which are a large error of mu_c at a load far from that of the slips. So
-there are two hypotheses, a hard pad and one of rubber with the spread of the prior, weighed by how probable
+there are two hypotheses, a hard pad and one of rubber with the filter's exponents, weighed by how probable
 what the slips say of both exponents is on either. What is published is the median: 0 as long as a hard pad is
 the more probable one.
 
-What slips say of the exponents has the errors of the filter and those of the sensors, of which it assumes
-only the fraction `caution`: an error of the centre of pressure whose effect changes with the load looks like
-an exponent.
+What slips say of the exponents has the errors of the filter and those of the sensors in full. The filter
+assumes only the fraction `caution` of the latter, and an error of the centre of pressure whose effect changes
+with the load looks like an exponent.
 """
 
 import math
@@ -60,8 +60,8 @@ def _inverse(a, b, c):
 
 
 @njit(error_model="numpy")
-def _squared(a, b, c, x, y):
-    """The square of the vector (x, y) by a symmetric matrix (11, 12, 22)."""
+def _quadratic(a, b, c, x, y):
+    """Quadratic form of a symmetric matrix (11, 12, 22) at the vector (x, y)."""
     return a * x * x + 2.0 * b * x * y + c * y * y
 
 
@@ -96,8 +96,8 @@ def _rubber(p, z_n, z_b, v_nn, v_nb, v_bb):
         z_n - p.load_exponent0 / p.sd_load_exponent,
         z_b - p.radius_exponent0 / p.sd_radius_exponent,
     )
-    if_hard = _squared(*_inverse(v_nn, v_nb, v_bb), z_n, z_b)
-    if_rubber = _squared(*_inverse(s_nn, v_nb, s_bb), off_n, off_b)
+    if_hard = _quadratic(*_inverse(v_nn, v_nb, v_bb), z_n, z_b)
+    if_rubber = _quadratic(*_inverse(s_nn, v_nb, s_bb), off_n, off_b)
     sizes = (s_nn * s_bb - v_nb * v_nb) / (v_nn * v_bb - v_nb * v_nb)
     evidence = 0.5 * (math.log(sizes) + if_rubber - if_hard)
     return 1.0 / (1.0 + p.hard / (1.0 - p.hard) * math.exp(min(evidence, CERTAIN)))

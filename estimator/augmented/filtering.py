@@ -12,7 +12,7 @@ from estimator._numba.caching import fused
 from estimator._numba.memory import matrix
 from estimator.augmented.load import confine, limit
 from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict
-from estimator.augmented.stribeck import static_friction, uncertain
+from estimator.augmented.stribeck import law_variance, static_friction
 
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
@@ -244,10 +244,10 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
     more, again = f_n / n, unsure or fresh > BARELY
     static, seen, of_mu_s = static_friction(state, p)
     for iteration in range(ITERATIONS if again else 1):
-        f_x, f_y, tau, of_static, slows = predict(
+        f_x, f_y, tau, of_static, of_v_s = predict(
             p, proposed, static, seen, sign, n, v_x, v_y, omega, h, by_twist
         )
-        of_law = uncertain(p, of_mu_s, of_static, slows)
+        of_law = law_variance(p, of_mu_s, of_static, of_v_s)
         dry = 1.0 / (1.0 - seen * of_static)  # friction over its derivative by ln mu_c
         n_11, n_12, n_13, n_22, n_23, n_33 = measurement_noise(
             p, by_twist, dry * h[0, MU], dry * h[1, MU], dry * h[2, MU], n, of_speed, of_spin, of_law

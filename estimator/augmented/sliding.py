@@ -13,6 +13,7 @@ from estimator.augmented.model_error import count_slip
 from estimator.augmented.pad_spring import MARGIN, shear
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, TILT, ZERO, R
 from estimator.augmented.state import restart
+from estimator.augmented.stribeck import ALIKE
 from estimator.augmented.timing import LAST, correlate
 from estimator.augmented.torsion import learn_torsion
 from estimator.limit_surface.inverse import load_size
@@ -33,9 +34,6 @@ LOAD_MAX, TWIST_MAX = 1e4, 1e3
 
 NEAR = 9.0
 """Squared speed, over the variance of a velocity, below which noise decides the direction of a slip."""
-
-ALIKE = 10.0
-"""Samples that share an error which is taken for noise."""
 
 EVEN = 1.0 / 12.0
 """Variance of an even distribution, over its squared width."""

@@ -5,9 +5,10 @@ and s = (v_c / w)^2, friction at the normal force f_n is
 
     f = f_n (mu_c Phi(s) / w + sigma_2) v_c,    tau = f_n (mu_c Psi(s) / w + 9/8 sigma_2) r^2 omega.
 
-Phi = Psi = 1 is the ellipsoid of Waltersson & Karayiannidis (arXiv 2507.06824, eqs. 1-2); a uniform disc has
-the functions tabulated here from its exact limit surface. 9/8 r^2 is its mean squared radius. The form is
-linear in v_c close to pure spin, where the norm f_t and the direction of v_c would be dominated by noise.
+mu_c stands for friction at the speed w, see `estimator.augmented.stribeck`. Phi = Psi = 1 is the ellipsoid of
+Waltersson & Karayiannidis (arXiv 2507.06824, eqs. 1-2); a uniform disc has the functions tabulated here from
+its exact limit surface. 9/8 r^2 is its mean squared radius. The form is linear in v_c close to pure spin,
+where the norm f_t and the direction of v_c would be dominated by noise.
 """
 
 import math
@@ -70,8 +71,8 @@ def predict(p, x, static, seen, sign, f_n, v_x, v_y, omega, by_state, by_twist):
     Args:
         p: Parameters.
         x: (12,) states.
-        static: Friction of slow slips, see `stribeck.static_friction`.
-        seen: As static.
+        static: First of `stribeck.static_friction`: slow slips have a part of mu_s.
+        seen: Second of it.
         sign: 1 if the wrench is that on the finger, -1 if on the object.
         f_n: Normal force [N].
         v_x: Slip velocity at the assumed centre of pressure [m/s].
@@ -91,7 +92,7 @@ def predict(p, x, static, seen, sign, f_n, v_x, v_y, omega, by_state, by_twist):
     w = math.sqrt(square)
     s = (u_x * u_x + u_y * u_y) / square
     phi, d_phi, psi, d_psi, phi_shape, psi_shape = surface(s, x[SHAPE])
-    friction, of_mu, of_static, slows = level(p, static, seen, x[MU], square)
+    friction, of_mu, of_static, of_v_s = level(p, static, seen, x[MU], square)
     dry, viscous = sign * mu * friction * f_n / w, sign * x[SIGMA] * f_n
     r_2 = r * r
     g, k = dry * phi, dry * psi * r_2  # f = (g + viscous) u, tau = (k + viscous 9/8 r^2) omega
@@ -99,8 +100,8 @@ def predict(p, x, static, seen, sign, f_n, v_x, v_y, omega, by_state, by_twist):
     f_x, f_y, tau = force * u_x, force * u_y, turn * omega
     # relative changes of g and k with the slip velocity (times u), with omega and with ln r
     a, b = 2.0 * (1.0 - s) * d_phi / phi, 2.0 * (1.0 - s) * d_psi / psi
-    g_u, k_u = g * (a - 1.0 - slows) / square, k * (b - 1.0 - slows) / square
-    a, b = 2.0 * s * d_phi / phi + 1.0 + slows, 2.0 * s * d_psi / psi + 1.0 + slows
+    g_u, k_u = g * (a - 1.0 - of_v_s) / square, k * (b - 1.0 - of_v_s) / square
+    a, b = 2.0 * s * d_phi / phi + 1.0 + of_v_s, 2.0 * s * d_psi / psi + 1.0 + of_v_s
     turned = (1.0 - s) if omega != 0.0 else 0.0
     g_r, k_r = -g * a * turned, k * (2.0 - b * turned) + 2.0 * (turn - k)
     spin = r_2 * omega / square
@@ -134,4 +135,4 @@ def predict(p, x, static, seen, sign, f_n, v_x, v_y, omega, by_state, by_twist):
     for j in range(3):
         by_twist[2, j] += c_x * by_twist[1, j] - c_y * by_twist[0, j]
     zero_x, zero_y = x[ZERO] + f_n * x[TILT], x[ZERO + 1] + f_n * x[TILT + 1]
-    return f_x + zero_x, f_y + zero_y, tau + c_x * f_y - c_y * f_x, of_static, slows
+    return f_x + zero_x, f_y + zero_y, tau + c_x * f_y - c_y * f_x, of_static, of_v_s

@@ -2,9 +2,9 @@
 
 Friction of a slip at the scaled speed w is mu_c + (mu_s - mu_c) exp(-(w / v_s)^2) (Waltersson &
 Karayiannidis, Planar friction modelling with LuGre dynamics and limit surfaces, arXiv 2308.01123, whose v_s
-is 1 mm/s). An
-object that pivots between small pads slips more slowly than that. mu_s is that of the break-aways, as far as
-it is known, and else in proportion to mu_c. What is left unknown of it, and of v_s, is noise of the law.
+is 1 mm/s). An object that pivots between small pads slips more slowly than that. mu_s is that of the
+break-aways, as far as it is known, and else in proportion to mu_c. What is left unknown of mu_s and v_s is
+noise of the law.
 """
 
 import math
@@ -12,7 +12,7 @@ import math
 from estimator._numba.caching import njit
 
 ALIKE = 10.0
-"""Samples that share the error of mu_s and v_s, which is taken for noise."""
+"""Samples of a slip that share an error which the filter takes for noise."""
 SLOWEST = 16.0
 """(w / v_s)^2 from which static friction is forgotten: exp(-16) is 1e-7."""
 
@@ -61,14 +61,14 @@ def level(p, static, seen, mu, square):
 
 
 @njit(error_model="numpy")
-def uncertain(p, variance, of_static, of_speed):
+def law_variance(p, variance, of_static, of_v_s):
     """Variance of the logarithm of friction by what is not known of mu_s and of v_s.
 
     Args:
         p: Parameters.
         variance: Of ln mu_s.
         of_static: Derivative of the logarithm of friction by ln mu_s.
-        of_speed: By ln v_s.
+        of_v_s: By ln v_s.
     """
-    by_speed = of_speed * p.sd_log_stribeck
-    return ALIKE * (of_static * of_static * variance + by_speed * by_speed)
+    by_v_s = of_v_s * p.sd_log_stribeck
+    return ALIKE * (of_static * of_static * variance + by_v_s * by_v_s)

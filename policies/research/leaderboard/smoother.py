@@ -20,6 +20,7 @@ from tqdm import tqdm
 
 import policies
 from estimator.augmented.parameters import AdaptiveParameters
+from estimator.augmented.sliding import EVEN
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict
 from estimator.augmented.timing import LAST
 from policies.research.leaderboard.closed_loop import present
@@ -175,7 +176,7 @@ def smoothed(data: Slips, spread: np.ndarray, shape: float) -> tuple[np.ndarray,
     x[ZERO:TILT], x[SHAPE] = data.zero, shape
     expected, prior = x.copy(), np.diag(spread**-2.0)
     measured, change = 0.5 * (data.before + data.after), data.after - data.before
-    of_twist = 0.5 * np.array([p.sd_speed, p.sd_speed, p.sd_spin]) ** 2 + change**2 / 12.0
+    of_twist = 0.5 * np.array([p.sd_speed, p.sd_speed, p.sd_spin]) ** 2 + EVEN * change**2
     twists, y, f_n = measured.copy(), data.wrenches[:, [0, 1, 3]], data.wrenches[:, 2]
     least = np.diag([p.sd_force**2, p.sd_force**2, p.sd_torque**2])
     for _ in range(STEPS):
