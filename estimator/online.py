@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from estimator.batch import BatchEstimator
 from estimator.estimate import Estimate
 from estimator.parameters import Parameters
-from estimator.reasons import reasons
+from estimator.reasons import of_law, reasons
 
 WRENCH = ("f_x", "f_y", "f_n", "tau")
 TWIST = ("v_x", "v_y", "omega")
@@ -135,9 +135,7 @@ class OnlineEstimator:
 
     def reasons(self) -> dict[str, str]:
         """Why values of the newest estimate have little confidence, as `estimator.reasons` says it."""
-        states = self.batch.states
-        kept = "misfit" in (states.dtype.names or ())
-        return reasons(self.estimate, float(states["misfit"][0]) if kept else 1.0)
+        return reasons(self.estimate, *of_law(self.batch.states[0]))
 
     def reset(self) -> None:
         """Returns to the start values and forgets every sample."""

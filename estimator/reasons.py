@@ -1,5 +1,7 @@
 """Says in a sentence why an estimate is not to be relied on."""
 
+import numpy as np
+
 from estimator.estimate import Estimate
 
 CONFIDENT = 0.5
@@ -8,6 +10,8 @@ DOUBT = 0.1
 """Standard deviation over the value from which it is named."""
 MISFIT = 2.0
 """Mean squared normalised residual from which the law does not explain the data; noise makes it 1 ± 0.13."""
+LAW_ERROR = 0.1
+"""Relative error of the law in a sample from which it is named."""
 
 COUNTS = {"mu_s": "events_mu_s", "mu_c": "updates_mu_c", "r": "updates_r"}
 """Value -> field of an estimate that counts the data behind it."""
@@ -19,19 +23,27 @@ NEEDS = {
 """The motion that shows a value."""
 
 
-def reasons(estimate: Estimate, misfit: float = 1.0) -> dict[str, str]:
+def of_law(state: np.void) -> tuple[float, float]:
+    """`misfit` and `law_error` of `reasons`, by the state of any estimator."""
+    kept = state.dtype.names or ()
+    misfit = float(state["misfit"]) if "misfit" in kept else 1.0
+    return misfit, float(state["law_square"]) ** 0.5 if "law_square" in kept else 0.0
+
+
+def reasons(estimate: Estimate, misfit: float = 1.0, law_error: float = 0.0) -> dict[str, str]:
     """Why values have little confidence.
 
     Args:
         estimate: What an estimator published.
         misfit: Mean squared normalised residual, if the estimator keeps it: the state `misfit` of "adaptive".
+        law_error: Relative error of the friction law in a sample, if the estimator finds it.
 
     Returns:
         Of "mu_s", "mu_c" and "r" those with a confidence below one half, each with the reason, and with the
         motion that it needs.
     """
     found = {}
-    for name, whys in causes(estimate, misfit).items():
+    for name, whys in causes(estimate, misfit, law_error).items():
         if getattr(estimate, f"confidence_{name}") >= CONFIDENT:
             continue
         data = int(getattr(estimate, COUNTS[name]))
@@ -42,12 +54,13 @@ def reasons(estimate: Estimate, misfit: float = 1.0) -> dict[str, str]:
     return found
 
 
-def causes(estimate: Estimate, misfit: float = 1.0) -> dict[str, tuple[str, ...]]:
+def causes(estimate: Estimate, misfit: float = 1.0, law_error: float = 0.0) -> dict[str, tuple[str, ...]]:
     """What speaks against each of "mu_s", "mu_c" and "r", whatever its confidence; the most important first.
 
     Args:
         estimate: What an estimator published.
         misfit: As for `reasons`.
+        law_error: As for `reasons`.
     """
     found = {}
     contradict = estimate.events_mu_s > 0 < estimate.updates_mu_c and estimate.mu_s == estimate.mu_c
@@ -62,5 +75,7 @@ def causes(estimate: Estimate, misfit: float = 1.0) -> dict[str, tuple[str, ...]
             why.append("mu_s not above mu_c: both are their mean")
         if misfit > MISFIT and name != "mu_s":
             why.append(f"residuals are {misfit**0.5:.1f} times what noise explains")
+        if law_error > LAW_ERROR and name != "mu_s":
+            why.append(f"single samples are {100.0 * law_error:.0f} % off the friction law")
         found[name] = tuple(why)
     return found

@@ -13,6 +13,7 @@ the last events: a measurement of mu_c moves mu_s by this over the variance of l
 import math
 
 from estimator._numba.caching import njit
+from estimator.augmented.load import forget_exponent
 from estimator.augmented.slip_law import MU
 from estimator.sample import clamped
 
@@ -26,7 +27,10 @@ LARGEST = 10.0
 
 @njit(error_model="numpy")
 def test_for_jump(state, p, score):
-    """Takes the normalised innovation of a sample; a change widens the variance of mu_c."""
+    """Takes the normalised innovation of a sample; a change widens the variance of mu_c.
+
+    What slips said of its exponent is forgotten: a change between slips at two loads looks like one.
+    """
     size = min(max(score, -LARGEST), LARGEST)
     clipped = min(max(score, -CLIPPED), CLIPPED)
     found = False
@@ -44,6 +48,8 @@ def test_for_jump(state, p, score):
     if found:
         state.runs[:] = 0.0
         widen(state, p.sd_jump * p.sd_jump, math.inf)
+        if p.jump_forgets_exponent:
+            forget_exponent(state, p)
 
 
 @njit(error_model="numpy")

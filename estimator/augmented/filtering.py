@@ -10,9 +10,11 @@ import math
 
 from estimator._numba.caching import fused
 from estimator._numba.memory import matrix
+from estimator.augmented.law_error import law_square, surprise
 from estimator.augmented.load import confine, limit
 from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict
 from estimator.augmented.stribeck import law_variance, static_friction
+from estimator.augmented.whitening import weighted, whitened, whitening
 
 ITERATIONS = 4
 """Linearisations while mu_c or r is hardly known."""
@@ -34,7 +36,7 @@ KNOWN = 0.01
 
 
 @fused
-def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin, of_law):
+def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin, of_law, square):
     """Covariance (11, 12, 13, 22, 23, 33) of the measured f_x, f_y, tau about the law.
 
     Args:
@@ -47,10 +49,11 @@ def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin, of_law
         of_speed: Variance of v_x and of v_y.
         of_spin: Variance of omega.
         of_law: Variance of the logarithm of all three by the law.
+        square: Variance of the logarithm of each by the law, on its own.
     """
-    normal, law = (p.sd_normal / f_n) ** 2 + of_law, p.law_error * p.law_error
-    force = p.sd_force * p.sd_force + law * (f_x * f_x + f_y * f_y)
-    torque = p.sd_torque * p.sd_torque + law * tau * tau
+    normal = (p.sd_normal / f_n) ** 2 + of_law
+    force = p.sd_force * p.sd_force + square * (f_x * f_x + f_y * f_y)
+    torque = p.sd_torque * p.sd_torque + square * tau * tau
     a, b, c = by_twist[0], by_twist[1], by_twist[2]
     return (
         force + normal * f_x * f_x + of_speed * (a[0] * a[0] + a[1] * a[1]) + of_spin * a[2] * a[2],
@@ -60,33 +63,6 @@ def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin, of_law
         normal * f_y * tau + of_speed * (b[0] * c[0] + b[1] * c[1]) + of_spin * b[2] * c[2],
         torque + normal * tau * tau + of_speed * (c[0] * c[0] + c[1] * c[1]) + of_spin * c[2] * c[2],
     )
-
-
-@fused
-def _whitening(a, b, c, d, e, f):
-    """Inverse (11, 21, 22, 31, 32, 33) of the Cholesky factor of a symmetric matrix (11, 12, 13, 22, 23, 33).
-
-    It makes a vector with that covariance one with the covariance 1; NaN if the matrix is not positive.
-    """
-    x = 1.0 / math.sqrt(a)
-    below, last = b * x, c * x
-    y = 1.0 / math.sqrt(d - below * below)
-    middle = (e - last * below) * y
-    z = 1.0 / math.sqrt(f - last * last - middle * middle)
-    turned = -below * x * y
-    return x, turned, y, -(last * x + middle * turned) * z, -middle * y * z, z
-
-
-@fused
-def _whitened(w, x, y, z):
-    """The vector (x, y, z) times w from `_whitening`."""
-    return w[0] * x, w[1] * x + w[2] * y, w[3] * x + w[4] * y + w[5] * z
-
-
-@fused
-def _weighted(w, x, y, z):
-    """The vector (x, y, z) times the transpose of w from `_whitening`."""
-    return w[0] * x + w[1] * y + w[3] * z, w[2] * y + w[4] * z, w[5] * z
 
 
 @fused
@@ -169,13 +145,13 @@ def _reduce(x, covariance, w, crossed, proposed):
     Args:
         x: (12,) states, changed in place.
         covariance: (12, 12), changed in place; it stays symmetric bit for bit.
-        w: `_whitening` of the innovations' covariance.
+        w: `whitening` of the innovations' covariance.
         crossed: (3, 12), covariances of states and innovations.
         proposed: (12,) new states.
     """
     white, sound = matrix(3, STATES), True
     for j in range(STATES):
-        a, b, c = _whitened(w, crossed[0, j], crossed[1, j], crossed[2, j])
+        a, b, c = whitened(w, crossed[0, j], crossed[1, j], crossed[2, j])
         removed = a * a + b * b + c * c
         sound &= (abs(proposed[j]) < ABSURD) & (removed < MOST * covariance[j, j])
         white[0, j], white[1, j], white[2, j] = a, b, c
@@ -211,7 +187,7 @@ def _corrected(by_twist, twist, of_speed, of_spin, z_1, z_2, z_3):
 
 
 @fused
-def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
+def learn(state, p, sign, wrench, twist, of_speed, of_spin, scatter, fresh):
     """Moves the states by one measurement of a slip; a step that is not finite is refused.
 
     The law is linear about the mean of recent twists, or, as far as `fresh`, about the twist that the wrench
@@ -219,13 +195,14 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
     noise.
 
     Args:
-        state: Record with `x`, `covariance`, `limits` and `smooth`; changed in place.
+        state: Record with `x`, `covariance`, `limits`, `smooth` and `law_square`; changed in place.
         p: Parameters.
         sign: As in `predict`.
         wrench: f_x, f_y, f_n, tau [N, N, N, N m].
         twist: v_x, v_y, omega [m/s, m/s, rad/s].
         of_speed: Variance of v_x and of v_y.
         of_spin: Variance of omega.
+        scatter: From `twist_scatter`; both variances contain it.
         fresh: Part of the way from the mean of recent twists to the corrected one, in [0, 1].
 
     Returns:
@@ -239,7 +216,7 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
     unsure = covariance[0, 0] > KNOWN or covariance[1, 1] > KNOWN
     for j in range(STATES):
         proposed[j] = x[j]
-    squared, score, variance = 0.0, 0.0, 0.0
+    squared, score, variance, unexplained = 0.0, 0.0, 0.0, 0.0
     v_x, v_y, omega, n = state.smooth[0], state.smooth[1], state.smooth[2], state.smooth[3]
     more, again = f_n / n, unsure or fresh > BARELY
     static, seen, of_mu_s = static_friction(state, p)
@@ -250,7 +227,16 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
         of_law = law_variance(p, of_mu_s, of_static, of_v_s)
         dry = 1.0 / (1.0 - seen * of_static)  # friction over its derivative by ln mu_c
         n_11, n_12, n_13, n_22, n_23, n_33 = measurement_noise(
-            p, by_twist, dry * h[0, MU], dry * h[1, MU], dry * h[2, MU], n, of_speed, of_spin, of_law
+            p,
+            by_twist,
+            dry * h[0, MU],
+            dry * h[1, MU],
+            dry * h[2, MU],
+            n,
+            of_speed,
+            of_spin,
+            of_law,
+            state.law_square,
         )
         y_1 = wrench[0] - proposed[ZERO] - more * (f_x - proposed[ZERO])
         y_2 = wrench[1] - proposed[ZERO + 1] - more * (f_y - proposed[ZERO + 1])
@@ -261,17 +247,17 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
         y_1, y_2, y_3 = _shifted(y_1, y_2, y_3, h, n, x, proposed)
         _cross(covariance, h, n, crossed)
         s_11, s_12, s_13, s_22, s_23, s_33 = _spread(h, crossed, n)
-        w = _whitening(s_11 + n_11, s_12 + n_12, s_13 + n_13, s_22 + n_22, s_23 + n_23, s_33 + n_33)
-        a, b, c = _whitened(w, y_1, y_2, y_3)
+        w = whitening(s_11 + n_11, s_12 + n_12, s_13 + n_13, s_22 + n_22, s_23 + n_23, s_33 + n_33)
+        a, b, c = whitened(w, y_1, y_2, y_3)
         current = a * a + b * b + c * c
         if iteration == 0:
             squared = current
-            u, v, z = _whitened(w, h[0, MU], h[1, MU], h[2, MU])
+            u, v, z = whitened(w, h[0, MU], h[1, MU], h[2, MU])
             variance = 1.0 / (u * u + v * v + z * z)
             score = (u * a + v * b + z * c) * math.sqrt(variance)
         if current > p.outlier:
             excess = current / p.outlier
-            w = _whitening(
+            w = whitening(
                 s_11 + excess * n_11,
                 s_12 + excess * n_12,
                 s_13 + excess * n_13,
@@ -279,8 +265,10 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
                 s_23 + excess * n_23,
                 s_33 + excess * n_33,
             )
-            a, b, c = _whitened(w, y_1, y_2, y_3)
-        z_1, z_2, z_3 = _weighted(w, a, b, c)
+            a, b, c = whitened(w, y_1, y_2, y_3)
+        z_1, z_2, z_3 = weighted(w, a, b, c)
+        if iteration == 0:
+            unexplained = surprise(h, dry, by_twist, scatter[0], scatter[1], w, z_1, z_2, z_3)
         if again:
             at_x, at_y, spin = _corrected(by_twist, twist, of_speed, of_spin, z_1, z_2, z_3)
             v_x, v_y = v_x + fresh * (at_x - v_x), v_y + fresh * (at_y - v_y)
@@ -297,4 +285,5 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, fresh):
     if not (finite and _reduce(x, covariance, w, crossed, proposed)):
         return False, 0.0, 0.0, 0.0
     limit(x, covariance, state.limits)
+    state.law_square = law_square(p, state.law_square, unexplained)
     return True, squared, score, variance

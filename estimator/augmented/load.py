@@ -153,6 +153,15 @@ def bound_exponent(state, p, f_t, f_n):
 
 
 @njit(error_model="numpy")
+def forget_exponent(state, p):
+    """Forgets what slips said of the exponent of mu_c; ln mu_c stays at the present normal force."""
+    state.x[FALLS], state.fall_error = p.load_exponent0, p.sd_fall * p.sd_fall
+    for j in range(STATES):
+        state.covariance[FALLS, j] = state.covariance[j, FALLS] = 0.0
+    state.covariance[FALLS, FALLS] = p.sd_load_exponent * p.sd_load_exponent
+
+
+@njit(error_model="numpy")
 def _narrow(x, covariance, j, variance):
     """Lowers the variance of state j, and what the others share with it; a larger one changes nothing."""
     before = covariance[j, j]

@@ -122,6 +122,16 @@ class AdaptiveParameters(NoiseParameters):
         "[0, 1)",
     )
     drift_mu_s: float = parameter(0.01, "Relative random walk of mu_s per event.", "[0, 1)")
+    law_error: float = parameter(
+        0.035, "Relative error of the friction law in a sample that is expected at first.", "[0, inf)"
+    )
+    law_error_min: float = parameter(0.01, "Smallest one that is found.", "[0, inf)")
+    law_gain: float = parameter(
+        0.1, "Weight of a sample of sliding in the error of the law; 0 leaves it as it is.", "[0, 1]"
+    )
+    turn_error: float = parameter(
+        2.0, "Error of a load's direction on the limit surface, over that of its size.", "[0, inf)"
+    )
     outlier: float = parameter(16.0, "Squared normalised innovation from which noise is added.", "(3, inf)")
     jump_slack: float = parameter(0.75, "Jump test: deviations that an innovation may have.", "(0, inf)")
     jump_limit: float = parameter(
@@ -129,6 +139,9 @@ class AdaptiveParameters(NoiseParameters):
     )
     jump_evidence: float = parameter(
         12.0, "Jump test: square of the mean over that which scatter explains.", "[0, inf)"
+    )
+    jump_forgets_exponent: bool = parameter(
+        True, "Whether a change of mu_c makes it forget how mu_c depends on the load."
     )
     sd_jump: float = parameter(0.3, "Standard deviation of a jump of ln mu_c.", "(0, 3]")
     timing_memory: float = parameter(0.999, "Fading of the correlations per sample.", "(0, 1)")

@@ -8,6 +8,7 @@ from estimator._numba.caching import njit
 from estimator.augmented.change import follow, test_for_jump, widen
 from estimator.augmented.filtering import learn
 from estimator.augmented.holding import least_friction, least_radius
+from estimator.augmented.law_error import twist_scatter
 from estimator.augmented.load import BAND, beside, move
 from estimator.augmented.model_error import count_slip
 from estimator.augmented.pad_spring import MARGIN, shear
@@ -34,6 +35,9 @@ LOAD_MAX, TWIST_MAX = 1e4, 1e3
 
 NEAR = 9.0
 """Squared speed, over the variance of a velocity, below which noise decides the direction of a slip."""
+
+TURNED = 30.0
+"""The same, over its variance by the error of the law: larger, as no mean of twists lessens that."""
 
 EVEN = 1.0 / 12.0
 """Variance of an even distribution, over its squared width."""
@@ -149,7 +153,11 @@ def slide(state, p):
     unknown = 0.5 * (state.covariance[COP, COP] + state.covariance[COP + 1, COP + 1])
     unknown *= (MILLIMETRE * twist[2] / p.caution) ** 2
     of_speed += ALIKE * unknown * min(unknown / (square + p.sd_speed * p.sd_speed), 1.0) ** 2
-    noisy = NEAR * of_speed
+    scatter = twist_scatter(state, p, square, twist[2])
+    scattered = state.law_square * scatter[0]
+    noisy = NEAR * of_speed + TURNED * scattered
+    of_speed += scattered
+    of_spin += state.law_square * scatter[1]
     fresh *= noisy / (noisy + square)
     walk = p.drift * p.drift
     widen(state, walk, p.sd_log_mu_c0**2)
@@ -159,7 +167,7 @@ def slide(state, p):
     move(state, beside(state, p, i))
     value, variance = state.x[MU], state.covariance[MU, MU]
     learned, squared, score, variance_mu = learn(
-        state, p, state.sign, wrench, twist, of_speed, of_spin, fresh
+        state, p, state.sign, wrench, twist, of_speed, of_spin, scatter, fresh
     )
     for j in range(3):
         state.smooth[j] += SMOOTHING * (twist[j] - state.smooth[j])

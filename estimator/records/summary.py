@@ -85,8 +85,9 @@ def not_observable(result: Result) -> list[str]:
     """A line for each value about which the record holds little or no information."""
     if not (result.samples.wrench[:, 2] >= CONTACT).any():
         return [f"f_n never reaches {CONTACT} N: there was no contact."]
-    misfit = 1.0 if result.calibration is None else result.calibration.misfit
-    found = reasons(Estimate._make(result.estimates[-1].item()), misfit)
+    found_out = result.calibration
+    law = (1.0, 0.0) if found_out is None else (found_out.misfit, found_out.law_error)
+    found = reasons(Estimate._make(result.estimates[-1].item()), *law)
     lines = [f"{name}: {why}." for name, why in found.items()]
     if result.samples.segment[-1] > 0:
         lines.append(

@@ -50,6 +50,10 @@ def main(
         bool,
         typer.Option("--smoother", help="In the loop of PlanarSlip: a fit that knows all but the unknowns."),
     ] = False,
+    jumps: Annotated[
+        bool,
+        typer.Option("--jumps", help='In the loop: how soon "adaptive" is right again when friction jumps.'),
+    ] = False,
     delays: Annotated[
         bool, typer.Option("--delays", help='Only print "adaptive" in stick-slip with late velocities.')
     ] = False,
@@ -60,9 +64,10 @@ def main(
 ) -> None:
     """Runs all estimators on all scenarios; writes a folder with tables and a picture."""
     environments = {"randomization": randomization, "contact": contact}
-    further = estimators or task or parameter or imperfections or smoother or environments != _USUAL
+    further = estimators or task or parameter or imperfections or smoother or jumps or environments != _USUAL
     if further and not closed_loop:
-        named = "--estimators, --task, --parameter, --imperfections, --smoother, --randomization, --contact"
+        named = "--estimators, --task, --parameter, --imperfections, --smoother, --jumps, --randomization"
+        named += ", --contact"
         raise typer.BadParameter(f"{named} are for episodes in the loop: --closed-loop 64")
     if ablation:
         from policies.research.leaderboard import ablation as removing
@@ -80,6 +85,14 @@ def main(
         from policies.research.leaderboard.tables import markdown
 
         typer.echo(markdown(compared(closed_loop, seed), 1))
+        return
+    if jumps:
+        if estimators or imperfections or randomization != _USUAL["randomization"]:
+            unused = "--estimators, --imperfections and --randomization"
+            raise typer.BadParameter(f'--jumps plays "adaptive" with friction that jumps: without {unused}')
+        from policies.research.leaderboard.tables import markdown
+
+        typer.echo(markdown(_after_jumps(closed_loop, seed, task, parameter or [], contact), 2))
         return
     if closed_loop:
         from policies.research.leaderboard.closed_loop import pooled
@@ -130,6 +143,19 @@ def _in_the_loop(
         chosen = {name: {"name": name, **changed} for name in estimators or estimator.names()}
         sensors = one_imperfection() if imperfections else ("realistic", "lab")
         return closed_loop(chosen, episodes, sensors, seed, _ids(tasks), **environments)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+def _after_jumps(
+    episodes: int, seed: int, tasks: list[str] | None, parameters: list[str], contact: str
+) -> pd.DataFrame:
+    from estimator.records import parse_settings
+    from policies.research.leaderboard.jumps import TASKS, jumps
+
+    try:
+        chosen = {"name": "adaptive", **parse_settings(parameters)}
+        return jumps(episodes, seed, _ids(tasks) if tasks else TASKS, chosen, contact=contact)
     except ValueError as error:
         raise typer.BadParameter(str(error)) from error
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.estimate import Estimate
-from estimator.reasons import NEEDS, causes
+from estimator.reasons import NEEDS, causes, of_law
 from slipgym.rendering.history import History
 from slipgym.rendering.source import Source
 
@@ -81,11 +81,9 @@ def _reason(simulation: Source, row: int, history: History, name: str) -> str:
 def _causes(simulation: Source, row: int, name: str) -> tuple[str, ...]:
     """The estimator's causes, for the finger that has more confidence in the value."""
     batch = simulation.estimator
-    kept = "misfit" in (batch.states.dtype.names or ())
     fingers = range(2 * row, 2 * row + 2)
     best = max(fingers, key=lambda finger: batch.estimates[f"confidence_{name}"][finger])
-    misfit = float(batch.states["misfit"][best]) if kept else 1.0
-    return causes(Estimate._make(batch.estimates[best].item()), misfit)[name]
+    return causes(Estimate._make(batch.estimates[best].item()), *of_law(batch.states[best]))[name]
 
 
 def _last_change(history: History, column: str, change: float) -> int:

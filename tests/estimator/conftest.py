@@ -66,10 +66,24 @@ def sensed(wrench, motion, fingers, rng, **truth):
 def planar_slip():
     """Makes records of a planar slip at 20 mm/s: cells of dry and viscous friction, no bristles.
 
-    Args: `turn` [rad/s] of the direction of the slip, `jump` of mu_c after 2 s, `fingers`, `hertz` pressure.
+    Args: `turn` [rad/s] of the direction of the slip, `jump` of mu_c after 2 s, `fingers`, `hertz` pressure;
+    `scatter`: relative error of each component of a sample's load, which is also that of another twist:
+    `turned` times the scatter away.
     """
 
-    def make(turn=1.0, jump=1.0, fingers=8, hertz=False, gamma_t=0.7, sigma_2=0.2, seed=0, r=0.008, f_n=5.0):
+    def make(
+        turn=1.0,
+        jump=1.0,
+        fingers=8,
+        hertz=False,
+        gamma_t=0.7,
+        sigma_2=0.2,
+        seed=0,
+        r=0.008,
+        f_n=5.0,
+        scatter=0.0,
+        turned=2.0,
+    ):
         rng, n = np.random.default_rng(seed), 420
 
         def twist(t):
@@ -87,6 +101,12 @@ def planar_slip():
         t = np.arange(1, n + 1) / 120
         mu_c = 0.4 * np.where(t > 2.0, jump, 1.0)
         slip = twist(t)
+        other = turned * scatter * rng.standard_normal((n, 3)) if scatter else 0.0
+        slip = slip + other * np.hypot(np.linalg.norm(slip[:, :2], axis=1), r * slip[:, 2])[:, None] / [
+            1,
+            1,
+            r,
+        ]
         v_x, v_y = slip[:, :1] - slip[:, 2:] * y, slip[:, 1:2] + slip[:, 2:] * x
         speed = np.hypot(v_x, v_y)
         dry = mu_c[:, None] * (1 + 0.35 * np.exp(-((speed / 1e-3) ** 2))) / np.maximum(speed, 1e-9)
@@ -95,6 +115,12 @@ def planar_slip():
         fine = (np.arange(n * SUBSTEPS) + 0.5) / (120 * SUBSTEPS)
         motion = twist(fine).reshape(n, SUBSTEPS, 3).mean(axis=1) / 120
         wrench = np.stack([part.sum(axis=1) for part in parts], axis=1)
+        if scatter:
+            wrench[:, [0, 1, 3]] += (
+                scatter
+                * np.stack([np.hypot(*wrench[:, :2].T)] * 2 + [abs(wrench[:, 3])], axis=1)
+                * rng.standard_normal((n, 3))
+            )
         return sensed(wrench, motion, fingers, rng, mu_c=mu_c, mu_s=1.35 * mu_c, r=r, phase="planar")
 
     return make

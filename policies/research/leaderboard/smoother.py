@@ -38,6 +38,8 @@ UNIFORM = 3.0**-0.5
 """Standard deviation of an even distribution, over its half width."""
 ZEROED = 0.03
 """Spread of the zero error [N] that is left after zeroing, and by its drift."""
+LAW_ERROR = 0.02
+"""Relative error of the law in an instant, for what is taken as exact: the time of a slide, its direction."""
 FEWEST = 3
 """Instants that a fit needs."""
 STEPS, LARGEST, CONVERGED = 40, 0.5, 1e-4
@@ -181,7 +183,7 @@ def smoothed(data: Slips, spread: np.ndarray, shape: float) -> tuple[np.ndarray,
     least = np.diag([p.sd_force**2, p.sd_force**2, p.sd_torque**2])
     for _ in range(STEPS):
         f, by_x, by_twist = _law(p, x, data, twists)
-        of_law = (p.sd_normal / f_n) ** 2 + p.law_error**2
+        of_law = (p.sd_normal / f_n) ** 2 + LAW_ERROR**2
         noise = least + of_law[:, None, None] * f[:, :, None] * f[:, None, :]
         noise += np.einsum("mij,mj,mkj->mik", by_twist, of_twist, by_twist)
         by_x[:, :, LATE] = np.einsum("mij,mj->mi", by_twist, change)
