@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from estimator.batch import BatchEstimator
 from estimator.estimate import Estimate
 from estimator.parameters import Parameters
-from estimator.reasons import of_law, reasons
+from estimator.reasons import doubts, reasons
 
 WRENCH = ("f_x", "f_y", "f_n", "tau")
 TWIST = ("v_x", "v_y", "omega")
@@ -135,7 +135,7 @@ class OnlineEstimator:
 
     def reasons(self) -> dict[str, str]:
         """Why values of the newest estimate have little confidence, as `estimator.reasons` says it."""
-        return reasons(self.estimate, *of_law(self.batch.states[0]))
+        return reasons(self.estimate, *doubts(self.batch.states[0]))
 
     def reset(self) -> None:
         """Returns to the start values and forgets every sample."""

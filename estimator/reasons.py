@@ -1,5 +1,7 @@
 """Says in a sentence why an estimate is not to be relied on."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from estimator.estimate import Estimate
@@ -10,6 +12,8 @@ DOUBT = 0.1
 """Standard deviation over the value from which it is named."""
 MISFIT = 2.0
 """Mean squared normalised residual from which the law does not explain the data; noise makes it 1 ± 0.13."""
+AT_BOUND = 0.5
+"""Memory of r at a bound from which that is named."""
 LAW_ERROR = 0.1
 """Relative error of the law in a sample from which it is named."""
 
@@ -23,27 +27,43 @@ NEEDS = {
 """The motion that shows a value."""
 
 
-def of_law(state: np.void) -> tuple[float, float]:
-    """`misfit` and `law_error` of `reasons`, by the state of any estimator."""
+class Doubts(NamedTuple):
+    """What speaks against an estimate beside its own fields, as far as the estimator keeps it."""
+
+    misfit: float = 1.0
+    """Mean squared normalised residual."""
+    law_error: float = 0.0
+    """Relative error of the friction law in a sample."""
+    at_bound: float = 0.0
+    """1 while r is at one of its bounds, fading afterwards."""
+
+
+def doubts(state: np.void) -> Doubts:
+    """By the state of any estimator."""
     kept = state.dtype.names or ()
-    misfit = float(state["misfit"]) if "misfit" in kept else 1.0
-    return misfit, float(state["law_square"]) ** 0.5 if "law_square" in kept else 0.0
+    values = {name: float(state[name]) for name in ("misfit", "at_bound") if name in kept}
+    if "law_square" in kept:
+        values["law_error"] = float(state["law_square"]) ** 0.5
+    return Doubts(**values)
 
 
-def reasons(estimate: Estimate, misfit: float = 1.0, law_error: float = 0.0) -> dict[str, str]:
+def reasons(
+    estimate: Estimate, misfit: float = 1.0, law_error: float = 0.0, at_bound: float = 0.0
+) -> dict[str, str]:
     """Why values have little confidence.
 
     Args:
         estimate: What an estimator published.
         misfit: Mean squared normalised residual, if the estimator keeps it: the state `misfit` of "adaptive".
         law_error: Relative error of the friction law in a sample, if the estimator finds it.
+        at_bound: See `Doubts`.
 
     Returns:
         Of "mu_s", "mu_c" and "r" those with a confidence below one half, each with the reason, and with the
         motion that it needs.
     """
     found = {}
-    for name, whys in causes(estimate, misfit, law_error).items():
+    for name, whys in causes(estimate, misfit, law_error, at_bound).items():
         if getattr(estimate, f"confidence_{name}") >= CONFIDENT:
             continue
         data = int(getattr(estimate, COUNTS[name]))
@@ -54,13 +74,16 @@ def reasons(estimate: Estimate, misfit: float = 1.0, law_error: float = 0.0) -> 
     return found
 
 
-def causes(estimate: Estimate, misfit: float = 1.0, law_error: float = 0.0) -> dict[str, tuple[str, ...]]:
+def causes(
+    estimate: Estimate, misfit: float = 1.0, law_error: float = 0.0, at_bound: float = 0.0
+) -> dict[str, tuple[str, ...]]:
     """What speaks against each of "mu_s", "mu_c" and "r", whatever its confidence; the most important first.
 
     Args:
         estimate: What an estimator published.
         misfit: As for `reasons`.
         law_error: As for `reasons`.
+        at_bound: As for `reasons`.
     """
     found = {}
     contradict = estimate.events_mu_s > 0 < estimate.updates_mu_c and estimate.mu_s == estimate.mu_c
@@ -73,6 +96,8 @@ def causes(estimate: Estimate, misfit: float = 1.0, law_error: float = 0.0) -> d
             why.append(f"one standard deviation is {100.0 * doubt:.0f} %")
         if contradict and name != "r":
             why.append("mu_s not above mu_c: both are their mean")
+        if at_bound > AT_BOUND and name == "r":
+            why.append("the slips ask for an r beyond its bounds: r_max is the pad's radius")
         if misfit > MISFIT and name != "mu_s":
             why.append(f"residuals are {misfit**0.5:.1f} times what noise explains")
         if law_error > LAW_ERROR and name != "mu_s":

@@ -46,6 +46,8 @@ BACK = 3
 """Samples before an instant among which ..."""
 GRIPPED = 1.5
 """... the normal force may have grown by this factor: the object brakes faster than the velocity is read."""
+FADES = 0.02
+"""Weight of a sample in the memory that r was at a bound."""
 KEPT = 0.5
 """Smallest ratio of forces after that, over the one before, of an object that slides on."""
 
@@ -179,6 +181,8 @@ def slide(state, p):
     count_slip(state, begins, score, variance_mu, rim, max(rim + square, 1e-150))
     state.slides += 1
     state.first = -1
+    bounded = state.limits[2] < state.x[R] < state.limits[3]
+    state.at_bound = (1.0 - FADES) * state.at_bound if bounded else 1.0
     state.misfit += 0.05 * (min(squared, p.outlier) / 3.0 - state.misfit)
     if state.updates_mu_c > 10:
         test_for_jump(state, p, score)

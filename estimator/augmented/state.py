@@ -61,6 +61,7 @@ _IN_MOTION: list[tuple[Any, ...]] = [
     ("slid", np.int64),
     ("misfit", np.float64),
     ("law_square", np.float64),
+    ("at_bound", np.float64),
     ("leverage", np.float64),
     ("runs", np.float64, (2, 3)),
     ("scatter", np.float64),
@@ -107,8 +108,9 @@ spring; `slid`: number of the newest sample of sliding; `first`: number of the f
 slip, -1 for none; `quiet`: samples since it moved; `fallen`: number of the sample after its break-away;
 `slides`: instants of sliding learned from since the delay is as it is; `misfit`: mean squared normalised
 innovation; `runs`: of the jump test, for a rise and a fall: sum of the excess, number and sum of
-innovations; `law_square`: squared relative error of the law; `scatter`: mean square of all innovations;
-`load`: normal force at which ln mu_c and ln r are [N];
+innovations; `law_square`: squared relative error of the law; `at_bound`: 1 while r is at one of its
+bounds, fading afterwards; `scatter`: mean square of all innovations; `load`: normal force at which
+ln mu_c and ln r are [N];
 `held`, `held_load`: largest ratio that was carried, and its normal force [-, N]; `resting`: samples in a
 row at rest; `rest`: f_x, f_y, f_n at one of them [N], of number `rest_sample`; `restless`: mean squared
 change of the load at rest [N^2]; `turn`: regression of the torque on the angle, see
@@ -173,7 +175,7 @@ def restart(state, p):
         assumed = p.caution if SIGMA < j <= SHAPE else 1.0
         covariance[j, j] = variance if kept else (assumed * spread) ** 2
     state.misfit, state.slides = 1.0, 0
-    state.law_square = p.law_error * p.law_error
+    state.law_square, state.at_bound = p.law_error * p.law_error, 0.0
     state.runs[:] = 0.0
     state.spring, state.torsion = p.compliance_max, 0.0
     forget_slips(state)

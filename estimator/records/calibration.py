@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from estimator.reasons import of_law
+from estimator.reasons import Doubts, doubts
 from estimator.records.record import Array
 
 CALIBRATES = "adaptive"
@@ -54,10 +54,13 @@ class Calibration:
     """Whether that exceeded `timing_gate`; otherwise the delay is the nominal one."""
     errors: tuple[Found, ...]
     """Errors of the sensors, and the viscosity."""
-    misfit: float
-    """Mean squared normalised residual of the last slips; noise alone makes it 1 [-]."""
-    law_error: float
-    """Relative error of the friction law in a sample of the last slips [-]; 0 without a slip."""
+    doubts: Doubts
+    """What the last slips say against the law; `law_error` is 0 without a slip."""
+
+    @property
+    def misfit(self) -> float:
+        """Mean squared normalised residual of the last slips; noise alone makes it 1 [-]."""
+        return self.doubts.misfit
 
 
 def calibration(state: np.void, parameters: Any, correlation: float, f_n: Array) -> Calibration:
@@ -104,15 +107,9 @@ def calibration(state: np.void, parameters: Any, correlation: float, f_n: Array)
         errors.append(Found(what, unit, float(state[f"zero_{name}"]), sd, spread))
     add("sigma_2", "s/m", {SIGMA: 1.0})
     seen = correlation > p.timing_gate
-    misfit, law_error = of_law(state)
-    return Calibration(
-        int(state["delay"]),
-        correlation,
-        seen,
-        tuple(errors),
-        misfit,
-        law_error if state["slides"] > 0 else 0.0,
-    )
+    found = doubts(state)
+    found = found if state["slides"] > 0 else found._replace(law_error=0.0)
+    return Calibration(int(state["delay"]), correlation, seen, tuple(errors), found)
 
 
 def calibration_rows(found: Calibration, step: float) -> list[list[str]]:
@@ -131,7 +128,7 @@ def calibration_rows(found: Calibration, step: float) -> list[list[str]]:
         ["sensors", "found", "sd", "sd before"],
         ["delay", f"{samples}, {1e3 * step * found.delay:.1f} ms".replace("-", "−"), seen, ""],
     ]
-    law = f"{100.0 * found.law_error:.0f}" if found.law_error else "–"
+    law = f"{100.0 * found.doubts.law_error:.0f}" if found.doubts.law_error else "–"
     rows.append(["error of the law [%]", law, "", ""])
     for error in found.errors:
         digits = max(0, 2 - math.floor(math.log10(error.spread)))

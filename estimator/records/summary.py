@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from estimator.estimate import Estimate
-from estimator.reasons import COUNTS, reasons
+from estimator.reasons import COUNTS, Doubts, reasons
 from estimator.records.alignment import period
 from estimator.records.calibration import calibration_rows
 from estimator.records.plausibility import warnings
@@ -85,9 +85,8 @@ def not_observable(result: Result) -> list[str]:
     """A line for each value about which the record holds little or no information."""
     if not (result.samples.wrench[:, 2] >= CONTACT).any():
         return [f"f_n never reaches {CONTACT} N: there was no contact."]
-    found_out = result.calibration
-    law = (1.0, 0.0) if found_out is None else (found_out.misfit, found_out.law_error)
-    found = reasons(Estimate._make(result.estimates[-1].item()), *law)
+    against = Doubts() if result.calibration is None else result.calibration.doubts
+    found = reasons(Estimate._make(result.estimates[-1].item()), *against)
     lines = [f"{name}: {why}." for name, why in found.items()]
     if result.samples.segment[-1] > 0:
         lines.append(

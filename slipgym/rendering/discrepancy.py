@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator.estimate import Estimate
-from estimator.reasons import NEEDS, causes, of_law
+from estimator.reasons import NEEDS, causes, doubts
 from slipgym.rendering.history import History
 from slipgym.rendering.source import Source
 
@@ -83,7 +83,7 @@ def _causes(simulation: Source, row: int, name: str) -> tuple[str, ...]:
     batch = simulation.estimator
     fingers = range(2 * row, 2 * row + 2)
     best = max(fingers, key=lambda finger: batch.estimates[f"confidence_{name}"][finger])
-    return causes(Estimate._make(batch.estimates[best].item()), *of_law(batch.states[best]))[name]
+    return causes(Estimate._make(batch.estimates[best].item()), *doubts(batch.states[best]))[name]
 
 
 def _last_change(history: History, column: str, change: float) -> int:

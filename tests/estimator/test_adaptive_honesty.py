@@ -61,6 +61,27 @@ def test_confidence_falls_while_nothing_slides(planar_slip):
     np.testing.assert_allclose(after["mu_c"], before["mu_c"], rtol=0.02)
 
 
+@pytest.mark.parametrize("r", [0.008, 0.022])
+def test_nothing_is_known_of_an_r_beyond_the_pad(planar_slip, r):
+    """Slips that ask for 22 mm on a pad of 15 mm: the deviation is that of the start; it is forgotten."""
+    start = estimator.AdaptiveParameters().sd_log_r0
+    batch, seen = estimator.make_batch("adaptive", 8), []
+    for number, record in enumerate((planar_slip(1.0, r=r), planar_slip(1.0))):
+        for k, t in enumerate(record.t.tolist()):
+            sample = np.ascontiguousarray(record.wrenches[:, k]), np.ascontiguousarray(record.twists[:, k])
+            batch.update(number * record.t[-1] + t, *sample)
+        seen.append(batch.estimates.copy())
+    beyond, after = (np.median(estimates["sd_r"] / estimates["r"]) for estimates in seen)
+    if r > 0.015:
+        np.testing.assert_allclose(seen[0]["r"], 0.015, rtol=1e-3)
+        assert beyond > start
+        assert (seen[0]["confidence_r"] < 0.05).all()
+    else:
+        assert beyond < 0.2 * start
+    assert after < 0.2 * start
+    np.testing.assert_allclose(np.median(seen[1]["r"]), 0.008, rtol=0.05)
+
+
 def test_data_that_fit_no_law_widen_the_deviation(planar_slip):
     """By what a random walk of `drift` leaves where every sample is 30 % off: (drift x 0.3)^0.5 of mu_c.
 

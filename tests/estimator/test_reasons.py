@@ -58,6 +58,15 @@ def test_residuals_are_a_reason_and_an_estimator_knows_its_own():
     assert estimator.make("rls").reasons()["r"].startswith("not observed")
 
 
+def test_an_r_beyond_the_pad_is_a_reason():
+    words = "one standard deviation is 80 %, the slips ask for an r beyond its bounds"
+    found = estimator.reasons(estimated(confidence_r=0.02, sd_r=8e-3), at_bound=1.0)
+    assert found["r"].startswith(words)
+    finger = estimator.make("adaptive")
+    finger.batch.states["at_bound"], finger.batch.estimates["updates_r"] = 0.9, 5
+    assert "beyond its bounds" in finger.reasons()["r"]
+
+
 def test_samples_that_are_off_the_law_are_a_reason():
     words = "one standard deviation is 20 %, single samples are 16 % off the friction law: be cautious"
     found = estimator.reasons(estimated(confidence_r=0.2, sd_r=2e-3), law_error=0.16)
