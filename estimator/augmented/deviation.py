@@ -98,7 +98,7 @@ def deviate(state, p, changed):
         state.sd_lever = state.mu_c * state.r * math.sqrt(square)
         if state.updates_r > 0:
             square = hidden + of_torque + slips + of_growth + _squared(state, known, weights, 0.0, 1.0)
-            # at a bound of r its torque is not that of a slip: nothing is known of r
+            # an r that runs to a bound follows a torque that is not that of a slip
             square += state.at_bound * p.sd_log_r0 * p.sd_log_r0
             state.sd_r = state.r * math.sqrt(square)
             state.confidence_r = _confidence(square)

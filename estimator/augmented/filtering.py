@@ -10,7 +10,7 @@ import math
 
 from estimator._numba.caching import fused
 from estimator._numba.memory import matrix
-from estimator.augmented.law_error import law_square, surprise
+from estimator.augmented.law_error import found_square, surprise
 from estimator.augmented.load import confine, limit
 from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict
 from estimator.augmented.stribeck import law_variance, static_friction
@@ -36,7 +36,7 @@ KNOWN = 0.01
 
 
 @fused
-def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin, of_law, square):
+def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin, of_law, law_square):
     """Covariance (11, 12, 13, 22, 23, 33) of the measured f_x, f_y, tau about the law.
 
     Args:
@@ -49,11 +49,11 @@ def measurement_noise(p, by_twist, f_x, f_y, tau, f_n, of_speed, of_spin, of_law
         of_speed: Variance of v_x and of v_y.
         of_spin: Variance of omega.
         of_law: Variance of the logarithm of all three by the law.
-        square: Variance of the logarithm of each by the law, on its own.
+        law_square: Variance of the logarithm of each by the law, on its own.
     """
     normal = (p.sd_normal / f_n) ** 2 + of_law
-    force = p.sd_force * p.sd_force + square * (f_x * f_x + f_y * f_y)
-    torque = p.sd_torque * p.sd_torque + square * tau * tau
+    force = p.sd_force * p.sd_force + law_square * (f_x * f_x + f_y * f_y)
+    torque = p.sd_torque * p.sd_torque + law_square * tau * tau
     a, b, c = by_twist[0], by_twist[1], by_twist[2]
     return (
         force + normal * f_x * f_x + of_speed * (a[0] * a[0] + a[1] * a[1]) + of_spin * a[2] * a[2],
@@ -285,5 +285,5 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, scatter, fresh):
     if not (finite and _reduce(x, covariance, w, crossed, proposed)):
         return False, 0.0, 0.0, 0.0
     limit(x, covariance, state.limits)
-    state.law_square = law_square(p, state.law_square, unexplained)
+    state.law_square = found_square(p, state.law_square, unexplained)
     return True, squared, score, variance

@@ -74,7 +74,7 @@ def surprise(h, dry, by_twist, of_speed, of_spin, w, z_1, z_2, z_3):
 
 
 @fused
-def law_square(p, before, unexplained):
+def found_square(p, before, unexplained):
     """e^2 after a sample.
 
     Args:

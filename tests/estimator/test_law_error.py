@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import estimator
-from estimator.augmented.law_error import law_square, surprise, twist_scatter
+from estimator.augmented.law_error import found_square, surprise, twist_scatter
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.slip_law import MU, STATES
 from estimator.augmented.whitening import weighted, whitened, whitening
@@ -95,7 +95,7 @@ def test_the_scatter_of_the_slip_rate_falls_towards_translation():
 
 def test_the_error_stays_finite_and_above_its_smallest():
     least = P.law_error_min**2
-    assert law_square(P, 0.01, -1e9) == least
-    assert law_square(P, 0.01, np.nan) == 0.01
-    assert law_square(P, 0.01, np.inf) == 0.01
-    assert law_square(P, 0.01, 0.0) == 0.01
+    assert found_square(P, 0.01, -1e9) == least
+    assert found_square(P, 0.01, np.nan) == 0.01
+    assert found_square(P, 0.01, np.inf) == 0.01
+    assert found_square(P, 0.01, 0.0) == 0.01
