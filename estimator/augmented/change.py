@@ -13,6 +13,7 @@ the last events: a measurement of mu_c moves mu_s by this over the variance of l
 import math
 
 from estimator._numba.caching import njit
+from estimator.augmented.likelihood_ratio import forget_change
 from estimator.augmented.load import forget_exponent
 from estimator.augmented.slip_law import MU
 from estimator.sample import clamped
@@ -47,6 +48,7 @@ def test_for_jump(state, p, score):
     state.scatter += MEMORY * (size * size - state.scatter)
     if found:
         state.runs[:] = 0.0
+        forget_change(state)
         widen(state, p.sd_jump * p.sd_jump, math.inf)
         if p.jump_forgets_exponent:
             forget_exponent(state, p)

@@ -11,6 +11,7 @@ import math
 from estimator._numba.caching import fused
 from estimator._numba.memory import matrix
 from estimator.augmented.law_error import found_square, surprise
+from estimator.augmented.likelihood_ratio import respond
 from estimator.augmented.load import confine, limit
 from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict
 from estimator.augmented.stribeck import law_variance, static_friction
@@ -195,7 +196,8 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, scatter, fresh):
     noise.
 
     Args:
-        state: Record with `x`, `covariance`, `limits`, `smooth` and `law_square`; changed in place.
+        state: Record with `x`, `covariance`, `limits`, `smooth`, `law_square` and the hypothesis of a change;
+            changed in place.
         p: Parameters.
         sign: As in `predict`.
         wrench: f_x, f_y, f_n, tau [N, N, N, N m].
@@ -284,6 +286,7 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, scatter, fresh):
     finite = math.isfinite(squared) and math.isfinite(score)
     if not (finite and _reduce(x, covariance, w, crossed, proposed)):
         return False, 0.0, 0.0, 0.0
-    limit(x, covariance, state.limits)
+    respond(state, h, n, crossed, w, a, b, c)
+    limit(state, p)
     state.law_square = found_square(p, state.law_square, unexplained)
     return True, squared, score, variance

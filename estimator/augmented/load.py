@@ -14,6 +14,7 @@ import numpy as np
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
+from estimator.augmented.likelihood_ratio import size_of_change
 from estimator.augmented.scalar_update import correct
 from estimator.augmented.slip_law import FALLS, GROWS, MU, STATES, R
 from estimator.augmented.timing import LAST
@@ -29,7 +30,7 @@ HEAVIER = 0.25
 
 
 @njit(error_model="numpy")
-def limit(x, covariance, limits):
+def limit(state, p):
     """Keeps ln mu_c, ln r and the exponents in their bounds.
 
     An exponent beyond its bound moves there with the states that its covariance ties to it, as a measurement
@@ -37,12 +38,12 @@ def limit(x, covariance, limits):
     Applications 4(8), 2010, projection).
 
     Args:
-        x: (12,) states, changed in place.
-        covariance: (12, 12).
-        limits: (8,) bounds.
+        state: Record with `x`, `covariance`, `limits` and the hypothesis of a change; changed in place.
+        p: Parameters.
     """
-    _project(x, covariance, FALLS, min(max(x[FALLS], limits[4]), limits[5]))
-    _project(x, covariance, GROWS, min(max(x[GROWS], limits[6]), limits[7]))
+    x, limits = state.x, state.limits
+    _project(state, p, FALLS, min(max(x[FALLS], limits[4]), limits[5]))
+    _project(state, p, GROWS, min(max(x[GROWS], limits[6]), limits[7]))
     x[FALLS] = min(max(x[FALLS], limits[4]), limits[5])
     confine(x, limits)
 
@@ -55,12 +56,20 @@ def confine(x, limits):
 
 
 @njit(error_model="numpy")
-def _project(x, covariance, j, bounded):
-    """Moves state j to a value, and the others with it."""
+def _project(state, p, j, bounded):
+    """Moves state j to a value, and the others with it.
+
+    What moves back is what a suspected change of mu_c has moved, as far as that explains it.
+    """
+    x, covariance, response = state.x, state.covariance, state.response
     if bounded != x[j]:
         share = (bounded - x[j]) / covariance[j, j]
+        explained = (bounded - x[j]) / (size_of_change(state, p)[0] * response[j])
+        back = min(max(explained, 0.0), 1.0) if math.isfinite(explained) else 0.0
+        back *= response[j] / covariance[j, j]
         for k in range(STATES):
             x[k] += share * covariance[j, k]
+            response[k] -= back * covariance[j, k]
         x[j] = bounded
 
 
@@ -69,7 +78,7 @@ def move(state, f_n):
     """Moves ln mu_c and ln r, with their covariance, to a normal force [N]; a start value stays.
 
     Args:
-        state: Record with `x`, `covariance` and `load`; changed in place.
+        state: Record with `x`, `covariance`, `response` and `load`; changed in place.
         f_n: Normal force > 0 [N].
     """
     step = math.log(f_n / state.load)
@@ -78,6 +87,8 @@ def move(state, f_n):
     x, covariance = state.x, state.covariance
     x[MU] -= fall * x[FALLS]
     x[R] += grow * x[GROWS]
+    state.response[MU] -= fall * state.response[FALLS]
+    state.response[R] += grow * state.response[GROWS]
     mu, r, falls, grows = covariance[MU], covariance[R], covariance[FALLS], covariance[GROWS]
     for j in range(STATES):
         mu[j] -= fall * falls[j]

@@ -70,6 +70,7 @@ def count_slip(state, begins, score, variance, rim, square):
     state.separate = kept * state.separate + weight
     more = weight * state.difference if state.slip_samples > WHOLE else 0.0
     state.contrast = kept * state.contrast + more
+    state.changes *= kept
 
 
 @njit(error_model="numpy")
@@ -96,6 +97,7 @@ def doubt_of(p, value, expected):
 def forget_slips(state):
     """Forgets how many slips there were, and their disagreement."""
     state.separate, state.contrast, state.difference, state.slip_samples = 0.0, 0.0, 0.0, 0
+    state.changes = 0.0
     state.certain = False
 
 

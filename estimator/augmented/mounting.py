@@ -93,4 +93,4 @@ def _compare(state, p, axis, change, step, passed):
     for j in range(STATES):
         crossed[j] = step * covariance[at, j]
     correct(x, covariance, crossed, 1.0 / variance, innovation)
-    limit(x, state.covariance, state.limits)
+    limit(state, p)

@@ -143,6 +143,14 @@ class AdaptiveParameters(NoiseParameters):
     jump_forgets_exponent: bool = parameter(
         True, "Whether a change of mu_c makes it forget how mu_c depends on the load."
     )
+    jump_odds: float = parameter(
+        5.0,
+        "Likelihood-ratio test: logarithm of the odds that mark a change of mu_c between two slips.",
+        "(0, inf)",
+    )
+    sd_between_slips: float = parameter(
+        0.05, "Relative difference of mu_c between slips that is no change of it.", "(0, inf)"
+    )
     sd_jump: float = parameter(0.3, "Standard deviation of a jump of ln mu_c.", "(0, 3]")
     timing_memory: float = parameter(0.999, "Fading of the correlations per sample.", "(0, 1)")
     timing_gate: float = parameter(0.15, "Correlation from which the delay is believed.", "(0, 1)")

@@ -14,6 +14,7 @@ from estimator._numba.memory import matrix
 from estimator.augmented.change import follow
 from estimator.augmented.filtering import MOST
 from estimator.augmented.holding import least_friction
+from estimator.augmented.likelihood_ratio import decide, respond_to_ratio, suspect
 from estimator.augmented.load import beside, limit, move
 from estimator.augmented.model_error import count_slip
 from estimator.augmented.pad_spring import settle
@@ -116,9 +117,12 @@ def _take(state, p, i, speed):
     for j in range(STATES):
         if not crossed[j] * crossed[j] * gain < MOST * covariance[j, j]:
             return math.nan
+    suspect(state, p)
+    respond_to_ratio(state, h, crossed, gain, innovation)
     value, before = x[MU], covariance[MU, MU]
     correct(x, covariance, crossed, gain, innovation)
-    limit(x, state.covariance, state.limits)
+    decide(state, p)
+    limit(state, p)
     follow(state, p, value, before)
     score = innovation / math.sqrt(variance + noise)
     count_slip(state, True, score, variance + noise, share, 1.0)

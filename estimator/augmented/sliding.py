@@ -9,7 +9,8 @@ from estimator.augmented.change import follow, test_for_jump, widen
 from estimator.augmented.filtering import learn
 from estimator.augmented.holding import least_friction, least_radius
 from estimator.augmented.law_error import twist_scatter
-from estimator.augmented.load import BAND, beside, move
+from estimator.augmented.likelihood_ratio import decide, suspect
+from estimator.augmented.load import BAND, beside, limit, move
 from estimator.augmented.model_error import count_slip
 from estimator.augmented.pad_spring import MARGIN, shear
 from estimator.augmented.slip_law import COP, MILLIMETRE, MU, SHAPE, TILT, ZERO, R
@@ -167,6 +168,8 @@ def slide(state, p):
     for j in range(ZERO, SHAPE):
         state.covariance[j, j] += (p.error_drift * state.x[j]) ** 2
     move(state, beside(state, p, i))
+    if begins:
+        suspect(state, p)
     value, variance = state.x[MU], state.covariance[MU, MU]
     learned, squared, score, variance_mu = learn(
         state, p, state.sign, wrench, twist, of_speed, of_spin, scatter, fresh
@@ -186,4 +189,6 @@ def slide(state, p):
     state.misfit += 0.05 * (min(squared, p.outlier) / 3.0 - state.misfit)
     if state.updates_mu_c > 10:
         test_for_jump(state, p, score)
+        if decide(state, p):
+            limit(state, p)
     return True

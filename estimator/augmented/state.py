@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
+from estimator.augmented.likelihood_ratio import forget_change
 from estimator.augmented.load import MOST_FALL, MOST_GROWTH
 from estimator.augmented.model_error import forget_slips
 from estimator.augmented.slip_law import COP, FALLS, GROWS, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R
@@ -65,6 +66,13 @@ _IN_MOTION: list[tuple[Any, ...]] = [
     ("leverage", np.float64),
     ("runs", np.float64, (2, 3)),
     ("scatter", np.float64),
+    ("suspected", np.bool_),
+    ("change_samples", np.int64),
+    ("change_events", np.int64),
+    ("change_fit", np.float64),
+    ("changes", np.float64),
+    ("change_information", np.float64),
+    ("response", np.float64, (STATES,)),
     ("shared", np.float64),
     ("smooth", np.float64, (4,)),
     ("separate", np.float64),
@@ -108,7 +116,10 @@ spring; `slid`: number of the newest sample of sliding; `first`: number of the f
 slip, -1 for none; `quiet`: samples since it moved; `fallen`: number of the sample after its break-away;
 `slides`: instants of sliding learned from since the delay is as it is; `misfit`: mean squared normalised
 innovation; `runs`: of the jump test, for a rise and a fall: sum of the excess, number and sum of
-innovations; `law_square`: squared relative error of the law; `at_bound`: 1 while r is at one of its
+innovations; `suspected`, `response`, `change_fit`, `change_information`, `change_samples`,
+`change_events`: the hypothesis of a change of mu_c before a slip, and `changes`: sum of the squares of those
+that were found, fading, see `estimator.augmented.likelihood_ratio`;
+`law_square`: squared relative error of the law; `at_bound`: 1 while r is at one of its
 bounds, fading afterwards; `scatter`: mean square of all innovations; `load`: normal force at which
 ln mu_c and ln r are [N];
 `held`, `held_load`: largest ratio that was carried, and its normal force [-, N]; `resting`: samples in a
@@ -177,6 +188,7 @@ def restart(state, p):
     state.misfit, state.slides = 1.0, 0
     state.law_square, state.at_bound = p.law_error * p.law_error, 0.0
     state.runs[:] = 0.0
+    forget_change(state)
     state.spring, state.torsion = p.compliance_max, 0.0
     forget_slips(state)
 

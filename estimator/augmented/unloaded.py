@@ -57,7 +57,7 @@ def learn_zero(state, p, wrench):
             crossed[j] = covariance[j, at]
         noise = HEDGE * p.caution * p.sd_force
         correct(x, covariance, crossed, 1.0 / (crossed[at] + noise * noise), innovation)
-        limit(x, state.covariance, state.limits)
+        limit(state, p)
 
 
 @njit(error_model="numpy")

@@ -148,9 +148,11 @@ def test_a_hard_pad_and_rubber_are_told_apart():
 
 def limited(x, covariance, limits=(-9.0, 9.0, -9.0, 9.0, 0.0, 0.5, 0.0, 1.0 / 3.0)):
     """`limit`, of a copy of the states."""
-    moved = np.array(x)
-    limit(moved, np.ascontiguousarray(covariance), np.array(limits))
-    return moved
+    batch = estimator.make_batch("adaptive", 1)
+    state = batch.states.view(np.recarray)[0]
+    state.x[:], state.covariance[:], state.limits[:] = x, covariance, limits
+    limit(state, batch.parameters_array.view(np.recarray)[0])
+    return state.x
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,7 @@ WITHOUT: dict[str, dict[str, object]] = {
     "shape of the surface": {"sd_shape": NONE},
     "drift of mu_c and r": {"drift": NONE, "drift_at_rest": 0.0},
     "test for jumps": {"jump_limit": NEVER},
+    "test for changes at rest": {"jump_odds": NEVER},
     "new exponent after a jump": {"jump_forgets_exponent": False},
     "noise for outliers": {"outlier": NEVER},
     "search for the error of the law": {"law_gain": 0.0},
