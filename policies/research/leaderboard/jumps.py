@@ -123,7 +123,7 @@ def watched(
 
 
 def _announce(estimators: BatchEstimator, jumped: NDArray[np.bool_]) -> None:
-    """Adds the variance of a jump of some fingers (episodes, 2) to ln mu_c, and to its covariance with mu_s."""
+    """Adds the variance of a jump to ln mu_c of fingers (episodes, 2), and to its covariance with mu_s."""
     rows, square = np.flatnonzero(jumped), estimators.parameters_array["sd_jump"][0] ** 2
     estimators.states["covariance"][rows, MU, MU] += square
     estimators.states["shared"][rows] += square
