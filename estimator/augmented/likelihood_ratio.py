@@ -10,8 +10,9 @@ the fit is much more probable than slips that differ by `sd_between_slips`, ever
 times the change, so that the exponent and r are again what they were.
 
 A hypothesis begins with a slip. It gives way to a new one at a later slip, if what slips have shown since
-then speaks against it. Where one change after the other is found, slips differ by that much, and the next
-change has to be larger.
+then speaks against it. Tilt and zero errors that are learned at rest are taken to have nothing to do with
+the change. Where one change after the other is found, slips differ by that much, and the next change has to
+be larger.
 """
 
 import math
@@ -139,6 +140,7 @@ def decide(state, p):
     if not _evidence(state, square, least) > p.jump_odds:
         return False
     variance, response = 1.0 / information, state.response
+    # no exponent is less known than at the start
     for j, spread in ((FALLS, p.sd_load_exponent), (GROWS, p.sd_radius_exponent)):
         unknown = max(spread * spread - state.covariance[j, j], 0.0)
         if response[j] != 0.0:

@@ -152,21 +152,24 @@ def summary(course: Course, without: Course) -> dict[str, float]:
     seen = jumped & (np.abs(before) <= RIGHT) & (np.isfinite(again) | (slipped[-1] >= ENOUGH))
     times = again[seen]
     found, usual = (np.abs(_then(each, start)[seen]) for each in (course, without))
-    if not times.size:
-        found = usual = times = np.array([np.nan])
     return {
         "seen": int(seen.sum()),
-        "first right": float(np.quantile(times, 0.5, method="higher")),
-        "within 0.5 s": 100.0 * np.mean(times <= ENOUGH),
-        "right at 0.5 s": 100.0 * np.mean(found <= RIGHT),
-        "without jump": 100.0 * np.mean(usual <= RIGHT),
+        "first right": float(np.quantile(times, 0.5, method="higher")) if times.size else float("nan"),
+        "within 0.5 s": _percent(times <= ENOUGH),
+        "right at 0.5 s": _percent(found <= RIGHT),
+        "without jump": _percent(usual <= RIGHT),
     }
+
+
+def _percent(true: NDArray[np.bool_]) -> float:
+    return 100.0 * float(true.mean()) if true.size else float("nan")
 
 
 def _slipped(course: Course, start: NDArray[np.int64]) -> NDArray[np.float64]:
     """Time of slip since a step of each finger [s], (steps, episodes, 2)."""
     counts = np.arange(len(course.slips))[:, None, None] >= start
-    return np.cumsum(course.slips & course.running & counts, axis=0) * course.step_time
+    steps = np.cumsum(course.slips & course.running & counts, axis=0)
+    return np.asarray(steps * course.step_time, dtype=np.float64)
 
 
 def _then(course: Course, start: NDArray[np.int64]) -> NDArray[np.float64]:
