@@ -13,7 +13,7 @@ from estimator._numba.memory import matrix
 from estimator.augmented.law_error import found_square, surprise
 from estimator.augmented.likelihood_ratio import respond
 from estimator.augmented.load import confine, limit
-from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict
+from estimator.augmented.slip_law import COP, MU, SHAPE, SIGMA, STATES, TILT, ZERO, R, predict, without
 from estimator.augmented.stribeck import law_variance, static_friction
 from estimator.augmented.whitening import weighted, whitened, whitening
 
@@ -113,21 +113,6 @@ def _spread(h, crossed, f_n):
 
 
 @fused
-def _shifted(y_1, y_2, y_3, h, f_n, x, proposed):
-    """Innovations of the proposed states, as the linear model has them at the states before."""
-    for j in range(SIGMA + 1):
-        back = x[j] - proposed[j]
-        y_1, y_2, y_3 = y_1 - h[0, j] * back, y_2 - h[1, j] * back, y_3 - h[2, j] * back
-    y_1, y_2 = y_1 - (x[ZERO] - proposed[ZERO]), y_2 - (x[ZERO + 1] - proposed[ZERO + 1])
-    y_1 -= f_n * (x[TILT] - proposed[TILT])
-    y_2 -= f_n * (x[TILT + 1] - proposed[TILT + 1])
-    for j in range(COP, SHAPE + 1):
-        back = x[j] - proposed[j]
-        y_1, y_2, y_3 = y_1 - h[0, j] * back, y_2 - h[1, j] * back, y_3 - h[2, j] * back
-    return y_1, y_2, y_3
-
-
-@fused
 def _settled(step, variance):
     """Whether another linearisation would move ln mu_c or ln r by less than `ENOUGH` of its deviation.
 
@@ -213,7 +198,7 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, scatter, fresh):
     """
     x, covariance = state.x, state.covariance
     h, crossed, by_twist = matrix(3, STATES), matrix(3, STATES), matrix(3, 3)
-    proposed = matrix(1, STATES)[0]
+    proposed, back = matrix(1, STATES)[0], matrix(1, STATES)[0]
     f_n = wrench[2]
     unsure = covariance[0, 0] > KNOWN or covariance[1, 1] > KNOWN
     for j in range(STATES):
@@ -246,7 +231,9 @@ def learn(state, p, sign, wrench, twist, of_speed, of_spin, scatter, fresh):
         for j, off in enumerate((twist[0] - v_x, twist[1] - v_y, twist[2] - omega)):
             a, b, c = by_twist[0, j] * off, by_twist[1, j] * off, by_twist[2, j] * off
             y_1, y_2, y_3 = y_1 - a, y_2 - b, y_3 - c
-        y_1, y_2, y_3 = _shifted(y_1, y_2, y_3, h, n, x, proposed)
+        for j in range(STATES):
+            back[j] = x[j] - proposed[j]
+        y_1, y_2, y_3 = without(y_1, y_2, y_3, h, n, back)  # of the linear model at the states before
         _cross(covariance, h, n, crossed)
         s_11, s_12, s_13, s_22, s_23, s_33 = _spread(h, crossed, n)
         w = whitening(s_11 + n_11, s_12 + n_12, s_13 + n_13, s_22 + n_22, s_23 + n_23, s_33 + n_33)

@@ -19,7 +19,7 @@ import math
 
 from estimator._numba.caching import fused, njit
 from estimator.augmented.model_error import START
-from estimator.augmented.slip_law import COP, FALLS, GROWS, MU, SHAPE, SIGMA, STATES, TILT, ZERO
+from estimator.augmented.slip_law import FALLS, GROWS, MU, STATES, without
 from estimator.augmented.whitening import weighted, whitened
 from estimator.sample import clamped
 
@@ -53,10 +53,8 @@ def suspect(state, p):
     learned = square * state.change_information > 1.0 or abs(state.response[MU]) < FORGOTTEN
     if state.suspected and not (learned and _evidence(state, square, 0.0) < 0.0):
         return
-    state.suspected, state.change_fit, state.change_information = True, 0.0, 0.0
-    state.change_samples, state.change_events = 0, state.events_mu_s
-    state.response[:] = 0.0
-    state.response[MU] = 1.0
+    forget_change(state)
+    state.suspected, state.change_events, state.response[MU] = True, state.events_mu_s, 1.0
 
 
 @njit(error_model="numpy")
@@ -83,19 +81,13 @@ def respond(state, h, f_n, crossed, w, a, b, c):
     """
     if not state.suspected:
         return
-    off = state.response
-    x, y, z = off[ZERO] + f_n * off[TILT], off[ZERO + 1] + f_n * off[TILT + 1], 0.0
-    for k in range(SIGMA + 1):
-        x, y, z = x + h[0, k] * off[k], y + h[1, k] * off[k], z + h[2, k] * off[k]
-    for k in range(COP, SHAPE + 1):
-        x, y, z = x + h[0, k] * off[k], y + h[1, k] * off[k], z + h[2, k] * off[k]
-    x, y, z = whitened(w, x, y, z)
-    state.change_fit += x * a + y * b + z * c
+    x, y, z = whitened(w, *without(0.0, 0.0, 0.0, h, f_n, state.response))
+    state.change_fit -= x * a + y * b + z * c
     state.change_information += x * x + y * y + z * z
     state.change_samples += 1
     x, y, z = weighted(w, x, y, z)
     for k in range(STATES):
-        off[k] -= crossed[0, k] * x + crossed[1, k] * y + crossed[2, k] * z
+        state.response[k] += crossed[0, k] * x + crossed[1, k] * y + crossed[2, k] * z
 
 
 @njit(error_model="numpy")
@@ -133,7 +125,7 @@ def decide(state, p):
         return False
     size, information = size_of_change(state, p)
     most = 0.5 * state.change_fit * size
-    if most < p.jump_odds:  # the evidence is less
+    if most < p.jump_odds:  # an upper bound of the evidence, without a logarithm
         if most < UNLIKELY and state.change_samples >= MANY:
             forget_change(state)
         return False

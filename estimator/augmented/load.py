@@ -59,7 +59,8 @@ def confine(x, limits):
 def _project(state, p, j, bounded):
     """Moves state j to a value, and the others with it.
 
-    What moves back is what a suspected change of mu_c has moved, as far as that explains it.
+    As far as a suspected change of mu_c has moved the state beyond its bound, the response to it moves back,
+    too.
     """
     x, covariance, response = state.x, state.covariance, state.response
     if bounded != x[j]:

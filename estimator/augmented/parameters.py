@@ -145,7 +145,7 @@ class AdaptiveParameters(NoiseParameters):
     )
     jump_odds: float = parameter(
         5.0,
-        "Likelihood-ratio test: logarithm of the odds that mark a change of mu_c between two slips.",
+        "Likelihood-ratio test: logarithm of the ratio that marks a change of mu_c between two slips.",
         "(0, inf)",
     )
     sd_between_slips: float = parameter(

@@ -121,9 +121,10 @@ def _take(state, p, i, speed):
     respond_to_ratio(state, h, crossed, gain, innovation)
     value, before = x[MU], covariance[MU, MU]
     correct(x, covariance, crossed, gain, innovation)
-    decide(state, p)
     limit(state, p)
     follow(state, p, value, before)
+    if decide(state, p):
+        limit(state, p)
     score = innovation / math.sqrt(variance + noise)
     count_slip(state, True, score, variance + noise, share, 1.0)
     if state.updates_mu_c == 0:

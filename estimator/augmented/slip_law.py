@@ -136,3 +136,27 @@ def predict(p, x, static, seen, sign, f_n, v_x, v_y, omega, by_state, by_twist):
         by_twist[2, j] += c_x * by_twist[1, j] - c_y * by_twist[0, j]
     zero_x, zero_y = x[ZERO] + f_n * x[TILT], x[ZERO + 1] + f_n * x[TILT + 1]
     return f_x + zero_x, f_y + zero_y, tau + c_x * f_y - c_y * f_x, of_static, of_v_s
+
+
+@fused
+def without(y_1, y_2, y_3, by_state, f_n, states):
+    """Three measurements less what changes of the states add to them by the linear model.
+
+    Args:
+        y_1: Of f_x [N].
+        y_2: Of f_y [N].
+        y_3: Of tau [N m].
+        by_state: (3, 12), from `predict`. Those by zero error and tilt, 1 and f_n, are not read.
+        f_n: Normal force [N].
+        states: (12,) changes.
+    """
+    for j in range(SIGMA + 1):
+        v = states[j]
+        y_1, y_2, y_3 = y_1 - by_state[0, j] * v, y_2 - by_state[1, j] * v, y_3 - by_state[2, j] * v
+    y_1, y_2 = y_1 - states[ZERO], y_2 - states[ZERO + 1]
+    y_1 -= f_n * states[TILT]
+    y_2 -= f_n * states[TILT + 1]
+    for j in range(COP, SHAPE + 1):
+        v = states[j]
+        y_1, y_2, y_3 = y_1 - by_state[0, j] * v, y_2 - by_state[1, j] * v, y_3 - by_state[2, j] * v
+    return y_1, y_2, y_3

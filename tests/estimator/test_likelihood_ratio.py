@@ -6,6 +6,7 @@ import pytest
 import estimator
 from estimator.augmented.likelihood_ratio import respond_to_ratio
 from estimator.augmented.parameters import AdaptiveParameters
+from estimator.augmented.short_slips import _take
 from estimator.augmented.slip_law import COP, FALLS, GROWS, MU, SIGMA, STATES, R, predict
 from slipgym.validation.records import RATE
 
@@ -147,3 +148,19 @@ def test_an_exponent_stays_in_its_prior():
         assert (covariance[:, GROWS, GROWS] <= P.sd_radius_exponent**2 * (1.0 + 1e-9)).all()
         for name in ("mu_c", "mu_s", "r", "sd_mu_c", "sd_mu_s", "sd_r"):
             assert np.isfinite(world.batch.estimates[name]).all(), name
+
+
+def test_mu_s_moves_once_with_a_change():
+    """A short slip in which a change is found: mu_s changes by it, and not again by what mu_c has moved."""
+    batch = estimator.make_batch("adaptive", 1)
+    state = batch.states.view(np.recarray)[0]
+    mu_c, f_n, fit, information = 0.4, 5.0, -8e3, 2e4  # the slip itself adds about 1 %
+    state.wrenches[:] = 0.0, mu_c * f_n, f_n, 0.0
+    state.load = state.event_load = f_n
+    state.samples, state.updates_mu_c, state.events_mu_s, state.change_events = 10, 20, 3, 3
+    state.x[MU], state.covariance[MU, MU], state.shared, state.event = np.log(mu_c), 1e-4, 1e-4, 0.5
+    state.suspected, state.change_samples, state.response[MU] = True, 5, 0.5
+    state.change_fit, state.change_information = fit, information
+    assert np.isfinite(_take(state, P, 5, 0.02))
+    assert not state.suspected
+    assert state.event == pytest.approx(0.5 * np.exp(fit / (information + P.sd_jump**-2)), rel=0.03)

@@ -42,7 +42,7 @@ def test_the_moment_of_the_jump_does_not_depend_on_its_size():
     np.testing.assert_array_equal(*moments)
 
 
-def test_one_that_knows_when_friction_jumps_is_surer_of_nothing_else():
+def test_knowing_when_friction_jumps_changes_nothing_before():
     course, informed = (watched(TASKS[0], 3, 3, 1.35, knows, **LAB) for knows in (False, True))
     jumped = np.abs(course.mu_c / course.mu_c[0] - 1.0) > 0.05
     first = jumped.argmax(axis=0).min()
