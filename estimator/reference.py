@@ -20,6 +20,9 @@ def referenced(name: str) -> Any:
     """
     module, _, attribute = name.partition(":")
     try:
-        return getattr(importlib.import_module(module), attribute)
-    except (ModuleNotFoundError, AttributeError) as error:
+        imported = importlib.import_module(module)
+    except ModuleNotFoundError as error:
         raise ValueError(f"{name!r}: {error}") from error
+    if not hasattr(imported, attribute):
+        raise ValueError(f"{name!r}: module {module!r} has no attribute {attribute!r}")
+    return getattr(imported, attribute)

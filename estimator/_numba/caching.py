@@ -9,26 +9,20 @@ from __future__ import annotations
 
 import hashlib
 import os
-import pickle
 import re
-import sys
-import uuid
 import warnings
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
-from functools import cached_property
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, nullcontext, suppress
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
-import llvmlite
-import numba
 from numba.core import config, sigutils
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
-from numba.core.serialize import dumps
 
+from estimator._numba import folders, program_file
 from estimator._numba.digest import digest
-from estimator._numba.folders import program_folder
 from estimator._numba.linking import Kernel
 from estimator._numba.locking import only_one
 
@@ -38,9 +32,8 @@ if vars(config)["DISABLE_JIT"]:
         "function, call its `py_func`"
     )
 
-VARIANTS = 16
+VARIANTS = 64
 """Programs of one function that are kept, the newest: for other arguments, processors or earlier sources."""
-_UNREADABLE = (OSError, EOFError, ValueError, TypeError, LookupError, AttributeError, ImportError)
 
 
 def compiler(
@@ -81,12 +74,22 @@ fused = njit(error_model="numpy", fastmath={"contract"})
 the processor has it. Which of several products is taken is fixed when the function is compiled."""
 
 
-FORMAT = "4"
-"""Of the stored programs: another one makes none of the old ones valid."""
+_ANNOTATION = 5
+"""Place of the annotated source in the description of a program."""
+_DEFINED: dict[str, tuple[str, str]] = {}
+"""Symbols that this process has stored or loaded, with the key and a digest of their program."""
+
+
+@cache
+def _warn_unusable(reason: str, folder: Path) -> None:
+    """Warn once for each reason and folder."""
+    warnings.warn(f"a stored program in {folder} is not used, and compiled again: {reason}", stacklevel=2)
 
 
 class ProgramCache(_Cache):
     """Programs of one function on disk: a file for each signature, digest, processor and set of versions.
+
+    They are looked for among the user's programs, then among those that the installation brings.
 
     Args:
         dispatcher: The function.
@@ -100,17 +103,19 @@ class ProgramCache(_Cache):
 
     @cached_property
     def _folder(self) -> Path | None:
-        return program_folder(self._dispatcher.py_func.__code__.co_filename)
+        return folders.program_folder(self._file)
+
+    @property
+    def _file(self) -> str:
+        return self._dispatcher.py_func.__code__.co_filename
 
     @cached_property
     def _name(self) -> str:
-        function = self._dispatcher.py_func
-        return f"{Path(function.__code__.co_filename).stem}.{re.sub('[<>]', '', function.__qualname__)}"
+        return f"{Path(self._file).stem}.{re.sub('[<>]', '', self._dispatcher.py_func.__qualname__)}"
 
     @cached_property
     def _identity(self) -> tuple[str, ...]:
-        versions = numba.__version__, llvmlite.__version__, str(sys.implementation.cache_tag), FORMAT
-        return (digest(self._dispatcher), *versions, *self._variant)
+        return (digest(self._dispatcher), *folders.versions().values(), *self._variant)
 
     @property
     def cache_path(self) -> str | None:
@@ -131,59 +136,110 @@ class ProgramCache(_Cache):
             path.unlink(missing_ok=True)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Load the program for a signature; None if there is none."""
+        """Load the program for a signature; None if there is none that can be used."""
         target_context.refresh()
-        path = self._path(sig, target_context.codegen())
-        if path is None:
-            return None
-        try:
-            payload = pickle.loads(path.read_bytes())
-        except (*_UNREADABLE, pickle.UnpicklingError):
-            return None
-        return CompileResult._rebuild(target_context, *payload)
+        for path, key in self._candidates(sig, target_context.codegen()):
+            try:
+                machine_code, (name, kind, interface, rest) = program_file.read(path, key)
+                _define(rest[0], key, machine_code)
+                return CompileResult._rebuild(target_context, (name, kind, (machine_code, interface)), *rest)
+            except FileNotFoundError:
+                continue
+            except program_file.UnusableProgramError as error:
+                _warn_unusable(str(error), path.parent)
+        return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Save a compiled program, whole or not at all, and remove the oldest if there are many."""
-        path = self._path(sig, data.codegen)
+        path, key = next(self._candidates(sig, data.codegen), (None, ""))
         if (
             path is None
             or any(not part.can_cache for part in data.lifted)
             or data.library.has_dynamic_globals
         ):
             return
-        temporary = path.with_name(f"{path.name}.tmp.{uuid.uuid4().hex[:16]}")
+        (name, kind, (machine_code, interface)), *rest = data._reduce()
+        rest[_ANNOTATION] = ""  # half a megabyte of text, with the path of the source
+        _DEFINED.update(dict.fromkeys(_symbols(rest[0]), (key, hashlib.sha256(machine_code).hexdigest())))
         try:
-            temporary.write_bytes(dumps(data._reduce()))
-            os.replace(temporary, path)
+            if path.exists() and hasattr(os, "getuid") and path.stat().st_uid != os.getuid():
+                path = _own(path)
+            program_file.write(path, key, machine_code, (name, kind, interface, rest))
+        except OSError as error:
+            warnings.warn(f"the compiled {self._name} cannot be kept: {error}", stacklevel=2)
+            return
+        with suppress(OSError):
             for old in self._stored()[VARIANTS:]:
                 old.unlink(missing_ok=True)
-        except OSError as error:
-            temporary.unlink(missing_ok=True)
-            warnings.warn(f"the compiled {self._name} cannot be kept: {error}", stacklevel=2)
 
     def alone(self, sig: Any) -> AbstractContextManager[None]:
         """While a program that is not stored is compiled: keeps other processes from compiling it, too."""
-        path = self._path(sig, self._dispatcher.targetctx.codegen())
-        return nullcontext() if path is None or path.is_file() else only_one(path.with_suffix(".lock"))
+        paths = [path for path, _ in self._candidates(sig, self._dispatcher.targetctx.codegen())]
+        stored = not paths or any(path.is_file() for path in paths)
+        return nullcontext() if stored else only_one(paths[0].with_suffix(".lock"))
 
-    def _path(self, sig: Any, codegen: Any) -> Path | None:
-        """File of a program; None if programs of this function or for these arguments cannot be kept."""
+    def _candidates(self, sig: Any, codegen: Any) -> Iterator[tuple[Path, str]]:
+        """Files that may hold a program, with its key; the first is the one to write.
+
+        There are none if programs of this function or for these arguments cannot be kept.
+        """
         if not self._enabled or self._folder is None:
-            return None
+            return
         arguments, result = sigutils.normalize_signature(sig)
         types = [str(kind) for kind in (*arguments, result)]
         if any(" at 0x" in kind for kind in types):  # a Python object, known by its address only
-            return None
-        key = "\0".join([*types, *map(str, codegen.magic_tuple()), *self._identity])
-        return self._folder / f"{self._name}-{hashlib.sha256(key.encode()).hexdigest()[:24]}.nbc"
+            return
+        triple, *processor = map(str, codegen.magic_tuple())
+        file, key = self._program(types, triple, *processor)
+        yield self._folder / file, key
+        if hasattr(os, "getuid"):
+            yield _own(self._folder / file), key
+        if vars(config)["CPU_NAME"] is None and folders.runs_shipped():
+            file, key = self._program(types, triple, folders.TARGET, "")
+            yield folders.SHIPPED / folders.place(Path(self._file).absolute().parent) / file, key
+
+    def _program(self, types: list[str], *target: str) -> tuple[str, str]:
+        """Name of a program's file, and its key."""
+        key = hashlib.sha256("\0".join([*types, *target, *self._identity]).encode()).hexdigest()
+        return f"{self._name}-{key[:24]}.nbc", key
+
+    def _path(self, sig: Any, codegen: Any) -> Path | None:
+        """The file to write."""
+        return next(self._candidates(sig, codegen), (None, ""))[0]
 
     def _stored(self) -> list[Path]:
         """All programs of the function, the newest first."""
         if self._folder is None:
             return []
-        pattern = re.compile(rf"{re.escape(self._name)}-[0-9a-f]{{24}}\.nbc")
+        pattern = re.compile(rf"{re.escape(self._name)}-[0-9a-f]{{24}}(\.user\d+)?\.nbc")
         with os.scandir(self._folder) as entries:
             found = [
                 (entry.stat().st_mtime_ns, entry.name) for entry in entries if pattern.fullmatch(entry.name)
             ]
         return [self._folder / name for _, name in sorted(found, reverse=True)]
+
+
+def _own(path: Path) -> Path:
+    """The file beside a program that another user has written: that one is not loaded."""
+    return path.with_suffix(f".user{os.getuid()}.nbc")
+
+
+def _symbols(descriptor: Any) -> list[str]:
+    """Symbols that a program defines for others."""
+    return [
+        descriptor.llvm_func_name,
+        descriptor.llvm_cpython_wrapper_name,
+        descriptor.llvm_cfunc_wrapper_name,
+    ]
+
+
+def _define(descriptor: Any, key: str, machine_code: bytes) -> None:
+    """Take down the symbols of a program that is about to be loaded.
+
+    Raises:
+        program_file.UnusableProgramError: Another program defines one of them already.
+    """
+    program = key, hashlib.sha256(machine_code).hexdigest()
+    for symbol in _symbols(descriptor):
+        if _DEFINED.setdefault(symbol, program) != program:
+            raise program_file.UnusableProgramError(f"another program defines {symbol[:80]}")

@@ -1,42 +1,61 @@
-"""Compiled functions as parts of one program, which is optimised once.
+"""Links compiled functions into programs.
 
-Numba makes machine code of every compiled function, and optimises a function again in each of its callers.
-Here a function that another one calls is only translated; the function that Python calls is optimised with
-its parts.
+Numba makes machine code of every compiled function and optimises it again in each of its callers. Here a
+function that another one calls is only translated, as a part; the function that Python calls is optimised
+once, with its parts. Only its entry points can be seen by other programs, and every symbol holds a hash of
+the code that it stands for: no order of compiling or loading programs can mix them up.
 """
 
 from __future__ import annotations
 
 import gc
-import inspect
+import hashlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from functools import partial
 from typing import Any
 
 from llvmlite import binding
 from numba.core import sigutils
+from numba.core.bytecode import FunctionIdentity
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
-from numba.core.target_extension import cpu_target, jit_registry
+from numba.core.untyped_passes import ExtractByteCode
 
-from estimator._numba.quicker import quick_compiler
-from estimator._numba.references import without_counts_of_arguments
+from estimator._numba.digest import digest
+
+EXTERNAL = binding.Linkage.external
 
 
-class _PartLibrary(JITCodeLibrary):
+class _Library(JITCodeLibrary):
+    """Code that is optimised with the program that it is in, and not before."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        ll_module.data_layout = self._codegen._data_layout
+
+    def exported(self) -> list[str]:
+        """Names of the functions defined so far that other modules can see."""
+        functions = self._final_module.functions
+        return [f.name for f in functions if not f.is_declaration and f.linkage == EXTERNAL]
+
+    def set_linkage(self, names: list[str], linkage: str) -> None:
+        """Set who can see some functions."""
+        for name in names:
+            self._final_module.get_function(name).linkage = linkage
+
+
+class _PartLibrary(_Library):
     """Translated code of a function, neither optimised nor made executable."""
 
     def finalize(self) -> None:
         """Ends the translation."""
         self._finalize_dynamic_globals()
-        for function in self._final_module.functions:  # may be defined in several modules that are linked
-            if not function.is_declaration and function.linkage == binding.Linkage.external:
-                function.linkage = "linkonce_odr"
-        self._finalized = True
+        self.set_linkage(self.exported(), "linkonce_odr")  # several modules that are linked may define it
         for library in self._linking_libraries:
             self._reload_init.update(library._reload_init)
+        self._finalized = True
 
     @property
     def has_dynamic_globals(self) -> bool:
@@ -56,41 +75,30 @@ class _PartLibrary(JITCodeLibrary):
         return whole
 
 
-class _ProgramLibrary(JITCodeLibrary):
+class _ProgramLibrary(_Library):
     """Code of a function and of all its parts."""
+
+    entries: list[str]
 
     def finalize(self) -> None:
         """Links, optimises and makes executable."""
         self._codegen._check_llvm_bugs()
         self._raise_if_finalized()
+        self.entries = self.exported()
         for library in _parts(self):
             self._reload_init.update(library._reload_init)
             self._final_module.link_in(_module(library), preserve=True)
-        missing = [f.name for f in self._final_module.functions if f.is_declaration and _is_ours(f.name)]
-        if missing:
-            raise RuntimeError(f"compiled functions were not linked: {', '.join(missing)}")
+        # numba numbers its own functions anew in each process: the names of two programs' parts may be equal
+        defined = {function.name for function in self._final_module.functions if not function.is_declaration}
+        self.set_linkage(sorted(defined - {*self.entries}), "internal")
         self._optimize_final_module()
         self._final_module.verify()
         self._finalize_final_module()
 
-    def _optimize_final_module(self) -> None:
-        """Optimises once: numba first inlines with a pass of its own, for which nothing is left here.
-
-        References are counted until then, and removed where they are an argument's.
-        """
-        passes, builder = self._codegen._module_pass_manager(opt=2)
-        passes.run(self._final_module, builder)
-        self._final_module = without_counts_of_arguments(self._final_module)
-
-
-def _leave_to_the_program(self: JITCodeLibrary, ll_module: Any) -> None:
-    """`JITCodeLibrary._optimize_functions`: functions are optimised with the program they are in."""
-    ll_module.data_layout = self._codegen._data_layout
-
-
-def _is_ours(name: str) -> bool:
-    """Whether a symbol is a function that numba compiled, and not one of its runtime or of LLVM."""
-    return name.startswith("_ZN")
+    def _get_module_for_linking(self) -> Any:
+        """A module that names the entry points: callers link the part, so a program's file needs no more."""
+        stubs = "\n".join(f'define void @"{name}"() {{ ret void }}' for name in self.entries)
+        return binding.parse_assembly(stubs)
 
 
 def _module(library: Any) -> Any:
@@ -118,24 +126,58 @@ def _parts(library: Any) -> list[Any]:
     return order[::-1]
 
 
-class _PartCompiler(Compiler):
+class _NamedCompiler(Compiler):
+    """Names what it compiles after its content.
+
+    Numba numbers functions and records in the order in which a process meets them. Two processes give two
+    programs the same names, and a third that loads both would run the first for both.
+
+    Args:
+        kernel: The function, as `digest` takes it.
+        *arguments: Those of numba's compiler.
+    """
+
+    library: Callable[..., Any]
+
+    def __init__(
+        self, kernel: Any, typing: Any, target: Any, library: Any, arguments: Any, *rest: Any
+    ) -> None:
+        super().__init__(typing, target, self.library(target.codegen(), "slipgym"), arguments, *rest)
+        self.kernel = kernel
+
+    def compile_extra(self, func: Any) -> Any:
+        """Compile a function; as numba's own, but for the name."""
+        state = self.state
+        content = "\0".join([digest(self.kernel), str(state.flags), *map(str, state.args)])
+        identity = FunctionIdentity.from_function(func)
+        identity.unique_id = hashlib.sha256(content.encode()).hexdigest()[:32]
+        identity.unique_name = f"{identity.func_qualname}${identity.unique_id}"
+        state.func_id, state.lifted, state.lifted_from = identity, (), None
+        ExtractByteCode().run_pass(state)
+        return self._compile_bytecode()
+
+
+class _PartCompiler(_NamedCompiler):
     """Compiles into a `_PartLibrary`."""
 
-    def __init__(self, typing: Any, target: Any, library: Any, arguments: Any, *rest: Any) -> None:
-        result, flags, types = rest
+    library = _PartLibrary
+
+    def __init__(self, kernel: Any, *arguments: Any) -> None:
+        *first, result, flags, types = arguments
         flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
         flags.release_gil = False  # what numba compiles for a part is then found again by others
-        library = _PartLibrary(target.codegen(), "part")
-        super().__init__(typing, target, library, arguments, result, flags, types)
+        super().__init__(kernel, *first, result, flags, types)
 
 
-class _ProgramCompiler(Compiler):
+class _ProgramCompiler(_NamedCompiler):
     """Compiles into a `_ProgramLibrary`."""
 
-    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
-        library = _ProgramLibrary(target.codegen(), "program")
+    @staticmethod
+    def library(codegen: Any, name: str) -> Any:
+        """A library whose machine code can be stored."""
+        library = _ProgramLibrary(codegen, name)
         library.enable_object_caching()
-        super().__init__(typing, target, library, *rest)
+        return library
 
 
 class _Part(CPUDispatcher):
@@ -158,51 +200,14 @@ class _Part(CPUDispatcher):
 
 
 @contextmanager
-def _compiling() -> Iterator[None]:
-    """Functions of numba itself, such as `min` for two types, are compiled as parts meanwhile.
-
-    No function is optimised before the program that it is in.
-    """
-    before, optimize = jit_registry[cpu_target], JITCodeLibrary._optimize_functions
-
-    def decorator(**options: Any) -> Any:
-        def part(function: Any) -> Any:
-            plain = before(**options)(function)
-            return _Part(function, plain.locals, plain.targetoptions, pipeline_class=_PartCompiler)
-
-        return part
-
-    with global_compiler_lock, resting(), quick_compiler():
-        dict.__setitem__(jit_registry, cpu_target, decorator)
-        JITCodeLibrary._optimize_functions = _leave_to_the_program
-        try:
-            yield
-        finally:
-            dict.__setitem__(jit_registry, cpu_target, before)
-            JITCodeLibrary._optimize_functions = optimize
-
-
-MANY = 100_000
-"""Objects that the compiler makes for some functions; a program that is loaded makes far fewer."""
-
-
-@contextmanager
 def resting() -> Iterator[None]:
-    """The garbage collector rests: the compiler makes millions of objects that live until it is done.
-
-    If it made that many, they count as old afterwards: what is garbage among them goes with the next full
-    collection, and the next small one does not look through all of them.
-    """
+    """The garbage collector rests: the compiler makes millions of objects that live until it is done."""
     collecting = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
         if collecting:
-            made, *_ = gc.get_count()
-            if made > MANY and not gc.get_freeze_count():  # what a program has frozen stays so
-                gc.freeze()
-                gc.unfreeze()
             gc.enable()
 
 
@@ -223,15 +228,14 @@ class Kernel(CPUDispatcher):
     """Of a signature: keeps other processes from compiling the same program at the same time."""
 
     def __init__(self, py_func: Any, locals: Any = None, targetoptions: Any = None) -> None:
-        py_func.__signature__ = inspect.signature(py_func)  # numba asks for it four times
-        super().__init__(py_func, locals, targetoptions, pipeline_class=_ProgramCompiler)
-        self.part = _Part(py_func, locals, targetoptions, pipeline_class=_PartCompiler)
+        super().__init__(py_func, locals, targetoptions, pipeline_class=partial(_ProgramCompiler, self))
+        self.part = _Part(py_func, locals, targetoptions, pipeline_class=partial(_PartCompiler, self))
 
     def compile(self, sig: Any) -> Any:
         """Compile or load the program for a signature; returns its entry point."""
         if sigutils.normalize_signature(sig)[0] in self.overloads:
             return super().compile(sig)
-        with self.alone(sig), _compiling():
+        with self.alone(sig), global_compiler_lock, resting():
             return super().compile(sig)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:

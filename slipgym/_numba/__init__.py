@@ -1,4 +1,4 @@
-"""How functions are compiled. Everything that touches numba's internals is here; see docs/numba.md.
+"""Options of the compiler, pointers, fixed arguments and generated code; estimator/_numba has the rest.
 
 Inner package: its names may change between versions.
 """

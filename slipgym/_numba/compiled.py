@@ -11,9 +11,11 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import Any, ParamSpec, Protocol, TypeVar
 
 from estimator._numba.caching import compiler
+from estimator._numba.folders import why_compiling
 from estimator._numba.linking import Pointed, resting
 from slipgym._numba.switches import DISABLED
 
@@ -54,9 +56,17 @@ inlined_sum = _decorator(forceinline=True, fastmath={"reassoc"})
 """`compiled_sum` as a part of its caller, in which arguments that are literals simplify the loop."""
 
 
+@cache
+def _explain() -> None:
+    """Say once in a process that the compiler runs, why, and for how long."""
+    reason = why_compiling()
+    sys.stderr.write(f"slipgym: compiling for this machine, once, for about a minute{reason}\n")
+    sys.stderr.flush()
+
+
 @contextmanager
 def patience(what: str, programs: int = 1, after: float = 2.0) -> Iterator[Callable[[], None]]:
-    """Say on stderr why it takes so long, if it does: what is not in the cache has to be compiled.
+    """Say on stderr why it takes so long, if it does: what is not stored has to be compiled.
 
     A terminal shows how far it is, too.
 
@@ -73,13 +83,12 @@ def patience(what: str, programs: int = 1, after: float = 2.0) -> Iterator[Calla
     def tell() -> None:
         if over.wait(after):
             return
+        _explain()
         if not sys.stderr.isatty():
-            sys.stderr.write(f"slipgym: compiling {what}; once on this machine, for up to a minute\n")
             return
         while not over.wait(0.2):
-            count = f"{done[0]} of {programs} programs, " if programs > 1 else ""
-            line = f"slipgym: compiling {what}, once on this machine: {count}"
-            sys.stderr.write(f"\r{line}{time.perf_counter() - begun:.0f} s")
+            bar = f"{'#' * done[0]:-<{programs}} {done[0]} of {programs}"
+            sys.stderr.write(f"\rslipgym: {what}: {bar}, {time.perf_counter() - begun:.0f} s")
             sys.stderr.flush()
         sys.stderr.write("\n")
 
