@@ -16,38 +16,32 @@ _NUMBERS = ("floating", "integer", "mixed-integer-float", "decimal", "string", "
 _SECOND = np.timedelta64(1, "s")
 
 
-class NoNumber(ValueError):
-    """A cell that is no number; `row` is its place, counted from 0."""
-
-    def __init__(self, row: int, message: str) -> None:
-        super().__init__(message)
-        self.row = row
-
-
 def numbers(cells: Any, comma: bool = False) -> Array:
     """Floats; NaN where a cell is empty.
 
     Args:
-        cells: A pandas.Series of numbers of any type, or texts of numbers, (n,).
+        cells: A pandas.Series of numbers or texts of numbers, (n,); its index counts rows from 0.
         comma: Whether the file has decimal commas, so that a text with a point is no number.
 
     Returns:
         (n,).
 
     Raises:
-        NoNumber: A cell is not a finite number, or an unsigned counter wraps there.
-        ValueError: The column is of another kind: dates, booleans, bytes, complex numbers.
+        ValueError: A cell is not a finite number, an unsigned counter wraps, or the column is of another
+            kind: dates, booleans, bytes, complex numbers.
     """
     kind, cells = _kind(cells)
     if kind not in _NUMBERS:
-        raise ValueError(f"is of type {brief(cells.dtype)} ({kind}), but must hold numbers")
+        raise ValueError(
+            f"{brief(cells.name)} is of type {brief(cells.dtype)} ({kind}), but must hold numbers"
+        )
     if kind == "string":
         texts = cells.str.replace(".", ",", regex=False) if comma else cells
         values = np.asarray(extra("pandas").to_numeric(texts, errors="coerce"), np.float64)
     else:
         values = cells.to_numpy(np.float64, na_value=np.nan)
     why = "is not a finite number" + " with a decimal comma, as the file has them" * comma
-    _refuse((np.isnan(values) & ~_empty(cells)) | np.isinf(values), cells, why)
+    _refuse((np.isnan(values) & ~np.asarray(cells.isna(), bool)) | np.isinf(values), cells, why)
     if str(cells.dtype).lower().startswith("uint"):
         there = np.flatnonzero(~np.isnan(values))
         jumps = np.abs(np.diff(values[there])) > 2.0 ** (8 * cells.dtype.itemsize - 1)
@@ -68,7 +62,7 @@ def times(cells: Any, comma: bool = False) -> Array | None:
         Since 1970 (UTC) or 0, NaN where a cell is empty, (n,) [s]; None: the column is of another kind.
 
     Raises:
-        NoNumber: A text is neither a number nor a time.
+        ValueError: A text is neither a number nor a time.
     """
     pandas, (kind, cells) = extra("pandas"), _kind(cells)
     if kind in ("datetime64", "datetime"):
@@ -83,7 +77,7 @@ def times(cells: Any, comma: bool = False) -> Array | None:
         if stamps.isna().all():
             stamps = pandas.to_timedelta(texts, errors="coerce")
         wanted = "is neither a number, nor a time as 2024-03-31T12:00:00.001 (ISO 8601) or 12:00:00.001"
-        _refuse(np.asarray(stamps.isna()) & ~_empty(cells), cells, wanted)
+        _refuse(np.asarray(stamps.isna()) & ~np.asarray(cells.isna(), bool), cells, wanted)
     else:
         return None
     if stamps.dtype.kind == "M":
@@ -102,11 +96,8 @@ def _kind(cells: Any) -> tuple[str, Any]:
     return kind, cells
 
 
-def _empty(cells: Any) -> NDArray[np.bool_]:
-    return np.asarray(cells.isna(), bool)
-
-
 def _refuse(bad: NDArray[np.bool_], cells: Any, why: str) -> None:
     if bad.any():
-        row = int(np.argmax(bad))
-        raise NoNumber(row, f"{brief(cells.iloc[row])} {why}")
+        k = int(np.argmax(bad))
+        cell = f"{brief(cells.name)} = {brief(cells.iloc[k])}"
+        raise ValueError(f"row {cells.index[k] + 1}: {cell} {why}")

@@ -5,6 +5,9 @@ The bounds are an order of magnitude beyond the finger of a gripper, so every pl
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from estimator.online import TWIST, WRENCH
@@ -107,16 +110,11 @@ def check_wrench(source: str, wrench: Array, rows: Rows) -> None:
             "`f_n: {sign: -1}` in the mapping turns it"
         )
     for k, name in enumerate(WRENCH[:3]):
-        force = np.abs(wrench[:, k])
-        if (typical := np.median(force)) > _FORCE_MAX:
+        if (typical := np.median(np.abs(wrench[:, k]))) > _FORCE_MAX:
             raise ValueError(
                 f"{source}: median of {name} is {typical:.4g} N; in mN? `{name}: {{unit: mN}}` says so"
             )
-        if force[worst := int(np.argmax(force))] > _FORCE_PEAK:
-            raise ValueError(
-                f"{source}: row {rows[worst]}: {name} = {wrench[worst, k]:.4g} N, beyond {_FORCE_PEAK:g}: "
-                "is the reading faulty?"
-            )
+    _bounded(source, WRENCH[:3], wrench, rows, ((_FORCE_PEAK, "N", "mN"),) * 3)
 
 
 def check_torque(source: str, wrench: Array) -> None:
@@ -150,12 +148,16 @@ def check_twist(source: str, twist: Array, rows: Rows) -> None:
         ValueError: As said.
     """
     bounds = ((_SPEED_MAX, "m/s", "mm/s"), (_SPEED_MAX, "m/s", "mm/s"), (_SPIN_MAX, "rad/s", "deg/s"))
+    _bounded(source, TWIST, twist, rows, bounds)
+
+
+def _bounded(source: str, names: Sequence[str], values: Array, rows: Rows, bounds: Any) -> None:
     for k, (bound, unit, meant) in enumerate(bounds):
-        worst = int(np.argmax(np.abs(twist[:, k])))
-        if abs(twist[worst, k]) > bound:
+        worst = int(np.argmax(np.abs(values[:, k])))
+        if abs(values[worst, k]) > bound:
             raise ValueError(
-                f"{source}: row {rows[worst]}: {TWIST[k]} = {twist[worst, k]:.4g} {unit}, "
-                f"above {bound:g}; in {meant}? `{TWIST[k]}: {{unit: {meant}}}` says so"
+                f"{source}: row {rows[worst]}: {names[k]} = {values[worst, k]:.4g} {unit}, "
+                f"above {bound:g}; in {meant}? `{names[k]}: {{unit: {meant}}}` says so"
             )
 
 

@@ -73,6 +73,7 @@ def load_columns(path: str | os.PathLike[str] | None) -> Columns:
             f"{path.name}: {ROWS}: {brief(rows)} must be a column and its value in the rows of the finger, "
             f"such as `{ROWS}: {{finger: 1}}`"
         )
+    rows = {name.strip(): value for name, value in rows.items()}
     return Columns({key: _column(path.name, key, value) for key, value in values.items()}, rows)
 
 

@@ -31,11 +31,11 @@ def held(t: Array, twist: Array) -> tuple[Rows, float] | None:
     """
     steps = np.diff(twist, axis=0)
     change = np.flatnonzero((steps != 0.0).any(axis=1)) + 1
-    if len(change) <= _ENOUGH or len(np.unique(steps[change - 1].round(12), axis=0)) < _SIZES:
+    if len(change) <= _ENOUGH:
         return None
     row, apart = float(np.median(np.diff(t))), np.diff(t[change])
     short = np.quantile(apart, _SHORT)
-    if short < 1.5 * row:
+    if short < 1.5 * row or len(np.unique(steps[change - 1].round(12), axis=0)) < _SIZES:
         return None
     period = float(apart[apart < 1.5 * short].mean())
     for _ in range(3):

@@ -22,9 +22,13 @@ _MARKS = {
     codecs.BOM_UTF16_LE: "utf-16",
     codecs.BOM_UTF16_BE: "utf-16",
 }
-_CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f]")
-_COMMENT = re.compile(r"\s*(#|%|//)\s*")
+_COMMENT = re.compile(r"^\s*(#|%|//)\s*")
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE)
+_COMMENTS = re.compile(r"^[ \t]*(#|%|//).*$", re.MULTILINE)
+_TOO_LONG = (
+    "its rows have more cells than its header has names ({}); with decimal commas, separate the cells by "
+    "semicolons; no separator may end a row"
+)
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?")
 
 
@@ -49,33 +53,26 @@ def read_csv(path: Path, expected: Collection[str]) -> tuple[Any, dict[str, str]
         EOFError: It is cut off.
         zlib.error: Its packing is damaged.
     """
-    pandas, lines = extra("pandas"), _text(path).split("\n")
-    at, separator, names = _header(lines[:_LOOKED_AT], expected)
-    rows = [line for line in lines[at + 1 :] if line.strip() and not _COMMENT.match(line)]
-    first, units = _cells(rows[0], separator) if rows else [], {}
-    if 1 < sum(map(bool, first)) == _texts(first):
-        units = dict(zip(names, first, strict=False))
-        first = _cells(rows[1], separator) if rows[1:] else []
-        del rows[0]
-    too_long = (
-        f"its rows have more cells than its header has names ({len(names)}); with decimal commas, "
-        "separate the cells by semicolons; no separator may end a row"
-    )
-    if len(first) > len(names):  # pandas would take the first columns for an index
-        raise ValueError(too_long)
-    looked_at = [
-        cell
-        for row in rows[:_LOOKED_AT]
-        for name, cell in zip(names, _cells(row, separator), strict=False)
-        if name in expected
-    ]
-    comma = separator != "," and any(map(_DECIMAL_COMMA.fullmatch, looked_at))
+    pandas, text = extra("pandas"), _text(path)
+    at, separator, names = _header(text.split("\n", _LOOKED_AT)[:_LOOKED_AT], expected)
+    body = "".join(text.split("\n", at + 1)[at + 1 :])
+    if any(mark in body for mark in ("#", "%", "//")):
+        body = _COMMENTS.sub("", body)
+    lines = [line for line in body.split("\n", _LOOKED_AT)[:_LOOKED_AT] if line.strip()]
+    rows, units = [_cells(line, separator) for line in lines], {}
+    if rows and 1 < sum(map(bool, rows[0])) == _texts(rows[0]):
+        units = dict(zip(names, rows.pop(0), strict=False))
+        body = body.replace(lines[0], "", 1)
+    if rows and len(rows[0]) > len(names):  # pandas would take the first columns for an index
+        raise ValueError(_TOO_LONG.format(len(names)))
+    read = [cell for row in rows for name, cell in zip(names, row, strict=False) if name in expected]
+    comma = separator != "," and any(map(_DECIMAL_COMMA.fullmatch, read))
     # Before pandas 3.1 the default loses last digits of a number.
     version = tuple(int(part) for part in pandas.__version__.split(".")[:2])
     exactly = {} if version >= (3, 1) else {"float_precision": "round_trip"}
     try:
         frame = pandas.read_csv(
-            io.StringIO("\n".join(rows)),
+            io.BytesIO(body.encode()),
             sep=separator,
             header=None,
             names=range(len(names)),
@@ -85,8 +82,8 @@ def read_csv(path: Path, expected: Collection[str]) -> tuple[Any, dict[str, str]
             **exactly,
         )
     except pandas.errors.ParserError as error:
-        row = re.search(r"Expected \d+ fields in line (\d+), saw \d+", str(error))
-        raise ValueError(f"row {row[1]}: {too_long}" if row else str(error)) from error
+        longer = re.search(r"Expected \d+ fields", str(error))
+        raise ValueError(_TOO_LONG.format(len(names)) if longer else str(error)) from error
     frame.columns = names
     return frame, units, comma
 
@@ -104,11 +101,9 @@ def _text(path: Path) -> str:
             raise
         text = data.decode("latin-1")
     text = text.replace("\r\n", "\n").replace("\r", "\n")
-    if strange := _CONTROL.search(text):
-        line = text.count("\n", 0, strange.start()) + 1
-        raise ValueError(
-            f"line {line} has the control character {strange[0]!r}: it is no text, or UTF-16 without a mark"
-        )
+    if (at := text.find("\0")) >= 0:
+        line = text.count("\n", 0, at) + 1
+        raise ValueError(f"line {line} has a character 0: it is no text, or UTF-16 without a mark")
     return text
 
 
@@ -116,7 +111,7 @@ def _header(lines: list[str], expected: Collection[str]) -> tuple[int, str, list
     """The place of the header, its separator, and its names."""
     best, found = (0, 0, False), None
     for at, line in enumerate(lines):
-        bare = _COMMENT.sub("", line, count=1) if _COMMENT.match(line) else line
+        bare = _COMMENT.sub("", line)
         split = {separator: _cells(bare, separator) for separator in SEPARATORS}
         numbers = any(len(cells) > 1 and not _texts(cells) for cells in split.values())
         for separator, names in split.items():

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from estimator.records.cells import NoNumber, numbers, times
+from estimator.records.cells import numbers, times
 from estimator.records.columns import Column, Columns
 from estimator.records.extras import extra
 from estimator.records.record import Array, Rows
@@ -19,6 +19,7 @@ from estimator.records.units import ROWS, UNITS, unit_in
 from estimator.suggestions import brief, guess, unknown
 
 TYPES = (".csv", ".csv.gz", ".parquet")
+_UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]*)[\])]$")
 _SHOWN = 40
 """Most names of columns or values in a message."""
 
@@ -86,8 +87,7 @@ class Table:
         """
         found = np.empty((len(self.frame), len(keys)))
         for k, key in enumerate(keys):
-            column = self._column(key)
-            found[:, k] = column.factor * self._read(numbers, column)
+            found[:, k] = self._column(key).factor * self._read(numbers, key)
         return found
 
     def seconds(self, key: str) -> tuple[Array, Column | None]:
@@ -102,42 +102,21 @@ class Table:
         Raises:
             ValueError: As `numbers`.
         """
-        column = self._column(key, times)
-        own = self._read(times, column)
+        own = self._read(times, key)
         return (self.numbers([key])[:, 0], self._column(key)) if own is None else (own, None)
 
     def rows(self, at: Rows) -> Rows:
         """Rows of the file, counted from 1, at places of this table, (n,)."""
         return np.asarray(self.frame.index)[at] + 1
 
-    def of_finger(self, column: str, value: Any) -> Table:
-        """The rows that have a value in a column, which exists.
-
-        Raises:
-            ValueError: None has.
-        """
-        number = extra("pandas").to_numeric
-        text = self.frame[column].astype(object).map(str).str.strip()
-        same = number(text, errors="coerce") == number(str(value), errors="coerce")
-        kept = np.asarray(same | (text == str(value).strip()), bool)
-        if not kept.any():
-            raise ValueError(
-                f"{self.name}: no row has {brief(column)} = {brief(value)}; it has: {_listed(text.unique())}"
-            )
-        return replace(self, frame=self.frame[kept])
-
-    def _column(self, key: str, read: Any = None) -> Column:
-        """The column of a key; the unit is that of the mapping, or else of the file, or else the default.
-
-        A column that is read as times has no use for a unit.
-        """
+    def _column(self, key: str) -> Column:
+        """The column of a key; the unit is that of the mapping, or else of the file, or else the default."""
         column = self.columns[key]
         assert column is not None
-        said = self.units.get(column.column, "")
-        if column.stated or read is times:
+        if column.stated:
             return column
-        in_name = re.search(r"[\[(]([^\[\]()]*)[\])]$", column.column)
-        unit = unit_in(key, said) or unit_in(key, in_name[1] if in_name else "")
+        said, in_name = self.units.get(column.column, ""), _UNIT_IN_NAME.search(column.column)
+        unit = unit_in(key, said) or (unit_in(key, in_name[1]) if in_name else None)
         if unit is not None:
             return replace(column, unit=unit, factor=column.factor * UNITS[key][unit], stated=True)
         if re.search(r"\w", said):
@@ -147,15 +126,13 @@ class Table:
             )
         return column
 
-    def _read(self, reader: Any, column: Column) -> Any:
-        cells = self.frame[column.column]
+    def _read(self, reader: Any, key: str) -> Any:
+        column = self.columns[key]
+        assert column is not None
         try:
-            return reader(cells, self.comma)
-        except NoNumber as error:
-            row = self.frame.index[error.row] + 1
-            raise ValueError(f"{self.name}: row {row}: {brief(column.column)} = {error}") from error
+            return reader(self.frame[column.column], self.comma)
         except (ValueError, TypeError, OverflowError) as error:
-            raise ValueError(f"{self.name}: {brief(column.column)} {brief(error, 200)}") from error
+            raise ValueError(f"{self.name}: {brief(error, 300)}") from error
 
 
 def read_table(path: Path, columns: Columns) -> Table:
@@ -201,14 +178,20 @@ def of_one_finger(tables: Sequence[Table], columns: Columns) -> list[Table]:
     Raises:
         ValueError: No table has it, or no row has its value.
     """
-    tables = list(tables)
+    tables, number = list(tables), extra("pandas").to_numeric
     for name, value in columns.rows.items():
-        if not any(name.strip() in table.frame.columns for table in tables):
+        having = [k for k, table in enumerate(tables) if name in table.frame.columns]
+        if not having:
             there = _listed(tables[0].frame.columns)
             raise ValueError(f"{tables[0].name}: {ROWS}: no column {brief(repr(name))}; it has: {there}")
-        for k, table in enumerate(tables):
-            if name.strip() in table.frame.columns:
-                tables[k] = table.of_finger(name.strip(), value)
+        for k in having:
+            text = tables[k].frame[name].astype(object).map(str).str.strip()
+            same = number(text, errors="coerce") == number(str(value), errors="coerce")
+            frame = tables[k].frame[np.asarray(same | (text == str(value).strip()), bool)]
+            if frame.empty:
+                found = f"no row has {brief(name)} = {brief(value)}; it has: {_listed(text.unique())}"
+                raise ValueError(f"{tables[k].name}: {found}")
+            tables[k] = replace(tables[k], frame=frame)
     return tables
 
 

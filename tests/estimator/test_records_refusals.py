@@ -51,7 +51,7 @@ CASES = {
     "time in ns": (scaled("t", 1e9), r"is the time in ns\? `t: \{unit: ns\}`"),
     "time in min": (scaled("t", 1 / 60), r"1\.667e-05 s apart; convert it to s, ms, us, ns"),
     "slow forces": (scaled("t", 200.0), r"0\.2 s apart; .* if it is in s, `t: \{unit: s\}`"),
-    "one peak": (with_cell("f_y", "f_n", 65535.0), r"row 3: f_y = 6\.5\d+e\+04 N, beyond 20000"),
+    "one peak": (with_cell("f_y", "f_n", 65535.0), r"row 3: f_y = 6\.5\d+e\+04 N, above 20000"),
     "tangential force in mN": (scaled("f_y", 1e3), r"median of f_y .* in mN\? `f_y: \{unit: mN\}`"),
     "CoP in mm": (lambda t: t.assign(cop_x=3.0, cop_y=1.0), r"CoP is .* in mm"),
     "sign of the normal force": (scaled("f_n", -1.0), r"negative throughout .* `f_n: \{sign: -1\}`"),
