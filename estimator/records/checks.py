@@ -76,8 +76,7 @@ def check_rate(source: str, t: Array, what: str, key: str, column: Column | None
         ValueError: As said.
     """
     period = float(np.median(np.diff(t)))
-    stated = column is None or column.stated
-    least, most = _PERIODS if stated else _USUAL_PERIODS
+    least, most = _USUAL_PERIODS if column is not None and column.assumed else _PERIODS
     if least <= period <= most:
         return
     message = f"{source}: {what} samples are {period:.4g} s apart"

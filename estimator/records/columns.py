@@ -23,8 +23,8 @@ class Column:
     """Its unit, one of `UNITS` of its key."""
     factor: float
     """What its values are multiplied with to be SI in slipgym's sign."""
-    stated: bool = field(default=False, compare=False)
-    """Whether the mapping says the unit."""
+    assumed: bool = field(default=False, compare=False)
+    """Whether nothing states the unit, so that it is the default."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Columns:
     def __getitem__(self, key: str) -> Column | None:
         if key in self.given:
             return self.given[key]
-        return Column(key, next(iter(UNITS[key])), 1.0)
+        return Column(key, next(iter(UNITS[key])), 1.0, True)
 
     def needs(self, key: str) -> bool:
         """Whether a file must have the column: all that is required, and what the mapping names."""
@@ -95,4 +95,4 @@ def _column(source: str, key: Any, value: Any) -> Column | None:
         raise ValueError(f"{source}: {key}: {unknown('unknown unit', unit, units)}")
     if isinstance(sign, bool) or sign not in (1, -1):
         raise ValueError(f"{source}: {key}: sign = {brief(repr(sign))} must be 1 or -1")
-    return Column(column.strip(), unit, sign * units[unit], "unit" in given)
+    return Column(column.strip(), unit, sign * units[unit], "unit" not in given)

@@ -15,6 +15,7 @@ from estimator.records.holding import held
 from estimator.records.record import Array, Record, Rows, cop_of_tilt, wrench_at
 from estimator.records.table import Table, of_one_finger, read_table
 from estimator.records.units import COP, REQUIRED, TILT, TIME, TRUTH, VELOCITY_TIME
+from estimator.suggestions import brief
 
 CONTACT = 0.2
 """Normal force below which the centre of pressure is not defined [N]."""
@@ -81,7 +82,7 @@ def _stream(
         lacking = table.columns[keys[int(np.argmax(empty[k]))]]
         assert lacking is not None
         rest = "; a row holds all of a stream or none" if sparse else ""
-        raise ValueError(f"{table.name}: row {table.rows(k)}: {lacking.column} is empty or NaN{rest}")
+        raise ValueError(f"{table.name}: row {table.rows(k)}: {brief(lacking.column)} is empty or NaN{rest}")
     checks.check_time(table.name, t[at], table.rows(at), what)
     checks.check_rate(table.name, t[at], what, time, column)
     return t[at], values[at], at

@@ -113,12 +113,12 @@ class Table:
         """The column of a key; the unit is that of the mapping, or else of the file, or else the default."""
         column = self.columns[key]
         assert column is not None
-        if column.stated:
+        if not column.assumed:
             return column
         said, in_name = self.units.get(column.column, ""), _UNIT_IN_NAME.search(column.column)
         unit = unit_in(key, said) or (unit_in(key, in_name[1]) if in_name else None)
         if unit is not None:
-            return replace(column, unit=unit, factor=column.factor * UNITS[key][unit], stated=True)
+            return replace(column, unit=unit, factor=column.factor * UNITS[key][unit], assumed=False)
         if re.search(r"\w", said):
             raise ValueError(
                 f"{self.name}: {brief(column.column)}: {unknown('unknown unit', said, UNITS[key])}; "
@@ -173,7 +173,7 @@ def read_table(path: Path, columns: Columns) -> Table:
 
 
 def of_one_finger(tables: Sequence[Table], columns: Columns) -> list[Table]:
-    """The rows that the mapping keeps, of each table that has the column which tells.
+    """The rows that the mapping keeps, of each table that has its column.
 
     Raises:
         ValueError: No table has it, or no row has its value.

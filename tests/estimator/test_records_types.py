@@ -108,6 +108,13 @@ def test_words_of_truth_in_a_csv_are_refused(table, save):
         records.load(save(where("f_y", lambda t: t["f_y"] > 1.4)(table)))
 
 
+def test_a_mapping_made_by_hand_states_its_units(table, save):
+    columns = records.Columns({"t": records.Column("time [ms]", "ms", 1e-3)})
+    path = save(table.assign(t=1e3 * table["t"]).rename(columns={"t": "time [ms]"}), "log.parquet")
+    plain = records.load(save(table, "plain.parquet"))
+    np.testing.assert_allclose(records.load(path, columns).force_t, plain.force_t, rtol=1e-12)
+
+
 def test_seconds_that_are_unusual_are_read_once_they_are_stated(table, save, mapping):
     slow = table[table["f_n"].notna()].assign(t=lambda frame: 400 * frame["t"], v_x=0.0, v_y=0.0, omega=0.0)
     path = save(slow)
