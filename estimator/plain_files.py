@@ -11,7 +11,7 @@ from typing import Any
 
 import yaml
 
-from estimator.suggestions import no_file
+from estimator.suggestions import brief, no_file
 
 BYTES = 2**20
 """Largest YAML file."""
@@ -21,6 +21,8 @@ DEPTH = 64
 """Deepest nesting of a YAML file, aliases included."""
 DIGITS = 100
 """Most characters of a number or date."""
+_MESSAGE = 500
+"""Most characters of a message of PyYAML, which may quote all of a file."""
 _NUMBERS = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("int", "float", "timestamp"))
 _YAML_1_2_FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?$")
 
@@ -33,7 +35,7 @@ def check_regular(path: Path) -> None:
     """
     try:
         mode = path.stat().st_mode
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         raise FileNotFoundError(no_file(path)) from None
     except OSError as error:
         if error.errno != errno.ENAMETOOLONG:
@@ -77,8 +79,8 @@ def parse(text: str | bytes, source: str) -> Any:
         loader = _Loader(text)
         loader.name = Path(source).name
         return loader.get_single_data()
-    except yaml.YAMLError as error:
-        raise ValueError(f"{source}: {error}") from error
+    except Exception as error:  # PyYAML lets others through: chr() of a wrong escape
+        raise ValueError(f"{source}: {str(error)[:_MESSAGE]}") from error
 
 
 class _Loader(yaml.SafeLoader):
@@ -109,8 +111,10 @@ class _Loader(yaml.SafeLoader):
             raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
         try:
             return super().construct_object(node, deep)
-        except (ValueError, KeyError, AttributeError, TypeError, OverflowError) as error:
-            problem = f"{node.value!s:.40}: {error}"
+        except yaml.YAMLError:
+            raise
+        except Exception as error:  # a wrong value of a tag: ValueError, IndexError, KeyError and others
+            problem = f"{brief(node.value, 40)}: {brief(error)}"
             raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark) from error
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
@@ -120,7 +124,7 @@ class _Loader(yaml.SafeLoader):
                 continue
             if key.value in seen:
                 raise yaml.MarkedYAMLError(
-                    problem=f"duplicate key {key.value!r}", problem_mark=key.start_mark
+                    problem=f"duplicate key {brief(repr(key.value))}", problem_mark=key.start_mark
                 )
             seen.add(key.value)
         return super().construct_mapping(node, deep)

@@ -21,6 +21,13 @@ def unknown(what: str, name: object, valid: Iterable[str]) -> str:
     return f"{what} {f'{name!r}'[:_LONGEST]}; {guess(name, valid)}valid: {', '.join(valid)}"
 
 
+def brief(value: object, longest: int = 60) -> str:
+    """Write a value on one line of a message: unprintable characters escaped, cut where it is too long."""
+    text = str(value)
+    text = text if text.isprintable() else repr(text)
+    return text if len(text) <= longest else f"{text[:longest]}…"
+
+
 def asking(message: str, name: object, valid: Iterable[str]) -> str:
     """A message, and at its end the guess at the valid name that was meant, if there is one."""
     return f"{message}; {guess(name, valid)}".rstrip("; ")

@@ -5,21 +5,35 @@ The bounds are an order of magnitude beyond the finger of a gripper, so every pl
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from estimator.online import TWIST, WRENCH
+from estimator.records.columns import Column
 from estimator.records.record import Array, Rows, seconds
+from estimator.records.units import ROWS, UNITS
 
-_FORCE_MAX = 500.0  # median normal force [N]
+_FORCE_MAX = 500.0  # median force [N]
+_FORCE_PEAK = 2e4  # [N]
 _SPEED_MAX = 5.0  # [m/s]
 _SPIN_MAX = 200.0  # [rad/s]
 _COP_MAX = 0.5  # median distance of the centre of pressure from the origin [m]
 _LEVER_MAX = 0.1  # torque at the centre of pressure over normal force [m]
-_PERIOD_MAX = 1.0  # [s]
+_PERIODS = (1e-5, 1.0)  # [s]
+_USUAL_PERIODS = (4e-5, 0.105)
+"""Sample periods, 10 Hz to 25 kHz, for which seconds need not be stated [s]."""
+
+_REPEATED = (
+    f"if its rows are of two fingers, `{ROWS}: {{finger: 1}}` in the mapping keeps those with 1 in a column "
+    "finger, and without such a column each finger needs a file; if the time has too few digits, write "
+    "more; else drop repetitions"
+)
 
 
 def check_time(source: str, t: Array, rows: Rows, what: str) -> None:
-    """Refuses a time that is missing, does not increase, or is in another unit.
+    """Refuses a time that is missing or does not increase.
 
     Args:
         source: Name of the file.
@@ -37,24 +51,52 @@ def check_time(source: str, t: Array, rows: Rows, what: str) -> None:
     step = np.diff(t)
     if (step <= 0.0).any():
         k = int(np.argmax(step <= 0.0))
-        how = "repeats" if step[k] == 0.0 else "goes back from"
+        how, advice = "goes back from", "sort the record"
+        if step[k] == 0.0:
+            how, advice = "repeats", _REPEATED
+        elif t[k + 1] <= t[0]:
+            advice = "where a counter wraps or a second record begins, make two files"
         raise ValueError(
             f"{source}: row {rows[k + 1]}: the time {seconds(t[k + 1])} s {how} the {seconds(t[k])} s "
-            f"of row {rows[k]}; sort the record and drop repetitions"
-        )
-    if np.median(step) > _PERIOD_MAX:
-        raise ValueError(
-            f"{source}: {what} samples are {np.median(step):.4g} s apart; is the time in ms? "
-            "`t: {unit: ms}` in the mapping says so"
+            f"of row {rows[k]}; {advice}"
         )
 
 
-def check_wrench(source: str, wrench: Array) -> None:
-    """Refuses normal forces of the wrong sign or unit.
+def check_rate(source: str, t: Array, what: str, key: str, column: Column | None) -> None:
+    """Refuses sample rates that no sensor of slip has, and unusual ones if the unit is not stated.
+
+    Args:
+        source: Name of the file.
+        t: Increasing, (n,) [s].
+        what: "force" or "velocity".
+        key: Key of the time.
+        column: Its column; None if it is of dates or durations, which have a unit of their own.
+
+    Raises:
+        ValueError: As said.
+    """
+    period = float(np.median(np.diff(t)))
+    least, most = _USUAL_PERIODS if column is not None and column.assumed else _PERIODS
+    if least <= period <= most:
+        return
+    message = f"{source}: {what} samples are {period:.4g} s apart"
+    if column is None:
+        raise ValueError(f"{message}; is that the time at which they were taken?")
+    counts, units = period / abs(column.factor), UNITS[key]
+    meant = [unit for unit in units if _USUAL_PERIODS[0] <= counts * units[unit] <= _USUAL_PERIODS[1]]
+    says = f"`{key}: {{unit: {(meant or ['…'])[0]}}}` in the mapping says so"
+    ask = f"is the time in {meant[0]}? {says}" if meant else f"convert it to {', '.join(units)}; {says}"
+    right = f"; if it is in {column.unit}, `{key}: {{unit: {column.unit}}}`"
+    raise ValueError(f"{message}; {ask}{right if _PERIODS[0] <= period <= _PERIODS[1] else ''}")
+
+
+def check_wrench(source: str, wrench: Array, rows: Rows) -> None:
+    """Refuses normal forces of the wrong sign, and forces of the wrong unit.
 
     Args:
         source: Name of the file.
         wrench: f_x, f_y, f_n, tau, (n, 4) [N, N, N, N m].
+        rows: Rows in the file, counted from 1, (n,).
 
     Raises:
         ValueError: As said.
@@ -66,8 +108,12 @@ def check_wrench(source: str, wrench: Array) -> None:
             f"{source}: f_n is negative throughout (median {typical:.4g} N), but pressure is positive; "
             "`f_n: {sign: -1}` in the mapping turns it"
         )
-    if typical > _FORCE_MAX:
-        raise ValueError(f"{source}: median of f_n is {typical:.4g} N; in mN? `f_n: {{unit: mN}}` says so")
+    for k, name in enumerate(WRENCH[:3]):
+        if (typical := np.median(np.abs(wrench[:, k]))) > _FORCE_MAX:
+            raise ValueError(
+                f"{source}: median of {name} is {typical:.4g} N; in mN? `{name}: {{unit: mN}}` says so"
+            )
+    _bounded(source, WRENCH[:3], wrench, rows, ((_FORCE_PEAK, "N", "mN"),) * 3)
 
 
 def check_torque(source: str, wrench: Array) -> None:
@@ -101,12 +147,16 @@ def check_twist(source: str, twist: Array, rows: Rows) -> None:
         ValueError: As said.
     """
     bounds = ((_SPEED_MAX, "m/s", "mm/s"), (_SPEED_MAX, "m/s", "mm/s"), (_SPIN_MAX, "rad/s", "deg/s"))
+    _bounded(source, TWIST, twist, rows, bounds)
+
+
+def _bounded(source: str, names: Sequence[str], values: Array, rows: Rows, bounds: Any) -> None:
     for k, (bound, unit, meant) in enumerate(bounds):
-        worst = int(np.argmax(np.abs(twist[:, k])))
-        if abs(twist[worst, k]) > bound:
+        worst = int(np.argmax(np.abs(values[:, k])))
+        if abs(values[worst, k]) > bound:
             raise ValueError(
-                f"{source}: row {rows[worst]}: {TWIST[k]} = {twist[worst, k]:.4g} {unit}, "
-                f"above {bound:g}; in {meant}? `{TWIST[k]}: {{unit: {meant}}}` says so"
+                f"{source}: row {rows[worst]}: {names[k]} = {values[worst, k]:.4g} {unit}, "
+                f"above {bound:g}; in {meant}? `{names[k]}: {{unit: {meant}}}` says so"
             )
 
 

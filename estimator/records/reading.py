@@ -11,9 +11,11 @@ import numpy as np
 from estimator.online import TWIST, WRENCH
 from estimator.records import checks
 from estimator.records.columns import Columns
+from estimator.records.holding import held
 from estimator.records.record import Array, Record, Rows, cop_of_tilt, wrench_at
-from estimator.records.table import Table, read_table
+from estimator.records.table import Table, of_one_finger, read_table
 from estimator.records.units import COP, REQUIRED, TILT, TIME, TRUTH, VELOCITY_TIME
+from estimator.suggestions import brief
 
 CONTACT = 0.2
 """Normal force below which the centre of pressure is not defined [N]."""
@@ -45,40 +47,45 @@ def load(
         forces.require(REQUIRED)
         if columns.given.get(VELOCITY_TIME):
             raise ValueError(f"{forces.name}: {VELOCITY_TIME} is for a file of velocities; give --velocity")
+        (forces,) = of_one_finger([forces], columns)
         velocities, time = forces, TIME
     else:
         forces.require((TIME, *WRENCH))
-        velocities = read_table(Path(velocity), columns)
+        forces, velocities = of_one_finger([forces, read_table(Path(velocity), columns)], columns)
         time = VELOCITY_TIME if columns.given.get(VELOCITY_TIME) else TIME
         velocities.require((time, *TWIST))
     extra_keys = _cop_keys(forces)
-    force_t, wrench, force_rows = _stream(forces, TIME, WRENCH, sparse=velocity is None, what="force")
-    twist_t, twist, twist_rows = _stream(velocities, time, TWIST, sparse=velocity is None, what="velocity")
-    checks.check_wrench(forces.name, wrench)
-    checks.check_twist(velocities.name, twist, twist_rows)
-    cop = _cop(forces, extra_keys, wrench, force_rows)
+    force_t, wrench, at = _stream(forces, TIME, WRENCH, sparse=velocity is None, what="force")
+    twist_t, twist, twist_at = _stream(velocities, time, TWIST, sparse=velocity is None, what="velocity")
+    checks.check_wrench(forces.name, wrench, forces.rows(at))
+    checks.check_twist(velocities.name, twist, velocities.rows(twist_at))
+    cop = _cop(forces, extra_keys, wrench, at)
     if cop is not None:
         checks.check_cop(forces.name, cop)
         wrench = wrench_at(wrench, cop)
     checks.check_torque(forces.name, wrench)
-    truth = _truth(forces, force_rows)
-    return Record(forces.name, force_t, wrench, cop, twist_t, twist, truth)
+    truth, hold = _truth(forces, at), None
+    if (once := held(twist_t, twist)) is not None:
+        delivered, hold = once
+        twist_t, twist = twist_t[delivered], twist[delivered]
+    return Record(forces.name, force_t, wrench, cop, twist_t, twist, truth, hold)
 
 
 def _stream(
     table: Table, time: str, keys: tuple[str, ...], sparse: bool, what: str
 ) -> tuple[Array, Array, Rows]:
-    """Time (n,), values (n, len(keys)) and rows counted from 1 (n,) of one stream."""
-    t, values = table.numbers((time,))[:, 0], table.numbers(keys)
+    """Time (n,), values (n, len(keys)) and places in the table (n,) of one stream."""
+    (t, column), values = table.seconds(time), table.numbers(keys)
     empty = np.isnan(values)
-    rows: Any = np.flatnonzero(~empty.all(axis=1)) if sparse else np.arange(len(t))
-    for row in rows[empty[rows].any(axis=1)][:1]:
-        column = table.columns[keys[int(np.argmax(empty[row]))]]
-        assert column is not None
+    at: Any = np.flatnonzero(~empty.all(axis=1)) if sparse else np.arange(len(t))
+    for k in at[empty[at].any(axis=1)][:1]:
+        lacking = table.columns[keys[int(np.argmax(empty[k]))]]
+        assert lacking is not None
         rest = "; a row holds all of a stream or none" if sparse else ""
-        raise ValueError(f"{table.name}: row {row + 1}: {column.column} is empty or NaN{rest}")
-    checks.check_time(table.name, t[rows], rows + 1, what)
-    return t[rows], values[rows], rows + 1
+        raise ValueError(f"{table.name}: row {table.rows(k)}: {brief(lacking.column)} is empty or NaN{rest}")
+    checks.check_time(table.name, t[at], table.rows(at), what)
+    checks.check_rate(table.name, t[at], what, time, column)
+    return t[at], values[at], at
 
 
 def _cop_keys(table: Table) -> tuple[str, ...]:
@@ -98,26 +105,27 @@ def _cop_keys(table: Table) -> tuple[str, ...]:
     return tuple(pairs[COP] or pairs[TILT])
 
 
-def _cop(table: Table, keys: tuple[str, ...], wrench: Array, rows: Rows) -> Array | None:
+def _cop(table: Table, keys: tuple[str, ...], wrench: Array, at: Rows) -> Array | None:
     """Centre of pressure by force sample (n, 2) [m]; out of contact, the origin."""
     if not keys:
         return None
-    values, f_n = table.numbers(keys)[rows - 1], wrench[:, 2]
+    values, f_n = table.numbers(keys)[at], wrench[:, 2]
     missing: Any = np.isnan(values).any(axis=1)
     lost = missing & (f_n >= CONTACT)
     if lost.any():
-        raise ValueError(f"{table.name}: row {rows[np.argmax(lost)]}: {' or '.join(keys)} is empty or NaN")
+        row = table.rows(at)[np.argmax(lost)]
+        raise ValueError(f"{table.name}: row {row}: {' or '.join(keys)} is empty or NaN")
     values = np.where(missing[:, None], 0.0, values)
     if keys == TILT:
         return cop_of_tilt(values, f_n, CONTACT)
     return values * (f_n >= CONTACT)[:, None]
 
 
-def _truth(table: Table, rows: Rows) -> Array | None:
+def _truth(table: Table, at: Rows) -> Array | None:
     """True mu_s, mu_c, r by force sample (n, 3), NaN where unknown."""
     keys = [key for key in TRUTH if table.has(key)]
     if not keys:
         return None
-    truth = np.full((len(rows), len(TRUTH)), np.nan)
-    truth[:, [TRUTH.index(key) for key in keys]] = table.numbers(keys)[rows - 1]
+    truth = np.full((len(at), len(TRUTH)), np.nan)
+    truth[:, [TRUTH.index(key) for key in keys]] = table.numbers(keys)[at]
     return truth

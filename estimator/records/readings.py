@@ -48,6 +48,7 @@ def reading_warnings(record: Record, samples: Samples) -> list[str]:
     force = record.wrench if record.cop is None else record.wrench[:, :3]  # a torque that was moved is mixed
     names = WRENCH[: force.shape[1]]
     lines = [
+        *_held(record),
         *_saturated(names, force),
         *_saturated(TWIST, record.twist),
         *_frozen_forces(names, record.force_t, force, record),
@@ -57,6 +58,15 @@ def reading_warnings(record: Record, samples: Samples) -> list[str]:
         *_unit_of_rate(samples),
     ]
     return [f"Warning: {line}" for line in lines]
+
+
+def _held(record: Record) -> list[str]:
+    if record.hold is None:
+        return []
+    return [
+        f"the velocities are held: rows repeat each for {1e3 * record.hold:.3g} ms. They are read as samples "
+        f"at {1.0 / record.hold:.0f} Hz; better write each once, and leave the cells of other rows empty."
+    ]
 
 
 def _saturated(names: tuple[str, ...], values: Array) -> list[str]:

@@ -33,6 +33,8 @@ class Record:
     """v_x, v_y, omega at the sensor's origin, (m, 3) [m/s, m/s, rad/s]."""
     truth: Array | None
     """mu_s, mu_c, r by force sample, (n, 3) [-, -, m], NaN where unknown; None: the record has none."""
+    hold: float | None = None
+    """Time for which the file repeats each velocity, of which the record has one [s]; None: it does not."""
 
 
 def seconds(t: Any) -> str:

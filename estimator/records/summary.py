@@ -68,9 +68,9 @@ def final_rows(result: Result) -> list[list[str]]:
         ]
         if known and truth is not None:
             true = scale * float(truth[-1, k])
-            error = f"{100.0 * (value / true - 1.0):+.0f} %".replace("-", "−")
-            compared = last[COUNTS[name]] > 0 and not np.isnan(true)
-            cells += ["–" if np.isnan(true) else f"{true:.{digits}f}", error if compared else "–"]
+            compared = last[COUNTS[name]] > 0 and not np.isnan(true) and true != 0.0
+            error = f"{100.0 * (value / true - 1.0):+.0f} %".replace("-", "−") if compared else "–"
+            cells += ["–" if np.isnan(true) else f"{true:.{digits}f}", error]
         rows.append(cells)
     return rows
 

@@ -11,8 +11,11 @@ COP = ("cop_x", "cop_y")
 TILT = ("tau_x", "tau_y")
 TRUTH = ("true_mu_s", "true_mu_c", "true_r")
 REQUIRED = (TIME, *WRENCH, *TWIST)
+ROWS = "rows"
+"""Key of a mapping that says which rows are those of the finger."""
 OPTIONAL = (*COP, *TILT, *TRUTH, VELOCITY_TIME)
 
+_WRITTEN = str.maketrans({"µ": "u", "μ": "u", "°": "deg", **dict.fromkeys(" []()·*.")})
 _SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _FORCE = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
 _TORQUE = {"N m": 1.0, "N mm": 1e-3, "mN m": 1e-3, "N cm": 1e-2}
@@ -33,3 +36,9 @@ UNITS: dict[str, dict[str, float]] = {
     "true_r": _LENGTH,
 }
 """Key of a mapping -> unit -> factor to SI; the first unit is the default."""
+
+
+def unit_in(key: str, text: str) -> str | None:
+    """The unit of a key that a text such as "[Nmm]", "(mm/s)" or "µs" means; None: none of its units."""
+    written = text.translate(_WRITTEN)
+    return next((unit for unit in UNITS[key] if unit.translate(_WRITTEN) == written), None)

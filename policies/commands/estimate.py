@@ -20,7 +20,8 @@ Examples:\n
 \n
 A record holds one finger: the time t [s], the wrench f_x, f_y, f_n, tau [N, N, N, N m] and the slip
 twist v_x, v_y, omega [m/s, m/s, rad/s]; cells are empty where a stream has no sample. Other names,
-units and signs: --columns. docs/records.md describes the format and the files of a run.
+units and signs, and the rows of one of several fingers: --columns. docs/records.md describes the format
+and the files of a run.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from estimator.records import load_columns
 from slipgym.synthetic import Record
 
 MU_C, R = 0.4, 0.012
@@ -36,6 +37,17 @@ def save(tmp_path):
         return path
 
     return write
+
+
+@pytest.fixture
+def mapping(tmp_path):
+    """Reads a mapping of columns from a text."""
+
+    def read(text):
+        (tmp_path / "mapping.yaml").write_text(text, encoding="utf-8")
+        return load_columns(tmp_path / "mapping.yaml")
+
+    return read
 
 
 WRENCH_NOISE = np.array([0.02, 0.02, 0.04, 5e-4])  # [N, N, N, N m]

@@ -46,10 +46,23 @@ CASES = {
     "velocity in mm/s": (scaled("v_y", 1e3), r"row \d+: v_y = 20 m/s.* in mm/s\?"),
     "rate in deg/s": (scaled("omega", 180.0), r"omega = 300 rad/s.* in deg/s\?"),
     "torque in N mm": (scaled("tau", 1e3), r"tau reaches .* in N mm\?"),
-    "time in ms": (scaled("t", 1e6), r"apart; is the time in ms\?"),
+    "time in ms": (scaled("t", 1e3), r"force samples are 1 s apart; is the time in ms\? `t: \{unit: ms\}`"),
+    "time in us": (scaled("t", 1e6), r"1000 s apart; is the time in us\? `t: \{unit: us\}`"),
+    "time in ns": (scaled("t", 1e9), r"is the time in ns\? `t: \{unit: ns\}`"),
+    "time in min": (scaled("t", 1 / 60), r"1\.667e-05 s apart; convert it to s, ms, us, ns"),
+    "slow forces": (scaled("t", 200.0), r"0\.2 s apart; .* if it is in s, `t: \{unit: s\}`"),
+    "one peak": (with_cell("f_y", "f_n", 65535.0), r"row 3: f_y = 6\.5\d+e\+04 N, above 20000"),
+    "tangential force in mN": (scaled("f_y", 1e3), r"median of f_y .* in mN\? `f_y: \{unit: mN\}`"),
     "CoP in mm": (lambda t: t.assign(cop_x=3.0, cop_y=1.0), r"CoP is .* in mm"),
     "sign of the normal force": (scaled("f_n", -1.0), r"negative throughout .* `f_n: \{sign: -1\}`"),
-    "repeated time": (repeated, r"row 6: the time 0\.005 s repeats the 0\.005 s of row 5"),
+    "repeated time": (
+        repeated,
+        r"row 6: the time 0\.005 s repeats the 0\.005 s of row 5; if its rows are of two fingers, `rows: \{",
+    ),
+    "clock that starts again": (
+        lambda t: t.assign(t=t["t"].where(t["t"] < 1.0, t["t"] - 1.0)),
+        r"row \d+: the time 0 s goes back .* where a counter wraps or a second record begins",
+    ),
     "unsorted time": (turned, r"row 6: the time 0\.0005 s goes back from the 0\.005 s of row 5"),
     "missing time": (with_cell("t", "omega", None), r"row \d+: the time is missing"),
     "missing force": (
@@ -132,6 +145,12 @@ def test_unknown_file_types_and_files(tmp_path):
         ("f_n: null", r"None must be the name of a column"),
         ("- f_n", r"must be a mapping"),
         ("f_n: [", r"mapping\.yaml: "),
+        ("f_n: !!int ''", r"mapping\.yaml: "),
+        ("f_n: !!float ''", r"mapping\.yaml: "),
+        ("f_n: !!timestamp x", r"mapping\.yaml: "),
+        ('f_n: "\\UFFFFFFFF"', r"mapping\.yaml: "),
+        ("rows: 1", r"rows: 1 must be a column and its value .* `rows: \{finger: 1\}`"),
+        ("rows: {finger: [1]}", r"rows: \{'finger': \[1\]\} must be a column"),
     ],
 )
 def test_a_wrong_mapping_is_explained(tmp_path, text, message):
