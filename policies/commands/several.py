@@ -1,8 +1,8 @@
-"""What several command lines share: options that take several values, the help of a task's name."""
+"""Shares between command lines: options with several values, renamed options, the help of a task's name."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, TypeAlias
 
 import typer
@@ -46,5 +46,22 @@ def taking_several(*names: str) -> type[TyperCommand]:
     class Command(TyperCommand):
         def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
             return super().parse_args(ctx, expanded(args, names))
+
+    return Command
+
+
+def renamed(options: Mapping[str, str]) -> type[TyperCommand]:
+    """A class of commands in which an option that is a command of its own by now is an error that names it.
+
+    Args:
+        options: Old option -> the words after `slipgym` that do the same.
+    """
+
+    class Command(TyperCommand):
+        def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
+            for argument in args:
+                if now := options.get(argument.partition("=")[0]):
+                    raise typer.BadParameter(f"{argument} is a command of its own: slipgym {now}", ctx)
+            return super().parse_args(ctx, args)
 
     return Command

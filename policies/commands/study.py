@@ -42,7 +42,7 @@ def main(
     seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the study's.")] = None,
 ) -> None:
     """Run a study and write its tables and one self-contained report, report.html."""
-    from policies.research import study as studies
+    from policies import study as studies
 
     try:
         chosen = studies.narrowed(

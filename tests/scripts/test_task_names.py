@@ -38,14 +38,14 @@ def test_evaluate_and_compare_engines(name):
 
 @spelled
 def test_study(name):
-    from policies.research.study import load_study, narrowed
+    from policies.study import load_study, narrowed
 
     assert narrowed(load_study("quick"), tasks=[name]).tasks[0] in ("Hold", name)
 
 
 @spelled
 def test_compare_learned(name, monkeypatch):
-    from policies.research import compare_learned
+    from lab import compare_learned
 
     seen = []
     monkeypatch.setattr(compare_learned, "best_force", lambda experiment, progress: 5.0)
