@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import typer
 from typer.core import TyperCommand
@@ -48,6 +48,23 @@ def taking_several(*names: str) -> type[TyperCommand]:
             return super().parse_args(ctx, expanded(args, names))
 
     return Command
+
+
+def environment_arguments(texts: Sequence[str]) -> dict[str, Any]:
+    """Reads `name=value` pairs; `friction_source=true` is a name, which YAML takes for a truth value.
+
+    Args:
+        texts: Such as ["friction_source=true", "engine=planar"].
+
+    Raises:
+        ValueError: One has no "=", or its value is no YAML.
+    """
+    from estimator.records import parse_settings
+
+    values = parse_settings(texts)
+    if values.get("friction_source") is True:
+        values["friction_source"] = "true"
+    return values
 
 
 def renamed(options: Mapping[str, str]) -> type[TyperCommand]:

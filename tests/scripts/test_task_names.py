@@ -2,7 +2,6 @@
 
 import pytest
 
-from policies import command
 from policies.evaluation import load_experiment
 
 SPELLINGS = ["hold", "Hold", "slipgym/Hold-v0", "slipgym.tasks.hold:TASK"]
@@ -68,16 +67,18 @@ def test_play_and_record(name, tmp_path, called):
 
 
 @spelled
-def test_slipgym_evaluate(name, capsys):
-    command.main(["constant_force", "--task", name, "--episodes", "1", "--set", "engine=planar"])
-    assert "of 1, dropped 0" in capsys.readouterr().out
+def test_evaluate_one_policy(name, called):
+    printed = called(
+        "evaluate", "--policy", "constant_force", "--task", name, "--trials", "1", "--set", "engine=planar"
+    )
+    assert "of 1, dropped 0" in printed
 
 
-def test_settings_of_the_environment_add_up(capsys):
+def test_settings_of_the_environment_add_up(invoke):
     """Two --set are both heard."""
-    with pytest.raises(SystemExit):
-        command.main(["hold", "--episodes", "1", "--set", "engine=wrong", "--set", "material=wood"])
-    assert "wrong" in capsys.readouterr().err
+    done = invoke("evaluate", "--policy", "hold", "--set", "engine=wrong", "--set", "material=wood")
+    assert done.exit_code == 2
+    assert "wrong" in done.output
 
 
 @pytest.mark.parametrize(

@@ -1,28 +1,26 @@
-"""`slipgym-evaluate` runs a policy where it was trained, with the base installation alone."""
-
-import subprocess
-import sys
-from pathlib import Path
+"""`slipgym evaluate --policy` runs a policy where it was trained."""
 
 import pytest
+from typer.testing import CliRunner
 
 import policies
-from policies import command
-from policies.episodes import environment_of, episodes
+from policies.commands.evaluate import app
+from policies.evaluation.one_policy import environment_of, episodes
 from policies.learned import pretrained
 from policies.training import seeds
 
-ROOT = Path(__file__).resolve().parents[3]
 SHORT = {"config": {"tasks": {"hold": {"duration": 0.5}}}}
-EXTRAS = {"pandas", "joblib", "typer", "tqdm", "matplotlib", "torch", "stable_baselines3"}
 
 
-def test_it_says_how_the_episodes_went(policy_folder, capsys):
+def evaluated(*words):
+    return CliRunner().invoke(app, ["--policy", *words], catch_exceptions=False)
+
+
+def test_it_says_how_the_episodes_went(policy_folder):
     folder = str(policy_folder(environment={"arguments": {**SHORT, "friction_source": "estimated"}}))
     found = list(episodes(folder, 3, first=5))
     assert found == list(episodes(folder, 5, first=3))[2:]
-    command.main([folder, "--episodes", "3", "--first", "5"])
-    said = capsys.readouterr().out
+    said = evaluated(folder, "--trials", "3", "--seed", "5").output
     solved, dropped = sum(one.success for one in found), sum(one.dropped for one in found)
     assert f"{folder}: solved {solved} of 3, dropped {dropped}; means: reward " in said
     assert f"time {sum(one.time for one in found) / 3:.2f} s" in said
@@ -57,34 +55,17 @@ def test_the_environment_is_that_of_the_training_unless_told_otherwise(policy_fo
         (["nowhere"], "no policy at 'nowhere'"),
         (["hold", "--set", "materiall=wood"], "did you mean 'material'"),
         (["hold", "--set", "material"], "must be name=value"),
-        (["hold", "--episodes", "0"], "--episodes must be"),
+        (["hold", "--trials", "0"], "--trials"),
         (["{folder}", "--task", "LinearSlip"], "was trained in slipgym/Hold-v0"),
         (["{folder}", "--set", "friction_source=none"], "the policy was trained for another observation"),
         (["{folder}", "--set", "frame_skip=2"], "120 steps per second, here are 60"),
     ],
 )
-def test_mistakes_are_explained(policy_folder, capsys, arguments, message):
+def test_mistakes_are_explained(policy_folder, arguments, message):
     folder = str(policy_folder())
-    with pytest.raises(SystemExit) as ended:
-        command.main([argument.format(folder=folder) for argument in arguments])
-    assert ended.value.code == 2
-    assert message in capsys.readouterr().err
-
-
-def test_it_needs_nothing_but_the_base_installation(policy_folder):
-    folder = str(policy_folder(environment={"arguments": {**SHORT, "friction_source": "estimated"}}))
-    code = (
-        "import sys; from policies import command; command.main(sys.argv[1:])\n"
-        f"loaded = {EXTRAS!r} & set(sys.modules); sys.exit(str(loaded) if loaded else 0)"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code, folder, "--episodes", "1"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
+    done = evaluated(*[argument.format(folder=folder) for argument in arguments])
+    assert done.exit_code == 2
+    assert message in " ".join(done.output.replace("│", " ").split())
 
 
 @pytest.mark.parametrize("name", pretrained.folders())

@@ -1,9 +1,9 @@
-"""Runs episodes of one policy with the base installation only."""
+"""Runs episodes of one policy in the environment that it is for: `slipgym evaluate --policy`."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -100,6 +100,21 @@ def episodes(
             yield Outcome(info["is_success"], info["dropped"], total, info["time"])
     finally:
         env.close()
+
+
+def outcome(which: str, found: Sequence[Outcome]) -> str:
+    """How episodes went, in a line.
+
+    Args:
+        which: What the policy was loaded by.
+        found: From `episodes`, at least one.
+    """
+    n = len(found)
+    solved, dropped = sum(one.success for one in found), sum(one.dropped for one in found)
+    reward, time = (sum(getattr(one, name) for one in found) / n for name in ("reward", "time"))
+    return (
+        f"{which}: solved {solved} of {n}, dropped {dropped}; means: reward {reward:.2f}, time {time:.2f} s"
+    )
 
 
 def _check_estimator(choice: Any) -> None:
