@@ -25,9 +25,11 @@ def wrong_arguments() -> Iterator[None]:
     """Turns what is wrong with the arguments' values into a usage error.
 
     Raises:
-        typer.BadParameter: A ValueError or a missing file within.
+        typer.BadParameter: A ValueError, an OSError or a missing package of the extra train within.
     """
     try:
         yield
-    except (ValueError, FileNotFoundError) as error:
+    except ModuleNotFoundError as error:
+        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[train]'") from error
+    except (ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error

@@ -13,8 +13,8 @@ Examples:\n
   slipgym train-estimator
   slipgym train-estimator --seed 1 --output runs
 \n
-The training takes about ten minutes of one processor. An environment uses what it wrote with
-estimator={"name": "gru", "weights": "…/gru.npz"}. See docs/learned_estimator.md.
+The training needs torch (the extra train) and about ten minutes of one processor. An environment uses what
+it wrote with estimator={"name": "gru", "weights": "…/gru.npz"}. See docs/learned_estimator.md.
 """
 app = application()
 
@@ -28,10 +28,9 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
 ) -> None:
     """Record episodes, fit the network, write a folder with gru.npz."""
-    from lab.learned_estimator import config
-    from lab.learned_estimator.run import WEIGHTS, train
-
     with wrong_arguments():
-        training = config.read(configuration)
-    folder = train(training, output, seed)
+        from lab.learned_estimator import config
+        from lab.learned_estimator.run import WEIGHTS, train
+
+        folder = train(config.read(configuration), output, seed)
     typer.echo(f"Look at:\n  {folder / WEIGHTS}\n  {folder / 'curve.csv'}")

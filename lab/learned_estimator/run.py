@@ -1,4 +1,4 @@
-"""Trains the network of "gru": records episodes, fits, writes a folder."""
+"""Trains the network of "gru": makes a folder, records episodes, fits."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ import pandas as pd
 import yaml
 from tqdm import tqdm
 
-from estimator.network.weights import SHAPES, save
+from estimator.network.weights import Tensors, save
 from lab.learned_estimator.columns import Sequence, sequences
 from lab.learned_estimator.config import Training
 from lab.learned_estimator.episodes import record
-from lab.learned_estimator.fit import fit
+from lab.learned_estimator.fit import Curve, fit
 from policies.evaluation.folder import stamped
 from policies.versions import write_versions
-from slipgym.atomic_io import new_folder
+from slipgym.atomic_io import new_file
 
 WEIGHTS = "gru.npz"
 """Name of the file of weights in a run's folder."""
+UNFINISHED = "unfinished.npz"
+"""Name of that file while the training goes on."""
 NOTE = (
     "Network of slipgym's estimator gru. Made by `slipgym train-estimator --seed {seed}` from simulated "
     "episodes of slipgym alone, {samples} samples. Licence: that of slipgym (MIT)."
@@ -48,7 +50,7 @@ def recorded(training: Training, seed: int, progress: bool = True) -> list[Seque
 def train(
     training: Training, output: str | os.PathLike[str] = "runs", seed: int = 0, progress: bool = True
 ) -> Path:
-    """Trains a network from the start.
+    """Trains a network from the start; what is there so far is kept in the run's folder meanwhile.
 
     Args:
         training: How.
@@ -57,20 +59,29 @@ def train(
         progress: Whether to show progress bars.
 
     Returns:
-        The run's folder: gru.npz, training.yaml, curve.csv, versions.
+        The run's folder: gru.npz, training.yaml, curve.csv, versions. Before the end of the training
+        unfinished.npz has the place of gru.npz.
+
+    Raises:
+        FloatingPointError: The loss is not finite.
+        OSError: The folder cannot be written; before anything is recorded.
     """
-    began = time.monotonic()
+    path, began = stamped(output, "gru"), time.monotonic()
+    path.mkdir(parents=True)
+    write_versions(path)
+    settings = yaml.safe_dump(training.model_dump(mode="json"), sort_keys=False)
+    (path / "training.yaml").write_text(f"# seed {seed}\n{settings}", encoding="utf-8")
     data = recorded(training, seed, progress)
     samples = sum(len(one.columns) for one in data)
     tqdm.write(f"{len(data)} recordings, {samples} samples, {time.monotonic() - began:.0f} s")
-    network, curve = fit(training, data, seed, progress)
-    path = stamped(output, "gru")
-    with new_folder(path) as folder:
-        write_versions(folder)
-        tensors = {name: network[name][0] for name in SHAPES}
-        save(folder / WEIGHTS, tensors, NOTE.format(seed=seed, samples=samples))
-        settings = yaml.safe_dump(training.model_dump(mode="json"), sort_keys=False)
-        (folder / "training.yaml").write_text(f"# seed {seed}\n{settings}", encoding="utf-8")
-        pd.DataFrame(curve).to_csv(folder / "curve.csv", index=False)
+
+    def keep(tensors: Tensors, curve: Curve) -> None:
+        with new_file(path / UNFINISHED) as file:
+            save(file, tensors, NOTE.format(seed=seed, samples=samples))
+        with new_file(path / "curve.csv") as file:
+            pd.DataFrame(curve).to_csv(file, index=False)
+
+    fit(training, data, seed, keep, progress)
+    (path / UNFINISHED).rename(path / WEIGHTS)
     tqdm.write(f"trained in {time.monotonic() - began:.0f} s")
     return path

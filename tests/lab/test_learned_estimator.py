@@ -3,19 +3,26 @@
 import gymnasium as gym
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import estimator
 import policies
-from estimator.network.cell import HIDDEN
 from estimator.network.features import COLUMNS
 from estimator.network.weights import SHAPES, load
 from lab.learned_estimator import config
 from lab.learned_estimator.columns import Sequence, sequences
 from lab.learned_estimator.compare import compare, conditions, wide
 from lab.learned_estimator.episodes import READINGS, record
-from lab.learned_estimator.fit import first_weights
-from lab.learned_estimator.gradient import loss, loss_and_gradient
 from lab.learned_estimator.recorder import NAME
+
+pytest.importorskip("torch")
+import torch
+
+from lab.commands.train_estimator import app
+from lab.learned_estimator import fit as fitting
+from lab.learned_estimator import run
+from lab.learned_estimator.fit import first_weights, fit
+from lab.learned_estimator.network import Network
 from lab.learned_estimator.run import WEIGHTS, train
 
 LINEAR = "slipgym:slipgym/LinearSlip-v0"
@@ -65,33 +72,14 @@ def test_the_truth_of_a_recording_begins_with_the_grasp(recordings):
         assert (np.abs(one.readings[: READINGS - 1, 2]) < 0.6).all()
 
 
-def in_torch(tensors, columns):
-    """The network by `torch.nn.GRU`: averages (n, 3) and logarithms of the deviations (n, 4)."""
-    torch = pytest.importorskip("torch")
-    own = {name: value if torch.is_tensor(value) else torch.tensor(value) for name, value in tensors.items()}
-    unit = torch.nn.GRU(COLUMNS, HIDDEN)
-    state = {
-        "weight_ih_l0": own["input_weight"].T,
-        "bias_ih_l0": own["input_bias"],
-        "weight_hh_l0": own["hidden_weight"].T,
-        "bias_hh_l0": own["hidden_bias"],
-    }
-    x = (torch.tensor(columns) - own["centre"]) * own["scale"]
-    hidden = torch.func.functional_call(unit, state, (x[:, None],))[0][:, 0]
-    out = hidden @ own["head_of_hidden"] + x @ own["head_of_columns"] + own["head_bias"]
-    mean, means = own["start"], []
-    for row in out:
-        mean = torch.lerp(mean, row[3:6], torch.sigmoid(row[:3]))
-        means.append(mean)
-    return torch.stack(means), np.log(0.01) * (1.0 - torch.sigmoid(out[:, 6:]))
-
-
 @pytest.mark.slow
 def test_torch_and_the_compiled_estimator_agree(recordings):
     """float32 with sums in another order; the averages forget, so errors do not grow with the samples."""
     one = recordings[0]
     (sequence,) = sequences([one], 0.0, 0)
-    means, deviations = (np.asarray(found) for found in in_torch(load(), sequence.columns))
+    with torch.no_grad():
+        found = Network(load())(torch.from_numpy(sequence.columns)[:, None])
+    means, deviations = (np.asarray(each)[:, 0] for each in found)
     est, kept = estimator.make("gru"), []
     for k, row in enumerate(one.readings.tolist()):
         est.update((k + 1) / 120, row[:4], row[4:])
@@ -103,27 +91,67 @@ def test_torch_and_the_compiled_estimator_agree(recordings):
     np.testing.assert_allclose(kept[-len(expected) :], expected, atol=1e-3)
 
 
-@pytest.mark.slow
-def test_the_gradient_is_that_of_torch(recordings):
-    torch = pytest.importorskip("torch")
-    data = [Sequence(one.columns[:40], one.targets[:40]) for one in sequences(recordings[:3], 0.0, 0)]
-    network = first_weights(data, np.random.default_rng(0))
-    value, gradient = loss_and_gradient(network, data)
-    assert loss(network, data) == value
-    own = {name: torch.tensor(network[name][0].copy(), requires_grad=True) for name in SHAPES}
-    each = []
-    for one in data:
-        means, deviations = in_torch(own, one.columns)
-        errors = torch.tensor(one.targets, dtype=torch.float32) - means
-        errors = torch.cat([errors, errors[:, 1:2] + errors[:, 2:3]], dim=1)
-        each.append((0.5 * (errors * torch.exp(-deviations)) ** 2 + deviations).mean(dim=1))
-    mean = torch.cat(each).mean()
-    mean.backward()
-    assert value == pytest.approx(mean.item(), rel=1e-5)
-    for name in set(SHAPES) - {"centre", "scale"}:
-        expected = own[name].grad.numpy()
-        error = np.abs(gradient[name][0] - expected).max()
-        assert error < 1e-4 * np.abs(expected).max(), name  # float32, sums of 120 samples
+def made_up(lengths, rng):
+    """Sequences of random columns, whose targets the first columns tell."""
+    columns = [rng.normal(size=(n, COLUMNS)).astype(np.float32) for n in lengths]
+    return [Sequence(one, 0.1 * one[:, :3] - 1.0) for one in columns]
+
+
+def test_sequences_in_a_batch_do_not_touch_each_other():
+    rng = np.random.default_rng(0)
+    data = made_up((30, 7, 19), rng)
+    network = Network(first_weights(data, rng))
+    alone = [network.loss([one]).item() * len(one.columns) for one in data]
+    assert network.loss(data).item() == pytest.approx(sum(alone) / 56, rel=1e-5)
+    again = Network(network.tensors())
+    assert again.loss(data).item() == network.loss(data).item()
+
+
+def test_a_fit_learns_and_is_the_same_for_a_seed():
+    data = made_up((40,) * 24, np.random.default_rng(1))
+    training = config.read({**TINY, "updates": 120, "batch": 8})
+    kept = []
+    for _ in range(2):
+        rows = []
+        fit(training, data, 3, lambda tensors, curve, rows=rows: rows.append((tensors, list(curve))), False)
+        kept.append(rows)
+    (first, second), other = kept[0], kept[1][1]
+    assert [row["update"] for row in second[1]] == [100, 120]
+    assert second[1][-1]["held_out"] < second[1][0]["training"]
+    assert second[1] == other[1]
+    assert all((second[0][name] == other[0][name]).all() for name in SHAPES)
+    assert (first[0]["head_bias"] != second[0]["head_bias"]).any()
+    assert all((second[0][name] == first[0][name]).all() for name in ("centre", "scale"))
+
+
+def test_the_folder_is_made_before_anything_is_recorded(tmp_path, monkeypatch):
+    monkeypatch.setattr(run, "recorded", lambda *_: pytest.fail("recorded before it looked at the output"))
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OSError, match="file"):
+        train(config.read(TINY), tmp_path / "file" / "runs")
+    done = CliRunner().invoke(app, ["--output", str(tmp_path / "file" / "runs")])
+    assert done.exit_code == 2
+    assert "file" in done.output
+
+
+def test_what_was_learned_until_an_interrupt_is_kept(tmp_path, monkeypatch):
+    data = made_up((10,) * 8, np.random.default_rng(1))
+    monkeypatch.setattr(run, "recorded", lambda *_: data)
+    monkeypatch.setattr(fitting, "EVERY", 2)
+    loss, calls = Network.loss, iter(range(100))
+
+    def interrupted(network, sequences):
+        if next(calls) == 6:
+            raise KeyboardInterrupt
+        return loss(network, sequences)
+
+    monkeypatch.setattr(Network, "loss", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        train(config.read(TINY), tmp_path, 0, progress=False)
+    (folder,) = tmp_path.iterdir()
+    assert set(load(folder / run.UNFINISHED)) == set(SHAPES)
+    assert (folder / "curve.csv").read_text().startswith("update,training,held_out\n2,")
+    assert not (folder / WEIGHTS).exists()
 
 
 def test_environments_run_it_and_rows_equal_single_environments():
