@@ -14,7 +14,6 @@ from policies.training import model as learners
 from policies.training.adapter import SlipVecEnv
 from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv
-from policies.training.ppo import VectorPPO
 from policies.training.residual import ResidualVecEnv
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import Stopwatches
@@ -82,8 +81,6 @@ def _watch(watches: Stopwatches, model: Any) -> None:
     watches.watch("buffer and minibatches", buffer, "compute_returns_and_advantage")
     watches.watch("buffer and minibatches", buffer, "swap_and_flatten")
     watches.watch("buffer and minibatches", buffer, "_get_samples")
-    if isinstance(model, VectorPPO):
-        watches.watch("buffer and minibatches", model, "minibatches")
     watches.watch("forward pass", policy, "evaluate_actions")
     watches.watch("backward pass", torch.Tensor, "backward")
     watches.watch("gradient clipping", torch.nn.utils, "clip_grad_norm_")
