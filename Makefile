@@ -43,7 +43,7 @@ validate: $(VENV)/.dev ## the acceptance figures of the physics
 	$(RUN) scripts/validate.py
 
 torture: $(VENV)/.dev ## attacks on the public interface for some hours; goes on where it was stopped
-	$(RUN) scripts/torture.py
+	$(RUN) -m slipgym torture
 
 audit: $(RUN) ## known vulnerabilities of the pinned dependencies (needs the advisory data base)
 	$(RUN) -m pip install --quiet pip-audit
@@ -62,7 +62,7 @@ release: check site ## everything above but the benchmark, then wheel and sdist 
 
 clean: ## remove the environment and everything built
 	rm -rf $(VENV) build dist .pytest_cache .ruff_cache .hypothesis
-	find slipgym estimator policies scripts tests -type d -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
+	find slipgym estimator policies lab scripts tests -type d -name __pycache__ -prune -exec rm -rf {} + 2>/dev/null || true
 
 $(RUN):
 	@$(or $(PYTHON),false) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \

@@ -21,7 +21,7 @@ Public modules:
     slipgym.contact      friction of one pad on its own
     slipgym.config       configuration, presets, randomization
     slipgym.tasks        the tasks; what a task of your own is made of
-    slipgym.vector_checker  a checker of vector environments
+    tests.vector_checker  a checker of vector environments
     slipgym.synthetic    records of one finger without a simulator
 """
 

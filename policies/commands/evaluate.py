@@ -34,13 +34,13 @@ def main(
         ),
     ] = None,
     demo: Annotated[bool, typer.Option("--demo", help="Run the experiment 'demo': about a minute.")] = False,
-    trials: Annotated[int | None, typer.Option(help="Trials per cell instead of the experiment's.")] = None,
+    trials: Annotated[int | None, typer.Option(min=1, help="Trials per cell, not the experiment's.")] = None,
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
     friction_source: Annotated[
         list[str] | None, typer.Option(help="Keep only this source or label of the experiment; repeatable.")
     ] = None,
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
-    seed: Annotated[int | None, typer.Option(help="Seed instead of the experiment's.")] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the experiment's.")] = None,
     level: Annotated[
         str | None, typer.Option(help="Level of difficulty instead of the experiment's.", show_default=False)
     ] = None,
@@ -90,11 +90,15 @@ def main(
 
 
 def _outcome(policy: str, episodes: int, first: int | None, task: str | None, texts: list[str]) -> str:
-    from policies.command import environment_arguments, outcome_of
-    from policies.episodes import FRESH
+    from tqdm import tqdm
+
+    from policies.commands.several import environment_arguments
+    from policies.evaluation import one_policy
 
     try:
         changes = environment_arguments(texts)
-        return outcome_of(policy, episodes, FRESH if first is None else first, task, changes)
+        start = one_policy.FRESH if first is None else first
+        found = one_policy.episodes(policy, episodes, start, task, changes)
+        return one_policy.outcome(policy, list(tqdm(found, total=episodes, disable=None, leave=False)))
     except (FileNotFoundError, TypeError, ValueError) as error:
         raise typer.BadParameter(str(error)) from error

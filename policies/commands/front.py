@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Annotated
 
 try:
@@ -18,24 +20,21 @@ COMMANDS = {
     "evaluate": "Compare policies by the friction they know; test one.",
     "study": "Study what friction information is worth.",
     "imitate": "Train a network that imitates a controller.",
-    "train-estimator": 'Train the network of the estimator "gru".',
     "leaderboard": "Rank the estimators on the same records.",
+    "closed-loop": "Rank the estimators in the loop of a controller.",
     "policy-leaderboard": "Rank policies on the same episodes.",
     "estimate": "Run an estimator on a record of your gripper.",
     "record": "Write what a finger's sensors read in an episode.",
-    "reproduce": "Reproduce the paper's analyses.",
-    "validate": "Check the physics; compare with other engines.",
+    "validate": "Check the physics against its acceptance figures.",
     "benchmark": "Measure the speed of the environments.",
     "warmup": "Compile everything once, for images and CI.",
-    "compare-engines": "Compare the planar engine with PyBullet.",
-    "compare-learned": "Compare pretrained policies with controllers.",
     "rank": "Compare the order of returns with that of success.",
     "export-policy": "Write a learned policy as an ONNX graph.",
     "import-policy": "Read a zip of Stable-Baselines3 safely.",
-    "pushes": "Compare the estimators on real pushes of a block.",
-    "ship": "Add trained policies to the pretrained ones.",
 }
 """Name of each sub-command and its line of help."""
+LABORATORY = "lab.commands"
+"""Sub-commands that only a clone of the repository has."""
 EPILOG = """
 Examples:\n
 \b
@@ -52,6 +51,27 @@ slipgym COMMAND --help explains a command and shows examples.
 app = typer.Typer(epilog=EPILOG, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
+def _of_the_clone() -> dict[str, str]:
+    """Name and line of help of each sub-command of the laboratory; none outside of a clone."""
+    root = Path(__file__).parents[2]
+    found = find_spec(LABORATORY.partition(".")[0])
+    if found is None or found.origin is None or not (root / "pyproject.toml").is_file():
+        return {}
+    if Path(found.origin).parent.parent.resolve() != root.resolve():
+        return {}
+    return import_module(LABORATORY).COMMANDS
+
+
+def application(name: str) -> typer.Typer:
+    """The sub-command of a name.
+
+    Args:
+        name: One of `COMMANDS`, or of the laboratory.
+    """
+    package = "policies.commands" if name in COMMANDS else LABORATORY
+    return import_module(f"{package}.{name.replace('-', '_')}").app
+
+
 def _add(name: str, line: str) -> None:
     @app.command(
         name,
@@ -60,8 +80,8 @@ def _add(name: str, line: str) -> None:
         context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
     )
     def call(ctx: typer.Context) -> None:
-        module = import_module(f"policies.commands.{name.replace('-', '_')}")
-        module.app(args=ctx.args, prog_name=f"{ctx.parent.info_name if ctx.parent else 'slipgym'} {name}")
+        parent = ctx.parent.info_name if ctx.parent else "slipgym"
+        application(name)(args=ctx.args, prog_name=f"{parent} {name}")
 
 
 def _version(wanted: bool) -> None:
@@ -81,7 +101,7 @@ def front(
     """Slip-aware in-hand manipulation with a friction estimator in the loop."""
 
 
-for _name, _line in COMMANDS.items():
+for _name, _line in (COMMANDS | _of_the_clone()).items():
     _add(_name, _line)
 
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import taking_several
+from policies.commands.several import environment_arguments, taking_several
 
 EPILOG = """
 Examples:\n
@@ -28,7 +28,6 @@ def main(
     ] = None,
 ) -> None:
     """Write a policy's folder from the tensors of a zip (extra `train`)."""
-    from policies.command import environment_arguments
     from policies.learned.sb3_zip import import_zip
 
     try:

@@ -50,11 +50,11 @@ def main(
     """Print a table of policies by success, and write it with a picture."""
     import pandas as pd
 
-    from policies.research.leaderboard.one_imperfection import without as lacking
-    from policies.research.leaderboard.tables import markdown
-    from policies.research.policy_leaderboard.entries import entered, opponents
-    from policies.research.policy_leaderboard.folder import write
-    from policies.research.policy_leaderboard.run import by_level, outcomes
+    from policies.leaderboard.one_imperfection import without as lacking
+    from policies.leaderboard.tables import markdown
+    from policies.policy_leaderboard.entries import entered, opponents
+    from policies.policy_leaderboard.folder import write
+    from policies.policy_leaderboard.run import by_level, outcomes
     from slipgym.config.level import level_names
     from slipgym.envs.arguments import ENGINES, FRICTION_SOURCES, one_of
     from slipgym.tasks import find

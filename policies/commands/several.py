@@ -1,9 +1,9 @@
-"""What several command lines share: options that take several values, the help of a task's name."""
+"""Shares between command lines: options with several values, renamed options, the help of a task's name."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Annotated, TypeAlias
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, TypeAlias
 
 import typer
 from typer.core import TyperCommand
@@ -46,5 +46,39 @@ def taking_several(*names: str) -> type[TyperCommand]:
     class Command(TyperCommand):
         def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
             return super().parse_args(ctx, expanded(args, names))
+
+    return Command
+
+
+def environment_arguments(texts: Sequence[str]) -> dict[str, Any]:
+    """Reads `name=value` pairs; `friction_source=true` is a name, which YAML takes for a truth value.
+
+    Args:
+        texts: Such as ["friction_source=true", "engine=planar"].
+
+    Raises:
+        ValueError: One has no "=", or its value is no YAML.
+    """
+    from estimator.records import parse_settings
+
+    values = parse_settings(texts)
+    if values.get("friction_source") is True:
+        values["friction_source"] = "true"
+    return values
+
+
+def renamed(options: Mapping[str, str]) -> type[TyperCommand]:
+    """A class of commands in which an option that is a command of its own by now is an error that names it.
+
+    Args:
+        options: Old option -> the words after `slipgym` that do the same.
+    """
+
+    class Command(TyperCommand):
+        def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
+            for argument in args:
+                if now := options.get(argument.partition("=")[0]):
+                    raise typer.BadParameter(f"{argument} is a command of its own: slipgym {now}", ctx)
+            return super().parse_args(ctx, args)
 
     return Command

@@ -42,8 +42,10 @@ def main(
     seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the study's.")] = None,
 ) -> None:
     """Run a study and write its tables and one self-contained report, report.html."""
-    from policies.research import study as studies
-
+    try:
+        from policies import study as studies
+    except ModuleNotFoundError as error:
+        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[study]'") from error
     try:
         chosen = studies.narrowed(
             studies.load_study(study),

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -21,45 +19,27 @@ Examples:\n
 \b
   slipgym validate
   slipgym validate --only breakaway steady
-  slipgym validate --against mujoco bullet
-  slipgym validate --against mujoco bullet --figure suite.png
 \n
-docs/physics.md and docs/slip_suite.md explain the figures.
+docs/physics.md explains the figures.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command(epilog=EPILOG, cls=taking_several("--only", "--against"))
+@app.command(epilog=EPILOG, cls=taking_several("--only"))
 def main(
     only: Annotated[
         list[str] | None, typer.Option(help="Experiments to run; all if none.", show_default=False)
     ] = None,
-    against: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="The slip suite instead: the same scenes in slipgym and in these engines: mujoco, bullet, "
-            "drake, newton.",
-            show_default=False,
-        ),
-    ] = None,
-    figure: Annotated[
-        Path | None, typer.Option(help="With --against: draw its figure to this file.", show_default=False)
-    ] = None,
 ) -> None:
     """Print the acceptance figures of the physics; exit code 1 if one is not met."""
     from estimator.suggestions import unknown
-    from slipgym.validation import EXPERIMENTS, suite
+    from slipgym.validation import EXPERIMENTS
 
     names = [experiment.__name__ for experiment in EXPERIMENTS]
-    for option, given, known in ("--only", only, names), ("--against", against, suite.ENGINES):
-        for name in given or ():
-            if name not in known:
-                raise typer.BadParameter(unknown("unknown name", name, known), param_hint=option)
-    if figure and not against:
-        raise typer.BadParameter("needs --against", param_hint="--figure")
-    if against:
-        compare(against, figure)
-    elif accept(only or names):
+    for name in only or ():
+        if name not in names:
+            raise typer.BadParameter(unknown("unknown name", name, names), param_hint="--only")
+    if accept(only or names):
         raise typer.Exit(1)
 
 
@@ -80,24 +60,3 @@ def accept(chosen: Sequence[str]) -> int:
             tqdm.write(line(figure))
             failed += not figure.ok
     return failed
-
-
-def compare(engines: Sequence[str], picture: Path | None) -> None:
-    """Print the tables of the slip suite, or draw its figure; engines that are not installed are skipped."""
-    from slipgym.validation import suite
-
-    chosen, results = [], []
-    for engine in dict.fromkeys(("slipgym", *engines)):
-        try:
-            rows = suite.variants([engine])
-            if picture is None:
-                results += [suite.measure(row) for row in tqdm(rows, desc=engine, disable=None, leave=False)]
-            else:
-                suite.check(rows)
-            chosen += rows
-        except RuntimeError as error:
-            tqdm.write(f"skipped: {error}", file=sys.stderr)
-    if picture is None:
-        print(suite.results_table(results), suite.friction_table(results), sep="\n\n")
-    else:
-        suite.draw(chosen, picture)

@@ -17,7 +17,6 @@ from torch import nn
 from policies.training import vector
 from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv, Moments
-from policies.training.ppo import VectorPPO
 from policies.training.state_checks import check_array, check_counters, check_twister, fits
 
 _CLASSES: dict[str, Any] = {"ppo": PPO, "recurrent_ppo": RecurrentPPO, "sac": SAC, "tqc": TQC}
@@ -65,7 +64,7 @@ def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
     policy["optimizer_kwargs"] = {"eps": _EPSILON.get(config.algorithm, 1e-8), "fused": True}
     if config.algorithm == "tqc":
         policy["n_quantiles"] = 25
-    return _class(config)(
+    return _CLASSES[config.algorithm](
         "MlpLstmPolicy" if config.algorithm == "recurrent_ppo" else "MlpPolicy",
         envs,
         learning_rate=lambda left: start * (end + (1.0 - end) * left),
@@ -74,13 +73,6 @@ def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
         device="cpu",
         **values,
     )
-
-
-def _class(config: Training) -> Any:
-    """The algorithm's class: `VectorPPO` where it computes what Stable-Baselines3's PPO does."""
-    if config.algorithm == "ppo" and not config.ppo.use_sde and config.ppo.target_kl is None:
-        return VectorPPO
-    return _CLASSES[config.algorithm]
 
 
 def get_state(model: Any, replay: bool = True) -> dict[str, Any]:

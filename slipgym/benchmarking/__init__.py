@@ -1,1 +1,1 @@
-"""Measures the speed of the environments, for scripts/benchmark.py; no other module imports it."""
+"""Measures the speed of the environments, for `slipgym benchmark`; no environment imports it."""

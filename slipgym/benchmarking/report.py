@@ -6,7 +6,7 @@ import json
 import os
 import platform
 from collections.abc import Mapping, Sequence
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -38,8 +38,15 @@ class Figure(NamedTuple):
 
 def machine(*more: str) -> dict[str, Any]:
     """What the figures depend on besides the code; with the versions of more libraries."""
-    libraries = {name: version(name) for name in (*LIBRARIES, *more)}
+    libraries = {name: _version(name) for name in (*LIBRARIES, *more)}
     return {"python": platform.python_version(), "cores": os.cpu_count(), **libraries}
+
+
+def _version(library: str) -> str:
+    try:
+        return version(library)
+    except PackageNotFoundError:
+        return "not installed"
 
 
 def line(facts: Mapping[str, Any]) -> str:

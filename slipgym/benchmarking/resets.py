@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from importlib.util import find_spec
 from time import perf_counter
 from typing import Any
 
@@ -28,7 +29,7 @@ def resets(env_id: str, pairs: int) -> list[Figure]:
         Figure(f"{title} of all, per episode", 1e6 * result.second / TOGETHER, "us", "<= 50"),
         Figure(f"{title} / firm step", result.quartiles[1], "-"),
     ]
-    for engine in ("planar", "bullet"):
+    for engine in ("planar", "bullet") if find_spec("pybullet") else ("planar",):
         env = gym.make(env_id, engine=engine, randomization=PRESET)
         env.reset(seed=0)
         result = compare(partial(_steps, env, 200), partial(_resets, env, 20), pairs)

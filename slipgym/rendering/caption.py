@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from PIL import Image
 
 from slipgym.rendering.camera import HEIGHT, WIDTH
 from slipgym.rendering.forces import Contact
@@ -16,7 +17,7 @@ _FOOT = 46  # height of the band with the keys [pixels]
 
 
 def caption(
-    picture: np.ndarray,
+    picture: Image.Image,
     title: str,
     about: str,
     time: float,
@@ -28,7 +29,7 @@ def caption(
     """Write text over the view.
 
     Args:
-        picture: The view (HEIGHT, WIDTH, 3) uint8, written into.
+        picture: The view, RGB, written into.
         title: Title, the name of the task.
         about: Description of the object.
         time: Time since the start [s].
@@ -45,8 +46,8 @@ def caption(
         write(picture, 14, HEIGHT - _FOOT - 10, "dashed:", MUTED, 13)
         write(picture, 66, HEIGHT - _FOOT - 10, "grasp", SLIP, 13)
         write(picture, 106, HEIGHT - _FOOT - 10, "target", TARGET, 13)
-    foot = picture[HEIGHT - _FOOT :]
-    foot[:] = (foot.astype(np.uint16) + 3 * np.array(PAPER, np.uint16)) // 4
+    foot = 0, HEIGHT - _FOOT, WIDTH, HEIGHT
+    picture.paste(PAPER, foot, Image.new("L", (WIDTH, _FOOT), 191))
     friction, torque = math.hypot(*contact.friction), 1e3 * contact.torque
     sliding, turn = 1e3 * math.hypot(slip[0], slip[1]), math.degrees(slip[2])
     keys = (

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from PIL import Image, ImageDraw
 
+from slipgym.rendering.camera import FINE
 from slipgym.rendering.palette import INK, MUTED, RULE, Colour
-from slipgym.rendering.raster import stroke, tint
 from slipgym.rendering.text import breadth, write
 
 _TICKS = 4  # intervals at most
+_ABOVE = 4  # how far a curve may be beyond the plot's frame [pixels]
 
 
 class Curve(NamedTuple):
@@ -43,41 +45,43 @@ class Plot:
     high: float
     """Value at the top."""
 
-    def draw(self, picture: np.ndarray, times: np.ndarray, curves: list[Curve], clock: bool) -> None:
+    def draw(self, picture: Image.Image, times: np.ndarray, curves: list[Curve], clock: bool) -> None:
         """Draw frame, labels and curves.
 
         Args:
-            picture: (height, width, 3) uint8, drawn into.
+            picture: RGB, drawn into.
             times: Of the curves' values, (n,) [s].
             curves: Curves; later ones are drawn over earlier ones.
             clock: Whether the time axis has labels.
         """
-        step = spacing(self.high - self.low)
+        pen, step = ImageDraw.Draw(picture), spacing(self.high - self.low)
         for k in range(math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9) + 1):
             y = round(self._y(k * step))
-            picture[y, self.left : self.right] = MUTED if k == 0 else RULE
+            pen.line((self.left, y, self.right - 1, y), MUTED if k == 0 else RULE)
             write(picture, self.left - 6, y + 4, f"{k * step:g}", MUTED, 11, align=1.0)
         second = spacing(self.end)
         for k in range(math.floor(self.end / second + 1e-9) + 1):
             x = round(self._x(k * second))
-            picture[self.bottom : self.bottom + 4, x] = MUTED
+            pen.line((x, self.bottom, x, self.bottom + 3), MUTED)
             if clock:
                 write(picture, x, self.bottom + 16, f"{k * second:g}", MUTED, 11, align=0.5)
-        picture[self.bottom, self.left : self.right] = MUTED
+        pen.line((self.left, self.bottom, self.right - 1, self.bottom), MUTED)
+        frame = self.left, self.top - _ABOVE, self.right + _ABOVE, self.bottom + _ABOVE
+        part = picture.crop(frame)
+        fine = part.resize((FINE * part.width, FINE * part.height), Image.Resampling.NEAREST)
         for curve in curves:
-            self._line(picture, times, curve)
+            self._line(ImageDraw.Draw(fine), times, curve)
+        picture.paste(fine.reduce(FINE), frame)
 
-    def _line(self, picture: np.ndarray, times: np.ndarray, curve: Curve) -> None:
-        """One curve, and a dot where it ends if that is before the plot's end."""
-        above = 4
-        part = picture[self.top - above : self.bottom + above, self.left : self.right + above]
-        mask = np.zeros(part.shape[:2])
-        values, count = curve.values, len(curve.values)
-        points = np.column_stack([self._x(times[:count]) - self.left, self._y(values) - self.top + above])
-        stroke(points, curve.width, curve.dash, mask)
-        if not curve.dash:
-            stroke(points[[-1, -1]], 3.0 * curve.width, 0.0, mask)
-        tint(part, mask, curve.colour)
+    def _line(self, pen: ImageDraw.ImageDraw, times: np.ndarray, curve: Curve) -> None:
+        """One curve, and a dot where it ends."""
+        values, width = curve.values, round(FINE * curve.width)
+        points = np.column_stack([self._x(times[: len(values)]), self._y(values)])
+        points = FINE * (points - (self.left, self.top - _ABOVE))
+        for piece in pieces(points, FINE * curve.dash):
+            pen.line(piece.ravel().tolist(), fill=curve.colour, width=width)
+        if not curve.dash and np.isfinite(points[-1]).all():
+            pen.circle(points[-1].tolist(), 1.5 * width, fill=curve.colour)
 
     def _x(self, time: Any) -> Any:
         return self.left + (self.right - self.left) * np.asarray(time) / self.end
@@ -86,6 +90,25 @@ class Plot:
         return self.bottom - (self.bottom - self.top) * (np.asarray(value) - self.low) / (
             self.high - self.low
         )
+
+
+def pieces(points: np.ndarray, dash: float) -> list[np.ndarray]:
+    """The parts of a line that are drawn.
+
+    Args:
+        points: (n, 2): x, which grows, and y [samples]; a point that is not finite breaks the line.
+        dash: Length of dashes and gaps along x [samples]; 0 for none.
+
+    Returns:
+        Arrays (k, 2) of at least two points.
+    """
+    drawn = np.isfinite(points).all(axis=1)
+    if dash and drawn.any():
+        x = np.arange(np.nanmin(points[:, 0]), np.nanmax(points[:, 0]) + 1.0)
+        points = np.column_stack([x, np.interp(x, points[:, 0], points[:, 1])])
+        drawn = np.isfinite(points[:, 1]) & (x // dash % 2 == 0)
+    runs = np.split(np.arange(len(points)), np.flatnonzero(np.diff(drawn)) + 1)
+    return [points[run] for run in runs if len(run) > 1 and drawn[run[0]]]
 
 
 def spacing(span: float) -> float:
@@ -107,7 +130,7 @@ def limits(values: list[np.ndarray], least: float) -> tuple[float, float]:
 
 
 def heading(
-    picture: np.ndarray, left: int, right: int, y: int, title: str, keys: list[tuple[str, Colour]]
+    picture: Image.Image, left: int, right: int, y: int, title: str, keys: list[tuple[str, Colour]]
 ) -> None:
     """Draw a plot's title, and at the right its legend in the curves' colours."""
     write(picture, left, y, title, INK, 13)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from PIL import Image
 
 from slipgym.rendering.camera import FINE, Camera
 from slipgym.rendering.marks import Marks, arrow, outline
@@ -34,8 +35,8 @@ def gravity(camera: Camera) -> Marks:
     return arrow(camera, _path(camera), MUTED, 2.0)
 
 
-def name_gravity(picture: np.ndarray, camera: Camera) -> None:
-    """Write "g" beside the arrow of gravity into the view (HEIGHT, WIDTH, 3)."""
+def name_gravity(picture: Image.Image, camera: Camera) -> None:
+    """Write "g" beside the arrow of gravity into the view."""
     x, y, _ = camera.project(_path(camera).mean(axis=0)).tolist()
     write(picture, x / FINE + 6, y / FINE + 4, "g", MUTED, 13)
 

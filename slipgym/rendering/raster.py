@@ -1,4 +1,7 @@
-"""Rasterises filled triangles and smooth lines, in compiled code."""
+"""Rasterises filled triangles in compiled code.
+
+It needs no GL, takes milliseconds and gives the same picture on every machine.
+"""
 
 from __future__ import annotations
 
@@ -51,63 +54,3 @@ def fill(corners, colours, image, nearness):
                 pixel[2] = round(pixel[2] + opacity * (blue - pixel[2]))
                 if opacity >= 1.0:
                     nearness[row, column] = here
-
-
-@compiled
-def shrink(image, picture):
-    """Average 2 by 2 samples (2 h, 2 w, 3) into a picture (h, w, 3), both uint8."""
-    for row in range(picture.shape[0]):
-        for column in range(picture.shape[1]):
-            r, c = 2 * row, 2 * column
-            for k in range(3):
-                upper = int(image[r, c, k]) + int(image[r, c + 1, k])
-                lower = int(image[r + 1, c, k]) + int(image[r + 1, c + 1, k])
-                picture[row, column, k] = (upper + lower + 2) // 4
-
-
-@compiled
-def stroke(points, width, dash, mask):
-    """Draw a smooth line with round ends; a point that is not finite breaks it.
-
-    Args:
-        points: (n, 2): x to the right and y down [pixels].
-        width: [pixels].
-        dash: Length of dashes and gaps along x, for lines that run to the right [pixels]; 0 for none.
-        mask: (height, width): coverage 0 to 1; where lines cross, the larger stays.
-    """
-    height, breadth = mask.shape
-    reach = 0.5 * width + 0.5
-    for i in range(points.shape[0] - 1):
-        ax, ay, bx, by = points[i, 0], points[i, 1], points[i + 1, 0], points[i + 1, 1]
-        if not math.isfinite(ax + ay + bx + by):
-            continue
-        dx, dy = bx - ax, by - ay
-        square = max(dx * dx + dy * dy, 1e-12)
-        top, bottom = max(0, int(min(ay, by) - reach)), min(height - 1, int(max(ay, by) + reach))
-        low, high = min(ax, bx) - reach, max(ax, bx) + reach
-        for row in range(top, bottom + 1):
-            y = row + 0.5 - ay
-            left, right = low, high
-            if abs(dy) > 1e-6:  # no more of the row than the line's own breadth
-                middle, half = ax + y * dx / dy, reach * math.sqrt(square) / abs(dy)
-                left, right = max(left, middle - half), min(right, middle + half)
-            for column in range(max(0, int(left)), min(breadth - 1, int(right)) + 1):
-                x = column + 0.5 - ax
-                along = min(max((x * dx + y * dy) / square, 0.0), 1.0)
-                if dash > 0.0 and int((ax + along * dx) / dash) % 2 == 1:
-                    continue
-                ex, ey = x - along * dx, y - along * dy
-                away = math.sqrt(ex * ex + ey * ey)
-                mask[row, column] = max(mask[row, column], min(1.0, reach - away))
-
-
-@compiled
-def tint(picture, mask, colour):
-    """Blend one colour into a picture (h, w, 3) uint8 where a mask (h, w) in 0 to 1 covers it."""
-    for row in range(mask.shape[0]):
-        for column in range(mask.shape[1]):
-            cover = mask[row, column]
-            if cover > 0.0:
-                for k in range(3):
-                    old = picture[row, column, k]
-                    picture[row, column, k] = round(old + cover * (colour[k] - old))

@@ -68,17 +68,15 @@ class Renderer:
     def picture(self) -> np.ndarray:
         """Return a new picture (HEIGHT, WIDTH, 3) uint8."""
         simulation = self._simulation
-        picture = np.empty((HEIGHT, WIDTH, 3), np.uint8)
-        view, beside = picture[:, : camera.WIDTH], picture[:, camera.WIDTH :]
         contact = self._contact()
         row, world = self._row, simulation.plant.world[self._row]
         target = self._motion.pose(simulation.episode[row])
-        draw_scene(view, self._view(), contact, self._camera, target)
+        view = draw_scene(self._view(), contact, self._camera, target)
         about = f"{simulation.materials[row]}, {1e3 * world['mass']:.0f} g"
         slip = world["slip"]
         caption(view, simulation.task.name, about, self._history.time, self._state(), contact, slip, target)
-        strip.draw_strip(beside, self._history, self._motion, self._goal, self.discrepancies())
-        return picture
+        beside = strip.draw_strip(self._history, self._motion, self._goal, self.discrepancies())
+        return np.hstack([np.asarray(view), np.asarray(beside)])
 
     def discrepancies(self) -> list[Discrepancy]:
         """Return the estimates that are off, or have no data, as a picture names them."""

@@ -6,12 +6,13 @@ import math
 from functools import lru_cache
 
 import numpy as np
+from PIL import Image
 
 from slipgym.rendering import forces
 from slipgym.rendering.camera import FINE, HEIGHT, WIDTH, Camera
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.poses import Pose, name_gravity
-from slipgym.rendering.raster import fill, shrink
+from slipgym.rendering.raster import fill
 from slipgym.rendering.stage import View, assemble, grid
 
 _LIGHT = np.array([-0.25, -0.75, 0.61])
@@ -20,13 +21,10 @@ _TOP, _BOTTOM = np.array([249.0, 250.0, 251.0]), np.array([229.0, 232.0, 237.0])
 _SIZE = FINE * HEIGHT, FINE * WIDTH
 
 
-def draw_scene(
-    picture: np.ndarray, view: View, contact: Contact, camera: Camera, target: Pose | None = None
-) -> None:
-    """Draw the scene.
+def draw_scene(view: View, contact: Contact, camera: Camera, target: Pose | None = None) -> Image.Image:
+    """Draw the scene, RGB, WIDTH by HEIGHT.
 
     Args:
-        picture: (HEIGHT, WIDTH, 3) uint8, drawn over.
         view: Poses of object and gripper.
         contact: Forces of the pads on the object.
         camera: The camera.
@@ -40,8 +38,9 @@ def draw_scene(
     fill(*forces.before(view, contact, camera), image, nearness)
     nearness[:] = 0.0
     fill(*forces.above(view, contact, camera, target), image, nearness)
-    shrink(image, picture)
+    picture = Image.fromarray(image).reduce(FINE)
     name_gravity(picture, camera)
+    return picture
 
 
 def measure_depth(view: View, camera: Camera) -> np.ndarray:

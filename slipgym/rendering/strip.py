@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from PIL import Image
 
+from slipgym.rendering.camera import HEIGHT
 from slipgym.rendering.discrepancy import Discrepancy
 from slipgym.rendering.history import History
 from slipgym.rendering.palette import GRIP, GRIP_2, INK, MU_C, MU_S, MUTED, PAPER, SLIP, Colour
@@ -19,19 +21,16 @@ _TOP, _TALL, _PITCH = 32, 86, 129
 _NOTES, _LINE = 418, 14  # baseline of the first note and their distance [pixels]
 
 
-def draw_strip(
-    picture: np.ndarray, history: History, motion: Motion, goal: float, off: Sequence[Discrepancy]
-) -> None:
+def draw_strip(history: History, motion: Motion, goal: float, off: Sequence[Discrepancy]) -> Image.Image:
     """Draw the plots of an episode so far, and why estimates are off; time runs to the end of the episode.
 
     Args:
-        picture: (height, WIDTH, 3) uint8, drawn over.
         history: Recorded quantities of the episode.
         motion: The task's motion.
         goal: Final target of the path.
         off: Estimates that are off, and why.
     """
-    picture[:] = PAPER
+    picture = Image.new("RGB", (WIDTH, HEIGHT), PAPER)
     grip_1, grip_2, path, reference = map(history.column, ("grip_1", "grip_2", "path", "reference"))
     mu_c, mu_s, true_c, true_s = map(history.column, ("mu_c", "mu_s", "true_mu_c", "true_mu_s"))
     _panel(
@@ -68,9 +67,10 @@ def draw_strip(
     )
     write(picture, _LEFT - 8, _TOP + 2 * _PITCH + _TALL + 16, "t [s]", MUTED, 11, align=1.0)
     _notes(picture, off)
+    return picture
 
 
-def _notes(picture: np.ndarray, off: Sequence[Discrepancy]) -> None:
+def _notes(picture: Image.Image, off: Sequence[Discrepancy]) -> None:
     """Two lines for each estimate that is off."""
     for k, (name, error, reason) in enumerate(off):
         y = _NOTES + 2 * k * _LINE
@@ -79,7 +79,7 @@ def _notes(picture: np.ndarray, off: Sequence[Discrepancy]) -> None:
 
 
 def _panel(
-    picture: np.ndarray,
+    picture: Image.Image,
     number: int,
     history: History,
     title: str,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from policies.research.torture.interrupts import after_engine, before_engine, count, interrupt, lines
+from lab.torture.interrupts import after_engine, before_engine, count, interrupt, lines
 
 OTHER = {"object_size": (0.44, 0.02, 0.3)}
 IDLE = np.zeros(1, np.float32)

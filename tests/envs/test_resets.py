@@ -9,7 +9,7 @@ from gymnasium.utils import seeding
 
 from slipgym.config.randomization import Ranges
 from slipgym.envs.values import FRICTION, NAMES, labels, nominal_values
-from slipgym.vector_checker.returned import info_of
+from tests.vector_checker.returned import info_of
 
 LINEAR = "slipgym/LinearSlip-v0"
 EVERYTHING = {

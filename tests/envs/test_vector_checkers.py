@@ -7,7 +7,7 @@ from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 from gymnasium.wrappers import vector as wrappers
 
-from slipgym.vector_checker import check_vector_env
+from tests.vector_checker import check_vector_env
 
 pytestmark = pytest.mark.quick_tasks
 

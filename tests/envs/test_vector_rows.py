@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
-from slipgym.vector_checker.compare import difference
-from slipgym.vector_checker.returned import info_of
+from tests.vector_checker.compare import difference
+from tests.vector_checker.returned import info_of
 
 pytestmark = pytest.mark.quick_tasks
 

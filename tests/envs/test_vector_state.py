@@ -8,8 +8,8 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from slipgym.vector_checker.compare import difference, spoil
-from slipgym.vector_checker.returned import info_of
+from tests.vector_checker.compare import difference, spoil
+from tests.vector_checker.returned import info_of
 
 pytestmark = pytest.mark.quick_tasks
 

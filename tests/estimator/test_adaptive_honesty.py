@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import estimator
-from policies.research.leaderboard.imperfections import Imperfections, impaired
+from policies.leaderboard.imperfections import Imperfections, impaired
 from slipgym.validation.records import RATE, ellipsoid, planar, run
 
 LAB = {"velocity_delay": 2, "jitter": 0.2, "drop_outs": 0.01, "velocity_scale": 0.05, "force_delay": 0.004}

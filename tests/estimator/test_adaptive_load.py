@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import estimator
-from policies.research.leaderboard.rubber import LOAD, swinging
-from policies.research.leaderboard.scenarios import patch
+from policies.leaderboard.rubber import LOAD, swinging
+from policies.leaderboard.scenarios import patch
 from slipgym.synthetic import sense
 from slipgym.validation.records import RATE
 

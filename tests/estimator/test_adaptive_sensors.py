@@ -5,7 +5,7 @@ import pytest
 
 import estimator
 from estimator.augmented.slip_law import TILT
-from policies.research.leaderboard.imperfections import Imperfections, impaired
+from policies.leaderboard.imperfections import Imperfections, impaired
 from slipgym.validation.records import RATE
 
 NOISE = 0.02, 0.02, 0.04, 5e-4

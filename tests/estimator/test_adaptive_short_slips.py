@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import estimator
-from policies.research.leaderboard.imperfections import Imperfections, impaired
+from policies.leaderboard.imperfections import Imperfections, impaired
 from slipgym.validation.records import RATE
 
 RIGID = {"load_exponent0": 0.0, "sd_load_exponent": 1e-3}

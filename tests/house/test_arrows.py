@@ -1,4 +1,4 @@
-"""Imports run one way: estimator <- slipgym <- policies <- scripts; and `import slipgym` stays light."""
+"""Imports run one way: estimator <- slipgym <- policies <- lab, scripts; and `import slipgym` stays light."""
 
 import ast
 import json
@@ -11,9 +11,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 LEARNING = {"torch", "stable_baselines3", "sb3_contrib"}
 FORBIDDEN = {
-    "estimator": {"slipgym", "policies", "scripts", "pybullet", "gymnasium"} | LEARNING,
-    "slipgym": {"policies", "scripts"} | LEARNING,
-    "policies": {"scripts"},
+    "estimator": {"slipgym", "policies", "lab", "scripts", "pybullet", "gymnasium"} | LEARNING,
+    "slipgym": {"policies", "lab", "scripts"} | LEARNING,
+    "policies": {"lab", "scripts"},
+    "lab": {"scripts", "tests"},
     "scripts": {"scripts"},
     "tests": {"scripts"},
 }
@@ -38,14 +39,9 @@ def imported(source: str) -> set[str]:
 
 
 def broken(room: Path, forbidden: set[str]) -> dict[str, set[str]]:
-    """For each source file of a room, the forbidden imports that it holds.
-
-    `python -m slipgym` is a command of policies: its file, which nothing imports, may import it.
-    """
+    """For each source file of a room, the forbidden imports that it holds."""
     found = {
-        str(path.relative_to(room)): imported(path.read_text()) & forbidden
-        for path in room.rglob("*.py")
-        if path.name != "__main__.py"
+        str(path.relative_to(room)): imported(path.read_text()) & forbidden for path in room.rglob("*.py")
     }
     return {path: names for path, names in found.items() if names}
 
@@ -53,6 +49,19 @@ def broken(room: Path, forbidden: set[str]) -> dict[str, set[str]]:
 @pytest.mark.parametrize("room", FORBIDDEN)
 def test_arrows_run_one_way(room):
     assert broken(ROOT / room, FORBIDDEN[room]) == {}
+
+
+def test_the_product_runs_without_the_laboratory():
+    """With `lab` made impossible to import, every module of the product that needs no extra loads."""
+    code = (
+        "import sys, pkgutil, importlib\nsys.modules['lab'] = None\n"
+        "import slipgym, estimator, policies, policies.commands.front as front\n"
+        "for name in front.COMMANDS: front.application(name)\n"
+        "print([c.name for c in front.app.registered_commands])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True, text=True)
+    assert "leaderboard" in done.stdout
+    assert "reproduce" not in done.stdout
 
 
 @pytest.mark.parametrize(

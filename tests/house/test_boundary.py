@@ -23,14 +23,11 @@ PUBLIC = (
     "slipgym.synthetic",
     "slipgym.tasks",
     "slipgym.validation",
-    "slipgym.vector_checker",
 )
 """Public modules, with all below them; of `slipgym.envs` those that are listed."""
 INNER = {
     "policies/evaluation/sensor_record.py": "keeps raw sensor samples",
-    "policies/research/learned_estimator/episodes.py": "records the readings of the open gripper",
     "policies/play/watch.py": "makes an environment of a class",
-    "policies/research/reproduction/planar.py": "steps a simulation without an environment",
     "policies/training/adapter.py": "wraps the vector environment",
     "policies/training/checkpoint_io.py": "writes the state of environments",
     "scripts/make_docs.py": "writes the environments' pages",

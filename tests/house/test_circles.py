@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ("estimator", "slipgym", "policies")
+PACKAGES = ("estimator", "slipgym", "policies", "lab")
 
 
 def modules(folder: Path) -> dict[str, Path]:

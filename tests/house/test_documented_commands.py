@@ -9,7 +9,6 @@ import shlex
 import subprocess
 import sys
 from collections import Counter
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -17,18 +16,19 @@ import pytest
 import typer
 import yaml
 
-from policies.commands.front import COMMANDS
+from lab.commands import COMMANDS as LAB
+from policies.commands.front import COMMANDS as PRODUCT
+from policies.commands.front import application
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMAND = (
-    r"(?:python )?(scripts/(?P<script>\w+)\.py|slipgym (?P<name>[a-z][\w-]*)|make|(?P<one>slipgym-evaluate))"
-)
+COMMAND = r"(?:python )?(scripts/(?P<script>\w+)\.py|slipgym (?P<name>[a-z][\w-]*)|make)"
 LINE = re.compile(rf"^ +{COMMAND}(?: +(?P<words>.*))?$")
 INLINE = re.compile(rf"`{COMMAND} (?P<words>[^`]+)`")
 OPTION = re.compile(r"`slipgym ([a-z][\w-]*) (--[\w-]+)`|`scripts/(\w+)\.py (--[\w-]+)`")
 """A sentence that names an option of a command."""
 USAGE_ERROR = typer.BadParameter.__bases__[0]
-OWN = {"first-use", "lock", "make-docs", "make-notebooks", "matrix", "torture", "wheel-smoke"}
+COMMANDS = PRODUCT | LAB
+OWN = {"first-use", "lock", "make-docs", "make-notebooks", "matrix", "wheel-smoke"}
 """Scripts of the repository alone."""
 TARGETS = {"make validate", "make benchmark", "make torture"}
 """Commands within a sentence that state figures; the other targets are those of development."""
@@ -38,9 +38,14 @@ RUNS: dict[str, dict[str, Any]] = yaml.safe_load(
 
 
 def parsed(match: re.Match[str]) -> tuple[str, tuple[str, ...]]:
-    name = match["script"] or match["name"] or match["one"] or "make"
+    name = match["script"] or match["name"] or "make"
     text = (match["words"] or "").replace("<time>", "TIME").replace("<folder>", "F").rstrip("\\")
     return name.replace("_", "-"), tuple(shlex.split(text, True))
+
+
+def command(name: str) -> Any:
+    """The sub-command of a name."""
+    return typer.main.get_command(application(name))
 
 
 def lines() -> list[tuple[Path, str, tuple[str, ...]]]:
@@ -60,8 +65,7 @@ def examples():
     """(command, command, arguments) of each example in the help of the commands."""
     found = []
     for name in COMMANDS:
-        app = import_module(f"policies.commands.{name.replace('-', '_')}").app
-        for line in (app.registered_commands[0].epilog or "").splitlines():
+        for line in (command(name).epilog or "").splitlines():
             if match := LINE.match(line):
                 found.append((f"slipgym {name} --help", *parsed(match)))
     return found
@@ -91,12 +95,13 @@ def test_a_documented_command_is_understood(page, name, words):
     if name in OWN:
         assert (ROOT / "scripts" / f"{name.replace('-', '_')}.py").is_file()
         return
-    if name == "slipgym-evaluate":
-        return  # all of them are run
     assert name in COMMANDS
-    app = import_module(f"policies.commands.{name.replace('-', '_')}").app
     try:
-        typer.main.get_command(app).make_context(name, list(words))
+        found = command(name)
+        if parts := getattr(found, "commands", {}):
+            name, *words = words
+            found = parts[name]
+        found.make_context(name, list(words))
     except typer.Exit:
         pass
     except USAGE_ERROR as error:
@@ -105,16 +110,14 @@ def test_a_documented_command_is_understood(page, name, words):
 
 def test_the_help_of_every_command_has_examples():
     for name in COMMANDS:
-        app = import_module(f"policies.commands.{name.replace('-', '_')}").app
-        assert "Examples:" in (typer.main.get_command(app).epilog or ""), name
+        assert "Examples:" in (command(name).epilog or ""), name
 
 
 def test_an_option_that_a_sentence_names_exists():
     for page in (ROOT / "docs").rglob("*.md"):
         for match in OPTION.finditer(page.read_text(encoding="utf-8")):
-            name, option = (match[1] or match[3]).replace("-", "_"), match[2] or match[4]
-            command = typer.main.get_command(import_module(f"policies.commands.{name}").app)
-            assert option in {each for parameter in command.params for each in parameter.opts}, page
+            name, option = (match[1] or match[3]).replace("_", "-"), match[2] or match[4]
+            assert option in {each for parameter in command(name).params for each in parameter.opts}, page
 
 
 def test_every_documented_command_is_run_or_says_why_not():
@@ -135,9 +138,8 @@ def test_every_documented_command_is_run_or_says_why_not():
 def run(command: str, folder: Path) -> str:
     """What a command prints in a folder that has the repository's examples."""
     name, *words = shlex.split(command)
-    module = ["policies.command"] if name == "slipgym-evaluate" else ["slipgym", name]
     done = subprocess.run(
-        [sys.executable, "-m", *module, *words],
+        [sys.executable, "-m", "slipgym", name, *words],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100"},
         capture_output=True,

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from policies.research.policy_leaderboard.run import outcomes
-from policies.research.reward_order.zoo import Member, controllers, learned, remembering
+from policies.policy_leaderboard.run import outcomes
+from policies.reward_order.zoo import Member, controllers, learned, remembering
 from slipgym.tasks import find
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -39,7 +39,7 @@ PAGES = [
 FOLDERS = sorted(
     {
         path.parent
-        for package in ("slipgym", "estimator", "policies", "scripts")
+        for package in ("slipgym", "estimator", "policies", "lab", "scripts")
         for path in ROOT.glob(f"{package}/**/*.py")
     }
 )

@@ -107,10 +107,10 @@ def test_the_first_policy(tmp_path):
     small = ["budget=64", "ppo.n_steps=2", "ppo.batch_size=16", "evaluation.episodes=2"]
     called([sys.executable, ROOT / "scripts" / train.split()[0], *train.split()[1:], *small], tmp_path)
     (policy,) = tmp_path.glob("runs/*/estimated__0/policy")
-    commands = re.findall(r"^    slipgym-evaluate (.*)$", page, re.MULTILINE)
+    commands = re.findall(r"^    slipgym evaluate --policy (.*)$", page, re.MULTILINE)
     assert len(commands) == 3
     for command in commands:
         which, *rest = command.split()
         which = str(policy) if which.endswith("/policy") else which
-        rest = ["--episodes", "1", *rest]
-        assert "of 1, dropped" in called([sys.executable, "-m", "policies.command", which, *rest], tmp_path)
+        command = [sys.executable, "-m", "slipgym", "evaluate", "--policy", which, "--trials", "1", *rest]
+        assert "of 1, dropped" in called(command, tmp_path)

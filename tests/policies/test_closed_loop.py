@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.research.leaderboard.closed_loop import played, pooled, present
+from policies.leaderboard.closed_loop import played, pooled, present
 from slipgym.contact.records import pads
 
 

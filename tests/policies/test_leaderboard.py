@@ -1,6 +1,8 @@
 """The leaderboard: what is fed, how it is scored and ranked."""
 
-from dataclasses import fields, replace
+import sys
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -8,19 +10,17 @@ import pytest
 
 import estimator
 from estimator.estimate import ESTIMATE
-from policies.research.leaderboard import ablation, run_leaderboard
-from policies.research.leaderboard.ablation import FULL, WITHOUT, worth
-from policies.research.leaderboard.delays import delays
-from policies.research.leaderboard.groups import GROUPS
-from policies.research.leaderboard.imperfect import opened
-from policies.research.leaderboard.one_imperfection import IMPERFECTIONS, one_imperfection, without
-from policies.research.leaderboard.ranking import ranked, winners
-from policies.research.leaderboard.replay import replay
-from policies.research.leaderboard.rubber import swinging
-from policies.research.leaderboard.run import entrants, evaluate
-from policies.research.leaderboard.scenario import FIELDS, Run, Scenario, ends
-from policies.research.leaderboard.scenarios import MU_C, QUICK, R, closed_loop, mixed, patch
-from policies.research.leaderboard.score import score
+from estimator.registry import specification
+from policies.leaderboard import run_leaderboard
+from policies.leaderboard.groups import GROUPS
+from policies.leaderboard.one_imperfection import IMPERFECTIONS, one_imperfection, without
+from policies.leaderboard.ranking import ranked, winners
+from policies.leaderboard.replay import replay
+from policies.leaderboard.rubber import swinging
+from policies.leaderboard.run import entrants, evaluate
+from policies.leaderboard.scenario import FIELDS, Run, Scenario, ends
+from policies.leaderboard.scenarios import MU_C, QUICK, R, closed_loop, mixed, patch
+from policies.leaderboard.score import score
 from slipgym.config import load
 from slipgym.synthetic import Record, sense
 
@@ -161,53 +161,6 @@ def test_sensors_without_some_imperfections():
         without(["weather"])
 
 
-def test_late_velocities_have_a_row_for_each_material_and_delay():
-    found = delays(replace(QUICK, materials=("wood", "case")))
-    assert len(found) == 8
-    assert (found["mean error"].abs() <= found["largest"]).all()
-    assert found["within 5 %"].between(0.0, 100.0).all()
-
-
-def test_each_ablation_changes_known_parameters():
-    known = {field.name for field in fields(estimator.AdaptiveParameters)}
-    for removed in WITHOUT.values():
-        assert set(removed) <= known
-        estimator.AdaptiveParameters.create(**removed)
-
-
-def test_the_loop_is_averaged_over_tasks(monkeypatch):
-    def played(choices, episodes, sensors, seed):
-        assert choices[FULL] == {"name": "adaptive"}
-        figures = {"dropped": 0.0, "mu_s in 1 sd": 5.0, "mu_c in 1 sd": 60.0, "r in 1 sd": np.nan}
-        return pd.DataFrame(
-            {"estimator": name, "solved": solved, "mu_c error": error, "mu_s error": 5.0, **figures}
-            for name in choices
-            for solved, error in ((50.0, 2.0), (100.0, 8.0), (75.0, np.nan))
-        )
-
-    monkeypatch.setattr(ablation, "closed_loop", played)
-    found = ablation.in_the_loop(2, 0)
-    assert found["without"].tolist() == list(WITHOUT)
-    np.testing.assert_allclose(found[["solved", "mu_c error", "mu_s error"]].to_numpy()[0], (75.0, 4.0, 5.0))
-
-
-def test_an_open_gripper_shows_zero_errors_and_the_ablation_what_that_is_worth():
-    (scenario,) = opened(QUICK)
-    chosen = {
-        label: ("adaptive", WITHOUT[label]) for label in (FULL, "zeroing while unloaded", "short slips")
-    }
-    rows = evaluate(scenario, chosen)
-    assert [row["estimator"] for row in rows] == list(chosen)
-    full, blind, same = (row["error_mu_c"] for row in rows)
-    assert full == same < 2.0 < blind
-    blank = {f"{figure}_{field}": 0.0 for field in FIELDS for figure in ("calibration", "time")}
-    table = pd.DataFrame([{**blank, **row, "error_mu_s": 1.0} for row in rows])
-    found = worth(table)
-    assert found["without"].tolist() == [FULL, "zeroing while unloaded", "short slips"]
-    assert found["loses most"].tolist()[1] == f"open gripper, mu_c: {full:.1f} → {blind:.1f}"
-    assert found["loses most"].tolist()[::2] == ["–", "–"]
-
-
 @pytest.mark.slow
 def test_every_group_gives_scenarios_that_judge_something():
     scenarios = [scenario for group in GROUPS for scenario in group(QUICK)]
@@ -271,3 +224,13 @@ def test_the_command_writes_what_it_names(tmp_path):
     assert ranking["worst"].is_monotonic_increasing
     page = (folder / "leaderboard.md").read_text()
     assert all(f"\n## {field}\n" in page for field in FIELDS)
+
+
+def test_an_own_estimator_is_entered_and_a_wrong_one_refused_at_once(tmp_path, monkeypatch):
+    own = "own_friction:OWN"
+    module = SimpleNamespace(OWN=replace(specification("rls"), name=own))
+    monkeypatch.setitem(sys.modules, "own_friction", module)
+    assert entrants([own])[own] == (own, {})
+    with pytest.raises(ValueError, match="no_such"):
+        run_leaderboard(tmp_path / "runs", quick=True, progress=False, own=["no_such_package:SPECIFICATION"])
+    assert not (tmp_path / "runs").exists()

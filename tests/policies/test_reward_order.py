@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from policies.research.reward_order.run import (
+from policies.reward_order.run import (
     DROPPED,
     RETURN,
     SUCCESS,
@@ -13,7 +13,7 @@ from policies.research.reward_order.run import (
     sentence,
     spread,
 )
-from policies.research.reward_order.zoo import zoo
+from policies.reward_order.zoo import zoo
 from slipgym.tasks import TASKS
 
 TRAIN = {"randomization": "train"}

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import policies
-from policies.episodes import environment_of
+from policies.evaluation.one_policy import environment_of
 from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import TASKS, find
 

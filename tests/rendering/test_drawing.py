@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from policies.evaluation.plots.style import STYLE
 from slipgym.rendering import palette
-from slipgym.rendering.plot import limits, spacing
-from slipgym.rendering.raster import fill, stroke
+from slipgym.rendering.plot import Curve, Plot, limits, spacing
+from slipgym.rendering.raster import fill
 from slipgym.rendering.text import write
 
 
@@ -35,33 +36,42 @@ def test_the_nearer_triangle_hides_the_farther():
     np.testing.assert_array_equal(*images)
 
 
-@pytest.mark.parametrize("slope", [0.0, 0.3, 1.0, 4.0, 1e9])
-def test_a_line_covers_length_times_width(slope):
-    along = np.array([1.0, slope]) / np.hypot(1.0, slope)
-    mask = np.zeros((100, 100))
-    stroke(np.stack([50.0 - 30.0 * along, 50.0 + 30.0 * along]), 4.0, 0.0, mask)
-    assert mask.sum() == pytest.approx(60.0 * 4.0 + np.pi * 4.0, rel=0.02)
+def drawn(values, width, dash=0.0):
+    """Coverage 0 to 1 of a curve over 10 s in a plot from 0 to 1, 200 by 100 pixels with a margin of 20."""
+    picture = Image.new("RGB", (240, 140), palette.PAPER)
+    plot = Plot(20, 20, 220, 120, 10.0, 0.0, 1.0)
+    times = np.linspace(0.0, 10.0, len(values))
+    plot.draw(picture, times, [], clock=False)
+    before = np.asarray(picture, float)
+    plot.draw(picture, times, [Curve(np.array(values), (0, 0, 0), width, dash)], clock=False)
+    return (1.0 - np.asarray(picture, float) / np.maximum(before, 1.0))[24:116].mean(axis=2)
 
 
-def test_a_line_breaks_where_there_is_nothing():
-    points = np.array([[5.0, 10.0], [15.0, 10.0], [np.nan, np.nan], [25.0, 10.0], [35.0, 10.0]])
-    mask = np.zeros((20, 40))
-    stroke(points, 2.0, 0.0, mask)
-    assert mask[10, 10] == mask[10, 30] == 1.0
-    assert mask[10, 20] == 0.0
+@pytest.mark.parametrize("rise", [0.0, 0.2, 0.5])
+def test_a_curve_covers_length_times_width(rise):
+    gap = np.nan
+    mask = drawn([0.3, 0.3 + rise, gap], 4.0)  # 100 pixels to the right; it does not end at a dot
+    assert mask.sum() == pytest.approx(np.hypot(100.0, 100.0 * rise) * 4.0, rel=0.1)
+
+
+def test_a_curve_breaks_where_there_is_nothing():
+    mask = drawn([0.5, 0.5, np.nan, 0.5, 0.5], 2.0)
+    seen = mask.max(axis=0)
+    assert (seen[25:65] == 1.0).all()
+    assert (seen[75:165] == 0.0).all()
+    assert (seen[175:215] == 1.0).all()
 
 
 def test_dashes_cover_half():
-    masks = np.zeros((2, 20, 200))
-    for mask, dash in zip(masks, (0.0, 5.0), strict=True):
-        stroke(np.array([[10.0, 10.0], [190.0, 10.0]]), 2.0, dash, mask)
-    assert masks[1].sum() == pytest.approx(0.5 * masks[0].sum(), rel=0.05)
+    line, dashes = (drawn([0.5, 0.5, np.nan], 2.0, dash).sum() for dash in (0.0, 5.0))
+    assert dashes == pytest.approx(0.5 * line, rel=0.1)
 
 
 @pytest.mark.parametrize("align", [0.0, 0.5, 1.0])
 def test_words_stand_where_they_are_put(align):
-    picture = np.full((40, 200, 3), 255, np.uint8)
-    write(picture, 100, 30, "grip", palette.INK, 13, align)
+    image = Image.new("RGB", (200, 40), palette.PAPER)
+    write(image, 100, 30, "grip", palette.INK, 13, align)
+    picture = np.asarray(image)
     columns = np.flatnonzero((picture < 200).any(axis=(0, 2)))
     rows = np.flatnonzero((picture < 200).any(axis=(1, 2)))
     width = columns.max() - columns.min()

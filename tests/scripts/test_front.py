@@ -8,6 +8,7 @@ import gymnasium as gym
 import pytest
 from typer.testing import CliRunner
 
+import lab.commands
 import slipgym
 from policies.commands import front
 from policies.commands.several import expanded
@@ -23,11 +24,11 @@ def test_help_names_every_command():
     done = slip("--help")
     assert done.exit_code == 0
     lines = {line.split()[0] for line in done.output.splitlines() if line.startswith("  ") and line.strip()}
-    assert lines >= set(front.COMMANDS)
+    assert lines >= set(front.COMMANDS) | set(lab.commands.COMMANDS)
     assert "..." not in done.output.partition("Commands")[2]  # no line is cut
 
 
-@pytest.mark.parametrize("name", front.COMMANDS)
+@pytest.mark.parametrize("name", [*front.COMMANDS, *lab.commands.COMMANDS])
 def test_every_command_explains_itself(name):
     done = slip(name, "--help")
     assert done.exit_code == 0
@@ -36,7 +37,23 @@ def test_every_command_explains_itself(name):
 
 def test_every_command_is_a_script_of_the_same_name():
     commands = {path.stem.replace("_", "-") for path in (ROOT / "scripts").glob("*.py")}
-    assert {*front.COMMANDS} - commands == {"demo", "warmup"}
+    assert {*front.COMMANDS} - commands == {"demo", "warmup", "closed-loop"}
+
+
+@pytest.mark.parametrize(
+    ("line", "now"),
+    [
+        ("benchmark --split --estimator disc", "benchmark-parts split"),
+        ("benchmark --first-use", "benchmark-parts first-use"),
+        ("leaderboard --closed-loop 4 --task hold", "closed-loop --episodes"),
+        ("leaderboard --closed-loop=4", "closed-loop --episodes"),
+        ("leaderboard --costs", "estimator-costs"),
+    ],
+)
+def test_an_option_that_became_a_command_names_it(line, now):
+    done = slip(*line.split())
+    assert done.exit_code == 2
+    assert f"slipgym {now}" in " ".join(done.output.replace("│", " ").split())
 
 
 def test_misspelt_names_get_suggestions():

@@ -3,6 +3,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import policies
+from estimator import DEFAULT
+from policies.study import load_study
+from policies.study.conditions import conditions
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -29,3 +34,22 @@ def test_an_unknown_study_is_refused_by_name(tmp_path, invoke):
     assert done.exit_code == 2
     assert "quick" in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missing_package_names_the_extra_before_anything_runs(tmp_path, invoke, monkeypatch):
+    for name in [name for name in sys.modules if name.startswith("policies.study")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.delattr(policies, "study", raising=False)
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    done = invoke("study", "quick")
+    assert done.exit_code == 2
+    assert "slipgym[study]" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_quick_study_takes_two_tasks_of_the_planar_engine():
+    study = load_study("quick")
+    assert (study.tasks, study.level, study.kinds) == (("Hold", "Hinge"), "hard", ("classic", "memory"))
+    assert study.estimators == (DEFAULT,)
+    assert {world.engine for world in study.worlds} == {"planar"}
+    assert sum(condition.episodes for condition in conditions(study, {})) <= 400

@@ -2,7 +2,6 @@
 
 import pytest
 
-from policies import command
 from policies.evaluation import load_experiment
 
 SPELLINGS = ["hold", "Hold", "slipgym/Hold-v0", "slipgym.tasks.hold:TASK"]
@@ -38,14 +37,14 @@ def test_evaluate_and_compare_engines(name):
 
 @spelled
 def test_study(name):
-    from policies.research.study import load_study, narrowed
+    from policies.study import load_study, narrowed
 
     assert narrowed(load_study("quick"), tasks=[name]).tasks[0] in ("Hold", name)
 
 
 @spelled
 def test_compare_learned(name, monkeypatch):
-    from policies.research import compare_learned
+    from lab import compare_learned
 
     seen = []
     monkeypatch.setattr(compare_learned, "best_force", lambda experiment, progress: 5.0)
@@ -68,16 +67,18 @@ def test_play_and_record(name, tmp_path, called):
 
 
 @spelled
-def test_slipgym_evaluate(name, capsys):
-    command.main(["constant_force", "--task", name, "--episodes", "1", "--set", "engine=planar"])
-    assert "of 1, dropped 0" in capsys.readouterr().out
+def test_evaluate_one_policy(name, called):
+    printed = called(
+        "evaluate", "--policy", "constant_force", "--task", name, "--trials", "1", "--set", "engine=planar"
+    )
+    assert "of 1, dropped 0" in printed
 
 
-def test_settings_of_the_environment_add_up(capsys):
+def test_settings_of_the_environment_add_up(invoke):
     """Two --set are both heard."""
-    with pytest.raises(SystemExit):
-        command.main(["hold", "--episodes", "1", "--set", "engine=wrong", "--set", "material=wood"])
-    assert "wrong" in capsys.readouterr().err
+    done = invoke("evaluate", "--policy", "hold", "--set", "engine=wrong", "--set", "material=wood")
+    assert done.exit_code == 2
+    assert "wrong" in done.output
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from slipgym.benchmarking.measure import SOFT_PADS
+from lab.benchmarking.measure import SOFT_PADS
 from slipgym.validation.bench import Bench, Friction
 
 MU_S, MU_C, R, MASS = 0.6, 0.4, 0.008, 0.2

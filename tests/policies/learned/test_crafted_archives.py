@@ -14,8 +14,8 @@ import pytest
 
 import policies
 from estimator import records
-from policies import command
-from policies.episodes import episodes
+from policies.commands import front
+from policies.evaluation.one_policy import episodes
 from policies.learned import files as policy_files
 from policies.training import checkpoint_io, checkpoints
 
@@ -116,7 +116,7 @@ def test_a_payload_is_no_policy(tmp_path, mark, capsys, kind):
     with pytest.raises(ValueError, match=r"model\.zip is a file; a policy is a folder"):
         policies.load(path)
     with pytest.raises(SystemExit):
-        command.main([str(path)])
+        front.main(["evaluate", "--policy", str(path)])
     assert "model.zip is a file; a policy is a folder" in capsys.readouterr().err
     within = tmp_path / "policy"
     within.mkdir()

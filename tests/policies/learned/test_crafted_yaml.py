@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from estimator.records import load_columns, parse_settings
-from policies import command
+from policies.commands import front
 from policies.evaluation import load_experiment
 from policies.training import command as training_command
 from policies.training import files as trainings
@@ -59,7 +59,7 @@ def test_nor_does_yaml_on_a_command_line(mark, capsys, tag):
         with pytest.raises(ValueError, match="--set"):
             parse([setting])
     with pytest.raises(SystemExit):
-        command.main(["hold", "--set", setting])
+        front.main(["evaluate", "--policy", "hold", "--set", setting])
     assert "the value cannot be read" in capsys.readouterr().err
 
 

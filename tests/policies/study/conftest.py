@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.research.study.config import Study
+from policies.study.config import Study
 from slipgym.config.yaml_model import validate
 
 BULLET, CORE = "PyBullet, ellipsoid", "core"

@@ -11,10 +11,10 @@ import pandas as pd
 import pytest
 
 from policies.play.video import Video
-from policies.research.study.benefit import benefits
-from policies.research.study.page import render
-from policies.research.study.tables import outcomes, shares, transfer
-from policies.research.study.videos import Clip, Scene
+from policies.study.benefit import benefits
+from policies.study.page import render
+from policies.study.tables import outcomes, shares, transfer
+from policies.study.videos import Clip, Scene
 from slipgym.rendering import HEIGHT, WIDTH
 
 CLEAR = {"none": 0, "nominal": 5, "estimated": 9, "true": 10}

@@ -6,10 +6,10 @@ import pytest
 import policies
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.evaluation.plan import plan
-from policies.research.study import load_study, narrowed, study_names
-from policies.research.study.changes import Change
-from policies.research.study.conditions import conditions
-from policies.research.study.learned import missing, policies_of
+from policies.study import load_study, narrowed, study_names
+from policies.study.changes import Change
+from policies.study.conditions import conditions
+from policies.study.learned import missing, policies_of
 from slipgym.config import load, load_randomization
 from slipgym.envs.observation import columns
 from slipgym.tasks import find

@@ -2,11 +2,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from policies.research.study import run as runner
-from policies.research.study import run_study, words
-from policies.research.study.conditions import conditions
-from policies.research.study.files import load_study
-from policies.research.study.store import Store, fingerprint, sources
+from policies.study import run as runner
+from policies.study import run_study, words
+from policies.study.conditions import conditions
+from policies.study.files import load_study
+from policies.study.store import Store, fingerprint, sources
 
 FILES = {
     "conditions",
@@ -64,7 +64,7 @@ def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
     def fail(*_):
         raise AssertionError("planted")
 
-    monkeypatch.setattr("policies.research.study.episodes.run_block", fail)
+    monkeypatch.setattr("policies.study.episodes.run_block", fail)
     assert run_study(small(), output, 1, progress=False) == run
     assert (run / "episodes.parquet").read_bytes() == before
     with pytest.raises(AssertionError, match="planted"):
@@ -73,7 +73,7 @@ def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
 
 @pytest.mark.slow
 def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monkeypatch):
-    from policies.research.study import episodes
+    from policies.study import episodes
 
     study, count = small(), [0]
     actual = episodes.run_block
@@ -101,7 +101,7 @@ def test_a_cell_is_known_by_all_that_decides_its_result(small, monkeypatch):
     assert len(marks) == 1 + len(others)
     assert fingerprint(one, small(seed=1)) not in marks
     assert fingerprint(one, small(name="other", episodes=1)) in marks
-    monkeypatch.setattr("policies.research.study.store.sources", lambda: sources() + "changed")
+    monkeypatch.setattr("policies.study.store.sources", lambda: sources() + "changed")
     assert fingerprint(one, study) not in marks
 
 

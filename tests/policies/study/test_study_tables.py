@@ -4,10 +4,10 @@ import pytest
 
 from policies.evaluation.frames import where
 from policies.evaluation.statistics import share_interval
-from policies.research.study.benefit import benefits
-from policies.research.study.statistics import over_seeds
-from policies.research.study.tables import ALL, outcomes, shares, transfer
-from policies.research.study.terminal import training_seeds
+from policies.study.benefit import benefits
+from policies.study.statistics import over_seeds
+from policies.study.tables import ALL, outcomes, shares, transfer
+from policies.study.terminal import training_seeds
 
 BULLET, CORE = "PyBullet, ellipsoid", "core"
 CLEAR = {"none": 2, "estimated": 9, "true": 10}

@@ -1,0 +1,36 @@
+"""Attacks slipgym with wrong values, crafted files, interrupts and many steps (docs/security.md)."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from lab.commands.options import application, wrong_arguments
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym torture --share 0.01
+"""
+app = application()
+
+
+@app.command(epilog=EPILOG)
+def main(
+    folder: Annotated[Path, typer.Argument(help="Folder of the campaign; it goes on if it exists.")] = Path(
+        "torture"
+    ),
+    seed: Annotated[int, typer.Option(min=0, help="Of the campaign.")] = 0,
+    share: Annotated[float, typer.Option(min=0.0, help="Fraction of the cases of a full campaign.")] = 1.0,
+    attack: Annotated[
+        list[str] | None, typer.Option(help="One of the attacks by its name; several times: several.")
+    ] = None,
+) -> None:
+    """Print a table of outcomes; the exit status is 1 if one of them is unexplained."""
+    from lab.torture.run import run
+
+    with wrong_arguments():
+        table = run(folder, seed, share, attack or [], lambda line: typer.echo(line, err=True))
+    typer.echo(table)
+    if ", case " in table:
+        raise typer.Exit(1)

@@ -1,0 +1,127 @@
+"""Runs episodes of one policy in the environment that it is for: `slipgym evaluate --policy`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium as gym
+
+import policies
+from estimator.reference import is_reference
+from policies.learned import LearnedPolicy
+from policies.registry import Policy
+from policies.stepping import steps
+from policies.training import seeds
+from slipgym.tasks import find
+
+FRESH = 1_000_000
+"""Number of the first held-out seed here."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How an episode went."""
+
+    success: bool
+    """Whether the task succeeded."""
+    dropped: bool
+    """Whether the object was lost."""
+    reward: float
+    """Sum over the episode."""
+    time: float
+    """When it ended [s]."""
+
+
+def environment_of(which: str, policy: Policy, task: str | None) -> tuple[str, dict[str, Any]]:
+    """The environment that a policy is for.
+
+    Args:
+        which: What it was loaded by, for the message of an error.
+        policy: The policy.
+        task: Its task's name, where it does not say so itself.
+
+    Returns:
+        Id and keyword arguments: those of its training, or what a controller asks for.
+
+    Raises:
+        ValueError: No task is known, or another one is asked for.
+    """
+    own: str | None = getattr(policy, "task", None)
+    if isinstance(policy, LearnedPolicy):
+        trained = policy.description.environment
+        if task is not None and find(task).id != trained.id:
+            raise ValueError(f"task = {task!r}: the policy {which!r} was trained in {trained.id}")
+        return trained.id, dict(trained.arguments)
+    if task is None and own is None:
+        raise ValueError(f"the policy {which!r} serves every task: name a task")
+    env_id = find(task or own or "").id
+    if own is not None and env_id != find(own).id:
+        raise ValueError(f"task = {task!r}: the policy {which!r} is for {own}")
+    return env_id, policies.modes(policy)
+
+
+def episodes(
+    which: str | os.PathLike[str],
+    count: int,
+    first: int = FRESH,
+    task: str | None = None,
+    changes: Mapping[str, Any] | None = None,
+) -> Iterator[Outcome]:
+    """Runs episodes of a policy without exploration.
+
+    Args:
+        which: As `policies.load` takes it.
+        count: How many.
+        first: Number of the first held-out seed; see `policies.training.seeds`. The default is beyond those
+            that a training chooses its best policy by.
+        task: Needed for a controller that serves every task.
+        changes: Keyword arguments of the environment instead of those of the training.
+
+    Raises:
+        FileNotFoundError: There is no policy at the path.
+        ValueError: A name or value is wrong, or the environment is not one the policy can act in.
+    """
+    policy = policies.load(which)
+    env_id, arguments = environment_of(os.fspath(which), policy, task)
+    if "estimator" not in (changes or {}):
+        _check_estimator(arguments.get("estimator"))
+    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **{**arguments, **(changes or {})})
+    try:
+        if isinstance(policy, LearnedPolicy):
+            policy.check(env)
+        for number in range(first, first + count):
+            observation, info = env.reset(seed=seeds.held_out(number))
+            total = 0.0
+            for step in steps(env, policy, observation):
+                total, info = total + float(step.reward), step.info
+            yield Outcome(info["is_success"], info["dropped"], total, info["time"])
+    finally:
+        env.close()
+
+
+def outcome(which: str, found: Sequence[Outcome]) -> str:
+    """How episodes went, in a line.
+
+    Args:
+        which: What the policy was loaded by.
+        found: From `episodes`, at least one.
+    """
+    n = len(found)
+    solved, dropped = sum(one.success for one in found), sum(one.dropped for one in found)
+    reward, time = (sum(getattr(one, name) for one in found) / n for name in ("reward", "time"))
+    return (
+        f"{which}: solved {solved} of {n}, dropped {dropped}; means: reward {reward:.2f}, time {time:.2f} s"
+    )
+
+
+def _check_estimator(choice: Any) -> None:
+    """Refuse what a file has to be imported for: only who runs it may ask for that."""
+    name = choice.get("name") if isinstance(choice, Mapping) else choice
+    if is_reference(name):
+        raise ValueError(
+            f"the estimator {name!r} of its policy.json is not imported unasked; give an estimator as an "
+            "argument of the environment"
+        )

@@ -1,0 +1,91 @@
+"""Scenarios of a real gripper, whose errors nobody knows, and of friction that jumps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from policies.leaderboard.imperfections import Imperfections, impaired
+from policies.leaderboard.scenario import FIELDS, Run, Scenario, after
+from policies.leaderboard.scenarios import MU_C, MU_S, Effort, closed_loop, patch, turning
+from slipgym.synthetic import Record, sense
+
+AT_ONCE = {"sensors": {"slip": {"latency_samples": 0}}}
+DELAYS = ((0, 0.0), (1, 0.3), (2, 0.0), (2, 0.3))
+"""Age of the velocities [samples] and fraction of them that are one older still."""
+OPEN = 60
+"""Readings of the open gripper."""
+NOISE = (0.02, 0.02, 0.04, 5e-4)
+"""Noise of f_x, f_y, f_n [N] and tau [N m], that of the realistic sensors."""
+ERRORS = {
+    "zero 0.1 N": Imperfections(velocity_delay=1, zero=0.1),
+    "zero 0.2 N": Imperfections(velocity_delay=1, zero=0.2),
+    "tilt 1°": Imperfections(velocity_delay=1, tilt=math.radians(1.0)),
+    "tilt 2°": Imperfections(velocity_delay=1, tilt=math.radians(2.0)),
+    "CoP 1 mm": Imperfections(velocity_delay=1, cop=0.001),
+    "CoP 2 mm": Imperfections(velocity_delay=1, cop=0.002),
+    "all": Imperfections(velocity_delay=1, zero=0.2, tilt=math.radians(2.0), cop=0.002),
+}
+
+
+def unknown_delay(effort: Effort, material: str = "wood") -> Iterator[Scenario]:
+    """Stick-slip with velocities of an age that no estimator is given; one sample is nominal."""
+    for delay, jitter in DELAYS:
+        runs = []
+        for k, trace in enumerate(closed_loop(material, effort.trials)):
+            exact = sense(trace, effort.seeds, effort.seed, config=AT_ONCE)
+            record = impaired(exact, Imperfections(velocity_delay=delay, jitter=jitter), effort.seed + k)
+            moving = (record.phase == "slip") & after(record, 1.0)
+            runs.append(Run(record, {"mu_c": moving, "mu_s": moving}))
+        yield Scenario("unknown delay", f"{delay}, jitter {100 * jitter:.0f} %", tuple(runs))
+
+
+def sensor_errors(effort: Effort) -> Iterator[Scenario]:
+    """3 s of planar slip whose direction turns by 1 rad/s, seen by sensors with constant errors."""
+    exact = sense(patch(turning(3.0), effort.cells), effort.seeds, effort.seed, config=AT_ONCE)
+    late = after(exact, exact.t[-1] - 0.25)
+    for name, imperfections in ERRORS.items():
+        record = impaired(exact, imperfections, effort.seed)
+        yield Scenario("sensor errors", name, (Run(record, {"mu_c": late, "r": late}),))
+
+
+def opened(effort: Effort) -> Iterator[Scenario]:
+    """Zero errors after half a second of the open gripper, in which they may be seen; not in the ranking."""
+    exact = sense(patch(turning(3.0), effort.cells), effort.seeds, effort.seed, config=AT_ONCE)
+    before = unloaded_first(exact, OPEN, effort.seed)
+    late = after(before, before.t[-1] - 0.25)
+    zero = Imperfections(velocity_delay=1, zero=0.2, zero_normal=0.2)
+    record = impaired(before, zero, effort.seed)
+    yield Scenario("open gripper", "zero 0.2 N", (Run(record, {"mu_c": late, "r": late}),))
+
+
+def unloaded_first(record: Record, samples: int, seed: int) -> Record:
+    """A record with readings of the noise alone, at rest, before its first sample.
+
+    Args:
+        record: m fingers, n samples.
+        samples: How many [-].
+        seed: Of the noise.
+    """
+    m = len(record.wrenches)
+    noise = np.random.default_rng(seed).standard_normal((m, samples, 4)) * list(NOISE)
+    period, phase = record.t[1] - record.t[0], np.repeat(record.phase[:1], samples)
+    return Record(
+        t=np.concatenate((record.t[0] + period * np.arange(samples), record.t + period * samples)),
+        wrenches=np.concatenate((noise, record.wrenches), axis=1),
+        twists=np.concatenate((np.zeros((m, samples, 3)), record.twists), axis=1),
+        phase=np.concatenate((phase, record.phase)),
+        **{name: np.pad(getattr(record, name), (samples, 0), mode="edge") for name in FIELDS},
+    )
+
+
+def jumps(effort: Effort) -> Iterator[Scenario]:
+    """Steady planar slip in which mu_c jumps; evaluated from 0.3 s later to the end."""
+    for factor in (0.7, 1.35):
+        course = turning(2.0, 0.0).to("planar", 1e-3, mu_c=factor * MU_C, mu_s=factor * MU_S)
+        trace = patch(course.to("planar", 1.0), effort.cells)
+        record = sense(trace, effort.seeds, effort.seed)
+        late = after(record, course.times[-1] + 0.3)
+        yield Scenario("jump", f"× {factor:g}", (Run(record, {"mu_c": late, "r": late}),))

@@ -1,0 +1,113 @@
+"""Who takes part in the leaderboard of policies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from policies import registry
+from policies.controllers.table import CLASSES
+from policies.evaluation.play import play
+from policies.learned import LearnedPolicy
+from policies.reward_order.zoo import Member, constant, controllers, learned, remembering
+from slipgym.config import load
+from slipgym.tasks import find
+
+CANDIDATES = 16
+"""Constant forces that are tried, spaced geometrically over the gripper's range."""
+_SELECTION_SEED = 10_000_000
+"""Of the first episode on which the constant force is chosen."""
+
+
+def best_constant(task: str, arguments: Mapping[str, Any], episodes: int) -> Member:
+    """The constant grip that solves most, among equals the one with the largest mean return.
+
+    It is chosen on other episodes of the same distribution, on the planar engine.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        arguments: Of the environments: level, randomization, sensors.
+        episodes: How many for each force.
+    """
+    gripper = load().gripper
+    forces = np.geomspace(gripper.force_min, gripper.force_max, CANDIDATES).round(2).tolist()
+    found, seeds = [], range(_SELECTION_SEED, _SELECTION_SEED + episodes)
+    made = {**arguments, **constant(forces[0]).arguments}
+    envs = gym.make_vec(f"slipgym:{find(task).id}", episodes, "vector_entry_point", **made)
+    try:
+        for force in forces:
+            played = play(envs, constant(force).policy, seeds)
+            found.append((played.success.mean(), played.reward.mean(), force))
+    finally:
+        envs.close()
+    best = constant(max(found)[2])
+    return best._replace(name=f"best constant ({best.name.removeprefix('constant ')})")
+
+
+def further(task: str) -> list[Member]:
+    """Controllers of a task beside the one of its name, such as "planar_slip_continuous".
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+    """
+    key, name, members = find(task).key, find(task).name, []
+    for other in CLASSES:
+        if other != key and getattr(registry.find(other), "task", None) == name:
+            members += controllers(other, other)
+    return members
+
+
+def imitated(task: str, folder: Path) -> list[Member]:
+    """Policies of `slipgym imitate` for a task.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        folder: Of its runs, `<task>_<friction source>_<seed>/policy`.
+    """
+    members = []
+    for place in sorted(folder.glob(f"{find(task).key}_*/policy")):
+        source = place.parent.name.removeprefix(f"{find(task).key}_").rpartition("_")[0]
+        policy = LearnedPolicy(place)
+        kind = "recurrent" if policy.description.network.memory is not None else "memoryless"
+        arguments = {"friction_source": source, **policy.modes}
+        members.append(Member(f"imitation, {source}, {kind}", policy, arguments))
+    return members
+
+
+def entered(names: Sequence[str], source: str) -> list[Member]:
+    """Policies that a user enters.
+
+    Args:
+        names: As `policies.load` takes them: "module:class", or folders of learned policies.
+        source: Friction source of their observations.
+
+    Raises:
+        FileNotFoundError: There is no such policy.
+        ValueError: What lies there is no policy.
+    """
+    members = []
+    for name in names:
+        policy = registry.load(name)
+        members.append(Member(name, policy, {"friction_source": source, **registry.modes(policy)}))
+    return members
+
+
+def opponents(
+    task: str, arguments: Mapping[str, Any], episodes: int, folder: Path | None = None
+) -> list[Member]:
+    """The policies that everyone is compared with.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        arguments: Of the environments: level, randomization, sensors.
+        episodes: On which the constant grip is chosen, for each force.
+        folder: Of the runs of `slipgym imitate`; None: none.
+    """
+    key = find(task).key
+    found = [best_constant(task, arguments, episodes), remembering(key), *controllers(key), *further(task)]
+    found += learned(key)
+    return found if folder is None else [*found, *imitated(task, folder)]

@@ -1,0 +1,77 @@
+"""Plays the same episodes with every policy, and says how they went."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+from tqdm import tqdm
+
+from policies.evaluation.statistics import share_interval
+from policies.reward_order.episodes import episodes_of
+from policies.reward_order.zoo import Member
+from slipgym.tasks import find
+
+COLUMNS = (
+    "task", "level", "policy", "solved [%]", "low", "high", "mean return", "dropped [%]", "grip [N]",
+    "slid [mm]",
+)  # fmt: skip
+"""Of the table: `low` and `high` bound the interval of 95 % of what was solved [%]."""
+
+
+def outcomes(
+    task: str,
+    level: str,
+    members: Sequence[Member],
+    episodes: int,
+    arguments: Mapping[str, Any],
+    engine: str = "planar",
+    progress: bool = True,
+) -> pd.DataFrame:
+    """Plays the same episodes with every policy.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        level: Level of difficulty.
+        members: The policies.
+        episodes: How many for each.
+        arguments: Further arguments of the environments.
+        engine: "planar" or "bullet".
+        progress: Whether to show a progress bar.
+
+    Returns:
+        A row for each policy, best first, with the columns COLUMNS: solved with its interval of 95 %, drops,
+        mean grip of both fingers over the episodes, length of the way that the object slid.
+    """
+    rows = []
+    for member in tqdm(members, desc=f"{find(task).key}, {level}", unit="policy", disable=not progress):
+        played = episodes_of(task, member, episodes, {**arguments, "level": level}, engine)
+        share = share_interval(int(played.success.sum()), episodes)
+        measured = played.reward.mean(), 100.0 * played.dropped.mean()
+        spent = played.grip.mean(), 1e3 * played.slip.mean()
+        solved = (100.0 * value for value in share)
+        rows.append((find(task).name, level, member.name, *solved, *measured, *spent))
+    table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
+    return table.sort_values(["solved [%]", "mean return"], ascending=False, ignore_index=True)
+
+
+def kinds(table: pd.DataFrame) -> pd.Series:
+    """Names of the policies without what differs between tasks: the force of the best constant grip."""
+    return table["policy"].str.replace(r" \(.*\)$", "", regex=True)
+
+
+def by_level(table: pd.DataFrame) -> pd.DataFrame:
+    """What is solved of each task and level [%], a column for each policy.
+
+    Args:
+        table: From `outcomes`, of several tasks and levels.
+
+    Returns:
+        A row for each task and level in the order of the table; NaN where a policy did not play.
+    """
+    cells = list(dict.fromkeys(zip(table["task"], table["level"], strict=True)))
+    names = kinds(table)
+    wide = table.assign(kind=names).pivot_table(index=["task", "level"], columns="kind", values="solved [%]")
+    order = sorted(dict.fromkeys(names), key=lambda name: (name.partition(",")[0], wide[name].mean()))
+    return wide.loc[cells, order].reset_index().rename_axis(columns=None)

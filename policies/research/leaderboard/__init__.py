@@ -1,5 +1,0 @@
-"""All estimators on the same records."""
-
-from policies.research.leaderboard.run import run_leaderboard
-
-__all__ = ["run_leaderboard"]

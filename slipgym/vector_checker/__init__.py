@@ -1,5 +1,0 @@
-"""Checks a vector environment against Gymnasium's conventions, as `check_env` checks a single one."""
-
-from slipgym.vector_checker.check import check_vector_env
-
-__all__ = ["check_vector_env"]

@@ -1,0 +1,96 @@
+"""Clocks and tables of the benchmark, and that it measures what it says."""
+
+import json
+
+import pytest
+
+from slipgym.benchmarking import report, run, timing
+from slipgym.benchmarking.report import Figure, table, write
+from slipgym.benchmarking.timing import Stopwatches, compare, per_call
+
+
+class Clock:
+    """A clock that only `wait` moves, in place of the machine's."""
+
+    def __init__(self, monkeypatch):
+        self.now = 0.0
+        monkeypatch.setattr(timing, "perf_counter", lambda: self.now)
+
+    def wait(self, seconds):
+        self.now += seconds
+
+
+class Sleeper:
+    def __init__(self, clock):
+        self.clock = clock
+
+    def outer(self):
+        self.clock.wait(0.01)
+        self.inner()
+
+    def inner(self):
+        self.clock.wait(0.03)
+
+
+def test_stopwatches_count_a_function_without_those_it_calls(monkeypatch):
+    clock = Clock(monkeypatch)
+    sleeper = Sleeper(clock)
+    with Stopwatches() as watches:
+        watches.watch("outer", sleeper, "outer")
+        watches.watch("inner", sleeper, "inner")
+        sleeper.outer()
+        sleeper.outer()
+    assert watches.spent["outer"] == pytest.approx(0.02)
+    assert watches.spent["inner"] == pytest.approx(0.06)
+    assert vars(sleeper) == {"clock": clock}
+
+
+def test_compare_takes_medians_of_ratios_of_neighbours():
+    first = iter([(1.0, 10), (2.0, 10), (9.0, 10)])
+    second = iter([(3.0, 10), (8.0, 10), (9.0, 10)])
+    result = compare(lambda: next(first), lambda: next(second), 3)
+    assert result[:2] == pytest.approx((0.2, 0.8))
+    assert result.quartiles == pytest.approx((2.0, 3.0, 3.5))
+
+
+def test_per_call_divides_by_the_calls(monkeypatch):
+    clock = Clock(monkeypatch)
+    assert per_call(lambda: clock.wait(0.002), calls=3, repeats=3) == pytest.approx(0.002)
+
+
+FIGURES = [Figure("fast", 1.2, "-", "<= 1.4"), Figure("slow", 30.0, "x", ">= 40"), Figure("free", 3.0, "us")]
+
+
+def test_a_table_says_what_is_met():
+    lines = table(FIGURES).splitlines()
+    assert lines[2].endswith("<= 1.4: yes")
+    assert lines[3].endswith(">= 40: NO")
+    assert lines[4].endswith("us")
+
+
+def test_figures_are_written_at_once(tmp_path):
+    path = tmp_path / "figures.json"
+    path.write_text("old")
+    write(path, FIGURES)
+    assert [figure["met"] for figure in json.loads(path.read_text())["figures"]] == [True, False, None]
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_benchmark_names_every_engine_and_batch(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(run, "SIZES", (1, 8))
+    path = tmp_path / "figures.json"
+    run.benchmark("slipgym/Hold-v0", 1, path)
+    figures = json.loads(path.read_text())["figures"]
+    names = [figure["name"] for figure in figures]
+    printed = capsys.readouterr().out
+    assert len(names) == len(set(names))
+    assert all(name in printed for name in names)
+    assert all(figure["value"] > 0.0 for figure in figures)
+    wanted = {f"one environment, {engine}: steps per second" for engine in run.engines()}
+    wanted |= {f"batch of {n}, held firmly: steps per second" for n in (1, 8)}
+    assert wanted <= set(names)
+
+
+def test_a_library_that_is_missing_is_said(monkeypatch):
+    monkeypatch.setattr(report, "LIBRARIES", ("numpy", "no-such-library"))
+    assert "no-such-library not installed" in report.line(report.machine())

@@ -1,0 +1,45 @@
+"""The command lines of the leaderboard and of the velocity profile."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from lab.leaderboard.ablation import WITHOUT
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("command", "words", "picture"),
+    [
+        (["leaderboard", "--quick"], "| 1 |", "leaderboard.png"),
+        (["reproduce", "profile", "--seeds", "1"], "| rotational |", "realistic.png"),
+    ],
+)
+def test_the_command_prints_its_tables_and_where_to_look(command, words, picture, tmp_path):
+    printed = call(*command, "--output", tmp_path, "--seed", "1")
+    assert words in printed
+    assert Path(printed.split()[-1]).name == picture
+    assert Path(printed.split()[-1]).is_file()
+
+
+@pytest.mark.slow
+def test_the_ablation_has_a_row_for_each_thing():
+    printed = call("ablation", "--quick").strip()
+    assert printed.startswith("| without |")
+    assert len(printed.splitlines()) == 2 + len(WITHOUT)
+    assert all(f"\n| {label} |" in printed for label in WITHOUT)
+
+
+def call(*command):
+    done = subprocess.run(
+        [sys.executable, "-m", "slipgym", *map(str, command)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout
