@@ -31,6 +31,8 @@ class Result(NamedTuple):
     """Start of the first line that is kept of an output; empty: all lines are kept."""
     keep: tuple[str, ...] = ()
     """Titles of the sections that are kept of an output; empty: all sections are kept."""
+    pictures: dict[str, str] = {}  # noqa: RUF012
+    """Name of a picture in the run's folder -> its name in docs/images."""
     needs: str = ""
     """File or folder of the clone without which the commands cannot run; empty: none is needed."""
 

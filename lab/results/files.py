@@ -15,6 +15,7 @@ from slipgym import atomic_io
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "results"
 INDEX = FOLDER / "README.md"
+IMAGES = ROOT / "docs" / "images"
 LIBRARIES = ("numpy", "numba", "gymnasium", "pybullet", "torch")
 """Libraries whose versions stand in the head."""
 LAST = "Look at:"
@@ -107,7 +108,7 @@ def _padded(table: str) -> str:
 
 
 def write(result: Result, outputs: list[str], at: str) -> None:
-    """Write the file of a result and the index, each whole or not at all.
+    """Write the file of a result, the index and the pictures, each whole or not at all.
 
     Args:
         result: Its declaration.
@@ -115,6 +116,7 @@ def write(result: Result, outputs: list[str], at: str) -> None:
         at: Commit of the working tree when the run began.
     """
     bodies = [body(result, printed) for printed in outputs]
+    pictures = {new: content for printed in outputs for new, content in drawn(result, printed).items()}
     if len(bodies) > 1:
         bodies = [f"## {command}\n\n{text}" for command, text in zip(result.commands, bodies, strict=True)]
     day = f"{datetime.now(UTC):%Y-%m-%d}"
@@ -122,6 +124,22 @@ def write(result: Result, outputs: list[str], at: str) -> None:
     FOLDER.mkdir(parents=True, exist_ok=True)
     atomic_io.write(path(result), text.encode())
     atomic_io.write(INDEX, index().encode())
+    for name, content in pictures.items():
+        atomic_io.write(IMAGES / name, content)
+
+
+def drawn(result: Result, printed: str) -> dict[str, bytes]:
+    """The pictures of a run: name in docs/images -> content.
+
+    Raises:
+        ValueError: The output does not say where one is.
+    """
+    _, _, listed = printed.partition(f"\n{LAST}\n")
+    paths = {Path(line.strip()).name: ROOT / line.strip() for line in listed.splitlines() if line.strip()}
+    lacking = [name for name in result.pictures if name not in paths]
+    if lacking:
+        raise ValueError(f"{result.name}: the run has no picture {', '.join(lacking)}")
+    return {new: paths[name].read_bytes() for name, new in result.pictures.items()}
 
 
 def index() -> str:

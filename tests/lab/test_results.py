@@ -50,6 +50,17 @@ def test_commands_are_run_and_written_with_the_commit(folder, capfd):
     assert (folder / "docs/results/README.md").read_text() == files.index()
 
 
+def test_the_pictures_of_a_run_are_taken(folder, monkeypatch):
+    monkeypatch.setattr(files, "IMAGES", folder)
+    (folder / "runs").mkdir()
+    (folder / "runs" / "table.png").write_bytes(b"picture")
+    drawing = RESULT._replace(pictures={"table.png": "speed_table.png"})
+    files.write(drawing, ["1 m/s\n\nLook at:\n  runs/table.png\n"], "0123abcd")
+    assert (folder / "speed_table.png").read_bytes() == b"picture"
+    with pytest.raises(ValueError, match="speed: the run has no picture table"):
+        files.write(drawing, ["1 m/s\n"], "0123abcd")
+
+
 def test_a_tree_with_changes_is_marked(folder):
     (folder / "file").write_text("a")
     subprocess.run(["git", "add", "file"], cwd=folder, check=True)
@@ -83,5 +94,5 @@ def test_results_are_found_by_name():
 def test_a_wrong_declaration_is_an_error(tmp_path, entry, message):
     path = tmp_path / "results.yaml"
     path.write_text(f"speed: {entry}\n")
-    with pytest.raises(ValueError, match=f"results.yaml: speed: .*{message}"):
+    with pytest.raises(ValueError, match=rf"results\.yaml: speed: .*{message}"):
         read(path)
