@@ -42,10 +42,10 @@ def tables(page: str) -> dict[tuple[str, str, str], float]:
     return found
 
 
-README, LEVELS = tables("README.md"), tables("docs/levels.md")
+README, LEVELS = tables("README.md"), tables("docs/results/levels.txt")
 CLAIMS = [
     (page, *key)
-    for page in ("README.md", "docs/levels.md")
+    for page in ("README.md", "docs/results/levels.txt")
     for key in random.Random(24).sample([key for key in tables(page) if key[2] != "best constant"], SAMPLE)
 ]
 """The sample: (page, task, level, column)."""
