@@ -10,7 +10,7 @@ PIP := $(RUN) -m pip install --quiet --constraint constraints.txt
 PYTEST := OMP_NUM_THREADS=1 $(RUN) -m pytest -n $(JOBS) --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all lint types wheel-smoke check benchmark validate torture results audit matrix site release clean
+.PHONY: help demo test test-all lint types wheel-smoke check benchmark validate torture results audit matrix site release wheel clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -59,9 +59,13 @@ site: $(VENV)/.dev ## the documentation as a site in build/site, links checked
 	$(PIP) --editable '.[site]'
 	NO_MKDOCS_2_WARNING=1 $(RUN) -m mkdocs build
 
-release: check site ## everything above but the benchmark, then wheel and sdist in dist/; uploads nothing
-	rm -rf dist
-	$(RUN) -m build
+release: check site wheel ## everything above but the benchmark, then wheel and sdist in dist/; uploads nothing
+	$(RUN) -m build --sdist
+
+wheel: $(VENV)/.dev ## the wheel in dist/, with programs compiled for processors with AVX2 and the pinned versions
+	rm -rf dist build/programs
+	$(RUN) -m slipgym warmup --target x86-64-v3 --into build/programs
+	SLIPGYM_PROGRAMS=build/programs $(RUN) -m build --wheel
 
 clean: ## remove the environment and everything built
 	rm -rf $(VENV) build dist .pytest_cache .ruff_cache .hypothesis
