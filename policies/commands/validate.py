@@ -48,6 +48,7 @@ def main(
 ) -> None:
     """Print the acceptance figures of the physics; exit code 1 if one is not met."""
     from estimator.suggestions import unknown
+    from slipgym.atomic_io import check_file
     from slipgym.validation import EXPERIMENTS, suite
 
     names = [experiment.__name__ for experiment in EXPERIMENTS]
@@ -57,6 +58,11 @@ def main(
                 raise typer.BadParameter(unknown("unknown name", name, known), param_hint=option)
     if figure and not against:
         raise typer.BadParameter("needs --against", param_hint="--figure")
+    if figure:
+        try:
+            check_file(figure)
+        except OSError as error:
+            raise typer.BadParameter(str(error), param_hint="--figure") from error
     if against:
         compare(against, figure)
     elif accept(only or names):
@@ -84,6 +90,7 @@ def accept(chosen: Sequence[str]) -> int:
 
 def compare(engines: Sequence[str], picture: Path | None) -> None:
     """Print the tables of the slip suite, or draw its figure; engines that are not installed are skipped."""
+    from slipgym.atomic_io import new_file
     from slipgym.validation import suite
 
     chosen, results = [], []
@@ -100,4 +107,5 @@ def compare(engines: Sequence[str], picture: Path | None) -> None:
     if picture is None:
         print(suite.results_table(results), suite.friction_table(results), sep="\n\n")
     else:
-        suite.draw(chosen, picture)
+        with new_file(picture) as partial:
+            suite.draw(chosen, partial)

@@ -7,6 +7,7 @@ import os
 import time
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import policies
@@ -18,6 +19,7 @@ from policies.play.viewer.plots import Plots
 from policies.play.viewer.recording import Recording
 from policies.play.viewer.scene import Scene
 from policies.play.viewer.session import Refused, Session
+from slipgym.atomic_io import check_file
 from slipgym.tasks import Task
 
 FRAME_RATE, PLOT_RATE = 30.0, 8.0
@@ -216,8 +218,11 @@ def open_viewer(
         ModuleNotFoundError: viser or the engine is not installed.
         ValueError: A value is unknown or not allowed.
         FileNotFoundError: There is no policy at the path.
+        OSError: The video cannot be written.
     """
     _viser()
+    if video is not None:
+        check_file(Path(video))
     session = Session(task, policy, seed, options, **keywords)
     try:
         return Viewer(session, video or f"slipgym_{session.task.key}.mp4", port, host)
