@@ -9,6 +9,7 @@ from typing import Any
 
 import policies
 from estimator.records import parse_settings
+from policies.console import spell_out
 from policies.episodes import FRESH, episodes
 
 SPELLINGS = "linear_slip, for example; LinearSlip, slipgym/LinearSlip-v0 or module:attribute name a task, too"
@@ -28,6 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     Args:
         arguments: Instead of the command line's.
     """
+    spell_out()
     parser = argparse.ArgumentParser(
         "slipgym-evaluate",
         usage="slipgym-evaluate POLICY [OPTIONS]",

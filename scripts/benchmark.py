@@ -1,6 +1,8 @@
 """The command `slipgym benchmark`."""
 
-from policies.commands.benchmark import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["benchmark", *sys.argv[1:]])

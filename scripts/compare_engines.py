@@ -1,6 +1,8 @@
 """The command `slipgym compare-engines`."""
 
-from policies.commands.compare_engines import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["compare-engines", *sys.argv[1:]])

@@ -1,6 +1,8 @@
 """The command `slipgym compare-learned`."""
 
-from policies.commands.compare_learned import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["compare-learned", *sys.argv[1:]])

@@ -1,6 +1,8 @@
 """The command `slipgym estimate`."""
 
-from policies.commands.estimate import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["estimate", *sys.argv[1:]])

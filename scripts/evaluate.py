@@ -1,6 +1,8 @@
 """The command `slipgym evaluate`."""
 
-from policies.commands.evaluate import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["evaluate", *sys.argv[1:]])

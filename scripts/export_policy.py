@@ -1,6 +1,8 @@
 """The command `slipgym export-policy`."""
 
-from policies.commands.export_policy import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["export-policy", *sys.argv[1:]])

@@ -1,6 +1,8 @@
 """The command `slipgym imitate`."""
 
-from policies.commands.imitate import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["imitate", *sys.argv[1:]])

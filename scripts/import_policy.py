@@ -1,6 +1,8 @@
 """The command `slipgym import-policy`."""
 
-from policies.commands.import_policy import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["import-policy", *sys.argv[1:]])

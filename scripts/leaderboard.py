@@ -1,6 +1,8 @@
 """The command `slipgym leaderboard`."""
 
-from policies.commands.leaderboard import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["leaderboard", *sys.argv[1:]])

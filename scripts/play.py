@@ -1,6 +1,8 @@
 """The command `slipgym play`."""
 
-from policies.commands.play import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["play", *sys.argv[1:]])

@@ -1,6 +1,8 @@
 """The command `slipgym policy-leaderboard`."""
 
-from policies.commands.policy_leaderboard import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["policy-leaderboard", *sys.argv[1:]])

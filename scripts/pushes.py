@@ -1,6 +1,8 @@
 """The command `slipgym pushes`."""
 
-from policies.commands.pushes import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["pushes", *sys.argv[1:]])

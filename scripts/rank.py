@@ -1,6 +1,8 @@
 """The command `slipgym rank`."""
 
-from policies.commands.rank import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["rank", *sys.argv[1:]])

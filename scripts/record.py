@@ -1,6 +1,8 @@
 """The command `slipgym record`."""
 
-from policies.commands.record import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["record", *sys.argv[1:]])

@@ -1,6 +1,8 @@
 """The command `slipgym reproduce`."""
 
-from policies.commands.reproduce import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["reproduce", *sys.argv[1:]])

@@ -1,6 +1,8 @@
 """The command `slipgym ship`."""
 
-from policies.commands.ship import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["ship", *sys.argv[1:]])

@@ -1,6 +1,8 @@
 """The command `slipgym study`."""
 
-from policies.commands.study import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["study", *sys.argv[1:]])

@@ -1,6 +1,8 @@
 """The command `slipgym train`."""
 
-from policies.commands.train import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["train", *sys.argv[1:]])

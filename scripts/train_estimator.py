@@ -1,6 +1,8 @@
 """The command `slipgym train-estimator`."""
 
-from policies.commands.train_estimator import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["train-estimator", *sys.argv[1:]])

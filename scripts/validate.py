@@ -1,6 +1,8 @@
 """The command `slipgym validate`."""
 
-from policies.commands.validate import app
+import sys
+
+from policies.commands.front import main
 
 if __name__ == "__main__":
-    app()
+    main(["validate", *sys.argv[1:]])
