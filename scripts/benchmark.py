@@ -1,8 +1,8 @@
 """The command `slipgym benchmark`."""
 
-import sys
-
-from policies.commands.front import main
+from policies.commands.benchmark import app
+from policies.console import spell_out
 
 if __name__ == "__main__":
-    main(["benchmark", *sys.argv[1:]])
+    spell_out()
+    app()

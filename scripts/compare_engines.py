@@ -1,8 +1,8 @@
 """The command `slipgym compare-engines`."""
 
-import sys
-
-from policies.commands.front import main
+from policies.commands.compare_engines import app
+from policies.console import spell_out
 
 if __name__ == "__main__":
-    main(["compare-engines", *sys.argv[1:]])
+    spell_out()
+    app()

@@ -1,8 +1,8 @@
 """The command `slipgym compare-learned`."""
 
-import sys
-
-from policies.commands.front import main
+from policies.commands.compare_learned import app
+from policies.console import spell_out
 
 if __name__ == "__main__":
-    main(["compare-learned", *sys.argv[1:]])
+    spell_out()
+    app()

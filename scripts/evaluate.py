@@ -1,8 +1,8 @@
 """The command `slipgym evaluate`."""
 
-import sys
-
-from policies.commands.front import main
+from policies.commands.evaluate import app
+from policies.console import spell_out
 
 if __name__ == "__main__":
-    main(["evaluate", *sys.argv[1:]])
+    spell_out()
+    app()

@@ -1,8 +1,8 @@
 """The command `slipgym export-policy`."""
 
-import sys
-
-from policies.commands.front import main
+from policies.commands.export_policy import app
+from policies.console import spell_out
 
 if __name__ == "__main__":
-    main(["export-policy", *sys.argv[1:]])
+    spell_out()
+    app()

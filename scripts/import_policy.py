@@ -1,8 +1,8 @@
 """The command `slipgym import-policy`."""
 
-import sys
-
-from policies.commands.front import main
+from policies.commands.import_policy import app
+from policies.console import spell_out
 
 if __name__ == "__main__":
-    main(["import-policy", *sys.argv[1:]])
+    spell_out()
+    app()

@@ -1,8 +1,8 @@
 """The command `slipgym policy-leaderboard`."""
 
-import sys
-
-from policies.commands.front import main
+from policies.commands.policy_leaderboard import app
+from policies.console import spell_out
 
 if __name__ == "__main__":
-    main(["policy-leaderboard", *sys.argv[1:]])
+    spell_out()
+    app()

@@ -1,8 +1,8 @@
 """The command `slipgym pushes`."""
 
-import sys
-
-from policies.commands.front import main
+from policies.commands.pushes import app
+from policies.console import spell_out
 
 if __name__ == "__main__":
-    main(["pushes", *sys.argv[1:]])
+    spell_out()
+    app()

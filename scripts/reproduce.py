@@ -1,8 +1,8 @@
 """The command `slipgym reproduce`."""
 
-import sys
-
-from policies.commands.front import main
+from policies.commands.reproduce import app
+from policies.console import spell_out
 
 if __name__ == "__main__":
-    main(["reproduce", *sys.argv[1:]])
+    spell_out()
+    app()

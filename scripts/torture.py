@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from policies.console import spell_out
+
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
@@ -32,4 +34,5 @@ def main(
 
 
 if __name__ == "__main__":
+    spell_out()
     app()

@@ -1,8 +1,8 @@
 """The command `slipgym train`."""
 
-import sys
-
-from policies.commands.front import main
+from policies.commands.train import app
+from policies.console import spell_out
 
 if __name__ == "__main__":
-    main(["train", *sys.argv[1:]])
+    spell_out()
+    app()

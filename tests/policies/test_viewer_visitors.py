@@ -92,7 +92,7 @@ def session():
 )
 def test_what_no_control_offers_is_refused_and_the_episode_goes_on(session, label, values):
     gui, recorded = Gui(), []
-    controls = Controls(gui, session, ["linear_slip", "constant_force"], recorded.append)
+    controls = Controls(gui, session, ["linear_slip", "constant_force"], lambda on: recorded.append(on) or on)
     shown, send = gui.handles[label].value, gui.click if label in ("push", "turn") else gui.move
     for value in values:
         send(label, value)

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from numbers import Real
 from typing import Any
 
 _SHORT = 60  # characters of a refused value that a message shows
@@ -29,7 +28,7 @@ def number(low: float, high: float, whole: bool = False) -> Callable[[Any], floa
     """Takes a number of a slider; raises ValueError for what is outside, NaN or no number."""
 
     def take(value: Any) -> float:
-        if isinstance(value, bool) or not isinstance(value, Real) or not low <= value <= high:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
             raise ValueError(f"must be a number from {low:g} to {high:g}")
         if whole and value != math.floor(value):
             raise ValueError(f"must be a whole number from {low:g} to {high:g}")

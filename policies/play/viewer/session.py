@@ -180,9 +180,10 @@ class Session:
             if self.values.pop(name, None) is None:
                 return
         else:
-            if name == "policy" and not isinstance(value, str | os.PathLike):
-                raise ValueError(f"policy = {value!r} must be a name or a path")
-            if name == "mu_c":
+            if name == "policy":
+                if not isinstance(value, str | os.PathLike):
+                    raise ValueError(f"policy = {value!r} must be a name or a path")
+            elif name == "mu_c":
                 interventions.set_friction(self._episode, value)
             elif name == "mass":
                 interventions.set_mass(self._episode, value)

@@ -128,7 +128,7 @@ def run(
     progress: bool = True,
     keep: Callable[[Outcome], None] | None = None,
 ) -> Outcome:
-    """Trains a network; see `imitate`. Calls `keep` after each round with what there is, not yet judged."""
+    """Trains a network; see `imitate`. Calls `keep` after each round with what there is."""
     torch.set_num_threads(config.threads)
     torch.manual_seed(seed)
     rng = np.random.default_rng(seed)
