@@ -89,7 +89,11 @@ def main(
         try:
             folder = evaluation.evaluate(experiment, output, jobs)
         except OSError as error:
-            raise typer.BadParameter(str(error), param_hint="--output") from error
+            words = "; ".join([str(error), *getattr(error, "__notes__", ())])
+            raise typer.BadParameter(words, param_hint="--output") from error
+        except KeyboardInterrupt as error:
+            typer.echo("\n".join(["", *getattr(error, "__notes__", ())]), err=True)
+            raise
         typer.echo("\n" + evaluation.report(folder))
 
 

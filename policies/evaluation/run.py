@@ -58,8 +58,10 @@ def evaluate(
         results = run_trials(experiment, trials, jobs, progress, keep)
         with new_files(path) as folder:
             write_results(experiment, results, folder)
-    except BaseException:
-        if not (path / TRIALS).exists():
+    except BaseException as error:
+        if (path / TRIALS).exists():
+            error.add_note(f"the trials that are finished are in {path}")
+        else:
             shutil.rmtree(path)
         raise
     (path / INCOMPLETE).unlink()

@@ -150,9 +150,10 @@ def test_a_run_that_is_broken_off_keeps_its_complete_cells(small, tmp_path, monk
         return real(experiment, trials)
 
     monkeypatch.setattr(trial, "run_block", fail)
-    with pytest.raises(error, match="planted"):
+    with pytest.raises(error, match="planted") as broken:
         evaluate(experiment, tmp_path, progress=False)
     (run,) = tmp_path.iterdir()
+    assert broken.value.__notes__ == [f"the trials that are finished are in {run}"]
     names = {"INCOMPLETE", "environment.yaml", "experiment.yaml", "series.parquet", "versions.json"}
     assert {path.name for path in run.iterdir()} == names | {"trials.csv", "trials.parquet"}
     trials = pd.read_parquet(run / "trials.parquet")
