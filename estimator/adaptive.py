@@ -32,7 +32,7 @@ from estimator.augmented.static_friction import learn_static_friction
 from estimator.augmented.unloaded import drift_zero, learn_zero, without_load
 from estimator.limit_surface import DISC_RADIUS
 from estimator.registry import FilterMatrices, Specification
-from estimator.sample import norm, publish, readable
+from estimator.sample import LARGEST, norm, publish, readable
 from estimator.stick_slip import halts, lose_contact
 
 
@@ -60,7 +60,7 @@ def _update(state, p, t, read, twist, estimate):
         return
     halted, saw_mu_c, saw_r, gamma_t, gamma_tau = False, False, False, 0.0, 0.0
     events, changed = state.events_mu_s, False
-    elapsed = t - state.t if state.samples > 0 else p.sample_time
+    elapsed = min(t - state.t, LARGEST) if state.samples > 0 else p.sample_time
     unloaded = without_load(state, p, read[2])
     if unloaded or f_n < p.eps_fn:
         lose_contact(state)
@@ -115,7 +115,8 @@ def _update(state, p, t, read, twist, estimate):
 def update_batch(states, parameters, t, wrenches, twists, estimates):
     """Updates n fingers by one sample each.
 
-    A row whose values are not all finite, or whose t is not later than its last sample, is left unchanged.
+    A row with NaN or a reading from `estimator.sample.LARGEST` on, or whose t is not later than its last,
+    is left unchanged.
 
     Args:
         states: (n,) of dtype STATE, changed in place.

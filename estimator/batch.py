@@ -41,7 +41,8 @@ class BatchEstimator:
         """Takes one sample of every finger; results are in `estimates`.
 
         This is the hot path: it allocates nothing and checks only types and shapes. A row that holds NaN or
-        infinity, or whose t is not later than the last sample of that row, is skipped: it does not change.
+        a reading of 1e12 or more, or whose t is not later than the last sample of that row, stays as it
+        is.
 
         Args:
             t: Time [s].

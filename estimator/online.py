@@ -121,6 +121,8 @@ class OnlineEstimator:
             wrench: (f_x, f_y, f_n, tau) [N, N, N, N m] at the centre of pressure (CoP).
             twist: (v_x, v_y, omega) [m/s, m/s, rad/s] of the slip at the CoP.
 
+        A sample with a reading of 1e12 or more, which no sensor gives, is skipped.
+
         Raises:
             ValueError: t does not increase, or an input is not finite or of the wrong shape; nothing changes.
         """

@@ -7,6 +7,9 @@ import math
 
 from estimator._numba.caching import njit
 
+LARGEST = 1e12
+"""Readings from which on a sample is skipped like NaN [N, N m, m/s, rad/s]: their powers would overflow."""
+
 
 @njit
 def norm(x, y):
@@ -31,9 +34,9 @@ def clamped(value, low, high):
 
 @njit
 def readable(state, t, f_t, f_n, tau, speed):
-    """Whether a sample is finite and later than the previous one."""
-    finite = math.isfinite(f_t) and math.isfinite(f_n) and math.isfinite(tau) and math.isfinite(speed)
-    return finite and math.isfinite(t) and (state.samples == 0 or t - state.t > 0.0)
+    """Whether a sample is one of a sensor, neither NaN nor beyond `LARGEST`, and later than the last one."""
+    sound = f_t < LARGEST and abs(f_n) < LARGEST and abs(tau) < LARGEST and speed < LARGEST
+    return sound and math.isfinite(t) and (state.samples == 0 or t - state.t > 0.0)
 
 
 @njit

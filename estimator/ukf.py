@@ -194,7 +194,8 @@ def _update(state, p, t, wrench, twist, estimate):
 def update_batch(states, parameters, t, wrenches, twists, estimates):
     """Updates n fingers by one sample each.
 
-    A row whose values are not all finite, or whose t is not later than its last sample, is left unchanged.
+    A row with NaN or a reading from `estimator.sample.LARGEST` on, or whose t is not later than its last,
+    is left unchanged.
 
     Args:
         states: (n,) of dtype STATE, changed in place.

@@ -15,6 +15,7 @@ from policies.learned import files as policy_files
 from policies.learned.pretrained import FOLDER
 from policies.training import curve, export, files, folder
 from policies.training.curve import Row
+from slipgym.atomic_io import check_folder
 from slipgym.tasks import find
 
 CURVES = Path("docs") / "learned"
@@ -61,9 +62,12 @@ def ship(studies: Sequence[Path], target: Path = FOLDER, pages: Path = CURVES) -
 
     Raises:
         FileNotFoundError: A folder holds no run.
+        OSError: A folder cannot be written to.
         ValueError: A run is not finished, or not one of the configuration that its task has.
     """
     found = [_finished(path) for study in studies for path in folder.runs(study)]
+    for each in (target, pages):
+        check_folder(each)
     pages.mkdir(parents=True, exist_ok=True)
     shipped = []
     for key in sorted({run.key for run in found}):

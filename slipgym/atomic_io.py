@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import tempfile
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,6 +16,7 @@ from pathlib import Path
 
 SUFFIX = ".partial"
 """Ends the temporary names; a process that was killed can leave such files behind."""
+_BLOCK = 4096  # bytes that a full disk refuses
 
 
 def write(path: Path, data: bytes) -> None:
@@ -95,6 +97,73 @@ def new_folder(path: Path) -> Iterator[Path]:
         shutil.rmtree(partial, ignore_errors=True)
         raise
     _sync_folder(path.parent)
+
+
+@contextmanager
+def new_files(folder: Path) -> Iterator[Path]:
+    """Gives a temporary folder whose files replace those of a folder at the end of the `with` block.
+
+    Each file is whole at any time; an error in the block leaves all of them as they were.
+
+    Args:
+        folder: The folder, which must exist.
+
+    Raises:
+        OSError: It cannot be written to.
+    """
+    partial = _partial(folder / "files")
+    partial.mkdir()
+    try:
+        yield partial
+        for each in partial.iterdir():
+            _sync(each)
+        for each in sorted(partial.iterdir()):
+            os.replace(each, folder / each.name)
+        _sync_folder(folder)
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def check_folder(path: Path) -> None:
+    """Finds out, before any work, whether folders and files can be put into a folder; leaves nothing behind.
+
+    Args:
+        path: The folder; it and those above it need not exist yet.
+
+    Raises:
+        OSError: They cannot, or the disk is full; the message names the path.
+    """
+    _try(path, "file")
+
+
+def check_file(path: Path) -> None:
+    """Finds out, before any work, whether a file can be written; leaves nothing behind.
+
+    Args:
+        path: The file; its folder need not exist yet.
+
+    Raises:
+        OSError: It cannot, or the disk is full; the message names the path.
+    """
+    if os.path.isdir(path):
+        raise IsADirectoryError(f"cannot write to {path}: it is a folder, name a file in it")
+    _try(path.parent, path.name)
+
+
+def _try(folder: Path, name: str) -> None:
+    """Makes a folder's missing parts and a file in it, beside where they shall be, and removes them."""
+    folder = folder.expanduser().absolute()
+    base = next(each for each in (folder, *folder.parents) if os.path.lexists(each))
+    if not os.path.isdir(base):
+        raise NotADirectoryError(f"cannot write to {folder}: {base} is not a folder")
+    try:
+        with tempfile.TemporaryDirectory(prefix=".", suffix=SUFFIX, dir=base) as probe:
+            inner = Path(probe) / folder.relative_to(base)
+            inner.mkdir(parents=True, exist_ok=True)
+            _partial(inner / name).mkdir()
+            write(inner / name, bytes(_BLOCK))
+    except OSError as error:
+        raise type(error)(f"cannot write to {folder}: {error.strerror or error}") from error
 
 
 def _partial(path: Path) -> Path:

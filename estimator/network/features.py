@@ -7,7 +7,7 @@ matter. Training computes its columns with the same function.
 import math
 
 from estimator._numba.caching import njit
-from estimator.sample import norm
+from estimator.sample import LARGEST, norm
 from estimator.stick_slip import halts, transition
 
 LENGTH = 0.01
@@ -28,6 +28,8 @@ SMALL_SPEED = 1e-4
 """Speed at which a direction means little [m/s]."""
 SPEED = 1e-3
 """Unit of the speeds [m/s]."""
+REACH = 100.0
+"""Size that no column reaches with readings below `estimator.sample.LARGEST`: most are logarithms [-]."""
 
 
 @njit(error_model="numpy")
@@ -115,7 +117,8 @@ def sense(state, p, wrench, twist, elapsed, x):
     halted = state.in_contact > 0 and halts(state, p, f_n, elapsed)
     v_t, rim = norm(twist[0], twist[1]), LENGTH * abs(twist[2])
     speed = norm(v_t, rim)
-    ratio, lever = norm(f_x, f_y) / f_n, abs(wrench[3] - zero[3]) / (LENGTH * f_n)
+    ratio = min(norm(f_x, f_y) / f_n, LARGEST)
+    lever = min(abs(wrench[3] - zero[3]) / (LENGTH * f_n), LARGEST)
     starts, stops = transition(state, p, speed <= p.stick_band, speed > p.eps_v)
     state.age = 0 if starts or stops else state.age + 1
     if starts or stops:

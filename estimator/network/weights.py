@@ -11,13 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.network.cell import HIDDEN, OUTPUTS, TARGETS
-from estimator.network.features import COLUMNS
+from estimator.network.features import COLUMNS, REACH
 from estimator.plain_files import check_regular
 
 OWN = Path(__file__).with_name("gru.npz")
 """The weights that come with the package; docs/learned_estimator.md says how they were made."""
 LIMIT = 2**20
 """Largest file, packed and unpacked [bytes]."""
+LARGEST_SUM = 1e30
+"""Bound of every sum in the network, far within float32."""
 SHOWN = 300
 """Most characters of a path in an error: its end, which names the file."""
 SHAPES: Mapping[str, tuple[int, ...]] = {
@@ -92,7 +94,32 @@ def _checked(data: bytes) -> Tensors:
             raise ValueError(f"{name} is {tensor.dtype} {tensor.shape}, expected float32 {shape}")
         if not np.isfinite(tensor).all():
             raise ValueError(f"{name} holds numbers that are not finite")
+    _check_reach(tensors)
     return tensors
+
+
+def _check_reach(tensors: Tensors) -> None:
+    """Bounds what the network computes, over all columns and hidden states, by the sizes of its weights.
+
+    Raises:
+        ValueError: A sum could overflow, after which the estimates would be NaN for ever.
+    """
+    sizes = {name: np.abs(tensor.astype(np.float64)) for name, tensor in tensors.items()}
+    columns = (REACH + sizes["centre"]) * sizes["scale"]
+    reaches = {
+        "start": sizes["start"],
+        "scale": columns,
+        "input_weight": sizes["input_bias"] + columns @ sizes["input_weight"],
+        "hidden_weight": sizes["hidden_bias"] + sizes["hidden_weight"].sum(axis=0),  # hidden is within 1
+        "head_of_hidden": sizes["head_bias"] + sizes["head_of_hidden"].sum(axis=0),
+        "head_of_columns": columns @ sizes["head_of_columns"],
+    }
+    for name, reach in reaches.items():
+        if not reach.max() < LARGEST_SUM:
+            raise ValueError(
+                f"{name} and its biases allow sums of {reach.max():.3g}, beyond {LARGEST_SUM:g}: the network "
+                "could give values that are not finite"
+            )
 
 
 def save(path: str | os.PathLike[str], tensors: Mapping[str, NDArray[np.float32]], note: str) -> None:

@@ -31,8 +31,11 @@ def main(
 ) -> None:
     """Print how far each estimator is from a fit that knows the support, log by log (docs/pushes.md)."""
     from lab import pushes
+    from slipgym.atomic_io import check_file
 
     try:
+        if extract is not None:
+            check_file(extract)
         if held_out:
             logs, failed = pushes.read_held_out(source or pushes.EXTRACT)
             for name, why in failed.items():

@@ -31,7 +31,7 @@ def coupling(output: Output = Path("runs")) -> None:
     """The coupling of mu_c and r: fixed-point map, explicit iteration, lock-out from start values."""
     from lab.reproduction import reproduce_coupling
 
-    folder = reproduce_coupling(output)
+    folder = _made(reproduce_coupling, output)
     for name in ("slopes.csv", "lock_out.csv"):
         typer.echo(f"\n{name}\n{(folder / name).read_text().rstrip()}")
     typer.echo(f"\nLook at:\n  {folder / 'map.png'}\n  {folder / 'lock_out.png'}")
@@ -46,7 +46,7 @@ def profile(
     """The simulation figure: a uniform disc under a velocity profile, exact and with realistic sensors."""
     from lab.reproduction import reproduce_profile
 
-    folder = reproduce_profile(output, seeds, seed)
+    folder = _made(reproduce_profile, output, seeds, seed)
     for name in ("phases.md", "events.md"):
         typer.echo(f"\n{name}\n{(folder / name).read_text(encoding='utf-8').rstrip()}")
     typer.echo(f"\nLook at:\n  {folder / 'ideal.png'}\n  {folder / 'realistic.png'}")
@@ -57,7 +57,7 @@ def surface(output: Output = Path("runs")) -> None:
     """Limit surfaces of a disc by its pressure, the cells against them, and what the ellipsoid gets wrong."""
     from lab.reproduction import reproduce_surface
 
-    folder = reproduce_surface(output)
+    folder = _made(reproduce_surface, output)
     for name in ("cells.md", "bias.md"):
         typer.echo(f"\n{name}\n{(folder / name).read_text(encoding='utf-8').rstrip()}")
     typer.echo(f"\nLook at:\n  {folder / 'surface.png'}")
@@ -94,12 +94,20 @@ def planar(
     _report(reproduce_planar, output, trials, jobs, seed, contact)
 
 
-def _report(reproduce: Callable[..., Path], *arguments: object) -> None:
+def _report(reproduce: Callable[..., Path], output: Path, *arguments: object) -> None:
     """Runs an experiment, prints its tables and where its figures are."""
-    try:
-        folder = reproduce(*arguments)
-    except ValueError as error:
-        raise typer.BadParameter(str(error)) from error
+    folder = _made(reproduce, output, *arguments)
     typer.echo("\n" + (folder / "table.md").read_text(encoding="utf-8") + "\nLook at:")
     for path in sorted(folder.glob("*.png")):
         typer.echo(f"  {path}")
+
+
+def _made(reproduce: Callable[..., Path], output: Path, *arguments: object) -> Path:
+    """The folder of an analysis; the output is looked at first."""
+    from slipgym.atomic_io import check_folder
+
+    try:
+        check_folder(output)
+        return reproduce(output, *arguments)
+    except (ValueError, OSError) as error:
+        raise typer.BadParameter(str(error)) from error

@@ -25,6 +25,6 @@ def main(
 
     try:
         shipped = ship(studies)
-    except (ValueError, FileNotFoundError) as error:
+    except (ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
     typer.echo("\n".join(str(path) for path in shipped))

@@ -52,8 +52,9 @@ def main(
     """
     try:
         from estimator import records
-        from slipgym.atomic_io import new_folder
+        from slipgym.atomic_io import check_folder, new_folder
 
+        check_folder(output)
         record = records.load(log, records.load_columns(columns), velocity)
         result = records.estimate(record, estimator, allow_gaps, **records.parse_settings(set_ or ()))
         path = output.expanduser().resolve() / records.run_name(log)

@@ -62,7 +62,7 @@ def main(
     """Run experiments: policies x friction information x materials.
 
     Each writes one folder with the table of trials, a summary with confidence intervals and figures, and
-    prints where to look.
+    prints where to look. A run that is broken off keeps the trials of its complete cells.
     """
     if policy is not None:
         if demo or experiments:
@@ -86,7 +86,15 @@ def main(
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
     for experiment in chosen:
-        typer.echo("\n" + evaluation.report(evaluation.evaluate(experiment, output, jobs)))
+        try:
+            folder = evaluation.evaluate(experiment, output, jobs)
+        except OSError as error:
+            words = "; ".join([str(error), *getattr(error, "__notes__", ())])
+            raise typer.BadParameter(words, param_hint="--output") from error
+        except KeyboardInterrupt as error:
+            typer.echo("\n".join(["", *getattr(error, "__notes__", ())]), err=True)
+            raise
+        typer.echo("\n" + evaluation.report(folder))
 
 
 def _outcome(policy: str, episodes: int, first: int | None, task: str | None, texts: list[str]) -> str:

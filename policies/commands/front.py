@@ -13,6 +13,8 @@ try:
 except ModuleNotFoundError as error:
     raise SystemExit("typer is not installed: pip install 'slipgym[eval]'") from error
 
+from policies.console import spell_out
+
 COMMANDS = {
     "demo": "Run a short evaluation with figures: about a minute.",
     "play": "Watch a policy in a window, or write a video.",
@@ -111,4 +113,5 @@ def main(arguments: Sequence[str] | None = None) -> None:
     Args:
         arguments: Instead of the command line's.
     """
+    spell_out()
     app(args=arguments, prog_name="slipgym")

@@ -43,5 +43,8 @@ def main(
         config = command.configured(network, task, given, set_ or [])
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
-    for line in command.imitated(config, seeds or [0], output):
-        typer.echo(line)
+    try:
+        for line in command.imitated(config, seeds or [0], output):
+            typer.echo(line)
+    except (FloatingPointError, OSError) as error:
+        raise typer.BadParameter(str(error)) from error

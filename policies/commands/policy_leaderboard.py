@@ -55,6 +55,7 @@ def main(
     from policies.policy_leaderboard.entries import entered, opponents
     from policies.policy_leaderboard.folder import write
     from policies.policy_leaderboard.run import by_level, outcomes
+    from slipgym.atomic_io import check_folder
     from slipgym.config.level import level_names
     from slipgym.envs.arguments import ENGINES, FRICTION_SOURCES, one_of
     from slipgym.tasks import find
@@ -65,6 +66,7 @@ def main(
         "estimator": estimator,
     }
     try:
+        check_folder(output)
         arguments["config"] = lacking(without or [])
         one_of("engine", engine, ENGINES)
         mine = entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
@@ -74,7 +76,7 @@ def main(
                 others = opponents(task, {**arguments, "level": name}, max(episodes // 2, 1), imitation)
                 found.append(outcomes(task, name, [*mine, *others], episodes, arguments, engine))
                 typer.echo(markdown(found[-1], 1))
-    except (ValueError, FileNotFoundError) as error:
+    except (ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
     table = pd.concat(found, ignore_index=True)
     folder = write(table, output)

@@ -48,7 +48,7 @@ def main(
 ) -> None:
     """Run an episode and write what one finger's sensors said, with its truth."""
     from estimator.records import parse_settings
-    from policies.evaluation.record_files import save_record
+    from policies.evaluation.record_files import check_targets, save_record
     from policies.evaluation.sensor_record import record_sensors
     from policies.play import own_policy
 
@@ -59,6 +59,7 @@ def main(
     try:
         policy = policy or (before[0] if before else own_policy(task))
         options = parse_settings(option or (), "--option")
+        check_targets(record, velocity)
         frame = record_sensors(task, policy, finger, seed, options, material=material, sensors=sensors)
         save_record(frame, record, velocity)
     except (ValueError, OSError) as error:

@@ -75,7 +75,7 @@ def main(
             config = command.chosen(configuration, options, sets)
             path, work = command.begun(config, seeds or [], sources, sweep, output, jobs, ray)
             typer.echo(f"If it is interrupted: slipgym train --resume {path}")
-    except (ValueError, FileNotFoundError, ModuleNotFoundError) as error:
+    except (ValueError, OSError, ModuleNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
     try:
         typer.echo(work())

@@ -11,6 +11,9 @@ import yaml
 from policies.evaluation.experiment import Experiment
 from policies.versions import write_versions
 
+INCOMPLETE = "INCOMPLETE"
+"""File in the folder of a run that is not over."""
+
 
 def run_path(experiment: Experiment, output: str | os.PathLike[str]) -> Path:
     """Where a run that starts now goes: <output>/<experiment>__<seed>__<timestamp>."""

@@ -9,7 +9,7 @@ import pandas as pd
 
 from estimator.records.table import TYPES
 from policies.evaluation.sensor_record import TWIST
-from slipgym.atomic_io import new_file
+from slipgym.atomic_io import check_file, new_file
 
 
 def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -> None:
@@ -24,9 +24,7 @@ def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -
         ValueError: The type is unknown.
         OSError: A file cannot be written.
     """
-    for target in (path, *([] if velocity is None else [velocity])):
-        if not target.name.endswith(TYPES):
-            raise ValueError(f"{target.name}: unknown file type; records are {', '.join(TYPES)}")
+    check_targets(path, velocity)
     if velocity is None:
         _write(frame, path)
         return
@@ -34,6 +32,19 @@ def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -
     forces = frame.drop(columns=list(TWIST))
     _write(forces.loc[forces["f_n"].notna()], path)
     _write(frame.loc[frame["omega"].notna(), twists], velocity)
+
+
+def check_targets(path: Path, velocity: Path | None = None) -> None:
+    """Finds out before an episode is played whether `save_record` can write these files.
+
+    Raises:
+        ValueError: The type of one is unknown.
+        OSError: One cannot be written.
+    """
+    for target in (path, *([] if velocity is None else [velocity])):
+        if not target.name.endswith(TYPES):
+            raise ValueError(f"{target.name}: unknown file type; records are {', '.join(TYPES)}")
+        check_file(target)
 
 
 def _write(frame: pd.DataFrame, path: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pandas as pd
 import yaml
 
+from policies.evaluation.folder import INCOMPLETE
 from policies.evaluation.frames import by_metric, groups, records, where
 from policies.evaluation.metrics import measures
 from policies.evaluation.sentences import solved
@@ -19,7 +20,12 @@ def report(folder: Path) -> str:
 
     Args:
         folder: The run's folder.
+
+    Raises:
+        FileNotFoundError: The run is not over.
     """
+    if (folder / INCOMPLETE).exists():
+        raise FileNotFoundError(f"{folder} is not complete: the run was broken off, or goes on")
     task = yaml.safe_load((folder / "experiment.yaml").read_text(encoding="utf-8"))["task"]
     # as text: a column of nothing but "true" would turn into booleans
     names: dict[Hashable, type[str]] = dict.fromkeys((*KEYS, "material", "metric"), str)

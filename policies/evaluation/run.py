@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import os
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
 import pandas as pd
 
 from policies.evaluation.experiment import Experiment
-from policies.evaluation.folder import run_path, write_origin
+from policies.evaluation.folder import INCOMPLETE, run_path, write_origin
 from policies.evaluation.plan import plan
 from policies.evaluation.plots import draw
 from policies.evaluation.tables import markdown, summarise
 from policies.evaluation.trial import Result, run_trials
-from slipgym.atomic_io import new_folder
+from slipgym.atomic_io import check_folder, new_files, new_folder
+
+TRIALS = "trials.parquet"
+"""Table of the trials."""
 
 
 def evaluate(
@@ -32,21 +36,55 @@ def evaluate(
         progress: Whether to show a progress bar.
 
     Returns:
-        The run's folder, which appears only when it is complete.
+        The run's folder. Until the run is over it holds the trials of the cells that are complete, and the
+        file `INCOMPLETE`; if it ends before the first of them, nothing is left.
 
     Raises:
         ValueError: A policy refuses its parameters or the observations.
-        OSError: The output cannot be written.
+        OSError: The output cannot be written, which is found out before any trial.
     """
-    path = run_path(experiment, output)
+    path, trials = run_path(experiment, output), plan(experiment)
+    check_folder(path.parent)
     with new_folder(path) as folder:
         write_origin(experiment, folder)
-        write_results(experiment, run_trials(experiment, plan(experiment), jobs, progress), folder)
+        (folder / INCOMPLETE).write_text(_missing(0, len(trials)), encoding="utf-8")
+
+    def keep(results: Sequence[Result]) -> None:
+        with new_files(path) as folder:
+            write_trials(results, folder)
+            (folder / INCOMPLETE).write_text(_missing(len(results), len(trials)), encoding="utf-8")
+
+    try:
+        results = run_trials(experiment, trials, jobs, progress, keep)
+        with new_files(path) as folder:
+            write_results(experiment, results, folder)
+    except BaseException as error:
+        if (path / TRIALS).exists():
+            error.add_note(f"the trials that are finished are in {path}")
+        else:
+            shutil.rmtree(path)
+        raise
+    (path / INCOMPLETE).unlink()
     return path
+
+
+def _missing(finished: int, count: int) -> str:
+    """What the file `INCOMPLETE` says."""
+    return f"{finished} of {count} trials are in the tables; summary and figures are written at the end.\n"
 
 
 def write_results(experiment: Experiment, results: Sequence[Result], folder: Path) -> None:
     """Writes the table of trials, the series of the first trials, the summary and the figures."""
+    trials, series = write_trials(results, folder)
+    summary = summarise(trials, experiment.task)
+    summary.to_csv(folder / "summary.csv", index=False)
+    page = markdown(summary, experiment.task, len(trials))
+    (folder / "summary.md").write_text(page, encoding="utf-8")
+    draw(experiment.task, trials, series, folder)
+
+
+def write_trials(results: Sequence[Result], folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Writes the table of trials and the series of the first trials, and returns both."""
     trials = pd.DataFrame([result.row for result in results])
     series = pd.concat(
         [
@@ -56,11 +94,7 @@ def write_results(experiment: Experiment, results: Sequence[Result], folder: Pat
         ],
         ignore_index=True,
     )
-    summary = summarise(trials, experiment.task)
-    trials.to_parquet(folder / "trials.parquet")
+    trials.to_parquet(folder / TRIALS)
     trials.to_csv(folder / "trials.csv", index=False)
     series.to_parquet(folder / "series.parquet")
-    summary.to_csv(folder / "summary.csv", index=False)
-    page = markdown(summary, experiment.task, len(trials))
-    (folder / "summary.md").write_text(page, encoding="utf-8")
-    draw(experiment.task, trials, series, folder)
+    return trials, series

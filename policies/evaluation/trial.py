@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,7 +36,11 @@ class Result:
 
 
 def run_trials(
-    experiment: Experiment, trials: Sequence[Trial], jobs: int = 1, progress: bool = True
+    experiment: Experiment,
+    trials: Sequence[Trial],
+    jobs: int = 1,
+    progress: bool = True,
+    keep: Callable[[list[Result]], None] | None = None,
 ) -> list[Result]:
     """Runs trials in parallel; the results do not depend on how many run at once.
 
@@ -48,6 +52,7 @@ def run_trials(
         trials: From `plan`.
         jobs: Processes; -1 for one per core.
         progress: Whether to show a progress bar.
+        keep: Called with all results so far whenever a cell of the experiment is complete.
 
     Raises:
         ValueError: A policy refuses its parameters or the observations.
@@ -60,6 +65,8 @@ def run_trials(
         for some in found:
             results += some
             bar.update(len(some))
+            if keep is not None and some[-1].row["trial"] == experiment.trials - 1:
+                keep(results)
     return results
 
 

@@ -37,11 +37,14 @@ def write_onnx(policy: str | os.PathLike[str], path: str | os.PathLike[str]) -> 
 
     Raises:
         FileNotFoundError: There is no policy.
+        OSError: The file cannot be written.
         ValueError: What lies there is none, or not whole.
     """
+    atomic_io.check_file(Path(path))
     model = graph_of(*files.read(locate(policy)))
     onnx.checker.check_model(model, full_check=True)
-    atomic_io.write(Path(path), model.SerializeToString(deterministic=True))
+    with atomic_io.new_file(Path(path)) as file:
+        file.write_bytes(model.SerializeToString(deterministic=True))
 
 
 def graph_of(description: Description, tensors: dict[str, np.ndarray]) -> onnx.ModelProto:

@@ -24,6 +24,7 @@ from policies.learned import files
 from policies.learned.export import described
 from policies.learned.extract import LSTM, array
 from policies.versions import versions
+from slipgym.atomic_io import check_folder
 from slipgym.config.errors import unknown
 
 LIMIT = 2**28
@@ -57,10 +58,14 @@ def import_zip(
     Raises:
         FileNotFoundError: There is no zip.
         FileExistsError: Something is at `path` already.
+        OSError: The folder cannot be written.
         ValueError: It is no such zip, its network is none that a file can hold, or not of this environment.
     """
     source = Path(source)
     check_regular(source)
+    if os.path.exists(path):
+        raise FileExistsError(f"{path} exists already")
+    check_folder(Path(path))
     try:
         with zipfile.ZipFile(source) as archive:
             data, tensors = _plain(_member(archive, _DATA)), _tensors(_member(archive, _WEIGHTS))

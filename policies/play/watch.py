@@ -20,6 +20,7 @@ from policies.play.screenshot import own_policy
 from policies.play.video import Video
 from policies.registry import Policy
 from policies.stepping import steps
+from slipgym.atomic_io import check_file
 from slipgym.config import Config
 from slipgym.config.errors import unknown
 from slipgym.envs.slip_env import SlipEnv
@@ -120,6 +121,7 @@ def watch(
     Raises:
         ValueError: A value is unknown or not allowed.
         FileNotFoundError: There is no policy at the path.
+        OSError: The video cannot be written.
         RuntimeError: A window was asked for and cannot open.
     """
     env_id = find(task).id
@@ -131,6 +133,9 @@ def watch(
         raise ValueError(
             f"policy {KEYBOARD!r} needs a window; valid for a video: {', '.join(policies.names())}"
         )
+    if video is not None:
+        Video(video)  # whether its type is known
+        check_file(Path(video))
     outcomes = []
     with ExitStack() as stack:
         player: Policy | None = None if policy == KEYBOARD else _policy(policy or own_policy(task))

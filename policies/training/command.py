@@ -9,6 +9,7 @@ from typing import Any
 
 from policies.training import files, folder
 from policies.training.config import Training
+from slipgym.atomic_io import check_folder
 from slipgym.tasks import find
 
 
@@ -77,11 +78,13 @@ def begun(
 
     Raises:
         ModuleNotFoundError: Ray is asked for and not installed.
+        OSError: The output cannot be written.
         ValueError: A seed or source is wrong, or a sweep has several.
     """
     from policies.training import parallel, run_set, sweep
 
     parallel.check(ray)
+    check_folder(output)
     if not trials:
         path = run_set.begin(config, seeds or [0], sources, output)
         return path, partial(run_set.train_all, path, jobs, ray)

@@ -87,3 +87,64 @@ def test_a_file_keeps_its_suffixes_and_the_usual_permissions(tmp_path):
 def test_a_folder_takes_nobodys_place(tmp_path):
     with pytest.raises(FileExistsError), atomic_io.new_folder(Path(tmp_path)):
         pass
+
+
+def test_new_files_take_their_places_together_or_not_at_all(tmp_path):
+    def fail():
+        with atomic_io.new_files(tmp_path) as folder:
+            (folder / "a").write_text("half")
+            raise KeyboardInterrupt
+
+    (tmp_path / "a").write_text("old")
+    with pytest.raises(KeyboardInterrupt):
+        fail()
+    assert (tmp_path / "a").read_text() == "old"
+    with atomic_io.new_files(tmp_path) as folder:
+        (folder / "a").write_text("new")
+        (folder / "b").write_text("new")
+    assert sorted(os.listdir(tmp_path)) == ["a", "b"]
+    assert (tmp_path / "a").read_text() == "new"
+
+
+@pytest.mark.parametrize("where", [".", "runs", "a/b/c"])
+def test_a_folder_that_can_be_written_is_left_as_it_was(tmp_path, where):
+    atomic_io.check_folder(tmp_path / where)
+    atomic_io.check_file(tmp_path / where / "file")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "where", ["file", "file/runs", "file/a/b", "dangling/runs", "n" * 300, "runs/" + "n" * 300]
+)
+def test_a_folder_that_cannot_be_made_is_refused_and_named(tmp_path, where):
+    (tmp_path / "file").write_text("")
+    (tmp_path / "dangling").symlink_to(tmp_path / "nowhere")
+    for check, path in (
+        (atomic_io.check_folder, tmp_path / where),
+        (atomic_io.check_file, tmp_path / where / "file"),
+    ):
+        with pytest.raises(OSError, match="cannot write to") as refused:
+            check(path)
+        assert str(tmp_path / where) in str(refused.value)
+    assert sorted(os.listdir(tmp_path)) == ["dangling", "file"]
+
+
+def test_a_file_whose_name_has_no_room_or_is_a_folders_is_refused(tmp_path):
+    (tmp_path / "folder").mkdir()
+    for name in ("folder", "n" * 250):  # the temporary name beside it is longer
+        with pytest.raises(OSError, match="cannot write to"):
+            atomic_io.check_file(tmp_path / name)
+    assert os.listdir(tmp_path) == ["folder"]
+
+
+@pytest.mark.parametrize("error", [PermissionError(13, "Permission denied"), OSError(28, "No space left")])
+@pytest.mark.parametrize("call", ["fsync", "mkdir"])
+def test_no_permission_and_a_full_disk_are_found_out(tmp_path, monkeypatch, call, error):
+    def refuse(*_, **__):
+        raise error
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, call, refuse)
+        with pytest.raises(type(error), match=f"cannot write to {tmp_path}.*: {error.strerror}"):
+            atomic_io.check_folder(tmp_path / "runs")
+    assert list(tmp_path.iterdir()) == []

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from policies.evaluation import evaluate, load_experiment, report
+from policies.evaluation import evaluate, load_experiment, report, trial
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import record, run_trials
 
@@ -124,16 +124,58 @@ def test_hold_is_drawn_too(small, tmp_path):
     assert (run / "grip_constant_force.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("stage", ["run_trials", "draw"])
 @pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
-def test_a_crash_leaves_no_folder(small, tmp_path, monkeypatch, stage, error):
+def test_a_run_without_a_complete_cell_leaves_no_folder(small, tmp_path, monkeypatch, error):
     def fail(*_):
         raise error("planted")
 
-    monkeypatch.setattr(f"policies.evaluation.run.{stage}", fail)
+    monkeypatch.setattr("policies.evaluation.run.run_trials", fail)
     with pytest.raises(error, match="planted"):
         evaluate(small(trials=1), tmp_path, progress=False)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("engine", ["planar", "bullet"])
+@pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
+def test_a_run_that_is_broken_off_keeps_its_complete_cells(small, tmp_path, monkeypatch, error, engine):
+    if engine == "bullet":
+        pytest.importorskip("pybullet")
+    experiment = small(engine=engine, trials=2)
+    count, real = len(plan(experiment)), trial.run_block
+    whole = [result.row for result in run_trials(experiment, plan(experiment), progress=False)]
+
+    def fail(experiment, trials):
+        if trials[-1] == plan(experiment)[-1]:
+            raise error("planted")
+        return real(experiment, trials)
+
+    monkeypatch.setattr(trial, "run_block", fail)
+    with pytest.raises(error, match="planted") as broken:
+        evaluate(experiment, tmp_path, progress=False)
+    (run,) = tmp_path.iterdir()
+    assert broken.value.__notes__ == [f"the trials that are finished are in {run}"]
+    names = {"INCOMPLETE", "environment.yaml", "experiment.yaml", "series.parquet", "versions.json"}
+    assert {path.name for path in run.iterdir()} == names | {"trials.csv", "trials.parquet"}
+    trials = pd.read_parquet(run / "trials.parquet")
+    lost = 2 if engine == "bullet" else count // 2  # a cell; on the planar engine those of one condition
+    assert len(trials) == len(pd.read_csv(run / "trials.csv")) == count - lost
+    pd.testing.assert_frame_equal(trials, pd.DataFrame(whole[: count - lost]), check_dtype=False)
+    assert (run / "INCOMPLETE").read_text().startswith(f"{count - lost} of {count} trials")
+    with pytest.raises(FileNotFoundError, match="not complete"):
+        report(run)
+
+
+def test_an_interrupt_while_figures_are_drawn_loses_no_trial(small, tmp_path, monkeypatch):
+    def fail(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("policies.evaluation.run.draw", fail)
+    with pytest.raises(KeyboardInterrupt):
+        evaluate(small(), tmp_path, progress=False)
+    (run,) = tmp_path.iterdir()
+    assert len(pd.read_parquet(run / "trials.parquet")) == len(plan(small()))
+    assert (run / "INCOMPLETE").exists()
+    assert not (run / "summary.csv").exists()
 
 
 def test_an_error_says_which_trial(small):

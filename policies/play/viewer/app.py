@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import time
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import policies
 from policies.controllers import table as controllers
 from policies.learned import LearnedPolicy
 from policies.play.viewer.controls import Controls
+from policies.play.viewer.guard import guard
 from policies.play.viewer.plots import Plots
 from policies.play.viewer.recording import Recording
 from policies.play.viewer.scene import Scene
-from policies.play.viewer.session import Session
+from policies.play.viewer.session import Refused, Session
+from slipgym.atomic_io import check_file
 from slipgym.tasks import Task
 
 FRAME_RATE, PLOT_RATE = 30.0, 8.0
@@ -32,10 +36,11 @@ class Viewer:
         session: What it shows.
         video: Path for recordings, MP4 or GIF.
         port: Of the server; the next free one if it is taken.
-        host: Address that the server listens on. Whoever reaches it can move the sliders.
+        host: Address that the server listens on. Whoever opens its page there can move the sliders.
 
     Raises:
         ModuleNotFoundError: viser is not installed.
+        RuntimeError: This version of viser does not let pages be checked.
         ValueError: The type of the video is unknown.
     """
 
@@ -48,8 +53,9 @@ class Viewer:
     ) -> None:
         viser = _viser()
         self.session, self.recording = session, Recording(video)
-        self._wanted = False
+        self._wanted, self._trouble = False, ""
         self.server = viser.ViserServer(host, port, label=f"slipgym {session.task.name}", verbose=False)
+        guard(self.server, host)
         gui = self.server.gui
         gui.configure_theme(show_logo=False, show_share_button=False, brand_color=(0, 114, 178))
         self.scene = Scene(self.server.scene, self.server.initial_camera)
@@ -75,32 +81,51 @@ class Viewer:
         return f"http://{self.server.get_host()}:{self.server.get_port()}"
 
     def frame(self, seconds: float) -> None:
-        """Play a stretch of watching time [s] and show what it leads to."""
-        session, controls = self.session, self.controls
+        """Play a stretch of watching time [s] and show what it leads to; no error ends the server."""
         try:
-            session.advance(0.0 if controls.paused else seconds * controls.speed)
-            self._ended = self._ended + seconds if session.outcome and not controls.paused else 0.0
-            if self._ended >= PAUSE:
-                self._ended = 0.0
-                session.restart()
-        except ValueError as error:
+            self._play(seconds)
+        except Refused as error:
             self._say("not possible", str(error), "red")
-        except FloatingPointError as error:
-            self._say("the episode cannot go on", str(error), "red")
-            session.request_restart()
-        self._record(seconds)
+        except Exception as error:  # of a policy, or of a value that the environment cannot bear
+            self._failed("the episode cannot go on", error)
+            self.session.give_up()
+            self._ended = 0.0
+        try:
+            self._record(seconds)
+        except Exception as error:  # a full disk, a picture that cannot be drawn
+            self._wanted = False
+            self._failed("no recording", error)
+        try:
+            self._show(seconds)
+            self._trouble = ""
+        except Exception as error:
+            if str(error) != self._trouble:  # once, not with each of the frames that follow
+                self._trouble = str(error)
+                self._failed("the page cannot be drawn", error)
+
+    def _play(self, seconds: float) -> None:
+        session, controls = self.session, self.controls
+        session.advance(0.0 if controls.paused else seconds * controls.speed)
+        over = session.failed or session.outcome is not None
+        self._ended = self._ended + seconds if over and not controls.paused else 0.0
+        if self._ended >= PAUSE:
+            self._ended = 0.0
+            session.restart()
+
+    def _show(self, seconds: float) -> None:
+        session = self.session
         with self.server.atomic():
             if session.history is not self._history:
                 self._history, self._ended = session.history, 0.0
                 self.scene.begin(session.env.simulation)
                 self.plots.begin()
-                controls.begin()
+                self.controls.begin()
             self.scene.update(session.env.simulation)
             self._plotted += seconds
             if self._plotted >= 1.0 / PLOT_RATE:
                 self._plotted = 0.0
                 self.plots.update()
-                controls.update()
+                self.controls.update()
 
     def run(self, keep_on: Callable[[], bool] = lambda: True) -> None:
         """Play in real time until `keep_on` returns False."""
@@ -130,10 +155,15 @@ class Viewer:
             except (OSError, ImportError) as error:
                 self._wanted = False
                 self._say("no recording", str(error), "red")
-        if recording.running:
+        if recording.running and self._wanted:
             recording.add(self.session.env, seconds)
-            if not self._wanted and (path := recording.end()):
-                self._say("recorded", str(path.resolve()), "green")
+        elif path := recording.end():
+            self._say("recorded", str(path.resolve()), "green")
+
+    def _failed(self, title: str, error: Exception) -> None:
+        """Name an error on the page, and with its origin on the terminal."""
+        logging.getLogger(__name__).error(title, exc_info=error)
+        self._say(title, f"{type(error).__name__}: {error}", "red")
 
     def _say(self, title: str, words: str, colour: str) -> None:
         for client in self.server.get_clients().values():
@@ -188,8 +218,11 @@ def open_viewer(
         ModuleNotFoundError: viser or the engine is not installed.
         ValueError: A value is unknown or not allowed.
         FileNotFoundError: There is no policy at the path.
+        OSError: The video cannot be written.
     """
     _viser()
+    if video is not None:
+        check_file(Path(video))
     session = Session(task, policy, seed, options, **keywords)
     try:
         return Viewer(session, video or f"slipgym_{session.task.key}.mp4", port, host)

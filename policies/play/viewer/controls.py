@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from policies.play.viewer.interventions import PUSHES, TURNS
+from policies.play.viewer.offers import Offer, number, one_of, switch
 from policies.play.viewer.scene import PUSH
 from policies.play.viewer.session import Session
 from slipgym.rendering import palette
@@ -16,6 +17,9 @@ SPEEDS = ("0.1x", "0.25x", "0.5x", "1x", "2x")
 """Seconds of simulation per second of watching."""
 LATEST = 12
 """Largest latency of the slip sensors on offer [samples]."""
+FRICTIONS, MASSES = (0.05, 1.5), (10.0, 1000.0)
+"""Ranges of the sliders for mu_c [-] and the mass [g]."""
+BY_HAND = "grip by hand"
 _SLIPPING = 5e-4, 0.05  # slip speed [m/s] and rate [rad/s] from which the object counts as slipping
 _COLOURS = {
     "sticks": "#0072B2",
@@ -55,28 +59,41 @@ class Controls:
         self._session = session
         self.speed, self.paused = 1.0, False
         gripper = session.env.config.gripper
+
+        def offer(handle: Any, label: str, take: Callable[[Any], Any]) -> Offer:
+            return Offer(handle, label, take, session.refuse)
+
+        def slider(label: str, low: float, high: float, step: float, value: float) -> Offer:
+            take = number(low, high, isinstance(step, int))
+            return offer(gui.add_slider(label, low, high, step, value), label, take)
+
         self._status = gui.add_html("")
         with gui.add_folder("acts at once"):
-            low, high = gripper.force_min, gripper.force_max
-            self._hand = gui.add_checkbox(
-                "grip by hand", False, hint="The slider replaces the policy's grip."
-            )
-            self._grip = gui.add_slider("grip force [N]", low, high, 0.1, session.env.settings.initial_force)
-            self._friction = gui.add_slider("friction mu_c", 0.05, 1.5, 0.01, 0.5)
-            self._mass = gui.add_slider("mass [g]", 10.0, 1000.0, 5.0, 200.0)
-            self._impulse = gui.add_slider("poke [mN s]", 1.0, 100.0, 1.0, 10.0)
-            self._push = gui.add_button_group("push", PUSHES)
-            self._turn = gui.add_button_group("turn", TURNS)
+            hint = "The slider replaces the policy's grip."
+            self._hand = offer(gui.add_checkbox(BY_HAND, False, hint=hint), BY_HAND, switch)
+            self._range = gripper.force_min, gripper.force_max
+            initial = session.env.settings.initial_force
+            self._grip = slider("grip force [N]", *self._range, 0.1, initial)
+            self._friction = slider("friction mu_c", *FRICTIONS, 0.01, 0.5)
+            self._mass = slider("mass [g]", *MASSES, 5.0, 200.0)
+            self._impulse = slider("poke [mN s]", 1.0, 100.0, 1.0, 10.0)
+            self._pokes = [
+                offer(gui.add_button_group(label, names), label, one_of(names))
+                for label, names in (("push", PUSHES), ("turn", TURNS))
+            ]
         with gui.add_folder("begins with the next episode"):
-            self._policy = gui.add_dropdown("policy", names, initial_value=session.policy)
+            menu = gui.add_dropdown("policy", names, initial_value=session.policy)
+            self._policy = offer(menu, "policy", one_of(names))
             latency = min(session.env.config.sensors.slip.latency_samples, LATEST)
-            self._latency = gui.add_slider("latency [samples]", 0, LATEST, 1, latency)
+            self._latency = slider("latency [samples]", 0, LATEST, 1, latency)
             self._restart = gui.add_button("next episode", color="orange")
             self._free = gui.add_button("undo all sliders", color="gray")
         with gui.add_folder("play"):
-            self._speed = gui.add_dropdown("speed", SPEEDS, initial_value="1x")
-            self._pause = gui.add_checkbox("pause", False)
-            self._record = gui.add_checkbox("record MP4", False) if record else None
+            menu = gui.add_dropdown("speed", SPEEDS, initial_value="1x")
+            self._speed = offer(menu, "speed", one_of(SPEEDS))
+            self._pause = offer(gui.add_checkbox("pause", False), "pause", switch)
+            box = gui.add_checkbox("record MP4", False) if record else None
+            self._record = None if box is None else offer(box, "record MP4", switch)
         with gui.add_folder("in the picture"):
             gui.add_html(_LEGEND)
         self._connect(record)
@@ -86,9 +103,9 @@ class Controls:
         """Show the values of an episode that was just reset, where none was set."""
         session, episode = self._session, self._session.env.simulation.episode[0]
         if "mu_c" not in session.values:
-            self._friction.value = min(max(round(float(episode["mu_c"]), 3), 0.05), 1.5)
+            self._friction.value = _within(round(float(episode["mu_c"]), 3), *FRICTIONS)
         if "mass" not in session.values:
-            self._mass.value = min(max(round(1e3 * float(episode["mass"]), 1), 10.0), 1000.0)
+            self._mass.value = _within(round(1e3 * float(episode["mass"]), 1), *MASSES)
         if "latency" not in session.values:
             self._latency.value = min(session.env.config.sensors.slip.latency_samples, LATEST)
         self._policy.value = session.policy
@@ -99,30 +116,27 @@ class Controls:
         session = self._session
         if not self._hand.value:
             grip = float(session.env.simulation.episode["command"][0])
-            self._grip.value = round(min(max(grip, self._grip.min), self._grip.max), 1)
+            self._grip.value = round(_within(grip, *self._range), 1)
         self._status.content = status(session)
 
     def _connect(self, record: Callable[[bool], bool] | None) -> None:
         session = self._session
-
-        def by_hand(_: Any) -> None:
-            session.submit("grip_force", self._grip.value if self._hand.value else None)
-
-        self._hand.on_update(by_hand)
-        _on_user(self._grip, lambda value: self._take_over(value))
-        _on_user(self._friction, lambda value: session.submit("mu_c", value))
-        _on_user(self._mass, lambda value: session.submit("mass", 1e-3 * value))
-        _on_user(self._latency, lambda value: session.submit("latency", value))
-        _on_user(self._policy, lambda value: session.submit("policy", value))
-        for group in (self._push, self._turn):
-            group.on_click(lambda event: session.poke(event.target.value, 1e-3 * self._impulse.value))
+        self._hand.on_change(lambda on: session.submit("grip_force", self._grip.value if on else None))
+        self._grip.on_change(self._take_over)
+        self._friction.on_change(lambda value: session.submit("mu_c", value))
+        self._mass.on_change(lambda value: session.submit("mass", 1e-3 * value))
+        self._latency.on_change(lambda value: session.submit("latency", value))
+        self._policy.on_change(lambda value: session.submit("policy", value))
+        for group in self._pokes:
+            group.on_click(lambda direction: session.poke(direction, 1e-3 * self._impulse.value))
+        self._impulse.on_change(lambda _: None)  # it is checked now and acts with the next push
         self._restart.on_click(lambda _: session.request_restart())
         self._free.on_click(lambda _: self._undo())
-        _on_user(self._speed, lambda value: setattr(self, "speed", float(value.rstrip("x"))))
-        _on_user(self._pause, lambda value: setattr(self, "paused", value))
+        self._speed.on_change(lambda value: setattr(self, "speed", float(value.rstrip("x"))))
+        self._pause.on_change(lambda value: setattr(self, "paused", value))
         if record is not None and self._record is not None:
             box = self._record
-            _on_user(box, lambda value: setattr(box, "value", record(value)))
+            box.on_change(lambda value: setattr(box, "value", record(value)))
 
     def _take_over(self, force: float) -> None:
         """The grip slider was moved: the hand acts from now on."""
@@ -135,6 +149,10 @@ class Controls:
         for name in ("grip_force", "mu_c", "mass", "latency"):
             self._session.submit(name, None)
         self._session.request_restart()
+
+
+def _within(value: float, low: float, high: float) -> float:
+    return min(max(value, low), high)
 
 
 def status(session: Session) -> str:
@@ -174,13 +192,3 @@ def status(session: Session) -> str:
 def _state(info: Any) -> str:
     x, y, rate = info["slip_twist"].tolist()
     return "slips" if math.hypot(x, y) > _SLIPPING[0] or abs(rate) > _SLIPPING[1] else "sticks"
-
-
-def _on_user(handle: Any, act: Callable[[Any], None]) -> None:
-    """Call `act` with the value of a handle whenever a user, and not the program, changed it."""
-
-    def changed(event: Any) -> None:
-        if event.client_id is not None:
-            act(handle.value)
-
-    handle.on_update(changed)

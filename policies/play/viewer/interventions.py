@@ -7,6 +7,7 @@ They act from the next control step on, by the code that applies sampled disturb
 from __future__ import annotations
 
 import math
+from numbers import Real
 
 import numpy as np
 
@@ -36,7 +37,7 @@ def set_friction(episode: np.void, mu_c: float) -> None:
     Raises:
         ValueError: The value is not positive and finite.
     """
-    episode["jump_factor"] = _checked("mu_c", mu_c) / float(episode["mu_c"])
+    episode["jump_factor"] = checked("mu_c", mu_c) / float(episode["mu_c"])
     episode["jump_step"] = episode["step"]
 
 
@@ -50,7 +51,7 @@ def set_mass(episode: np.void, mass: float) -> None:
     Raises:
         ValueError: The value is not positive and finite.
     """
-    episode["mass_factor"] = _checked("mass", mass) / float(episode["mass"])
+    episode["mass_factor"] = checked("mass", mass) / float(episode["mass"])
     episode["mass_step"] = episode["step"]
 
 
@@ -65,11 +66,11 @@ def poke(episode: np.void, direction: str, impulse: float) -> None:
     Raises:
         ValueError: The direction is unknown, or the impulse is not positive and finite.
     """
-    if direction not in DIRECTIONS:
+    if not isinstance(direction, str) or direction not in DIRECTIONS:
         raise ValueError(f"unknown direction {direction!r}; valid: {', '.join(DIRECTIONS)}")
     now, count = int(episode["step"]), int(episode["pushes"])
     steps = max(1, round(POKE_TIME / float(episode["step_time"])))
-    force = _checked("impulse", impulse) / (steps * float(episode["step_time"]))
+    force = checked("impulse", impulse) / (steps * float(episode["step_time"]))
     fields = "push_start", "push_end", "push_wrench"
     if count == len(episode["push_start"]):  # the list is full: the push that ends first makes room
         first = int(np.argmin(episode["push_end"]))
@@ -83,7 +84,12 @@ def poke(episode: np.void, direction: str, impulse: float) -> None:
     episode["pushes"] = count + 1
 
 
-def _checked(name: str, value: float) -> float:
-    if not 0.0 < value < math.inf:
+def checked(name: str, value: float) -> float:
+    """Returns a value that acts on the object or the gripper.
+
+    Raises:
+        ValueError: It is no number, or not positive and finite.
+    """
+    if isinstance(value, bool) or not isinstance(value, Real) or not 0.0 < value < math.inf:
         raise ValueError(f"{name} = {value!r} must be positive and finite")
-    return value
+    return float(value)

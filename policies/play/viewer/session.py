@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from queue import Empty, SimpleQueue
 from typing import Any
@@ -27,6 +28,10 @@ NEXT_EPISODE = ("policy", "latency")
 _LONGEST = 0.1  # [s] of simulation that one call makes up for
 
 
+class Refused(ValueError):
+    """A change is not allowed; the episode goes on without it."""
+
+
 class Session:
     """An environment with the policy that acts in it, episode after episode.
 
@@ -48,6 +53,7 @@ class Session:
         policy: Name of the policy that acts.
         seed: Of the episode.
         outcome: How the episode ended; None while it runs.
+        failed: Whether an error ended the episode; `restart` begins the next one.
         finished: How the episodes so far ended, in their order.
 
     Raises:
@@ -71,6 +77,7 @@ class Session:
         self.pending: set[str] = set()
         self.finished: list[Outcome] = []
         self.env: Any = None
+        self.failed = False
         self._options, self._keywords = dict(options or {}), keywords
         self._changes: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._left, self._ratio = 0.0, 1.0
@@ -96,6 +103,10 @@ class Session:
         """Push or turn the object from the next control step on, see `interventions.poke`."""
         self._changes.put(lambda: interventions.poke(self._episode, direction, impulse))
 
+    def refuse(self, words: str) -> None:
+        """Let the next `advance` raise `Refused` with a message."""
+        self._changes.put(lambda: self._refused(words))
+
     def request_restart(self) -> None:
         """Begin the next episode before the next control step."""
         self._changes.put(self.restart)
@@ -110,17 +121,21 @@ class Session:
             Number of steps; fewer than the time asks for if the episode ended.
 
         Raises:
-            ValueError: A change is not allowed; those after it wait for the next call.
+            Refused: A change is not allowed; those after it wait for the next call.
+            Exception: Whatever the policy or the environment raises; see `give_up`.
         """
         while True:
             try:
                 change = self._changes.get_nowait()
             except Empty:
                 break
-            change()
+            try:
+                change()
+            except (ValueError, OSError, ImportError) as error:
+                raise Refused(str(error)) from error
         self._left = min(self._left + seconds, _LONGEST)
         steps, step_time = 0, self.env.simulation.step_time * self._skip
-        while self.outcome is None and self._left >= step_time * (1.0 - 1e-9):
+        while self.outcome is None and not self.failed and self._left >= step_time * (1.0 - 1e-9):
             self._left -= step_time
             self._step()
             steps += 1
@@ -140,6 +155,13 @@ class Session:
         self._memory, self.outcome, self._reward, self._left = None, None, 0.0, 0.0
         self._ratio = float(self._episode["mu_s"] / self._episode["mu_c"])
         self.history = History(self.env)
+        self.failed = False
+
+    def give_up(self) -> None:
+        """End the episode after an error; the next one begins without the values that act at once."""
+        self.failed = True
+        for name in LIVE:
+            self.values.pop(name, None)
 
     def close(self) -> None:
         """Close the environment."""
@@ -149,18 +171,27 @@ class Session:
     def _episode(self) -> np.void:
         return self.env.simulation.episode[0]
 
+    @staticmethod
+    def _refused(words: str) -> None:
+        raise Refused(words)
+
     def _set(self, name: str, value: Any) -> None:
         if value is None:
             if self.values.pop(name, None) is None:
                 return
         else:
+            if name == "policy":
+                if not isinstance(value, str | os.PathLike):
+                    raise ValueError(f"policy = {value!r} must be a name or a path")
+            elif name == "mu_c":
+                interventions.set_friction(self._episode, value)
+            elif name == "mass":
+                interventions.set_mass(self._episode, value)
+            elif name == "grip_force":
+                interventions.checked(name, value)
             self.values[name] = value
         if name in NEXT_EPISODE:
             self.pending.add(name)
-        elif value is not None and name == "mu_c":
-            interventions.set_friction(self._episode, value)
-        elif value is not None and name == "mass":
-            interventions.set_mass(self._episode, value)
 
     def _step(self) -> None:
         action, self._memory = self._player.predict(self._observation, state=self._memory)
@@ -212,7 +243,7 @@ class Session:
         if isinstance(policy, LearnedPolicy):
             try:
                 policy.check(env)
-            except ValueError:
+            except BaseException:
                 env.close()
                 raise
         self._skip = int(keywords.get("frame_skip", 1))

@@ -34,9 +34,16 @@ def configured(network: str, task: str, given: Mapping[str, Any], texts: Sequenc
 
 
 def imitated(config: Imitation, seeds: Sequence[int], output: Path) -> Iterator[str]:
-    """Carries out an imitation with each seed; says where each is and how good it is."""
-    from policies.training.imitation.run import imitate
+    """Carries out an imitation with each seed; says where each is and how good it is.
 
+    Raises:
+        FloatingPointError: A loss is not finite.
+        OSError: The output cannot be written, or a run's folder is there already.
+    """
+    from policies.training.imitation.run import UNFINISHED, destination, imitate
+
+    folders = [destination(config, output, seed) for seed in seeds]
+    yield f"If it is interrupted, the last round's policy is in {folders[0].parent / '*' / UNFINISHED}"
     for seed in seeds:
         folder, solved = imitate(config, output, seed, shlex.join(sys.argv))
         yield f"{folder / 'policy'}: solves {solved:.1%} of {config.held_out} held-out episodes"

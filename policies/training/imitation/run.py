@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Sequence
+import shutil
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -31,6 +32,8 @@ from policies.versions import versions
 from slipgym import atomic_io
 from slipgym.tasks import find
 
+POLICY, UNFINISHED = "policy", "unfinished"
+"""Folder of the policy, and of those of a run that is not over."""
 LIMIT = 1.0
 """Largest norm of a gradient."""
 
@@ -62,43 +65,70 @@ def imitate(
 
     Returns:
         The run's folder, which holds the folder "policy" and curve.csv, and the share of held-out episodes
-        that the policy solves.
+        that the policy solves. Until the run is over the policy of the last round is in the folder
+        "unfinished" in place of "policy".
 
     Raises:
         FileExistsError: The run's folder is there already.
         FloatingPointError: The loss is not finite.
-        OSError: The output cannot be written.
+        OSError: The output cannot be written, which is found out before the training.
     """
-    folder = Path(output) / f"{find(config.task).key}_{config.environment.friction_source}_{seed}"
-    if folder.exists():
-        raise FileExistsError(f"{folder} is there already; choose another output or seed")
-    outcome = run(config, seed)
+    folder = destination(config, output, seed)
     where = described(find(config.task).id, arguments(config))
-    with atomic_io.new_folder(folder) as made:
-        files.write(
-            made / "policy",
-            {
-                "environment": where,
-                "network": network_of(config).model_dump(mode="json"),
-                "normalisation": NORMALISATION.model_dump(mode="json"),
-                "residual": None,
-                "origin": {
-                    "algorithm": "DAgger",
-                    "command": command,
-                    "steps": outcome.steps,
-                    "seeds": [seed],
-                    "versions": versions(),
-                    "critic": None,
-                },
-            },
-            outcome.weights,
-        )
-        pd.DataFrame(outcome.curve).to_csv(made / "curve.csv", index=False)
+
+    def write(path: Path, outcome: Outcome) -> None:
+        origin = {
+            "algorithm": "DAgger",
+            "command": command,
+            "steps": outcome.steps,
+            "seeds": [seed],
+            "versions": versions(),
+            "critic": None,
+        }
+        description = {
+            "environment": where,
+            "network": network_of(config).model_dump(mode="json"),
+            "normalisation": NORMALISATION.model_dump(mode="json"),
+            "residual": None,
+            "origin": origin,
+        }
+        files.write(path, description, outcome.weights)
+        curve = pd.DataFrame(outcome.curve).to_csv(index=False, lineterminator="\n")
+        atomic_io.write(folder / "curve.csv", curve.encode())
+
+    def keep(outcome: Outcome) -> None:
+        rounds = len(outcome.curve)
+        write(folder / UNFINISHED / f"round_{rounds}", outcome)
+        shutil.rmtree(folder / UNFINISHED / f"round_{rounds - 1}", ignore_errors=True)
+
+    outcome = run(config, seed, keep=keep)
+    write(folder / POLICY, outcome)
+    shutil.rmtree(folder / UNFINISHED, ignore_errors=True)
     return folder, outcome.solved
 
 
-def run(config: Imitation, seed: int = 0, progress: bool = True) -> Outcome:
-    """Trains a network; see `imitate`."""
+def destination(config: Imitation, output: str | os.PathLike[str], seed: int) -> Path:
+    """The folder of a run, which does not exist and can be made.
+
+    Raises:
+        FileExistsError: It is there already.
+        OSError: It cannot be made.
+    """
+    folder = Path(output) / f"{find(config.task).key}_{config.environment.friction_source}_{seed}"
+    if os.path.exists(folder):
+        unfinished = "" if (folder / POLICY).exists() else f" (not finished, its policy is in {UNFINISHED})"
+        raise FileExistsError(f"{folder} is there already{unfinished}; choose another output or seed")
+    atomic_io.check_folder(folder)
+    return folder
+
+
+def run(
+    config: Imitation,
+    seed: int = 0,
+    progress: bool = True,
+    keep: Callable[[Outcome], None] | None = None,
+) -> Outcome:
+    """Trains a network; see `imitate`. Calls `keep` after each round with what there is."""
     torch.set_num_threads(config.threads)
     torch.manual_seed(seed)
     rng = np.random.default_rng(seed)
@@ -120,11 +150,16 @@ def run(config: Imitation, seed: int = 0, progress: bool = True) -> Outcome:
                     {"round": number, "episodes": len(data) * config.rows, "solved": solved, "loss": loss}
                 )
                 bar.set_postfix(loss=f"{loss:.3g}", solved=f"{solved:.0%}")
+                if keep is not None:
+                    keep(Outcome(fit.student.tensors(), curve, math.nan, _steps(data)))
     finally:
         scene.close()
     assert fit is not None
-    steps = int(sum(one.lengths.sum() for one in data))
-    return Outcome(fit.student.tensors(), curve, judged(config, fit.network()), steps)
+    return Outcome(fit.student.tensors(), curve, judged(config, fit.network()), _steps(data))
+
+
+def _steps(data: Sequence[Demonstrations]) -> int:
+    return int(sum(one.lengths.sum() for one in data))
 
 
 def judged(config: Imitation, network: Network) -> float:

@@ -6,13 +6,14 @@ import pytest
 
 import policies
 from policies.stepping import batch_steps
-from policies.training.imitation.command import configured
+from policies.training.imitation.command import configured, imitated
 from policies.training.imitation.config import Imitation, read
 
 torch = pytest.importorskip("torch")
 from policies.learned import LearnedPolicy  # noqa: E402
 from policies.learned.description import Column  # noqa: E402
 from policies.learned.forward import Network  # noqa: E402
+from policies.training.imitation import run  # noqa: E402
 from policies.training.imitation.episodes import Scene, demonstrate  # noqa: E402
 from policies.training.imitation.run import imitate  # noqa: E402
 from policies.training.imitation.student import NORMALISATION, Student, network_of  # noqa: E402
@@ -133,6 +134,40 @@ def test_a_policy_is_written_and_acts(tmp_path, source):
     assert state is not None
     with pytest.raises(FileExistsError, match="already"):
         imitate(config, tmp_path, seed=1)
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, OSError])
+@pytest.mark.parametrize("stage", ["demonstrate", "judged", "write"])
+def test_a_run_that_is_broken_off_keeps_the_policy_of_its_last_round(tmp_path, monkeypatch, stage, error):
+    config = Imitation.model_validate({**SMALL, "rounds": 3})
+    module, name = (run, stage) if stage != "write" else (run.files, "write")
+    real, calls = getattr(module, name), []
+
+    def fail(*given):
+        calls.append(given)
+        if stage == "judged" or len(calls) == 3:
+            raise error("planted")
+        return real(*given)
+
+    monkeypatch.setattr(module, name, fail)
+    with pytest.raises(error, match="planted"):
+        imitate(config, tmp_path)
+    folder = tmp_path / "linear_slip_none_0"
+    rounds = 3 if stage == "judged" else 2
+    assert not (folder / "policy").exists()
+    assert [path.name for path in (folder / "unfinished").iterdir()] == [f"round_{rounds}"]
+    policy = LearnedPolicy(folder / "unfinished" / f"round_{rounds}")
+    assert policy.description.origin.steps > 0
+    assert len((folder / "curve.csv").read_text().splitlines()) == 1 + rounds
+    with pytest.raises(FileExistsError, match="not finished, its policy is in unfinished"):
+        imitate(config, tmp_path)
+
+
+def test_all_seeds_are_looked_at_before_the_first_is_trained(tmp_path, monkeypatch):
+    monkeypatch.setattr(run, "run", lambda *_, **__: pytest.fail("it trained"))
+    (tmp_path / "linear_slip_none_7").mkdir()
+    with pytest.raises(FileExistsError, match="linear_slip_none_7 is there already"):
+        list(imitated(Imitation.model_validate(SMALL), [0, 7], tmp_path))
 
 
 def _assignments():
