@@ -12,37 +12,21 @@ estimator computes it from force, torque and slip velocity when the box slips.
 Friction decides this task. mu_c is drawn from 0.15 to 0.8, log-uniformly
 (`tasks.fragile_hold.friction_range`; assumed, from slippery to rubber-like pairs), so that a grip which
 suits one end of the range breaks or drops the box at the other. The force that breaks the box is not
-observed, since a grip just below it would always be right. People solve this task: their grip follows the
-load from lift-off on, in proportion to it and by a factor that suits friction (Johansson and Westling, Exp.
-Brain Res. 56, 1984).
+observed, since a grip just below it would always be right.
 
 The least grip is that with which both pads stick, by the ellipsoidal limit surface: sqrt(f_x^2 + f_y^2 +
 (tau / r)^2) / mu_s, at the largest load per finger of the episode. The load follows from the plan of the
 wrist and from the disturbances, for a box that never slips.
 
-Episodes solved [%] by the best of 16 constant grips, chosen on other episodes, and by the classic controller
-without friction in the observation, with nominal, estimated and true friction, 200 each on the planar engine
-(`slipgym policy-leaderboard fragile_hold`; docs/levels.md says what a level is):
-
-| level | best constant | none | nominal | estimated | true |
-|---|---|---|---|---|---|
-| easy | 43 | 38.5 | 36.5 | 98.5 | 100 |
-| standard | 26.5 | 23.5 | 25 | 96.5 | 100 |
-| hard | 20.5 | 17.5 | 19 | 93 | 100 |
-
-The controller without friction keeps one guess for all episodes. With sensors alone and a memory of load over
-grip just before the last slip it solves about as many as with the estimate (docs/levels.md).
-
 ## Starting State
 
 The box (0.2 to 0.5 kg) stands on the support, in a grip of `tasks.fragile_hold.initial_force` (1 N), which
 is below every breaking force. For `settle` (0.4 s) the support bears all of its weight, a share that falls
-to 0 linearly in `lift_off` (0.8 s). After 0.15 s the wrist rises by `lift`, moves sideways by `travel`
-while it pitches by up to `sway` and back, and makes three strokes of `stroke`, each as a minimum-jerk move.
-Sampled at random are mass, friction, `allowance`, the ways and directions, the largest acceleration of the
-moves, the material, if `material` is "random", the sensors' biases, and the fractions of a count in the
-slip sensors. Grip and sensors run for six control steps before time 0. A wrist velocity that the agent
-commands is added to the plan; the gripper's limits apply to the sum.
+to 0 linearly in `lift_off` (0.8 s). After 0.15 s the wrist rises by `lift`, moves sideways by `travel` while
+it pitches by up to `sway` and back, and makes three strokes of `stroke`, each as a minimum-jerk move.
+Sampled at random are mass, friction, `allowance`, the ways and directions, and the largest acceleration of
+the moves. A wrist velocity that the agent commands is added to the plan; the gripper's limits apply to the
+sum.
 
 ## Episode End
 
@@ -51,9 +35,8 @@ commands is added to the plan; the gripper's limits apply to the sum.
   `TimeLimit` is needed.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never
-slipped further than `tolerance` (1 mm) and never broke: the mean actuator force of both fingers stayed
-below `allowance` times the least grip. A slip or a grip beyond that is the violation that `violated`
-reports.
+slipped further than `tolerance` (1 mm) and never broke: the mean actuator force of both fingers stayed below
+`allowance` times the least grip. A slip or a grip beyond that is the violation that `violated` reports.
 
 ## Info
 

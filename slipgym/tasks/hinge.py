@@ -24,10 +24,9 @@ counts as tilt, for success too, so that an agent cannot simply undo the turn.
 ## Starting State
 
 The box (`tasks.hinge.object`: 0.2 kg, 50 mm by 250 mm, gripped 100 mm above its centre) hangs at rest in a
-grip of `tasks.hinge.initial_force` (5 N), with the wrist level. Sampled at random are the direction of the
-turn, the material, if `material` is "random", the sensors' biases, and the fractions of a count in the slip
-sensors. Grip and sensors run for six control steps before time 0. The wrist rests for `settle` (0.5 s),
-pitches by `turn` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
+grip of `tasks.hinge.initial_force` (5 N), with the wrist level. The direction of the turn is sampled at
+random. The wrist rests for `settle` (0.5 s), pitches by `turn` (60 deg) in `duration` (5 s), and rests for
+`hold` (1 s).
 
 ## Episode End
 
@@ -35,9 +34,9 @@ pitches by `turn` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
 - Truncated: settle + duration + hold have passed (6.5 s, 780 control steps). The environment truncates by
   itself; no `TimeLimit` is needed.
 
-Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never
-slid further than `slide_tolerance` (2 mm) at the pad centre and never tilted by more than
-`tilt_tolerance` (5 deg). A further slide or tilt is the violation that `violated` reports.
+Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never slid
+further than `slide_tolerance` (2 mm) at the pad centre and never tilted by more than `tilt_tolerance` (5
+deg). A further slide or tilt is the violation that `violated` reports.
 
 ## Info
 

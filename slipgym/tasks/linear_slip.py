@@ -11,8 +11,7 @@ slides. The task follows the linear slip of Waltersson and Karayiannidis (arXiv 
 ## Starting State
 
 The box hangs at rest in a grip of `tasks.linear_slip.initial_force` (15 N), its grasp point between the
-pads. Sampled at random are the material, if `material` is "random", the sensors' biases, and the fractions
-of a count in the slip sensors. Grip and sensors run for six control steps before time 0.
+pads.
 
 ## Episode End
 

@@ -46,9 +46,7 @@ step.
 
 The box (`tasks.planar_slip.object`: 0.2 kg, 160 mm by 200 mm, gripped at its centre of mass) is held in a
 grip of `tasks.planar_slip.initial_force` (10 N), with the wrist level. Sampled at random are the target
-(`slide` 10 to 18 mm, `heading` up to 60 deg and `turn` 10 to 40 deg, both in either direction), the material,
-if `material` is "random", the sensors' biases, and the fractions of a count in the slip sensors. Grip and
-sensors run for six control steps before time 0.
+(`slide` 10 to 18 mm, `heading` up to 60 deg and `turn` 10 to 40 deg, both in either direction).
 
 ## Episode End
 

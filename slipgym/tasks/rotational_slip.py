@@ -20,12 +20,10 @@ the default estimator and "joint" learn enough.
 
 ## Starting State
 
-The bar is held at rest in a grip of `tasks.rotational_slip.initial_force` (25 N), its grasp point between the
-pads and the bar aligned with them. The wrist is pitched by angle/2 with the bar's heavy end up, so that the
-turn is symmetric about horizontal. The bar turns clockwise: theta decreases. Sampled at random are the
-material, if `material` is "random", the sensors' biases, and the fractions of a count in the slip sensors.
-Grip and sensors run for six control steps before time 0. The reference rests for `settle` (0.5 s), turns by
-`angle` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
+The bar is held at rest in a grip of `tasks.rotational_slip.initial_force` (25 N), its grasp point between
+the pads and the bar aligned with them. The wrist is pitched by angle/2 with the bar's heavy end up, so that
+the turn is symmetric about horizontal. The bar turns clockwise: theta decreases. The reference rests for
+`settle` (0.5 s), turns by `angle` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
 
 ## Episode End
 

@@ -12,7 +12,7 @@ from slipgym.config import load
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "glossary.md").read_text()
-ENVIRONMENT = (ROOT / "docs" / "environments" / "linear_slip.md").read_text()
+ENVIRONMENT = (ROOT / "docs" / "environments" / "common.md").read_text()
 MODES = (ROOT / "docs" / "modes.md").read_text()
 ENTRIES = [part for part in PAGE.split("\n\n") if part.startswith("**")]
 SECTIONS = {
@@ -59,7 +59,7 @@ def exists(kind: str, name: str) -> bool:
     if info:
         return info[1] in listed(*SECTIONS["info"])
     if kind == "column":
-        columns = set(re.findall(r"^\| \d+ \| `(\w+)`:", ENVIRONMENT, re.MULTILINE))
+        columns = set(re.findall(r"^\| -?\d+ \| `(\w+)`:", ENVIRONMENT, re.MULTILINE))
         return name in columns | set(re.findall(r"^\| `(\w+)` \|", MODES, re.MULTILINE))
     if kind:
         return name in listed(*SECTIONS[kind])
