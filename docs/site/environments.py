@@ -1,7 +1,7 @@
 """Writes the pages of the environments from their docstrings; what most of them share stands on one page.
 
 A docstring consists of sections, a section of blocks (paragraphs, lists, tables). A block that occurs in at
-least `SHARED` docstrings, and a row of the tables in `SPLIT` that occurs in all, moves to the page `common.md`.
+least `SHARED` docstrings, and a row of the tables in `SPLIT` that occurs in all, moves to `common.md`.
 """
 
 import importlib
