@@ -1,4 +1,4 @@
-"""Whether a motion is a slip or a spring of the pad: how far the object moved, how far a pad can spring."""
+"""Tells a slip from a spring of the pad: how far the object moved, how far a pad can spring."""
 
 import math
 

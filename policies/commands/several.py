@@ -1,4 +1,4 @@
-"""What several command lines share: options that take several values, the help of a task's name."""
+"""Shared parts of command lines: options that take several values, the help of a task's name."""
 
 from __future__ import annotations
 

@@ -4,12 +4,16 @@
 
 A parallel gripper holds a box that stands on a support. The support gives way, the wrist lifts the box,
 swings it sideways and half of the way back, lowers it, and a support takes it over again. The wrist pitches
-while it swings. The box must not slip, and the grip must be economical: its mean over the episode may be at
-most `economy` (1.6) times the mean of the least grip that holds the box. A constant grip that holds the
-largest load is too firm on average, and so is one that allows for every friction: the grip has to follow the
-load, which the plan of the wrist announces (its acceleration now and in 50, 100 and 200 ms is observed), by
-a factor that depends on friction. Mass and friction are unknown: the mass shows in the load when the support
-gives way; an estimator computes friction from force, torque and slip velocity when the box slips.
+while it swings.
+
+The box must not slip, and the grip must be economical: its mean over the episode may be at most `economy`
+(1.6) times the mean of the least grip that holds the box. A constant grip that holds the largest load is too
+firm on average, and so is one that allows for every friction: the grip has to follow the load, which the
+plan of the wrist announces (its acceleration now and in 50, 100 and 200 ms is observed), by a factor that
+depends on friction.
+
+Mass and friction are unknown: the mass shows in the load when the support gives way; an estimator computes
+friction from force, torque and slip velocity when the box slips.
 
 The swing reaches 5 to 10 m/s^2 and 1.7 m/s, within the limits of a light arm such as Franka Emika's. mu_c is
 drawn from 0.15 to 0.8, log-uniformly (`tasks.carry.friction_range`).
@@ -28,10 +32,11 @@ The economy is an allowance for the whole episode. It is used up when the sum of
 The box (0.2 to 0.4 kg) stands on the support, in a grip of `tasks.carry.initial_force` (1 N). For `settle`
 (0.3 s) the support bears all of its weight, a share that falls to 0 linearly in `lift_off` (0.8 s). After
 0.15 s the wrist rises by `lift`, swings by `swing` and back by half of it while it pitches by up to `pitch`
-and back, and sinks by `lift`, each as a minimum-jerk move. After a short rest the support takes the box
-over, again in `lift_off`. Sampled at random are mass, friction, ways and directions, and the largest
-acceleration of the swing. A wrist velocity that the agent commands is added to the plan; the limit
-`wrist_speed` applies to the sum.
+and back, and sinks by `lift`, each as a minimum-jerk move.
+
+After a short rest the support takes the box over, again in `lift_off`. Sampled at random are mass, friction,
+ways and directions, and the largest acceleration of the swing. A wrist velocity that the agent commands is
+added to the plan; the limit `wrist_speed` applies to the sum.
 
 ## Episode End
 

@@ -24,10 +24,11 @@ estimate, each with the weight of its variance. With true friction it commits it
 
 `Box(-1, 1, (10,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` (0.6 N) and
 +1 is `gripper.force_max` (25 N). Then the wrist's velocity along world x and z and its pitch rate, from -0.5
-to 0.5 m/s (`gripper.wrist_speed_max`) and from -3 to 3 rad/s (`gripper.wrist_pitch_rate_max`). Then the
-guess: ln mu_s, ln mu_c, ln r, and the logarithms of their relative standard deviations, in the ranges of
-docs/modes.md. Values outside [-1, 1] are clipped; NaN and infinity are errors. The actuator force follows
-the command with a dead time (4 ms) and a first-order lag (12 ms), the wrist within a control step.
+to 0.5 m/s (`gripper.wrist_speed_max`) and from -3 to 3 rad/s (`gripper.wrist_pitch_rate_max`).
+
+Then the guess: ln mu_s, ln mu_c, ln r, and the logarithms of their relative standard deviations, in the
+ranges of docs/modes.md. Values outside [-1, 1] are clipped; NaN and infinity are errors. The actuator force
+follows the command with a dead time (4 ms) and a first-order lag (12 ms), the wrist within a control step.
 
 This is "grip_force_wrist_guess", the `action_mode` of this task. In the other modes (see docs/modes.md)
 there is no guess, and the estimator's merged estimate and its deviations take its place.

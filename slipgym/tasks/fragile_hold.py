@@ -4,10 +4,12 @@
 
 A parallel gripper holds a box that stands on a support. The support gives way, and the wrist lifts the box,
 carries it sideways, turns it a little and shakes it. The box must not slip, and the grip must never exceed
-the force at which it breaks. That force is 1.5 to 2.5 times the least grip that holds the box through the
-episode: the ratio is known (`allowance`), the force itself is not. It follows from mass and friction, which
-are unknown: the mass shows in the load when the support gives way, and friction has to be found out. An
-estimator computes it from force, torque and slip velocity when the box slips.
+the force at which it breaks.
+
+That force is 1.5 to 2.5 times the least grip that holds the box through the episode: the ratio is known
+(`allowance`), the force itself is not. It follows from mass and friction, which are unknown: the mass shows
+in the load when the support gives way, and friction has to be found out. An estimator computes it from
+force, torque and slip velocity when the box slips.
 
 Friction decides this task. mu_c is drawn from 0.15 to 0.8, log-uniformly
 (`tasks.fragile_hold.friction_range`; assumed, from slippery to rubber-like pairs), so that a grip which
@@ -22,11 +24,12 @@ wrist and from the disturbances, for a box that never slips.
 
 The box (0.2 to 0.5 kg) stands on the support, in a grip of `tasks.fragile_hold.initial_force` (1 N), which
 is below every breaking force. For `settle` (0.4 s) the support bears all of its weight, a share that falls
-to 0 linearly in `lift_off` (0.8 s). After 0.15 s the wrist rises by `lift`, moves sideways by `travel` while
-it pitches by up to `sway` and back, and makes three strokes of `stroke`, each as a minimum-jerk move.
-Sampled at random are mass, friction, `allowance`, the ways and directions, and the largest acceleration of
-the moves. A wrist velocity that the agent commands is added to the plan; the gripper's limits apply to the
-sum.
+to 0 linearly in `lift_off` (0.8 s).
+
+After 0.15 s the wrist rises by `lift`, moves sideways by `travel` while it pitches by up to `sway` and back,
+and makes three strokes of `stroke`, each as a minimum-jerk move. Sampled at random are mass, friction,
+`allowance`, the ways and directions, and the largest acceleration of the moves. A wrist velocity that the
+agent commands is added to the plan; the gripper's limits apply to the sum.
 
 ## Episode End
 

@@ -11,10 +11,12 @@ who pitch from 60 to 120 deg; with round pads only the relative turn matters.
 Sliding and tilt are coupled. While the box turns in the grip, the slip twist is normal to the limit surface
 at the load: the box slides r^2 / (d sin(tilt)) per radian, where d is the depth of its centre of mass below
 the pads. For a pad with r = 10 mm, d = 100 mm and a tilt of 5 deg that is 11 mm per radian, whatever the
-controller does. The task therefore has its own contact, a rounded fingertip with r = 3 mm
-(`tasks.hinge.radius`, the reset option `r`). Then f_n mu_c / f_t has to lie between about 1.9, for 2 mm in a
-turn of 60 deg, and 3.1, for 5 deg. Static friction, 1.4 to 1.6 times larger, makes the start difficult: a
-grip in that range would carry the box along by more than 5 deg before it slips.
+controller does.
+
+The task therefore has its own contact, a rounded fingertip with r = 3 mm (`tasks.hinge.radius`, the reset
+option `r`). Then f_n mu_c / f_t has to lie between about 1.9, for 2 mm in a turn of 60 deg, and 3.1, for 5
+deg. Static friction, 1.4 to 1.6 times larger, makes the start difficult: a grip in that range would carry
+the box along by more than 5 deg before it slips.
 
 ## Rewards
 

@@ -5,20 +5,23 @@
 A parallel gripper holds a light box near its top. The agent commands the grip force and the velocity of the
 wrist. Within `duration` (1 s) the box has to turn about the grip axis by `goal`, 20 to 80 deg either way,
 and then stay. Gravity alone lets the box hang; so the wrist has to accelerate while the grip is loose, the
-box swings up like a pendulum, and the grip has to close when it arrives. This is pivoting, as Holladay,
-Paolini and Mason planned it (ICRA 2015), with the wrist as the drive. The wrist reaches 1.7 m/s and 15 m/s^2
-(`tasks.pivot_to.wrist_speed`, `wrist_acceleration`), about the limits of a Franka Emika arm. The
-acceleration counts what the agent commands, along x and z together. Friction is unknown, mu_c from 0.3 to
-0.9, log-uniformly (`tasks.pivot_to.friction_range`).
+box swings up like a pendulum, and the grip has to close when it arrives.
+
+This is pivoting, as Holladay, Paolini and Mason planned it (ICRA 2015), with the wrist as the drive. The
+wrist reaches 1.7 m/s and 15 m/s^2 (`tasks.pivot_to.wrist_speed`, `wrist_acceleration`), about the limits of
+a Franka Emika arm. The acceleration counts what the agent commands, along x and z together. Friction is
+unknown, mu_c from 0.3 to 0.9, log-uniformly (`tasks.pivot_to.friction_range`).
 
 Friction has to be neither small nor large. Some sliding is inevitable, since the slip twist is normal to the
 limit surface at the load: with k = 2 mu_c f_n / f_t the box slides r / sqrt(k^2 - 1) per radian, along the
 load, whichever way it turns. With r = 3 mm and k = 10 that is 0.42 mm for 80 deg; in the swing the
-centripetal force raises f_t, and the slide with it. On the other side, the torque of the pads, k r f_t, has
-to be well below that of the wrist, m d a. With a disc of r = 10 mm the slide would be three times as large;
-the task therefore has its own contact, a rounded fingertip with r = 3 mm (`tasks.pivot_to.radius`, the reset
-option `r`). At the end friction has to hold the box beside the pads: m g d sin(80 deg) = 0.029 N m of the 2
-mu_c r 25 N = 0.045 N m at mu_c 0.3. So the box is light, an empty carton of 30 g.
+centripetal force raises f_t, and the slide with it.
+
+On the other side, the torque of the pads, k r f_t, has to be well below that of the wrist, m d a. With a
+disc of r = 10 mm the slide would be three times as large; the task therefore has its own contact, a rounded
+fingertip with r = 3 mm (`tasks.pivot_to.radius`, the reset option `r`). At the end friction has to hold the
+box beside the pads: m g d sin(80 deg) = 0.029 N m of the 2 mu_c r 25 N = 0.045 N m at mu_c 0.3. So the box
+is light, an empty carton of 30 g.
 
 The controller (`policies.controllers.pivot_to`) uses the model of a pendulum, the size of the box and the
 usual age of the readings.

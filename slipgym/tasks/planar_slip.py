@@ -19,11 +19,12 @@ If b is 0 or along u, with the centre of mass straight below the pads (stable) o
 box slides without turning, for any pitch of the wrist. With the centre of mass to the side at a distance s
 it turns, and slides only r^2 / s per radian. Sequences of slides and turns reach every (x, y, theta). The
 target is sampled as the end of such a sequence: a slide by `slide` with the wrist pitched by `heading`, then
-a turn by `turn` about the pad centre. For r = 10 mm and s = 15 mm the pads would slide 6.7 mm per radian of
-the turn. The task therefore has its own contact, a rounded fingertip with r = 5 mm
-(`tasks.planar_slip.radius`, the reset option `r`), which slides by 1.7 mm per radian. A smaller contact
-holds less torque: already with r = 5 mm, a box of 0.2 kg gripped 18 mm off its centre of mass needs up to
-12 N at a friction of 0.3.
+a turn by `turn` about the pad centre.
+
+For r = 10 mm and s = 15 mm the pads would slide 6.7 mm per radian of the turn. The task therefore has its
+own contact, a rounded fingertip with r = 5 mm (`tasks.planar_slip.radius`, the reset option `r`), which
+slides by 1.7 mm per radian. A smaller contact holds less torque: already with r = 5 mm, a box of 0.2 kg
+gripped 18 mm off its centre of mass needs up to 12 N at a friction of 0.3.
 
 The measured slip is the time integral of the slip velocity at the pad centre, in the pad frame. The target
 refers to another quantity, the displacement of the point of the box that lay at the pad centre at the grasp.

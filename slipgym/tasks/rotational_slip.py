@@ -7,13 +7,15 @@ bar's weight turns it between the pads along a trapezoidal reference, and then i
 stops. Friction is unknown: an estimator computes it from force, torque and slip velocity while the bar
 turns. The task follows the rotational slip of Waltersson and Karayiannidis (arXiv 2410.19660).
 
-Some sliding is inevitable. The slip twist is normal to the limit surface at the load,
-v_t / omega = r^2 f_t / tau, and tau / f_t is the weight's lever d cos(tilt). A turn from -angle/2 to
-+angle/2 about horizontal therefore slides 2 (r^2 / d) ln tan(45 deg + angle/4). With r = 10 mm and
-d = 180 mm this is 0.61 mm at 60 deg, whatever the controller does. On a disc (`contact="distributed"`), whose
-limit surface is flatter there, it is 3/2 as much. Holding the bar level takes m g d / (2 mu_c r) per finger.
-The task therefore has its own light and long object (`tasks.rotational_slip.object`): 0.06 kg, 460 mm by
-40 mm, gripped 180 mm from its centre, which takes 15 N at mu_c 0.36.
+Some sliding is inevitable. The slip twist is normal to the limit surface at the load, v_t / omega = r^2 f_t
+/ tau, and tau / f_t is the weight's lever d cos(tilt). A turn from -angle/2 to +angle/2 about horizontal
+therefore slides 2 (r^2 / d) ln tan(45 deg + angle/4). With r = 10 mm and d = 180 mm this is 0.61 mm at 60
+deg, whatever the controller does.
+
+On a disc (`contact="distributed"`), whose limit surface is flatter there, it is 3/2 as much. Holding the bar
+level takes m g d / (2 mu_c r) per finger. The task therefore has its own light and long object
+(`tasks.rotational_slip.object`): 0.06 kg, 460 mm by 40 mm, gripped 180 mm from its centre, which takes 15 N
+at mu_c 0.36.
 
 The bar turns in short jumps and almost without translation, from which the estimator "rls" learns little;
 the default estimator and "joint" learn enough.
