@@ -19,7 +19,7 @@ EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTA
 @pytest.mark.parametrize(
     ("code", "printed"),
     [*EXAMPLES, (textwrap.dedent(COMMAND[0]), COMMAND[1])],
-    ids=["batch", "rows", "checker", "memory"],
+    ids=["batch", "rows", "memory"],
 )
 def test_the_examples_print_what_the_page_says(code, printed):
     out = io.StringIO()
@@ -29,7 +29,7 @@ def test_the_examples_print_what_the_page_says(code, printed):
 
 
 def test_the_page_has_its_examples():
-    assert len(EXAMPLES) == PAGE.count("```python") == 3
+    assert len(EXAMPLES) == PAGE.count("```python") == 2
     for name in ("threads", "autoreset_mode", "render_rows", "num_envs"):
         assert f"| `{name}` |" in PAGE
         assert name in inspect.signature(SlipVectorEnv).parameters
