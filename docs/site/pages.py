@@ -1,5 +1,6 @@
-"""Hook of mkdocs: the files beside docs/ that are pages of the site, and links to them that fit."""
+"""Hook of mkdocs: adds pages from outside docs/, fills in the tables that are generated, adapts links."""
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +29,11 @@ def on_files(files: Files, config: Any) -> Files:
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:
-    """Lead links of the pages in docs/ to the site's pages."""
-    return linked(markdown.replace("](../README.md", "](README.md"))
+    """Fill in a page's tables, and lead its links to the site's pages."""
+    sys.path.insert(0, str(Path(__file__).parent))
+    from tables import filled
+
+    return linked(filled(markdown).replace("](../README.md", "](README.md"))
 
 
 def linked(text: str) -> str:
