@@ -1,4 +1,4 @@
-"""Writes the tables of the site that follow from declarations: a page holds `<!-- table: NAME -->` in their place."""
+"""Writes the tables of the site that follow from declarations, where a page has `<!-- table: NAME -->`."""
 
 import re
 from collections.abc import Iterable

@@ -11,10 +11,10 @@ By default a firm grip solves every episode. With `grip_limit` success asks for 
 mean grip may be at most `grip_limit` times the least grip, the smallest constant one with which both pads
 stick, sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s by the ellipsoidal limit surface.
 
-The mean counts the whole episode: shaking, pushes, and falls of friction and changes of mass within it; friction
-that varies over the surface is left out. `grip_limit_start` leaves the beginning out of the mean, so that a
-policy can find friction out. The mean counts, and not the peak, so that the grip may answer a push for a
-moment. Neither the least grip nor the mean allowed is observed. The levels "standard" and "hard" set
+The mean counts the whole episode: shaking, pushes, and falls of friction and changes of mass within it;
+friction that varies over the surface is left out. `grip_limit_start` leaves the beginning out of the mean,
+so that a policy can find friction out. The mean counts, and not the peak, so that the grip may answer a push
+for a moment. Neither the least grip nor the mean allowed is observed. The levels "standard" and "hard" set
 `grip_limit`, to 1.75 and 1.5.
 
 ## Starting State

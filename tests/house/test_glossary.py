@@ -12,7 +12,9 @@ from slipgym.config import load
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "glossary.md").read_text()
-ENVIRONMENT = (ROOT / "docs" / "environments" / "common.md").read_text()
+ENVIRONMENT = "".join(
+    (ROOT / "docs" / "environments" / f"{name}.md").read_text() for name in ("common", "linear_slip")
+)
 MODES = (ROOT / "docs" / "modes.md").read_text()
 ENTRIES = [part for part in PAGE.split("\n\n") if part.startswith("**")]
 SECTIONS = {
