@@ -1,4 +1,4 @@
-"""Tells a slip from a spring of the pad: how far the object moved, how far a pad can spring."""
+"""Separates slips from springs of the pad: how far the object moved, how far a pad can spring."""
 
 import math
 

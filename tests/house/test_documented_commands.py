@@ -20,9 +20,7 @@ import yaml
 from policies.commands.front import COMMANDS
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMAND = (
-    r"(?:python )?(scripts/(?P<script>\w+)\.py|slipgym (?P<name>[a-z][\w-]*)|make|(?P<one>slipgym-evaluate))"
-)
+COMMAND = r"(?:python )?(scripts/(?P<script>\w+)\.py|slipgym (?P<name>[a-z][\w-]*)|make)"
 LINE = re.compile(rf"^ +{COMMAND}(?: +(?P<words>.*))?$")
 INLINE = re.compile(rf"`{COMMAND} (?P<words>[^`]+)`")
 OPTION = re.compile(r"`slipgym ([a-z][\w-]*) (--[\w-]+)`|`scripts/(\w+)\.py (--[\w-]+)`")
@@ -38,7 +36,7 @@ RUNS: dict[str, dict[str, Any]] = yaml.safe_load(
 
 
 def parsed(match: re.Match[str]) -> tuple[str, tuple[str, ...]]:
-    name = match["script"] or match["name"] or match["one"] or "make"
+    name = match["script"] or match["name"] or "make"
     text = (match["words"] or "").replace("<time>", "TIME").replace("<folder>", "F").rstrip("\\")
     return name.replace("_", "-"), tuple(shlex.split(text, True))
 
@@ -91,8 +89,6 @@ def test_a_documented_command_is_understood(page, name, words):
     if name in OWN:
         assert (ROOT / "scripts" / f"{name.replace('-', '_')}.py").is_file()
         return
-    if name == "slipgym-evaluate":
-        return  # all of them are run
     assert name in COMMANDS
     app = import_module(f"policies.commands.{name.replace('-', '_')}").app
     try:
@@ -135,9 +131,8 @@ def test_every_documented_command_is_run_or_says_why_not():
 def run(command: str, folder: Path) -> str:
     """What a command prints in a folder that has the repository's examples."""
     name, *words = shlex.split(command)
-    module = ["policies.command"] if name == "slipgym-evaluate" else ["slipgym", name]
     done = subprocess.run(
-        [sys.executable, "-m", *module, *words],
+        [sys.executable, "-m", "slipgym", name, *words],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100"},
         capture_output=True,

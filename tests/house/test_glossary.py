@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from slipgym.config import load
+from slipgym.envs import privileged
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "glossary.md").read_text()
@@ -62,6 +63,7 @@ def exists(kind: str, name: str) -> bool:
         return info[1] in listed(*SECTIONS["info"])
     if kind == "column":
         columns = set(re.findall(r"^\| -?\d+ \| `(\w+)`:", ENVIRONMENT, re.MULTILINE))
+        columns |= {column.name for column in privileged.columns(load())}
         return name in columns | set(re.findall(r"^\| `(\w+)` \|", MODES, re.MULTILINE))
     if kind:
         return name in listed(*SECTIONS[kind])
