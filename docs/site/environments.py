@@ -13,7 +13,7 @@ from slipgym.registration import ENVIRONMENTS
 
 SHARED = 5
 """Docstrings that hold a block or row before it is shared."""
-SPLIT = ("Observation Space", "Reset Options", "Info")
+SPLIT = ("Observation Space", "Rewards", "Reset Options", "Info")
 """Sections whose tables are divided by rows."""
 NOTE = "<!-- Made by scripts/make_docs.py from the docstrings of slipgym/tasks/. -->"
 COMMON = f"""# What all environments share
@@ -28,6 +28,8 @@ env = gym.make("slipgym:slipgym/LinearSlip-v0")
 
 makes the environment of a task. The page of a task has its own description, rewards, observation columns and
 options; this page has those that it shares with the others. `help(env.unwrapped)` prints both together."""
+LISTS = ("Reset Options", "Info")
+"""Sections whose tables are lists on the page of a task."""
 BEFORE = {
     "Action Space": "Unless the page of the task states another action space:",
     "Observation Space": """\
@@ -112,7 +114,7 @@ def pages() -> dict[str, str]:
     )
     shared: dict[str, set[str]] = {}
     for (title, piece), count in counts.items():
-        needed = len(found) if title in SPLIT and piece.startswith("|") else SHARED
+        needed = len(found) if title not in ("Rewards", "Action Space") and piece.startswith("|") else SHARED
         moves = count >= needed and not piece.startswith("`Box(low")  # the number of columns is a task's own
         shared.setdefault(title, set()).update([piece] if moves else [])
     texts = {f"{key}.md": page(environment, parts, shared) for key, (environment, parts) in found.items()}
@@ -138,9 +140,19 @@ def page(environment: type, parts: Sections, shared: dict[str, set[str]]) -> str
         own = written(title, blocks, shared[title], kept=False)
         if title == "Action Space" and not own:
             own = [f"{re.split('[;.] ', ' '.join(blocks[0].split()))[0]} ([common](common.md#action-space))."]
+        if title == "Rewards":
+            others = [names(block, shared[title]) for block in blocks if is_split(title, block)]
+            own += [f"Terms of most tasks, described on the [common page](common.md#rewards): {others[0]}."]
+        if title in LISTS:
+            own = [re.sub(r"^\| (.+?) \| (.+) \|$", r"- \1: \2", "\n".join(rows(title, own[0])), flags=re.M)]
         if title and own:
             text += [f"## {title}", *own]
     return linked("\n\n".join(text)) + "\n"
+
+
+def names(block: str, keep: set[str]) -> str:
+    """First cells of the rows of a table that stand on the common page."""
+    return ", ".join(row.split(" | ")[0].removeprefix("| ") for row in block.splitlines() if row in keep)
 
 
 def common(every: list[Sections], shared: dict[str, set[str]]) -> str:
@@ -153,6 +165,22 @@ def common(every: list[Sections], shared: dict[str, set[str]]) -> str:
     text = [COMMON]
     for title in every[0]:
         blocks = max((written(title, parts[title], shared[title], kept=True) for parts in every), key=len)
+        blocks = [whole(title, block, every, shared[title]) for block in blocks]
         if title and blocks:
             text += [f"## {title}", *([BEFORE[title]] if title in BEFORE else []), *blocks]
     return linked("\n\n".join(text)) + "\n"
+
+
+def whole(title: str, block: str, every: list[Sections], keep: set[str]) -> str:
+    """A table of the common page with the shared rows of all environments, in place of those of one."""
+    if not is_split(title, block):
+        return block
+    found = dict.fromkeys(
+        row
+        for parts in every
+        for other in parts[title]
+        if is_split(title, other)
+        for row in pieces(title, other)
+        if row in keep
+    )
+    return "\n".join([*block.splitlines()[:2], *found])

@@ -68,6 +68,10 @@ _END = """\
 - Truncated: the episode has reached its time limit. The environment truncates by itself; no `TimeLimit` is
   needed."""
 
+_DROPPED = """\
+An object is dropped when neither pad touches it or a pad reaches beyond its edge. The environment truncates
+by itself; no `TimeLimit` is needed."""
+
 _REWARDS = """\
 The reward of a control step is the sum of these terms. A dense term pays its value, limited to [-1, 1], times
 scale / (control steps of the episode) in every step, so that its sum over an episode stays within its scale.
@@ -104,8 +108,8 @@ def docstring(task: Task) -> str:
         "Action Space": own.get("Action Space") or _action(config),
         "Observation Space": _observation(config, task),
         "Rewards": _joined(_rewards(task), own.get("Rewards", "")),
-        "Starting State": _joined(own.get("Starting State", ""), _STARTING),
-        "Episode End": own.get("Episode End", _END),
+        "Starting State": _joined(own["Starting State"], _STARTING) if "Starting State" in own else "",
+        "Episode End": _joined(own["Episode End"], _DROPPED) if "Episode End" in own else _END,
         "Arguments": _arguments(task),
         "Reset Options": _options(task),
         "Info": _infos(own.get("Info")),

@@ -40,9 +40,8 @@ added to the plan; the limit `wrist_speed` applies to the sum.
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` has passed (4.7 s, 564 control steps); the slowest plan takes 4.4 s. The environment
-  truncates by itself; no `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `duration` has passed (4.7 s, 564 control steps); the slowest plan takes 4.4 s.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never
 slipped further than `tolerance` (2 mm), and the mean grip was at most `economy` times the mean least grip. A

@@ -51,10 +51,9 @@ between the pads. Sampled at random are its mass, friction and r. The wrist move
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge; or the
-  agent commits itself: the three deviations of its guess are at most `commitment`.
-- Truncated: `duration` has passed (3 s, 360 control steps). The environment truncates by itself; no
-  `TimeLimit` is needed.
+- Terminated: the box is dropped; or the agent commits itself: the three deviations of its guess are at most
+  `commitment`.
+- Truncated: `duration` has passed (3 s, 360 control steps).
 
 Success (`info["is_success"]`): the episode has ended without a drop, mu_s, mu_c and r of the guess are
 within `accuracy` of the truth, and the budget of slip was kept: the path of the slip at the pad centre is at

@@ -33,9 +33,8 @@ agent commands is added to the plan; the gripper's limits apply to the sum.
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` has passed (5 s, 600 control steps). The environment truncates by itself; no
-  `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `duration` has passed (5 s, 600 control steps).
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never
 slipped further than `tolerance` (1 mm) and never broke: the mean actuator force of both fingers stayed below

@@ -32,9 +32,8 @@ random. The wrist rests for `settle` (0.5 s), pitches by `turn` (60 deg) in `dur
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps). The environment truncates by
-  itself; no `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps).
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never slid
 further than `slide_tolerance` (2 mm) at the pad centre and never tilted by more than `tilt_tolerance` (5

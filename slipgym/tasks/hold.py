@@ -26,9 +26,8 @@ velocity that the agent commands is added to it; the gripper's limits apply to t
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` has passed (8 s, 960 control steps). The environment truncates by itself; no
-  `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `duration` has passed (8 s, 960 control steps).
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped and never
 slipped further than `tolerance` (2 mm); with `grip_limit`, the mean actuator force of both fingers from

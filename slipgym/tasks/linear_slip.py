@@ -15,9 +15,8 @@ pads.
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `settle` + `duration` + `hold` have passed (0.5 s + 5 s + 1 s, 780 control steps). The
-  environment truncates by itself; no `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `settle` + `duration` + `hold` have passed (0.5 s + 5 s + 1 s, 780 control steps).
 
 Success (`info["is_success"]`): at the end of the last step the distance slid is within `tolerance` (2
 mm) of `distance`, and the box was not dropped. Nothing before the end makes it impossible: `violated` is

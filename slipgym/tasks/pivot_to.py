@@ -50,9 +50,8 @@ angle, its sign and friction.
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` + `hold` have passed (1.2 s, 144 control steps). The environment truncates by
-  itself; no `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `duration` + `hold` have passed (1.2 s, 144 control steps).
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never slid
 further than `slide_tolerance` (1 mm) at the pad centre, and was within `tolerance` (5 deg) of its angle from

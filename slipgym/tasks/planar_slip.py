@@ -51,9 +51,8 @@ grip of `tasks.planar_slip.initial_force` (10 N), with the wrist level. Sampled 
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` has passed (12 s, 1440 control steps). The environment truncates by itself; no
-  `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `duration` has passed (12 s, 1440 control steps).
 
 Success (`info["is_success"]`): the episode was played to its end, the box was not dropped, and at the end
 its slip displacement is within `tolerance` (2 mm) of the target in (x, y) and within `angle_tolerance`

@@ -29,9 +29,8 @@ the turn is symmetric about horizontal. The bar turns clockwise: theta decreases
 
 ## Episode End
 
-- Terminated: the bar is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps). The environment truncates by
-  itself; no `TimeLimit` is needed.
+- Terminated: the bar is dropped.
+- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps).
 
 Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, -theta is
 `angle` within `tolerance` (2 deg), and it never slid further than `slide_tolerance` (1 mm) at the pad

@@ -128,7 +128,7 @@ def test_a_page_and_the_common_one_have_what_the_docstring_has(env, pages):
     text = pages[f"{env.task.key}.md"] + pages["common.md"]
     names = [column.name for column in env.columns] + list(env.task.term_names)
     names += [*env.task.options.model_fields, *first_names(section(env, "Info"))]
-    assert [name for name in names if f"| `{name}`" not in text] == []
+    assert [name for name in names if f"`{name}`" not in text] == []
     assert f"({len(env.columns)},), float32" in pages[f"{env.task.key}.md"]
     assert "## Episode End" in pages[f"{env.task.key}.md"]
 
