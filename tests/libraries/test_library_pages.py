@@ -1,4 +1,4 @@
-"""The examples of docs/libraries/ run as they are printed, the commands of docs/first_policy.md in small."""
+"""The examples of docs/libraries/ run as they are, the commands of docs/first_policy.md in small."""
 
 import os
 import re
@@ -21,10 +21,11 @@ PAGES = {
 
 
 def example(page):
-    """The file on a page."""
+    """The file that a page shows."""
     text = (ROOT / "docs" / "libraries" / f"{page}.md").read_text(encoding="utf-8")
-    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    return code
+    (path,) = re.findall(r"^<!-- code: (\S+) -->$", text, re.MULTILINE)
+    assert f"](../../{path})" in text
+    return (ROOT / path).read_text(encoding="utf-8")
 
 
 def called(command, folder, **more):
@@ -63,6 +64,7 @@ def test_an_example_is_short_and_is_the_only_one_of_its_page(page):
     compile(code, page, "exec")
     assert len(code.splitlines()) <= 100
     assert set(PAGES) == {path.stem for path in (ROOT / "docs" / "libraries").glob("*.md")}
+    assert len(PAGES) == len(list((ROOT / "examples" / "libraries").glob("*.py")))
 
 
 @pytest.mark.slow
