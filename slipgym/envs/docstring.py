@@ -34,7 +34,8 @@ TITLES = (
 _FRAMES = """\
 One step is one control step of 1/120 s, in which the slip-velocity sensors are sampled once. The pad frame
 moves with the wrist: x and y span the contact plane (x is horizontal and y points up while the wrist is
-level). Angles and torques are positive about the grip axis from finger 1 to finger 2. All units are SI."""
+level). Angles and torques are positive about the grip axis from finger 1 to finger 2. All units are SI. An
+estimator computes friction from force, torque and slip velocity while the object slips."""
 
 _ACTION = """\
 `Box(-1, 1, (1,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` ({low:g} N)

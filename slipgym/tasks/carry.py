@@ -12,8 +12,8 @@ firm on average, and so is one that allows for every friction: the grip has to f
 plan of the wrist announces (its acceleration now and in 50, 100 and 200 ms is observed), by a factor that
 depends on friction.
 
-Mass and friction are unknown: the mass shows in the load when the support gives way; an estimator computes
-friction from force, torque and slip velocity when the box slips.
+Mass and friction are unknown: the mass shows in the load when the support gives way, and friction when the
+box slips.
 
 The swing reaches 5 to 10 m/s^2 and 1.7 m/s, within the limits of a light arm such as Franka Emika's. mu_c is
 drawn from 0.15 to 0.8, log-uniformly (`tasks.carry.friction_range`).

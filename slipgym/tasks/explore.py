@@ -14,12 +14,6 @@ bound of mu_s and nothing of mu_c and r. mu_s shows when a slip begins, mu_c in 
 slides and turns: the weight makes it slide, and a turn of the wrist makes it turn, since its inertia holds
 it back.
 
-Poke and Strike (arXiv 2509.00178) is a comparable task on a robot, which pokes a puck before it strikes it.
-
-The controller measures friction itself: load over grip at the break-away shows mu_s, force over grip in the
-slide that follows shows mu_c, and torque over grip in a turn shows r. It combines these values with the
-estimate, each with the weight of its variance. With true friction it commits itself in the first step.
-
 ## Action Space
 
 `Box(-1, 1, (10,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` (0.6 N) and

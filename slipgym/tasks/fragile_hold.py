@@ -8,8 +8,7 @@ the force at which it breaks.
 
 That force is 1.5 to 2.5 times the least grip that holds the box through the episode: the ratio is known
 (`allowance`), the force itself is not. It follows from mass and friction, which are unknown: the mass shows
-in the load when the support gives way, and friction has to be found out. An estimator computes it from
-force, torque and slip velocity when the box slips.
+in the load when the support gives way, and friction when it slips.
 
 Friction decides this task. mu_c is drawn from 0.15 to 0.8, log-uniformly
 (`tasks.fragile_hold.friction_range`; assumed, from slippery to rubber-like pairs), so that a grip which

@@ -4,8 +4,7 @@
 
 A parallel gripper holds a box from both sides. The wrist oscillates along x and z and in pitch, and short
 pushes act on the box. The box must not slip, and the grip force should be as small as possible. Mass and
-friction are unknown: an estimator computes friction from force, torque and slip velocity when the box slips.
-The task follows the holding task of Waltersson and Karayiannidis (arXiv 2410.19660).
+friction are unknown. The task follows the holding task of Waltersson and Karayiannidis (arXiv 2410.19660).
 
 By default a firm grip solves every episode. With `grip_limit` success asks for an economical grip, too: the
 mean grip may be at most `grip_limit` times the least grip, the smallest constant one with which both pads

@@ -9,8 +9,8 @@ box swings up like a pendulum, and the grip has to close when it arrives.
 
 This is pivoting, as Holladay, Paolini and Mason planned it (ICRA 2015), with the wrist as the drive. The
 wrist reaches 1.7 m/s and 15 m/s^2 (`tasks.pivot_to.wrist_speed`, `wrist_acceleration`), about the limits of
-a Franka Emika arm. The acceleration counts what the agent commands, along x and z together. Friction is
-unknown, mu_c from 0.3 to 0.9, log-uniformly (`tasks.pivot_to.friction_range`).
+a Franka Emika arm. The acceleration counts what the agent commands, along x and z together. mu_c is drawn
+from 0.3 to 0.9, log-uniformly (`tasks.pivot_to.friction_range`).
 
 Friction has to be neither small nor large. Some sliding is inevitable, since the slip twist is normal to the
 limit surface at the load: with k = 2 mu_c f_n / f_t the box slides r / sqrt(k^2 - 1) per radian, along the
@@ -22,9 +22,6 @@ disc of r = 10 mm the slide would be three times as large; the task therefore ha
 fingertip with r = 3 mm (`tasks.pivot_to.radius`, the reset option `r`). At the end friction has to hold the
 box beside the pads: m g d sin(80 deg) = 0.029 N m of the 2 mu_c r 25 N = 0.045 N m at mu_c 0.3. So the box
 is light, an empty carton of 30 g.
-
-The controller (`policies.controllers.pivot_to`) uses the model of a pendulum, the size of the box and the
-usual age of the readings.
 
 ## Action Space
 

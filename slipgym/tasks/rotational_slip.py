@@ -4,8 +4,7 @@
 
 A parallel gripper on a wrist at rest holds a bar near one end. The agent reduces the grip force so that the
 bar's weight turns it between the pads along a trapezoidal reference, and then increases it so that the bar
-stops. Friction is unknown: an estimator computes it from force, torque and slip velocity while the bar
-turns. The task follows the rotational slip of Waltersson and Karayiannidis (arXiv 2410.19660).
+stops. The task follows the rotational slip of Waltersson and Karayiannidis (arXiv 2410.19660).
 
 Some sliding is inevitable. The slip twist is normal to the limit surface at the load, v_t / omega = r^2 f_t
 / tau, and tau / f_t is the weight's lever d cos(tilt). A turn from -angle/2 to +angle/2 about horizontal
@@ -16,9 +15,6 @@ On a disc (`contact="distributed"`), whose limit surface is flatter there, it is
 level takes m g d / (2 mu_c r) per finger. The task therefore has its own light and long object
 (`tasks.rotational_slip.object`): 0.06 kg, 460 mm by 40 mm, gripped 180 mm from its centre, which takes 15 N
 at mu_c 0.36.
-
-The bar turns in short jumps and almost without translation, from which the estimator "rls" learns little;
-the default estimator and "joint" learn enough.
 
 ## Starting State
 
@@ -32,9 +28,9 @@ the turn is symmetric about horizontal. The bar turns clockwise: theta decreases
 - Terminated: the bar is dropped.
 - Truncated: settle + duration + hold have passed (6.5 s, 780 control steps).
 
-Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, -theta is
-`angle` within `tolerance` (2 deg), and it never slid further than `slide_tolerance` (1 mm) at the pad
-centre. A slide further than that is the violation that `violated` reports.
+Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, -theta is `angle`
+within `tolerance` (2 deg), and it never slid further than `slide_tolerance` (1 mm) at the pad centre. A
+slide further than that is the violation that `violated` reports.
 
 ## Info
 
