@@ -177,17 +177,6 @@ def test_the_script_runs(tmp_path, env_id):
     assert all(name in done.stdout for name in names)
 
 
-def test_the_page_explains_what_the_script_prints():
-    page = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
-    printed = page.partition("```text\n")[2].partition("```")[0].splitlines()[3:]
-    names = [line.partition("  ")[0] for line in printed]
-    player = measure.Player("slipgym/LinearSlip-v0")
-    shares = [figure.name for figure in measure.breakdown(player, 1)]
-    player.env.close()
-    assert [name for name in names if name.startswith("env.step: ")] == shares
-    assert all(f"**{name}" in page for name in names if name not in shares and "quartile" not in name)
-
-
 def test_a_third_of_the_headlines_rows_slips_and_none_of_a_firm_hold():
     slipping = {}
     for name, forces in batch.WORKLOADS.items():

@@ -1,4 +1,4 @@
-"""A seeded sample of the figures in docs/results/levels.md is printed again, and compared with them.
+"""A seeded sample of the figures in docs/results/levels.txt is printed again, and compared with them.
 
 A figure is a success rate over seeded episodes, which repeats to the last episode on one processor;
 another processor may round differently. Beyond `TOLERANCE` the page is older than the code.
@@ -25,7 +25,7 @@ def table() -> dict[tuple[str, str, str], float]:
     """(task, level, column) -> success [%]."""
     found = {}
     head: list[str] = []
-    for line in (ROOT / "docs/results/levels.md").read_text(encoding="utf-8").splitlines():
+    for line in (ROOT / "docs/results/levels.txt").read_text(encoding="utf-8").splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
         if cells[:2] == ["task", "level"]:
             head = cells[2:]

@@ -65,6 +65,15 @@ def test_every_page_can_be_reached_from_the_readme():
     assert [str(page.relative_to(ROOT)) for page in readable if page not in reached] == []
 
 
+def test_every_picture_is_shown():
+    shown = "".join(page.read_text(encoding="utf-8") for page in PAGES)
+    pictures = [
+        path for folder in ("images", "learned") for path in (ROOT / "docs" / folder).glob("*.[pg][ni][gf]")
+    ]
+    assert len(pictures) > 20
+    assert [path.name for path in pictures if f"{path.parent.name}/{path.name})" not in shown] == []
+
+
 def test_a_broken_link_is_found(tmp_path):
     page = tmp_path / "page.md"
     page.write_text("# A page, and more\n\n[here](#a-page-and-more) [`there`](gone.md) `[code](no.md)`\n")

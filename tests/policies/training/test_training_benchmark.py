@@ -68,11 +68,3 @@ def test_the_script_runs(tmp_path):
     assert len(names) == len(set(names)) == 29
     assert all(name in done.stdout for name in names)
     assert "torch" in found["machine"]
-
-
-def test_the_page_explains_what_is_printed():
-    page = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
-    printed = page.partition("## Learning")[2].partition("```text\n")[2].partition("```")[0].splitlines()[3:]
-    names = [line.partition("  ")[0] for line in printed]
-    assert len(names) == 29
-    assert all(f"**{name}" in page for name in names if "quartile" not in name and "4096" not in name)

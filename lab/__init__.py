@@ -1,0 +1,1 @@
+"""Serves this project alone: the reproduction, ablations, campaigns, comparisons; no wheel has it."""
