@@ -1,4 +1,4 @@
-"""Writes the pages of the environments from their docstrings; what most of them share stands on one page.
+"""Writes the pages of the environments from their docstrings; shared parts stand on one page.
 
 A docstring consists of sections, a section of blocks (paragraphs, lists, tables). A block that occurs in at
 least `SHARED` docstrings, and a row of the tables in `SPLIT` that occurs in all, moves to `common.md`.
@@ -16,7 +16,7 @@ SHARED = 5
 SPLIT = ("Observation Space", "Rewards", "Reset Options", "Info")
 """Sections whose tables are divided by rows."""
 NOTE = "<!-- Made by scripts/make_docs.py from the docstrings of slipgym/tasks/. -->"
-COMMON = f"""# What all environments share
+COMMON = f"""# Common to all environments
 
 {NOTE}
 

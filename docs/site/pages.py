@@ -54,6 +54,6 @@ def shown(text: str) -> str:
 def linked(text: str) -> str:
     """The text with links to the pages of the site instead of files of the repository."""
     for page, source in OUTSIDE.items():
-        text = text.replace(f"](../../{source}", f"](../{page}")
         text = text.replace(f"](../{source}", f"]({page}").replace(f"]({source}", f"]({page}")
+        text = text.replace(f"](../../{source}", f"](../{page}")
     return text

@@ -3,10 +3,11 @@
 import re
 from collections.abc import Iterable
 
-from slipgym.config import load, load_randomization
+import gymnasium as gym
+
+from slipgym.config import load_randomization
 from slipgym.config.distribution import Distribution
 from slipgym.config.randomization import Ranges
-from slipgym.envs import privileged
 
 PRESETS = ("train", "lab", "eval_ood")
 MARK = re.compile(r"<!-- table: ([\w -]+) -->")
@@ -46,10 +47,12 @@ def said(value: object) -> str:
 
 def privileged_columns() -> str:
     """Columns of the group "privileged" with their bounds."""
+    env = gym.make("slipgym:slipgym/Hold-v0", engine="planar", observation_mode="dict")
     rows = [
         (f"`{column.name}`", f"{column.low:g}", f"{column.high:g}", column.unit, column.meaning)
-        for column in privileged.columns(load())
+        for column in env.unwrapped.privileged_columns
     ]
+    env.close()
     return table("Column | Min | Max | Unit | Meaning", rows)
 
 
