@@ -1,6 +1,7 @@
 """Writes docs/environments/ from the environments' docstrings, and pictures to docs/images/."""
 
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -15,13 +16,11 @@ def main(
     pictures: Annotated[bool, typer.Option(help="Whether to make the pictures too.")] = True,
 ) -> None:
     """Write the pages and a picture of every registered environment, and an animation of all."""
-    sys.path.insert(0, str(DOCS / "site"))
-    from environments import pages
-
     from policies.play import write_screenshots
     from policies.play.montage import write_montage
 
-    for name, text in pages().items():
+    sys.path.insert(0, str(DOCS / "site"))
+    for name, text in import_module("environments").pages().items():
         (DOCS / "environments" / name).write_text(text, encoding="utf-8")
         typer.echo(DOCS / "environments" / name)
     if pictures:

@@ -33,7 +33,6 @@ INNER = {
     "policies/research/reproduction/planar.py": "steps a simulation without an environment",
     "policies/training/adapter.py": "wraps the vector environment",
     "policies/training/checkpoint_io.py": "writes the state of environments",
-    "scripts/make_docs.py": "writes the environments' pages",
 }
 """Files that may import inner modules, and why."""
 
