@@ -1,4 +1,4 @@
-"""What "joint", "disc" and "ukf" share: everything but the learning of mu_c and r.
+"""Shared parts of "joint", "disc" and "ukf": everything but the learning of mu_c and r.
 
 They learn from instants of true sliding. A velocity is the mean over a window that closed `velocity_delay`
 samples ago; a force is an instant. The force at the boundary of two windows is a force of sliding if both

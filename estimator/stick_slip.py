@@ -1,4 +1,4 @@
-"""What all estimators share: parameters, state, mu_s from stick-slip events and the heuristic that halts.
+"""Shared parts of all estimators: parameters, state, mu_s from stick-slip events, the heuristic that halts.
 
 Source: Waltersson & Karayiannidis, Friction Estimation for In-Hand Planar Motion (ISER 2025): Algorithm 1 for
 mu_s, and the heuristic. In the compiled functions `state` is a record whose dtype holds STICK_SLIP_STATE and

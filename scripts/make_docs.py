@@ -1,5 +1,7 @@
 """Writes docs/environments/ from the environments' docstrings, and pictures to docs/images/."""
 
+import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -13,12 +15,12 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 def main(
     pictures: Annotated[bool, typer.Option(help="Whether to make the pictures too.")] = True,
 ) -> None:
-    """Write a page and a picture for every registered environment, and an animation of all."""
+    """Write the pages and a picture of every registered environment, and an animation of all."""
     from lab.montage import write_montage
     from policies.play import write_screenshots
-    from slipgym.envs.docstring import pages
 
-    for name, text in pages().items():
+    sys.path.insert(0, str(DOCS / "site"))
+    for name, text in import_module("environments").pages().items():
         (DOCS / "environments" / name).write_text(text, encoding="utf-8")
         typer.echo(DOCS / "environments" / name)
     if pictures:

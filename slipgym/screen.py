@@ -1,4 +1,4 @@
-"""Whether there is a screen for a window. Imports nothing heavy."""
+"""Finds out whether there is a screen for a window. Imports nothing heavy."""
 
 from __future__ import annotations
 

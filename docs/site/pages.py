@@ -1,5 +1,7 @@
-"""Hook of mkdocs: the files beside docs/ that are pages of the site, and links to them that fit."""
+"""Hook of mkdocs: adds pages from outside docs/, fills in the tables that are generated, adapts links."""
 
+import re
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,10 @@ OUTSIDE = {
     **{
         f"examples/{name}.ipynb": f"examples/{name}.ipynb"
         for name in ("1_first_rollout", "2_estimator_on_a_log", "3_what_friction_is_worth")
+    },
+    **{
+        f"examples/libraries/{name}.py": f"examples/libraries/{name}.py"
+        for name in ("collect", "ppo", "rllib_ppo", "skrl_ppo", "torchrl_ppo")
     },
 }
 """Path in the site -> path in the repository."""
@@ -28,12 +34,26 @@ def on_files(files: Files, config: Any) -> Files:
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:
-    """Lead links of the pages in docs/ to the site's pages."""
-    return linked(markdown.replace("](../README.md", "](README.md"))
+    """Fill in a page's tables and files, and lead its links to the site's pages."""
+    sys.path.insert(0, str(Path(__file__).parent))
+    from tables import filled
+
+    return linked(shown(filled(markdown)).replace("](../README.md", "](README.md"))
+
+
+def shown(text: str) -> str:
+    """The text with the files that `<!-- code: PATH -->` names."""
+    root = Path(__file__).resolve().parents[2]
+    return re.sub(
+        r"<!-- code: (\S+) -->",
+        lambda found: f"```python\n{(root / found[1]).read_text(encoding='utf-8')}```",
+        text,
+    )
 
 
 def linked(text: str) -> str:
     """The text with links to the pages of the site instead of files of the repository."""
     for page, source in OUTSIDE.items():
         text = text.replace(f"](../{source}", f"]({page}").replace(f"]({source}", f"]({page}")
+        text = text.replace(f"](../../{source}", f"](../{page}")
     return text

@@ -1,4 +1,4 @@
-"""Whether a motion is a slip or a spring of the pad: how far the object moved, how far a pad can spring."""
+"""Separates slips from springs of the pad: how far the object moved, how far a pad can spring."""
 
 import math
 

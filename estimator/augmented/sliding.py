@@ -1,4 +1,4 @@
-"""What "adaptive" learns from a slide: keeps the samples, finds the instants, tests for jumps."""
+"""Learns from a slide for "adaptive": keeps the samples, finds the instants, tests for jumps."""
 
 import math
 

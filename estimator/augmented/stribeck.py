@@ -1,4 +1,4 @@
-"""What slow slips have of static friction: the Stribeck effect.
+"""Computes the part of static friction in slow slips: the Stribeck effect.
 
 Friction of a slip at the scaled speed w is mu_c + (mu_s - mu_c) exp(-(w / v_s)^2) (Waltersson &
 Karayiannidis, Planar friction modelling with LuGre dynamics and limit surfaces, arXiv 2308.01123, whose v_s

@@ -1,4 +1,4 @@
-"""What "adaptive" found out about the sensors: delay, zero errors, tilt, centre of pressure, viscosity.
+"""Lists what "adaptive" found about the sensors: delay, zero errors, tilt, centre of pressure, viscosity.
 
 Each value is what the filter holds, with its deviation from the spread that a careful user would assume:
 the filter assumes a narrower one (`caution`), so what it has not seen is widened back to that spread.

@@ -1,4 +1,4 @@
-"""Shares between command lines: options with several values, renamed options, the help of a task's name."""
+"""Shared parts of command lines: several values of an option, renamed options, the help of a task's name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an exploration has seen in the forces: ratios of break-aways, slides and turns.
+"""Collects what an exploration has seen in the forces: ratios of break-aways, slides and turns.
 
 A break-away shows mu_s: the load at rest over the normal force a moment before the force falls. As the grip
 falls in proportion, the normal force is the command times a factor, which is smoothed. In the slide that

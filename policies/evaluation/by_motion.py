@@ -1,4 +1,4 @@
-"""What is measured in a task that says no more than which motion it is about."""
+"""Measures of a task that only names its motion: errors, slip and grip force."""
 
 from __future__ import annotations
 

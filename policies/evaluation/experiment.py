@@ -1,4 +1,4 @@
-"""What an experiment asks for."""
+"""The model of an experiment: task, policies, friction sources, trials."""
 
 from __future__ import annotations
 

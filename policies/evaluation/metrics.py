@@ -1,4 +1,4 @@
-"""What a recording is reduced to: one row of the table of trials."""
+"""Reduces a recording to one row of the table of trials."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is kept of an episode, step by step."""
+"""Records an episode step by step."""
 
 from __future__ import annotations
 

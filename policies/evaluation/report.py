@@ -1,4 +1,4 @@
-"""What a finished run says on a terminal."""
+"""Writes the report of a finished run for a terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the sensors of one finger say during an episode, each at its own rate."""
+"""Records the sensors of one finger during an episode, each at its own rate."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a model of Stable-Baselines3 is made of: its network, its critic, its tensors."""
+"""Takes a model of Stable-Baselines3 apart: its network, its critic, its tensors."""
 
 from __future__ import annotations
 

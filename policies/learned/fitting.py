@@ -1,4 +1,4 @@
-"""Whether an environment is the one a policy was trained for."""
+"""Compares an environment with the one that a policy was trained for."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which columns of an environment's observation a policy reads."""
+"""Finds the columns of an environment's observation that a policy reads."""
 
 from __future__ import annotations
 

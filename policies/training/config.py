@@ -1,4 +1,4 @@
-"""What a training run is: task, algorithm, environment, budget, evaluation."""
+"""The model of a training run: task, algorithm, environment, budget, evaluation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How good a learner is on held-out seeds."""
+"""Evaluates a learner on held-out seeds."""
 
 from __future__ import annotations
 

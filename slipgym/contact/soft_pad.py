@@ -1,4 +1,4 @@
-"""What a pad of rubber adds to its friction: load, shape, shear, creep and age. Each is off by default.
+"""The effects of a rubber pad on friction: load, shape, shear, creep and age. Each is off by default.
 
 With f_n the normal force, f_0 `reference_force`, and all displacements scaled, (x, y, r theta):
 

@@ -1,4 +1,4 @@
-"""Generates the docstring and the page of an environment from its task's file and the tables in the code.
+"""Generates the docstring of an environment from its task's file and the tables in the code.
 
 The docstring of a task's module is a summary and sections under second-level headings, as in `TITLES`.
 "Description", "Starting State" and "Version History" are copied; "Rewards" is appended to the table of terms,
@@ -8,7 +8,6 @@ Sections without content are left out.
 
 from __future__ import annotations
 
-import importlib
 import inspect
 import re
 
@@ -16,10 +15,7 @@ from slipgym.config import Config, load
 from slipgym.envs.arguments import ScalarArguments, fields
 from slipgym.envs.infos import FLAGS, NUMBERS
 from slipgym.envs.observation import FRICTION_COLUMNS, columns
-from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import Task
-
-_NOTE = "<!-- Made by scripts/make_docs.py; what is written by hand stands in slipgym/tasks/. -->"
 
 TITLES = (
     "Description",
@@ -38,7 +34,8 @@ TITLES = (
 _FRAMES = """\
 One step is one control step of 1/120 s, in which the slip-velocity sensors are sampled once. The pad frame
 moves with the wrist: x and y span the contact plane (x is horizontal and y points up while the wrist is
-level). Angles and torques are positive about the grip axis from finger 1 to finger 2. All units are SI."""
+level). Angles and torques are positive about the grip axis from finger 1 to finger 2. All units are SI. An
+estimator computes friction from force, torque and slip velocity while the object slips."""
 
 _ACTION = """\
 `Box(-1, 1, (1,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` ({low:g} N)
@@ -72,11 +69,19 @@ _END = """\
 - Truncated: the episode has reached its time limit. The environment truncates by itself; no `TimeLimit` is
   needed."""
 
+_DROPPED = """\
+An object is dropped when neither pad touches it or a pad reaches beyond its edge. The environment truncates
+by itself; no `TimeLimit` is needed."""
+
 _REWARDS = """\
 The reward of a control step is the sum of these terms. A dense term pays its value, limited to [-1, 1], times
 scale / (control steps of the episode) in every step, so that its sum over an episode stays within its scale.
 An event pays value times scale when it happens. The scales stand under `tasks.{key}.reward` in the
 configuration; docs/rewards.md explains them."""
+
+_STARTING = """\
+Every task samples the material, if `material` is "random", the sensors' biases, and the fractions of a count
+in the slip sensors. Grip and sensors run for six control steps before time 0."""
 
 _REWARD_TERMS = (
     "`reward_terms`",
@@ -104,8 +109,8 @@ def docstring(task: Task) -> str:
         "Action Space": own.get("Action Space") or _action(config),
         "Observation Space": _observation(config, task),
         "Rewards": _joined(_rewards(task), own.get("Rewards", "")),
-        "Starting State": own.get("Starting State", ""),
-        "Episode End": own.get("Episode End", _END),
+        "Starting State": _joined(own["Starting State"], _STARTING) if "Starting State" in own else "",
+        "Episode End": _joined(own["Episode End"], _DROPPED) if "Episode End" in own else _END,
         "Arguments": _arguments(task),
         "Reset Options": _options(task),
         "Info": _infos(own.get("Info")),
@@ -177,27 +182,3 @@ def _options(task: Task) -> str:
     rows = [(f"`{name}`", field.description or "") for name, field in fields.items()]
     head = "Parameters that `reset(options={...})` can fix for one episode; unknown names are errors."
     return f"{head}\n\n{_table(('Option', 'Meaning'), rows)}"
-
-
-def page(name: str, environment: type) -> str:
-    """Markdown page of an environment.
-
-    Args:
-        name: Its id.
-        environment: Its class.
-    """
-    use = f'```python\nimport gymnasium as gym\n\nenv = gym.make("slipgym:{name}")\n```'
-    picture = (
-        f"![{environment.task.name}: view and plots of an episode](../images/{environment.task.key}.png)"
-    )
-    return f"# {name}\n\n{_NOTE}\n\n{use}\n\n{picture}\n\n{inspect.getdoc(environment)}\n"
-
-
-def pages() -> dict[str, str]:
-    """File name -> page, of every registered environment."""
-    written = {}
-    for name, entry_point in ENVIRONMENTS.items():
-        module, _, cls = entry_point.partition(":")
-        environment = getattr(importlib.import_module(module), cls)
-        written[f"{environment.task.key}.md"] = page(name, environment)
-    return written

@@ -1,4 +1,4 @@
-"""How a force/torque sensor is mounted: off centre, tilted, with cross-talk between its axes.
+"""The mounting of a force/torque sensor: off centre, tilted, with cross-talk between its axes.
 
 All three are one matrix, sampled at the start of an episode, which no estimator knows:
 reading = mix load + bias.

@@ -4,34 +4,23 @@
 
 A parallel gripper holds a box that stands on a support. The support gives way, the wrist lifts the box,
 swings it sideways and half of the way back, lowers it, and a support takes it over again. The wrist pitches
-while it swings. The box must not slip, and the grip must be economical: its mean over the episode may be at
-most `economy` (1.6) times the mean of the least grip that holds the box. A constant grip that holds the
-largest load is too firm on average, and so is one that allows for every friction: the grip has to follow
-the load, which the plan of the wrist announces (its acceleration now and in 50, 100 and 200 ms is
-observed), by a factor that depends on friction. Mass and friction are unknown: the mass shows in the load
-when the support gives way; an estimator computes friction from force, torque and slip velocity when the box
-slips.
+while it swings.
 
-The swing reaches 5 to 10 m/s^2 and 1.7 m/s, as a light arm does: Franka Emika states 13 m/s^2 and 1.7 m/s
-as the limits of its arm's hand (Franka Control Interface, "Robot and interface specifications"). mu_c is
+The box must not slip, and the grip must be economical: its mean over the episode may be at most `economy`
+(1.6) times the mean of the least grip that holds the box. A constant grip that holds the largest load is too
+firm on average, and so is one that allows for every friction: the grip has to follow the load, which the
+plan of the wrist announces (its acceleration now and in 50, 100 and 200 ms is observed), by a factor that
+depends on friction.
+
+Mass and friction are unknown: the mass shows in the load when the support gives way, and friction when the
+box slips.
+
+The swing reaches 5 to 10 m/s^2 and 1.7 m/s, within the limits of a light arm such as Franka Emika's. mu_c is
 drawn from 0.15 to 0.8, log-uniformly (`tasks.carry.friction_range`).
 
-The least grip is that with which both pads stick, by the ellipsoidal limit surface:
-sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s for the load per finger, and at least `gripper.force_min`. The load
-follows from the plan of the wrist and from the disturbances, for a box that never slips.
-
-Episodes solved [%] by the best of 16 constant grips, chosen on other episodes, and by the classic controller
-without friction in the observation, with nominal, estimated and true friction, 200 each on the planar engine
-(`slipgym policy-leaderboard carry`; docs/levels.md says what a level is):
-
-| level | best constant | none | nominal | estimated | true |
-|---|---|---|---|---|---|
-| easy | 0 | 21 | 17.5 | 98.5 | 100 |
-| standard | 0 | 16.5 | 15 | 95 | 98 |
-| hard | 0 | 16 | 13 | 93.5 | 96.5 |
-
-The controller without friction keeps one guess for all episodes. With sensors alone and a memory of load over
-grip just before the last slip it solves about as many as with the estimate (docs/levels.md).
+The least grip is that with which both pads stick, by the ellipsoidal limit surface: sqrt(f_x^2 + f_y^2 +
+(tau / r)^2) / mu_s for the load per finger, and at least `gripper.force_min`. The load follows from the plan
+of the wrist and from the disturbances, for a box that never slips.
 
 ## Rewards
 
@@ -43,21 +32,20 @@ The economy is an allowance for the whole episode. It is used up when the sum of
 The box (0.2 to 0.4 kg) stands on the support, in a grip of `tasks.carry.initial_force` (1 N). For `settle`
 (0.3 s) the support bears all of its weight, a share that falls to 0 linearly in `lift_off` (0.8 s). After
 0.15 s the wrist rises by `lift`, swings by `swing` and back by half of it while it pitches by up to `pitch`
-and back, and sinks by `lift`, each as a minimum-jerk move. After a short rest the support takes the box
-over, again in `lift_off`. Sampled at random are mass, friction, ways and directions, the largest
-acceleration of the swing, the material, if `material` is "random", the sensors' biases, and the fractions
-of a count in the slip sensors. Grip and sensors run for six control steps before time 0. A wrist velocity
-that the agent commands is added to the plan; the limit `wrist_speed` applies to the sum.
+and back, and sinks by `lift`, each as a minimum-jerk move.
+
+After a short rest the support takes the box over, again in `lift_off`. Sampled at random are mass, friction,
+ways and directions, and the largest acceleration of the swing. A wrist velocity that the agent commands is
+added to the plan; the limit `wrist_speed` applies to the sum.
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` has passed (4.7 s, 564 control steps); the slowest plan takes 4.4 s. The environment
-  truncates by itself; no `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `duration` has passed (4.7 s, 564 control steps); the slowest plan takes 4.4 s.
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never
-slipped further than `tolerance` (2 mm), and the mean grip was at most `economy` times the mean least grip.
-A further slip and a larger sum of the grip are the violations that `violated` reports.
+slipped further than `tolerance` (2 mm), and the mean grip was at most `economy` times the mean least grip. A
+further slip and a larger sum of the grip are the violations that `violated` reports.
 
 ## Info
 

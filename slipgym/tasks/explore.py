@@ -5,61 +5,32 @@
 A parallel gripper holds a box of unknown mass, friction and contact radius. The agent finds out mu_s, mu_c
 and r, to `accuracy` (5 %) each, as fast as it can, and it may let the box slip by 2 mm and 5 degrees
 meanwhile. Its action includes a guess: the logarithms of mu_s, mu_c and r and of their relative standard
-deviations. It commits itself by stating deviations of at most `commitment` (2.5 %) for all three, which
-ends the episode.
+deviations. It commits itself by stating deviations of at most `commitment` (2.5 %) for all three, which ends
+the episode.
 
 mu_c is drawn from 0.2 to 0.8, log-uniformly, mu_s / mu_c is the material's, and r is drawn from 6 to 10 mm
 (`tasks.explore.friction_range`, `tasks.explore.radius_range`; assumed). A box that sticks shows a lower
-bound of mu_s and nothing of mu_c and r. mu_s shows when a slip begins, mu_c in any slip, and r where the
-box slides and turns: the weight makes it slide, and a turn of the wrist makes it turn, since its inertia
-holds it back.
-
-The reference for the time is Poke and Strike (arXiv 2509.00178), in which a robot pokes a puck before it
-strikes it: 90 % success after less than 1.2 s of exploration in the mean. The objects and the errors that a
-strike allows differ from those here, so the figures compare in their order of magnitude alone.
-
-Episodes solved [%] by the best of 16 constant grips, chosen on other episodes, and by the classic controller:
-without friction, with nominal friction, with sensors alone and a memory of what forces have shown, with the
-estimates of "adaptive" (the default estimator) and of "joint", and with true friction; 200 each on the planar
-engine (`slipgym policy-leaderboard explore`, the column "joint" with `--estimator joint`; docs/levels.md says
-what a level is):
-
-| level | best constant | none | nominal | memory | adaptive | joint | true |
-|---|---|---|---|---|---|---|---|
-| easy | 0 | 0 | 0.5 | 98 | 98.5 | 99.5 | 100 |
-| standard | 0 | 0 | 0.5 | 97 | 97 | 99.5 | 100 |
-| hard | 0.5 | 3 | 0 | 91.5 | 90 | 89 | 100 |
-
-True friction is an upper bound: the controller commits itself in the first step. With PyBullet 96 % (95 %
-interval 93 to 98) of 200 episodes succeed with "adaptive", and they last 1.13 s (1.01 to 1.28) in the mean;
-99 % (96 to 100) and 1.08 s (0.96 to 1.22) with "joint" (`slipgym evaluate explore`). The gains of the
-controller were chosen on other episodes.
-
-The controller measures friction itself: load over grip at the break-away shows mu_s, force over grip in the
-slide that follows mu_c, and torque over grip in a turn r. Its guess combines these values with the estimate,
-each with the weight of its variance. The estimate alone is not enough: "adaptive" takes the limit surface for
-that of a uniform disc, and its deviations allow for errors of the sensors that these do not have: they are
-too large for a commitment. "joint" is given the ellipsoidal limit surface, which is that of the pads, and the
-delay of the sensors. The controller is given neither, and allows for both limit surfaces. So this task does
-not need an estimator. With the sensors "lab" nothing but the truth solves it: zero errors of 0.15 N are
-a tenth of the load (docs/policy_leaderboard.md).
+bound of mu_s and nothing of mu_c and r. mu_s shows when a slip begins, mu_c in any slip, and r where the box
+slides and turns: the weight makes it slide, and a turn of the wrist makes it turn, since its inertia holds
+it back.
 
 ## Action Space
 
-`Box(-1, 1, (10,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` (0.6 N)
-and +1 is `gripper.force_max` (25 N). Then the wrist's velocity along world x and z and its pitch rate, from
--0.5 to 0.5 m/s (`gripper.wrist_speed_max`) and from -3 to 3 rad/s (`gripper.wrist_pitch_rate_max`). Then the
-guess: ln mu_s, ln mu_c, ln r, and the logarithms of their relative standard deviations, in the ranges of
-docs/modes.md. Values outside [-1, 1] are clipped; NaN and infinity are errors. The actuator force follows the
-command with a dead time (4 ms) and a first-order lag (12 ms), the wrist within a control step.
+`Box(-1, 1, (10,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` (0.6 N) and
++1 is `gripper.force_max` (25 N). Then the wrist's velocity along world x and z and its pitch rate, from -0.5
+to 0.5 m/s (`gripper.wrist_speed_max`) and from -3 to 3 rad/s (`gripper.wrist_pitch_rate_max`).
 
-This is "grip_force_wrist_guess", the `action_mode` of this task. In the other modes (see docs/modes.md) there
-is no guess, and the estimator's merged estimate and its deviations take its place.
+Then the guess: ln mu_s, ln mu_c, ln r, and the logarithms of their relative standard deviations, in the
+ranges of docs/modes.md. Values outside [-1, 1] are clipped; NaN and infinity are errors. The actuator force
+follows the command with a dead time (4 ms) and a first-order lag (12 ms), the wrist within a control step.
+
+This is "grip_force_wrist_guess", the `action_mode` of this task. In the other modes (see docs/modes.md)
+there is no guess, and the estimator's merged estimate and its deviations take its place.
 
 ## Rewards
 
-S is the log score of the guess: the mean of -ln s - (e / s)^2 / 2 over mu_s, mu_c and r, with e = ln(guess
-/ truth) and the stated deviation s. An agent that states the deviations that it has reaches the highest
+S is the log score of the guess: the mean of -ln s - (e / s)^2 / 2 over mu_s, mu_c and r, with e = ln(guess /
+truth) and the stated deviation s. An agent that states the deviations that it has reaches the highest
 expected score. `score` and `time` are at most 0, so that an agent gains nothing by waiting.
 
 The regret is that of a task that follows, in which the box is held at rest: its grip is 1.1 L(r) / mu_s by
@@ -70,23 +41,20 @@ regret is 1. Without an error it is 0.1.
 ## Starting State
 
 The box (0.15 to 0.3 kg) hangs at rest in a grip of `tasks.explore.initial_force` (20 N), its centre of mass
-between the pads. Sampled at random are its mass, friction, r, the material, if `material` is "random", the
-sensors' biases, and the fractions of a count in the slip sensors. Grip and sensors run for six control
-steps before time 0. The wrist moves as the agent commands.
+between the pads. Sampled at random are its mass, friction and r. The wrist moves as the agent commands.
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge; or the
-  agent commits itself: the three deviations of its guess are at most `commitment`.
-- Truncated: `duration` has passed (3 s, 360 control steps). The environment truncates by itself; no
-  `TimeLimit` is needed.
+- Terminated: the box is dropped; or the agent commits itself: the three deviations of its guess are at most
+  `commitment`.
+- Truncated: `duration` has passed (3 s, 360 control steps).
 
 Success (`info["is_success"]`): the episode has ended without a drop, mu_s, mu_c and r of the guess are
-within `accuracy` of the truth, and the budget of slip was kept: the path of the slip at the pad centre is
-at most `slide_tolerance` (2 mm), the path of the turn in the grip at most `tilt_tolerance` (5 deg).
-The paths add up, so that slipping back gains nothing. Using up the budget is the violation that `violated`
-reports. The truth is the mean of both pads, with jumps and drifts of the randomization, at the normal force
-at which the values hold on soft pads.
+within `accuracy` of the truth, and the budget of slip was kept: the path of the slip at the pad centre is at
+most `slide_tolerance` (2 mm), the path of the turn in the grip at most `tilt_tolerance` (5 deg). The paths
+add up, so that slipping back gains nothing. Using up the budget is the violation that `violated` reports.
+The truth is the mean of both pads, with jumps and drifts of the randomization, at the normal force at which
+the values hold on soft pads.
 
 ## Info
 

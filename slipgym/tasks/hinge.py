@@ -4,17 +4,18 @@
 
 A parallel gripper holds a box near its top. The wrist pitches along a trapezoidal profile. The grip must be
 loose enough that the box stays upright, turning between the pads like a door on a hinge, and firm enough
-that the box does not slide down. Friction is unknown: an estimator computes it from force, torque and slip
-velocity while the box turns. The task follows the hinge of Waltersson and Karayiannidis (arXiv 2410.19660),
-who pitch from 60 to 120 deg; with round pads only the relative turn matters.
+that the box does not slide down. The task follows the hinge of Waltersson and Karayiannidis (arXiv
+2410.19660), who pitch from 60 to 120 deg; with round pads only the relative turn matters.
 
 Sliding and tilt are coupled. While the box turns in the grip, the slip twist is normal to the limit surface
 at the load: the box slides r^2 / (d sin(tilt)) per radian, where d is the depth of its centre of mass below
 the pads. For a pad with r = 10 mm, d = 100 mm and a tilt of 5 deg that is 11 mm per radian, whatever the
-controller does. The task therefore has its own contact, a rounded fingertip with r = 3 mm
-(`tasks.hinge.radius`, the reset option `r`). Then f_n mu_c / f_t has to lie between about 1.9, for 2 mm in a
-turn of 60 deg, and 3.1, for 5 deg. Static friction, 1.4 to 1.6 times larger, makes the start difficult: a
-grip in that range would carry the box along by more than 5 deg before it slips.
+controller does.
+
+The task therefore has its own contact, a rounded fingertip with r = 3 mm (`tasks.hinge.radius`, the reset
+option `r`). Then f_n mu_c / f_t has to lie between about 1.9, for 2 mm in a turn of 60 deg, and 3.1, for 5
+deg. Static friction, 1.4 to 1.6 times larger, makes the start difficult: a grip in that range would carry
+the box along by more than 5 deg before it slips.
 
 ## Rewards
 
@@ -24,20 +25,18 @@ counts as tilt, for success too, so that an agent cannot simply undo the turn.
 ## Starting State
 
 The box (`tasks.hinge.object`: 0.2 kg, 50 mm by 250 mm, gripped 100 mm above its centre) hangs at rest in a
-grip of `tasks.hinge.initial_force` (5 N), with the wrist level. Sampled at random are the direction of the
-turn, the material, if `material` is "random", the sensors' biases, and the fractions of a count in the slip
-sensors. Grip and sensors run for six control steps before time 0. The wrist rests for `settle` (0.5 s),
-pitches by `turn` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
+grip of `tasks.hinge.initial_force` (5 N), with the wrist level. The direction of the turn is sampled at
+random. The wrist rests for `settle` (0.5 s), pitches by `turn` (60 deg) in `duration` (5 s), and rests for
+`hold` (1 s).
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps). The environment truncates by
-  itself; no `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps).
 
-Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never
-slid further than `slide_tolerance` (2 mm) at the pad centre and never tilted by more than
-`tilt_tolerance` (5 deg). A further slide or tilt is the violation that `violated` reports.
+Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never slid
+further than `slide_tolerance` (2 mm) at the pad centre and never tilted by more than `tilt_tolerance` (5
+deg). A further slide or tilt is the violation that `violated` reports.
 
 ## Info
 

@@ -4,31 +4,29 @@
 
 A parallel gripper holds a box from both sides. The wrist oscillates along x and z and in pitch, and short
 pushes act on the box. The box must not slip, and the grip force should be as small as possible. Mass and
-friction are unknown: an estimator computes friction from force, torque and slip velocity when the box slips.
-The task follows the holding task of Waltersson and Karayiannidis (arXiv 2410.19660).
+friction are unknown. The task follows the holding task of Waltersson and Karayiannidis (arXiv 2410.19660).
 
 By default a firm grip solves every episode. With `grip_limit` success asks for an economical grip, too: the
 mean grip may be at most `grip_limit` times the least grip, the smallest constant one with which both pads
-stick, sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s by the ellipsoidal limit surface. It counts the whole episode:
-shaking, pushes, and falls of friction and changes of mass within it; friction that varies over the surface is
-left out. `grip_limit_start` leaves the beginning out of the mean, so that a policy can find friction out. The
-mean counts, and not the peak, so that the grip may answer a push for a moment. Neither the least grip nor
-the mean allowed is observed. The levels "standard" and "hard" set `grip_limit`, to 1.75 and 1.5.
+stick, sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s by the ellipsoidal limit surface.
+
+The mean counts the whole episode: shaking, pushes, and falls of friction and changes of mass within it;
+friction that varies over the surface is left out. `grip_limit_start` leaves the beginning out of the mean,
+so that a policy can find friction out. The mean counts, and not the peak, so that the grip may answer a push
+for a moment. Neither the least grip nor the mean allowed is observed. The levels "standard" and "hard" set
+`grip_limit`, to 1.75 and 1.5.
 
 ## Starting State
 
 The box hangs at rest in a grip of `tasks.hold.initial_force` (15 N), its grasp point between the pads.
 Sampled at random are its mass (0.1 to 0.4 kg), the wrist's frequencies (1 to 3 Hz) and phases, the pushes
-(impulse, direction, lever and time; ranges in `tasks.hold`), the material, if `material` is "random", the
-sensors' biases, and the fractions of a count in the slip sensors. Grip and sensors run for six control steps
-before time 0; the oscillation builds up over 0.5 s. A wrist velocity that the agent commands is added to it;
-the gripper's limits apply to the sum.
+(impulse, direction, lever and time; ranges in `tasks.hold`). The oscillation builds up over 0.5 s. A wrist
+velocity that the agent commands is added to it; the gripper's limits apply to the sum.
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` has passed (8 s, 960 control steps). The environment truncates by itself; no
-  `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `duration` has passed (8 s, 960 control steps).
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped and never
 slipped further than `tolerance` (2 mm); with `grip_limit`, the mean actuator force of both fingers from

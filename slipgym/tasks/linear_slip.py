@@ -4,25 +4,21 @@
 
 A parallel gripper on a wrist at rest holds a box from both sides. The agent reduces the grip force so that
 the box slides down between the pads along a trapezoidal reference, and then increases it so that the box
-stops. Friction is unknown: an estimator computes it from force, torque and slip velocity while the box
-slides. The task follows the linear slip of Waltersson and Karayiannidis (arXiv 2507.06824 and arXiv
+stops. The task follows the linear slip of Waltersson and Karayiannidis (arXiv 2507.06824 and arXiv
 2410.19660).
 
 ## Starting State
 
 The box hangs at rest in a grip of `tasks.linear_slip.initial_force` (15 N), its grasp point between the
-pads. Sampled at random are the material, if `material` is "random", the sensors' biases, and the fractions
-of a count in the slip sensors. Grip and sensors run for six control steps before time 0.
+pads.
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `settle` + `duration` + `hold` have passed (0.5 s + 5 s + 1 s, 780 control steps). The
-  environment truncates by itself; no `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `settle` + `duration` + `hold` have passed (0.5 s + 5 s + 1 s, 780 control steps).
 
-Success (`info["is_success"]`): at the end of the last step the distance slid is within `tolerance` (2
-mm) of `distance`, and the box was not dropped. Nothing before the end makes it impossible: `violated` is
-always 0.
+Success (`info["is_success"]`): at the end of the last step the distance slid is within `tolerance` (2 mm) of
+`distance`, and the box was not dropped. Nothing before the end makes it impossible: `violated` is always 0.
 
 ## Info
 

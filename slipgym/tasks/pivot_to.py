@@ -5,48 +5,34 @@
 A parallel gripper holds a light box near its top. The agent commands the grip force and the velocity of the
 wrist. Within `duration` (1 s) the box has to turn about the grip axis by `goal`, 20 to 80 deg either way,
 and then stay. Gravity alone lets the box hang; so the wrist has to accelerate while the grip is loose, the
-box swings up like a pendulum, and the grip has to close when it arrives. This is pivoting, as Holladay,
-Paolini and Mason planned it (ICRA 2015), with the wrist as the drive. The wrist reaches 1.7 m/s and 15 m/s^2
-(`tasks.pivot_to.wrist_speed`, `wrist_acceleration`); Franka Emika states 1.7 m/s and 13 m/s^2 as the limits
-of its arm's hand. The acceleration counts what the agent commands, along x and z together. Friction is
-unknown, mu_c from 0.3 to 0.9, log-uniformly (`tasks.pivot_to.friction_range`).
+box swings up like a pendulum, and the grip has to close when it arrives.
+
+This is pivoting, as Holladay, Paolini and Mason planned it (ICRA 2015), with the wrist as the drive. The
+wrist reaches 1.7 m/s and 15 m/s^2 (`tasks.pivot_to.wrist_speed`, `wrist_acceleration`), about the limits of
+a Franka Emika arm. The acceleration counts what the agent commands, along x and z together. mu_c is drawn
+from 0.3 to 0.9, log-uniformly (`tasks.pivot_to.friction_range`).
 
 Friction has to be neither small nor large. Some sliding is inevitable, since the slip twist is normal to the
 limit surface at the load: with k = 2 mu_c f_n / f_t the box slides r / sqrt(k^2 - 1) per radian, along the
 load, whichever way it turns. With r = 3 mm and k = 10 that is 0.42 mm for 80 deg; in the swing the
-centripetal force raises f_t, and the slide with it. On the other side, the torque of the pads, k r f_t, has
-to be well below that of the wrist, m d a. With a disc of r = 10 mm the slide would be three times as large;
-the task therefore has its own contact, a rounded fingertip with r = 3 mm (`tasks.pivot_to.radius`, the reset
-option `r`). At the end friction has to hold the box beside the pads: m g d sin(80 deg) = 0.029 N m of the
-2 mu_c r 25 N = 0.045 N m at mu_c 0.3. So the box is light, an empty carton of 30 g.
+centripetal force raises f_t, and the slide with it.
 
-Episodes solved [%] by the best of 16 constant grips, chosen on other episodes, and by the classic controller
-without friction in the observation, with nominal, estimated and true friction, 200 each on the planar engine
-(`slipgym policy-leaderboard pivot_to`; docs/levels.md says what a level is):
-
-| level | best constant | none | nominal | estimated | true |
-|---|---|---|---|---|---|
-| easy | 0 | 85.5 | 73.5 | 100 | 100 |
-| standard | 0 | 72 | 57.5 | 99.5 | 99.5 |
-| hard | 0 | 41.5 | 35 | 96.5 | 98.5 |
-
-The controller (`policies.controllers.pivot_to`) uses the model of a pendulum, the size of the box and the
-usual age of the readings. With friction that is enough, with the randomization "train" too, where it solves
-98 % with estimates, 100 % with true and 75.5 % with nominal friction (`slipgym rank pivot_to`). With
-"eval_ood" it solves 22, 26.5 and 25.5 % (`slipgym rank pivot_to --randomization eval_ood`), and not for want
-of friction: the box springs back on soft pads when it stops, and the slip velocity comes up to four control
-steps late. There a policy that learns both from the readings has most to win.
+On the other side, the torque of the pads, k r f_t, has to be well below that of the wrist, m d a. With a
+disc of r = 10 mm the slide would be three times as large; the task therefore has its own contact, a rounded
+fingertip with r = 3 mm (`tasks.pivot_to.radius`, the reset option `r`). At the end friction has to hold the
+box beside the pads: m g d sin(80 deg) = 0.029 N m of the 2 mu_c r 25 N = 0.045 N m at mu_c 0.3. So the box
+is light, an empty carton of 30 g.
 
 ## Action Space
 
 `Box(-1, 1, (3,), float32)`, the `action_mode` "grip_force_translation": the grip force commanded to both
 fingers, where -1 is `gripper.force_min` (0.6 N) and +1 is `gripper.force_max` (25 N), and the velocity of
-the wrist along world x and z, up to `tasks.pivot_to.wrist_speed` (1.7 m/s) either way. Values outside
-[-1, 1] are clipped; NaN and infinity are errors. The actuator force follows the command with a dead time
-(4 ms) and a first-order lag (12 ms), the wrist with at most `tasks.pivot_to.wrist_acceleration`.
+the wrist along world x and z, up to `tasks.pivot_to.wrist_speed` (1.7 m/s) either way. Values outside [-1,
+1] are clipped; NaN and infinity are errors. The actuator force follows the command with a dead time (4 ms)
+and a first-order lag (12 ms), the wrist with at most `tasks.pivot_to.wrist_acceleration`.
 
-Other values of `action_mode` change the components (see docs/modes.md); without the wrist's velocity the goal
-is out of reach.
+Other values of `action_mode` change the components (see docs/modes.md); without the wrist's velocity the
+goal is out of reach.
 
 ## Rewards
 
@@ -57,14 +43,12 @@ the wrist ("grip_force_wrist") has to pitch it back.
 
 The box (`tasks.pivot_to.object`: 30 g, 50 mm by 250 mm, gripped 100 mm above its centre) hangs at rest in a
 grip of `tasks.pivot_to.initial_force` (5 N), with the wrist level and at rest. Sampled at random are the
-angle and its sign, friction, the material, if `material` is "random", the sensors' biases, and the fractions
-of a count in the slip sensors. Grip and sensors run for six control steps before time 0.
+angle, its sign and friction.
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` + `hold` have passed (1.2 s, 144 control steps). The environment truncates by
-  itself; no `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `duration` + `hold` have passed (1.2 s, 144 control steps).
 
 Success (`info["is_success"]`): the episode was played to its end, and the box was never dropped, never slid
 further than `slide_tolerance` (1 mm) at the pad centre, and was within `tolerance` (5 deg) of its angle from

@@ -4,14 +4,13 @@
 
 A parallel gripper holds a box at its centre of mass. The agent slides and turns the box between the pads
 until its slip displacement is a given (x, y, theta). Gravity alone moves the box: the wrist's pitch sets the
-direction of gravity in the pad frame, and the grip force sets the friction that opposes it. Friction is
-unknown: an estimator computes it from force, torque and slip velocity.
+direction of gravity in the pad frame, and the grip force sets the friction that opposes it.
 
 The limit surface determines which poses can be reached. Let b be the position of the pad centre on the box,
 from its centre of mass, and u the upward direction, both in the box's frame. In slow slip the pads move on
 the box along u. The load is the weight, with the torque of its lever b x u, and the slip twist is normal to
-the ellipsoid at the load. The box therefore turns against the pads, per length of the slide, by
-(b x u) / r^2:
+the ellipsoid at the load. The box therefore turns against the pads, per length of the slide, by (b x u) /
+r^2:
 
     d theta = (b x db) / r^2
 
@@ -19,11 +18,12 @@ If b is 0 or along u, with the centre of mass straight below the pads (stable) o
 box slides without turning, for any pitch of the wrist. With the centre of mass to the side at a distance s
 it turns, and slides only r^2 / s per radian. Sequences of slides and turns reach every (x, y, theta). The
 target is sampled as the end of such a sequence: a slide by `slide` with the wrist pitched by `heading`, then
-a turn by `turn` about the pad centre. For r = 10 mm and s = 15 mm the pads would slide 6.7 mm per radian of
-the turn. The task therefore has its own contact, a rounded fingertip with r = 5 mm
-(`tasks.planar_slip.radius`, the reset option `r`), which slides by 1.7 mm per radian. A smaller contact
-holds less torque: already with r = 5 mm, a box of 0.2 kg gripped 18 mm off its centre of mass needs up to
-12 N at a friction of 0.3.
+a turn by `turn` about the pad centre.
+
+For r = 10 mm and s = 15 mm the pads would slide 6.7 mm per radian of the turn. The task therefore has its
+own contact, a rounded fingertip with r = 5 mm (`tasks.planar_slip.radius`, the reset option `r`), which
+slides by 1.7 mm per radian. A smaller contact holds less torque: already with r = 5 mm, a box of 0.2 kg
+gripped 18 mm off its centre of mass needs up to 12 N at a friction of 0.3.
 
 The measured slip is the time integral of the slip velocity at the pad centre, in the pad frame. The target
 refers to another quantity, the displacement of the point of the box that lay at the pad centre at the grasp.
@@ -31,35 +31,32 @@ A turn moves that point as well: d(x, y) = d(measured slip) + d theta (-y, x).
 
 ## Action Space
 
-`Box(-1, 1, (2,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` (0.6 N)
-and +1 is `gripper.force_max` (25 N). Then the wrist's pitch rate, from -3 to 3 rad/s
+`Box(-1, 1, (2,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` (0.6 N) and
++1 is `gripper.force_max` (25 N). Then the wrist's pitch rate, from -3 to 3 rad/s
 (`gripper.wrist_pitch_rate_max`). Values outside [-1, 1] are clipped; NaN and infinity are errors. The
 actuator force follows the command with a dead time (4 ms) and a first-order lag (12 ms), the pitch rate
 within a control step.
 
 This is "grip_force_pitch", the `action_mode` of this task. Other modes add components, leave some out or
-change their meaning (see docs/modes.md): "grip_force" takes the grip force alone, "grip_force_wrist" adds the
-wrist's velocity along world x and z, and "force_increment" takes the change of the grip force per control
-step.
+change their meaning (see docs/modes.md): "grip_force" takes the grip force alone, "grip_force_wrist" adds
+the wrist's velocity along world x and z, and "force_increment" takes the change of the grip force per
+control step.
 
 ## Starting State
 
 The box (`tasks.planar_slip.object`: 0.2 kg, 160 mm by 200 mm, gripped at its centre of mass) is held in a
 grip of `tasks.planar_slip.initial_force` (10 N), with the wrist level. Sampled at random are the target
-(`slide` 10 to 18 mm, `heading` up to 60 deg and `turn` 10 to 40 deg, both in either direction), the material,
-if `material` is "random", the sensors' biases, and the fractions of a count in the slip sensors. Grip and
-sensors run for six control steps before time 0.
+(`slide` 10 to 18 mm, `heading` up to 60 deg and `turn` 10 to 40 deg, both in either direction).
 
 ## Episode End
 
-- Terminated: the box is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: `duration` has passed (12 s, 1440 control steps). The environment truncates by itself; no
-  `TimeLimit` is needed.
+- Terminated: the box is dropped.
+- Truncated: `duration` has passed (12 s, 1440 control steps).
 
 Success (`info["is_success"]`): the episode was played to its end, the box was not dropped, and at the end
-its slip displacement is within `tolerance` (2 mm) of the target in (x, y) and within `angle_tolerance`
-(3 deg) in theta, at rest: no point of the pads slips faster than `rest_speed` (1 mm/s). Nothing before the
-end makes it impossible: `violated` is always 0.
+its slip displacement is within `tolerance` (2 mm) of the target in (x, y) and within `angle_tolerance` (3
+deg) in theta, at rest: no point of the pads slips faster than `rest_speed` (1 mm/s). Nothing before the end
+makes it impossible: `violated` is always 0.
 
 ## Info
 

@@ -4,38 +4,33 @@
 
 A parallel gripper on a wrist at rest holds a bar near one end. The agent reduces the grip force so that the
 bar's weight turns it between the pads along a trapezoidal reference, and then increases it so that the bar
-stops. Friction is unknown: an estimator computes it from force, torque and slip velocity while the bar
-turns. The task follows the rotational slip of Waltersson and Karayiannidis (arXiv 2410.19660).
+stops. The task follows the rotational slip of Waltersson and Karayiannidis (arXiv 2410.19660).
 
-Some sliding is inevitable. The slip twist is normal to the limit surface at the load,
-v_t / omega = r^2 f_t / tau, and tau / f_t is the weight's lever d cos(tilt). A turn from -angle/2 to
-+angle/2 about horizontal therefore slides 2 (r^2 / d) ln tan(45 deg + angle/4). With r = 10 mm and
-d = 180 mm this is 0.61 mm at 60 deg, whatever the controller does. On a disc (`contact="distributed"`), whose
-limit surface is flatter there, it is 3/2 as much. Holding the bar level takes m g d / (2 mu_c r) per finger.
-The task therefore has its own light and long object (`tasks.rotational_slip.object`): 0.06 kg, 460 mm by
-40 mm, gripped 180 mm from its centre, which takes 15 N at mu_c 0.36.
+Some sliding is inevitable. The slip twist is normal to the limit surface at the load, v_t / omega = r^2 f_t
+/ tau, and tau / f_t is the weight's lever d cos(tilt). A turn from -angle/2 to +angle/2 about horizontal
+therefore slides 2 (r^2 / d) ln tan(45 deg + angle/4). With r = 10 mm and d = 180 mm this is 0.61 mm at 60
+deg, whatever the controller does.
 
-The bar turns in short jumps and almost without translation, from which the estimator "rls" learns little;
-the default estimator and "joint" learn enough.
+On a disc (`contact="distributed"`), whose limit surface is flatter there, it is 3/2 as much. Holding the bar
+level takes m g d / (2 mu_c r) per finger. The task therefore has its own light and long object
+(`tasks.rotational_slip.object`): 0.06 kg, 460 mm by 40 mm, gripped 180 mm from its centre, which takes 15 N
+at mu_c 0.36.
 
 ## Starting State
 
-The bar is held at rest in a grip of `tasks.rotational_slip.initial_force` (25 N), its grasp point between the
-pads and the bar aligned with them. The wrist is pitched by angle/2 with the bar's heavy end up, so that the
-turn is symmetric about horizontal. The bar turns clockwise: theta decreases. Sampled at random are the
-material, if `material` is "random", the sensors' biases, and the fractions of a count in the slip sensors.
-Grip and sensors run for six control steps before time 0. The reference rests for `settle` (0.5 s), turns by
-`angle` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
+The bar is held at rest in a grip of `tasks.rotational_slip.initial_force` (25 N), its grasp point between
+the pads and the bar aligned with them. The wrist is pitched by angle/2 with the bar's heavy end up, so that
+the turn is symmetric about horizontal. The bar turns clockwise: theta decreases. The reference rests for
+`settle` (0.5 s), turns by `angle` (60 deg) in `duration` (5 s), and rests for `hold` (1 s).
 
 ## Episode End
 
-- Terminated: the bar is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps). The environment truncates by
-  itself; no `TimeLimit` is needed.
+- Terminated: the bar is dropped.
+- Truncated: settle + duration + hold have passed (6.5 s, 780 control steps).
 
-Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, -theta is
-`angle` within `tolerance` (2 deg), and it never slid further than `slide_tolerance` (1 mm) at the pad
-centre. A slide further than that is the violation that `violated` reports.
+Success (`info["is_success"]`): the episode was played to its end, the bar is not dropped, -theta is `angle`
+within `tolerance` (2 deg), and it never slid further than `slide_tolerance` (1 mm) at the pad centre. A
+slide further than that is the violation that `violated` reports.
 
 ## Info
 

@@ -1,4 +1,4 @@
-"""What makes a task: settings, the start of an episode, what is rewarded, what is observed."""
+"""The declaration of a task: settings, the start of an episode, what is rewarded, what is observed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long a sub-step of the planar engine may be: as long as the state of the contacts allows.
+"""Chooses the length of a sub-step of the planar engine, as long as the state of the contacts allows.
 
 Stick far from break-away and without vibration needs no sub-steps of its own. Slip needs short ones where
 friction falls with speed, and where the slip twist changes by much of itself; a steady slide needs few.

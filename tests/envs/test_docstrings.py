@@ -4,15 +4,15 @@ import importlib
 import inspect
 import math
 import re
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from slipgym.envs.docstring import pages
 from slipgym.registration import ENVIRONMENTS
 
-FOLDER = Path(__file__).resolve().parents[2] / "docs" / "environments"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 SECTIONS = [
     "Description",
     "Action Space",
@@ -108,9 +108,37 @@ def test_the_numbers_in_the_text_are_the_defaults(env):
     assert f"{env.simulation.episode['steps'][0]} control steps)" in end
 
 
-def test_the_pages_are_up_to_date():
-    written = {path.name: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.md")}
-    assert written == pages(), "run scripts/make_docs.py"
+@pytest.fixture(scope="module")
+def pages():
+    """File name -> text of the pages of the environments, as scripts/make_docs.py writes them."""
+    sys.path.insert(0, str(DOCS / "site"))
+    try:
+        return importlib.import_module("environments").pages()
+    finally:
+        sys.path.remove(str(DOCS / "site"))
+
+
+def test_the_pages_are_up_to_date(pages):
+    written = {path.name: path.read_text(encoding="utf-8") for path in (DOCS / "environments").glob("*.md")}
+    assert written == pages, "run scripts/make_docs.py"
+
+
+def test_a_page_and_the_common_one_have_what_the_docstring_has(env, pages):
+    """Every observation column, reward term, reset option and key of info."""
+    text = pages[f"{env.task.key}.md"] + pages["common.md"]
+    names = [column.name for column in env.columns] + list(env.task.term_names)
+    names += [*env.task.options.model_fields, *first_names(section(env, "Info"))]
+    assert [name for name in names if f"`{name}`" not in text] == []
+    assert f"({len(env.columns)},), float32" in pages[f"{env.task.key}.md"]
+    assert "## Episode End" in pages[f"{env.task.key}.md"]
+
+
+@pytest.mark.parametrize("entry_point", ENVIRONMENTS.values())
+def test_a_docstring_holds_no_results(entry_point):
+    """What somebody's policy solves belongs to the pages of results."""
+    module, _, cls = entry_point.partition(":")
+    text = inspect.getdoc(getattr(importlib.import_module(module), cls)) or ""
+    assert not re.search(r"solved \[%\]|leaderboard|\b\d+ % (?:success|of \d+ episodes)", text)
 
 
 @pytest.mark.parametrize("entry_point", ENVIRONMENTS.values())

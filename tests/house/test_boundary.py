@@ -30,7 +30,6 @@ INNER = {
     "policies/play/watch.py": "makes an environment of a class",
     "policies/training/adapter.py": "wraps the vector environment",
     "policies/training/checkpoint_io.py": "writes the state of environments",
-    "scripts/make_docs.py": "writes the environments' pages",
 }
 """Files that may import inner modules, and why."""
 

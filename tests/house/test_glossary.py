@@ -6,14 +6,20 @@ import subprocess
 import sys
 from pathlib import Path
 
+import gymnasium as gym
 import pytest
 
 from slipgym.config import load
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "glossary.md").read_text()
-ENVIRONMENT = (ROOT / "docs" / "environments" / "linear_slip.md").read_text()
+ENVIRONMENT = "".join(
+    (ROOT / "docs" / "environments" / f"{name}.md").read_text() for name in ("common", "linear_slip")
+)
 MODES = (ROOT / "docs" / "modes.md").read_text()
+PRIVILEGED = gym.make(
+    "slipgym:slipgym/Hold-v0", engine="planar", observation_mode="dict"
+).unwrapped.privileged_columns
 ENTRIES = [part for part in PAGE.split("\n\n") if part.startswith("**")]
 SECTIONS = {
     "argument": ("## Arguments", ENVIRONMENT),
@@ -59,7 +65,8 @@ def exists(kind: str, name: str) -> bool:
     if info:
         return info[1] in listed(*SECTIONS["info"])
     if kind == "column":
-        columns = set(re.findall(r"^\| \d+ \| `(\w+)`:", ENVIRONMENT, re.MULTILINE))
+        columns = set(re.findall(r"^\| -?\d+ \| `(\w+)`:", ENVIRONMENT, re.MULTILINE))
+        columns |= {column.name for column in PRIVILEGED}
         return name in columns | set(re.findall(r"^\| `(\w+)` \|", MODES, re.MULTILINE))
     if kind:
         return name in listed(*SECTIONS[kind])

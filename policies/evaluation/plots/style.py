@@ -1,4 +1,4 @@
-"""How the figures look."""
+"""The common style of the figures."""
 
 from __future__ import annotations
 

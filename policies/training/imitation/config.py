@@ -1,4 +1,4 @@
-"""What an imitation is: task, what the network observes, its size, rounds and optimisation."""
+"""The model of an imitation: task, observation of the network, its size, rounds and optimisation."""
 
 from __future__ import annotations
 
