@@ -14,8 +14,7 @@ def main(
     pictures: Annotated[bool, typer.Option(help="Whether to make the pictures too.")] = True,
 ) -> None:
     """Write a page and a picture for every registered environment, and an animation of all."""
-    from lab.montage import write_montage
-    from policies.play import write_screenshots
+    from lab.montage import write_montage, write_screenshots
     from slipgym.envs.docstring import pages
 
     for name, text in pages().items():
