@@ -1,4 +1,4 @@
-"""What learning costs end to end, and what the adapter adds to a step: slipgym benchmark-parts learning."""
+"""Measures what learning costs end to end, and what the adapter adds to a step."""
 
 from __future__ import annotations
 

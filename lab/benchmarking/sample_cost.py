@@ -1,4 +1,4 @@
-"""What a sample of a training run costs, by part."""
+"""Measures what a sample of a training run costs, by part."""
 
 from __future__ import annotations
 
