@@ -102,7 +102,7 @@ def pieces(points: np.ndarray, dash: float) -> list[np.ndarray]:
     Returns:
         Arrays (k, 2) of at least two points.
     """
-    drawn: np.ndarray = np.isfinite(points).all(axis=1)
+    drawn: Any = np.isfinite(points).all(axis=1)
     if dash and drawn.any():
         x = np.arange(np.nanmin(points[:, 0]), np.nanmax(points[:, 0]) + 1.0)
         points = np.column_stack([x, np.interp(x, points[:, 0], points[:, 1])])
