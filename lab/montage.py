@@ -1,21 +1,23 @@
-"""Draws episodes of several tasks side by side as one animation."""
+"""Draws the pictures of the environments' pages: one of each, and an animation of all."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from PIL import Image
 
 import policies
-from policies.play.screenshot import own_policy
+from policies.play.screenshot import own_policy, take_screenshot
 from policies.play.video import Gif
 from policies.stepping import steps
 from slipgym.atomic_io import new_file
 from slipgym.registration import ENVIRONMENTS
 from slipgym.rendering import camera
+from slipgym.tasks import find
 
 MATERIALS = "wood", "plastic", "case", "cardboard"
 RATE = 10
@@ -82,3 +84,19 @@ def tiled(views: Sequence[np.ndarray]) -> np.ndarray:
         row, column = divmod(k, columns)
         whole[row * height : (row + 1) * height, column * width : (column + 1) * width] = view
     return whole
+
+
+def write_screenshots(folder: Path, seed: int = 0) -> Iterator[Path]:
+    """Writes <task's key>.png for every registered environment, each with another material.
+
+    Args:
+        folder: Where to.
+        seed: Of the environments.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for number, env_id in enumerate(ENVIRONMENTS):
+        picture = take_screenshot(env_id, MATERIALS[number % len(MATERIALS)], seed)
+        path = folder / f"{find(env_id).key}.png"
+        with new_file(path) as partial:
+            Image.fromarray(picture).save(partial, format="PNG", optimize=True)
+        yield path

@@ -16,8 +16,7 @@ def main(
     pictures: Annotated[bool, typer.Option(help="Whether to make the pictures too.")] = True,
 ) -> None:
     """Write the pages and a picture of every registered environment, and an animation of all."""
-    from lab.montage import write_montage
-    from policies.play import write_screenshots
+    from lab.montage import write_montage, write_screenshots
 
     sys.path.insert(0, str(DOCS / "site"))
     for name, text in import_module("environments").pages().items():

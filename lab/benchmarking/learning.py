@@ -1,4 +1,4 @@
-"""Measures learning end to end, and what the adapter adds to a step: slipgym benchmark-parts learning."""
+"""Measures what learning costs end to end, and what the adapter adds to a step."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from stable_baselines3.common.vec_env import DummyVecEnv, VecEnv, VecMonitor
 
 from lab.benchmarking.measure import ACTIONS
 from lab.benchmarking.sample_cost import configuration, sample_cost
+from lab.benchmarking.stopwatches import Stopwatches
 from policies.training.adapter import make_vec_env
 from slipgym.benchmarking import report
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.timing import Block, Stopwatches, compare
+from slipgym.benchmarking.timing import Block, compare
 
 LIBRARIES = ("stable-baselines3", "torch")
 BATCH, SCALAR = 256, 8

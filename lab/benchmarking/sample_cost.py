@@ -1,4 +1,4 @@
-"""Measures the cost of a sample of a training run, by part."""
+"""Measures what a sample of a training run costs, by part."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import torch
 from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
 
+from lab.benchmarking.stopwatches import Stopwatches
 from policies.training import evaluate, files, seeds, vector
 from policies.training import model as learners
 from policies.training.adapter import SlipVecEnv
@@ -16,7 +17,6 @@ from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv
 from policies.training.residual import ResidualVecEnv
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.timing import Stopwatches
 from slipgym.tasks import find
 
 _WRAPPERS: dict[type, str] = {

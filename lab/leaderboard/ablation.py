@@ -1,4 +1,4 @@
-"""What each state and each test of "adaptive" is worth: without it, on the same records."""
+"""Measures what each state and each test of "adaptive" is worth: without it, on the same records."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an update of each estimator costs, beside yardsticks in the same run."""
+"""Measures what an update of each estimator costs, beside yardsticks in the same run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How soon mu_c is right again after friction has jumped, while a controller acts on the estimate.
+"""Measures how soon mu_c is right again after friction has jumped, while a controller acts on the estimate.
 
 Time alone shows nothing: an object that is held does not show the new friction. So the time of slip counts,
 of each finger whose estimate was right before the jump. An estimate that passes the truth on its way to

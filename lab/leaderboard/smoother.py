@@ -1,4 +1,4 @@
-"""What the slips of a whole episode tell at most: a smoother that knows what no estimator does.
+"""Finds what the slips of a whole episode tell at most, with a smoother that knows what no estimator does.
 
 It fits the law of friction to all instants of an episode that "adaptive" learned from at once, with errors in
 both force and velocity (Gauss-Newton; the true twist of every instant is an unknown of its own, as in

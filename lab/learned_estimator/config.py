@@ -1,4 +1,4 @@
-"""What the training of a network is: episodes, their ranges, the optimisation."""
+"""Defines the training of a network: episodes, their ranges, the optimisation."""
 
 from __future__ import annotations
 

@@ -36,6 +36,13 @@ class Network(nn.Module):
         tensors: Those of `estimator.network.weights.SHAPES`.
     """
 
+    centre: Tensor
+    scale: Tensor
+    head_of_hidden: Tensor
+    head_of_columns: Tensor
+    head_bias: Tensor
+    start: Tensor
+
     def __init__(self, tensors: Tensors) -> None:
         super().__init__()
         self.unit = nn.GRU(COLUMNS, HIDDEN)

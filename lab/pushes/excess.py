@@ -1,4 +1,4 @@
-"""How much farther off an estimator is than the best of the published four in each log, with intervals."""
+"""Compares an estimator's error with that of the best of the published four in each log, with intervals."""
 
 from __future__ import annotations
 

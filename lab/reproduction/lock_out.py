@@ -1,4 +1,4 @@
-"""From which start values, in which slips, an estimator never finds the truth."""
+"""Finds the start values and slips from which an estimator never finds the truth."""
 
 from __future__ import annotations
 

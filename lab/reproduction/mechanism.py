@@ -1,4 +1,4 @@
-"""Why the plain estimator reads mu_c low: samples called moving that are stuck, and what they weigh."""
+"""Explains why the plain estimator reads mu_c low: samples called moving that are stuck, and their weight."""
 
 from __future__ import annotations
 

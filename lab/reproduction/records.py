@@ -1,4 +1,4 @@
-"""What the sensors of both fingers say in a trial, kept so that every estimator sees the same data."""
+"""Keeps what the sensors of both fingers say in a trial, so that every estimator sees the same data."""
 
 from __future__ import annotations
 

@@ -76,9 +76,12 @@ def renamed(options: Mapping[str, str]) -> type[TyperCommand]:
 
     class Command(TyperCommand):
         def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
+            from policies.commands.front import COMMANDS
+
             for argument in args:
                 if now := options.get(argument.partition("=")[0]):
-                    raise typer.BadParameter(f"{argument} is a command of its own: slipgym {now}", ctx)
+                    where = "" if now.split()[0] in COMMANDS else " (in a clone of the repository)"
+                    raise typer.BadParameter(f"{argument} is a command of its own: slipgym {now}{where}", ctx)
             return super().parse_args(ctx, args)
 
     return Command

@@ -1,4 +1,4 @@
-"""Which imperfection of the sensors "lab" makes which error: each alone, or all but some."""
+"""Separates the imperfections of the sensors "lab": each alone, or all but some."""
 
 from __future__ import annotations
 

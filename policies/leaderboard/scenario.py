@@ -1,4 +1,4 @@
-"""What a scenario is."""
+"""Defines a scenario: records, and the samples at which each quantity is evaluated."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How well an estimator did in a scenario."""
+"""Scores an estimator in a scenario."""
 
 from __future__ import annotations
 

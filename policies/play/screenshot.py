@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from PIL import Image
 
 import policies
 from policies.stepping import steps
-from slipgym.atomic_io import new_file
-from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import find
 
 _FRACTION = 0.62  # of the episode, after which the picture is taken
@@ -52,20 +47,3 @@ def take_screenshot(env_id: str, material: str, seed: int = 0) -> np.ndarray:
         return env.render()
     finally:
         env.close()
-
-
-def write_screenshots(folder: Path, seed: int = 0) -> Iterator[Path]:
-    """Writes <task's key>.png for every registered environment, each with another material.
-
-    Args:
-        folder: Where to.
-        seed: Of the environments.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    materials = ("wood", "plastic", "case", "cardboard")
-    for number, env_id in enumerate(ENVIRONMENTS):
-        picture = take_screenshot(env_id, materials[number % len(materials)], seed)
-        path = folder / f"{find(env_id).key}.png"
-        with new_file(path) as partial:
-            Image.fromarray(picture).save(partial, format="PNG", optimize=True)
-        yield path

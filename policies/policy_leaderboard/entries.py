@@ -1,4 +1,4 @@
-"""Who takes part in the leaderboard of policies."""
+"""Makes the policies that take part in the leaderboard."""
 
 from __future__ import annotations
 

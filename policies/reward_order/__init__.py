@@ -1,1 +1,1 @@
-"""Whether mean returns of policies have the order of their success rates."""
+"""Compares the order of mean returns of policies with that of their success rates."""

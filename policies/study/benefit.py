@@ -1,4 +1,4 @@
-"""What friction information is worth against the strongest opponent without it, over pairs of episodes."""
+"""Computes what friction information adds to the strongest opponent without it, over pairs of episodes."""
 
 from __future__ import annotations
 

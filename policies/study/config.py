@@ -1,4 +1,4 @@
-"""What a study asks for."""
+"""Defines the content of a study's file."""
 
 from __future__ import annotations
 

@@ -9,7 +9,6 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.config.hardware import GripperConfig
-from slipgym.envs.threads import Threads
 from slipgym.envs.vector_env import SlipVectorEnv
 
 SLIP_LIMIT = 1.0, 4.0
@@ -54,11 +53,6 @@ class VectorPlayer:
         for action in actions:
             self.env.step(action)
         return perf_counter() - start, turns * self.n
-
-    def shared_block(self, threads: Threads, steps: int) -> tuple[float, int]:
-        """A block by other threads, in the same memory: where that lies changes its speed."""
-        self.env.simulation._threads = threads
-        return self.block(steps)
 
     def slipping(self, turns: int = 120) -> float:
         """Fraction of environments whose pads slip at the end of a step, mean over some steps [-]."""

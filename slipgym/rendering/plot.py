@@ -102,11 +102,11 @@ def pieces(points: np.ndarray, dash: float) -> list[np.ndarray]:
     Returns:
         Arrays (k, 2) of at least two points.
     """
-    drawn = np.isfinite(points).all(axis=1)
+    drawn: Any = np.isfinite(points).all(axis=1)
     if dash and drawn.any():
         x = np.arange(np.nanmin(points[:, 0]), np.nanmax(points[:, 0]) + 1.0)
         points = np.column_stack([x, np.interp(x, points[:, 0], points[:, 1])])
-        drawn = np.isfinite(points[:, 1]) & (x // dash % 2 == 0)
+        drawn = np.isfinite(points).all(axis=1) & (x // dash % 2 == 0)
     runs = np.split(np.arange(len(points)), np.flatnonzero(np.diff(drawn)) + 1)
     return [points[run] for run in runs if len(run) > 1 and drawn[run[0]]]
 

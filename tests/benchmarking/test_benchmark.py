@@ -4,45 +4,9 @@ import json
 
 import pytest
 
-from slipgym.benchmarking import report, run, timing
+from slipgym.benchmarking import report, run
 from slipgym.benchmarking.report import Figure, table, write
-from slipgym.benchmarking.timing import Stopwatches, compare, per_call
-
-
-class Clock:
-    """A clock that only `wait` moves, in place of the machine's."""
-
-    def __init__(self, monkeypatch):
-        self.now = 0.0
-        monkeypatch.setattr(timing, "perf_counter", lambda: self.now)
-
-    def wait(self, seconds):
-        self.now += seconds
-
-
-class Sleeper:
-    def __init__(self, clock):
-        self.clock = clock
-
-    def outer(self):
-        self.clock.wait(0.01)
-        self.inner()
-
-    def inner(self):
-        self.clock.wait(0.03)
-
-
-def test_stopwatches_count_a_function_without_those_it_calls(monkeypatch):
-    clock = Clock(monkeypatch)
-    sleeper = Sleeper(clock)
-    with Stopwatches() as watches:
-        watches.watch("outer", sleeper, "outer")
-        watches.watch("inner", sleeper, "inner")
-        sleeper.outer()
-        sleeper.outer()
-    assert watches.spent["outer"] == pytest.approx(0.02)
-    assert watches.spent["inner"] == pytest.approx(0.06)
-    assert vars(sleeper) == {"clock": clock}
+from slipgym.benchmarking.timing import compare
 
 
 def test_compare_takes_medians_of_ratios_of_neighbours():
@@ -51,11 +15,6 @@ def test_compare_takes_medians_of_ratios_of_neighbours():
     result = compare(lambda: next(first), lambda: next(second), 3)
     assert result[:2] == pytest.approx((0.2, 0.8))
     assert result.quartiles == pytest.approx((2.0, 3.0, 3.5))
-
-
-def test_per_call_divides_by_the_calls(monkeypatch):
-    clock = Clock(monkeypatch)
-    assert per_call(lambda: clock.wait(0.002), calls=3, repeats=3) == pytest.approx(0.002)
 
 
 FIGURES = [Figure("fast", 1.2, "-", "<= 1.4"), Figure("slow", 30.0, "x", ">= 40"), Figure("free", 3.0, "us")]

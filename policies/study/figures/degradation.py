@@ -1,4 +1,4 @@
-"""How success falls as one thing gets worse."""
+"""Plots how success falls as one thing gets worse."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the estimate recovers, and what the change of engine costs."""
+"""Plots what the estimate recovers, and what the change of engine costs."""
 
 from __future__ import annotations
 

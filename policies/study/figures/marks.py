@@ -1,4 +1,4 @@
-"""What the figures share: a colour for each source, and dots with intervals."""
+"""Draws what the figures share: a colour for each source, and dots with intervals."""
 
 from __future__ import annotations
 
