@@ -54,6 +54,7 @@ class Simulation(ABC):
         materials: Name of every episode's material.
         boxes: Every episode's object.
         drawn: Values that the randomization sampled for every episode.
+        blank: The values that all episodes begin with, EPISODE (1,).
         ground_truth: True (mu_s, mu_c, r) now and full confidence, (n, 11); columns as `estimated`.
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
         estimated: Estimates of both fingers merged, with their confidence and deviations, (n, 11).
@@ -90,7 +91,7 @@ class Simulation(ABC):
         self.step_time = 1.0 / config.physics.control_rate
         self._sampler = EpisodeSampler(config, settings, task, randomizer, self.episode)
         self.materials, self.boxes = self._sampler.materials, self._sampler.boxes
-        self.drawn = self._sampler.drawn
+        self.drawn, self.blank = self._sampler.drawn, self._sampler.blank
         plant, learned = self.plant, self.estimator
         self.state = BatchState(
             worlds=plant.world,
@@ -242,8 +243,7 @@ class Simulation(ABC):
         if type(state) is not SimulationState:
             raise damaged(f"simulation must be a SimulationState, got {type(state).__name__}")
         check_plant(state.plant, self.plant, ready)
-        blank, estimator = self._sampler.blank, self.estimator.name
-        check_arrays(state.arrays, self._arrays(), blank, estimator, ready)
+        check_arrays(state.arrays, self._arrays(), self.blank, self.estimator.name, ready)
         check_objects(state.materials, state.boxes, self.config.materials, ready)
 
     def set_state(self, state: SimulationState, ready: np.ndarray) -> None:
