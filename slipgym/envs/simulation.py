@@ -20,10 +20,8 @@ from slipgym.envs.hardware_randomization import prepare_hardware
 from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
-from slipgym.envs.record_checks import damaged
-from slipgym.envs.simulation_state import SimulationState
 from slipgym.envs.stages import compiled_stages
-from slipgym.envs.state_checks import check_arrays, check_objects, check_plant
+from slipgym.envs.states import SimulationState, check_layout
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
@@ -231,20 +229,9 @@ class Simulation(ABC):
         return SimulationState(None, deepcopy(self.plant), arrays, list(self.materials), list(self.boxes))
 
     def check_state(self, state: SimulationState, ready: np.ndarray) -> None:
-        """Check a state before anything of it is restored: compiled code checks no index.
-
-        Args:
-            state: The state.
-            ready: Environments that have an episode in it, (n,) bool.
-
-        Raises:
-            ValueError: An environment like this cannot have written it.
-        """
-        if type(state) is not SimulationState:
-            raise damaged(f"simulation must be a SimulationState, got {type(state).__name__}")
-        check_plant(state.plant, self.plant, ready)
-        check_arrays(state.arrays, self._arrays(), self.blank, self.estimator.name, ready)
-        check_objects(state.materials, state.boxes, self.config.materials, ready)
+        """Check a whole state before anything of it is restored, see `check_layout`."""
+        own = SimulationState(None, self.plant, self._arrays(), self.materials, self.boxes)
+        check_layout(state, own, ready)
 
     def set_state(self, state: SimulationState, ready: np.ndarray) -> None:
         """Restore a state that `check_state` has accepted.

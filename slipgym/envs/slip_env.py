@@ -14,7 +14,7 @@ from slipgym.envs.conventions import Conventions, horizon
 from slipgym.envs.engines import resolved, simulation_of
 from slipgym.envs.info_copies import info_reader
 from slipgym.envs.setup import Setup
-from slipgym.envs.state import EnvState, checked, restored_generator, restored_seed
+from slipgym.envs.states import EnvState, checked, restored_generator
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
 
@@ -200,23 +200,22 @@ class SlipEnv(Conventions, gym.Env[Any, np.ndarray]):
 
         Raises:
             TypeError: `state` is not a state.
-            ValueError: The state belongs to an environment with other arguments, or no environment wrote it.
-                The environment is as before, or needs a reset if PyBullet refuses its part.
+            ValueError: The state belongs to an environment with other arguments or version, or is damaged;
+                nothing changes.
             RuntimeError: This environment is closed.
         """
         checked(state, EnvState).check({"task": self.task.name, **self._arguments})
         self.simulation.check_open()
-        generator, seed = restored_generator(state.generator), restored_seed(state.seed)
+        generator = restored_generator(state.generator)
         if state.simulation is not None:
             self.simulation.check_state(state.simulation, _ONE)
-            self._observer.check_state(state.frames, _ONE)
         self._ready = False
         if state.simulation is not None:
             self.simulation.set_state(state.simulation, _ONE)
             if self._renderer is not None:
                 self._renderer.begin()
             self._observer.set_state(state.frames, _ONE)
-        self._np_random, self._np_random_seed = generator, seed
+        self._np_random, self._np_random_seed = generator, state.seed
         self._ready = state.simulation is not None
 
     def _check_object(self) -> None:

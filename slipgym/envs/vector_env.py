@@ -18,11 +18,10 @@ from slipgym.envs.arguments import VectorArguments, complete, documented, one_of
 from slipgym.envs.conventions import Conventions, horizon
 from slipgym.envs.infos import final
 from slipgym.envs.planar_simulation import PlanarSimulation
-from slipgym.envs.record_checks import check_flags
 from slipgym.envs.reset_options import RowOptions
 from slipgym.envs.seeds import Generators
 from slipgym.envs.setup import Setup
-from slipgym.envs.state import VectorState, checked
+from slipgym.envs.states import VectorState, checked
 from slipgym.envs.vector_rendering import Pictures
 from slipgym.tasks import TASKS, Task
 from slipgym.tasks.options import EpisodeOptions
@@ -197,22 +196,20 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
 
         Raises:
             TypeError: `state` is not a state.
-            ValueError: The state belongs to an environment with other arguments, or no environment wrote it;
+            ValueError: The state belongs to an environment with other arguments or version, or is damaged;
                 nothing changes.
             RuntimeError: This environment is closed.
         """
         checked(state, VectorState).check(self._made_of)
         self.simulation.check_open()
-        generators = self._generators.restored(state.generators)
-        ready, over = (check_flags(name, getattr(state, name), self.num_envs) for name in ("ready", "over"))
+        generators, ready = self._generators.restored(state.generators), state.ready.copy()
         self.simulation.check_state(state.simulation, ready)
-        self._observer.check_state(state.frames, ready)
         self._ready = np.zeros(self.num_envs, dtype=bool)
         self.simulation.set_state(state.simulation, ready)
         self._generators = generators
         self._observer.set_state(state.frames, ready)
         self._pictures.begin(np.flatnonzero(ready))
-        self._over = over
+        self._over = state.over.copy()
         self._ready = ready
 
     def __reduce__(self) -> tuple[Any, ...]:
