@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from slipgym import __version__
 from slipgym.config.errors import unknown
+from slipgym.version import __version__
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box
 from slipgym.world.snapshot import EngineState
@@ -199,7 +199,7 @@ def _checksum(part: Any) -> int:
         content, used = np.ascontiguousarray(part).reshape(-1).view(np.uint8), _used(part.dtype)
         if not used.all():
             content = np.compress(used, content.reshape(-1, len(used)), axis=1)
-        return zlib.crc32(content, zlib.crc32(f"{part.dtype.kind}{part.shape}".encode()))
+        return zlib.crc32(content.data, zlib.crc32(f"{part.dtype.kind}{part.shape}".encode()))
     return zlib.crc32(part if isinstance(part, bytes) else repr(part).encode())
 
 

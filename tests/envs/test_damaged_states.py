@@ -59,7 +59,9 @@ def test_a_change_of_any_array_is_named(midway):
             state = midway.get_state()
             given = records(state)[name]
             changed(given[key] if key else given)
-            with pytest.raises(ValueError, match=rf"damaged: simulation\.{name}[.a-z_0-9]* (holds|is not as)"):
+            with pytest.raises(
+                ValueError, match=rf"damaged: simulation\.{name}[.a-z_0-9]* (holds|is not as)"
+            ):
                 midway.set_state(state)
     assert repr(midway.step(IDLE)) == before
 
