@@ -40,6 +40,8 @@ def _checked(field: "dataclasses.Field[Any]", value: Any) -> float | int | bool 
     kind: Any = field.type
     within, unit = field.metadata["within"], field.metadata["unit"]
     accepted, expected = _KINDS[kind]
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
     is_truth_value = isinstance(value, _KINDS[bool][0])
     if (
         isinstance(value, accepted)
