@@ -41,7 +41,7 @@ def _checked(field: "dataclasses.Field[Any]", value: Any) -> float | int | bool 
     within, unit = field.metadata["within"], field.metadata["unit"]
     accepted, expected = _KINDS[kind]
     if isinstance(value, np.ndarray) and value.ndim == 0:
-        value = value[()]
+        value = value.item()
     is_truth_value = isinstance(value, _KINDS[bool][0])
     if (
         isinstance(value, accepted)
