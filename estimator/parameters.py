@@ -40,13 +40,14 @@ def _checked(field: "dataclasses.Field[Any]", value: Any) -> float | int | bool 
     kind: Any = field.type
     within, unit = field.metadata["within"], field.metadata["unit"]
     accepted, expected = _KINDS[kind]
-    is_truth_value = isinstance(value, _KINDS[bool][0])
+    number: Any = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
+    is_truth_value = isinstance(number, _KINDS[bool][0])
     if (
-        isinstance(value, accepted)
+        isinstance(number, accepted)
         and is_truth_value == (kind is bool)
-        and (not within or _inside(value, within))
+        and (not within or _inside(number, within))
     ):
-        return kind(value)
+        return kind(number)
     raise ValueError(f"{field.name} = {value!r}: expected {expected} {within} {unit}".rstrip())
 
 

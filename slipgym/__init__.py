@@ -28,12 +28,12 @@ Public modules:
 from typing import TYPE_CHECKING, Any
 
 from slipgym.registration import register
+from slipgym.version import __version__
 
 if TYPE_CHECKING:
     from slipgym.envs.environment import register_task
 
 __all__ = ["__version__", "register_task"]
-__version__ = "0.2.0"
 
 register()
 

@@ -43,7 +43,7 @@ def main(
     friction_source: Annotated[str, typer.Option(help="estimated, true, nominal or none.")] = "estimated",
     estimator: Annotated[str, typer.Option(help="A name of estimator.names().")] = DEFAULT,
     sensors: Annotated[str, typer.Option(help="realistic, ideal or lab.")] = "realistic",
-    engine: Annotated[str, typer.Option(help="bullet or planar.")] = "bullet",
+    engine: Annotated[str, typer.Option(help="auto, bullet or planar.")] = "auto",
     viewer: Annotated[
         bool, typer.Option("--viewer", help="Show it in a browser, with sliders; --video is for recordings.")
     ] = False,

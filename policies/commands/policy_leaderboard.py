@@ -58,6 +58,7 @@ def main(
     from slipgym.atomic_io import check_folder
     from slipgym.config.level import level_names
     from slipgym.envs.arguments import ENGINES, FRICTION_SOURCES, one_of
+    from slipgym.envs.engines import resolved
     from slipgym.tasks import find
 
     arguments: dict[str, Any] = {
@@ -68,7 +69,7 @@ def main(
     try:
         check_folder(output)
         arguments["config"] = lacking(without or [])
-        one_of("engine", engine, ENGINES)
+        engine = resolved(one_of("engine", engine, ENGINES))
         mine = entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
         found = []
         for task in tasks or TASKS:

@@ -19,6 +19,7 @@ from slipgym.config.errors import unknown
 from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
 from slipgym.config.level import load_level
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR, ENGINES, FRICTION_SOURCES, one_of
+from slipgym.envs.engines import resolved
 from slipgym.tasks import configure, find
 from slipgym.tasks.configure import recorded
 
@@ -91,7 +92,11 @@ class Experiment(Frozen):
         default={}, description="Options of reset to try: every combination is a cell [-]"
     )
     sensors: str = Field(default="realistic", description="Sensor preset [-]")
-    engine: str = Field(default="bullet", description="What moves the bodies: bullet or planar [-]")
+    engine: str = Field(
+        default="auto",
+        validate_default=True,
+        description="What moves the bodies: bullet, planar or auto, PyBullet where it is installed [-]",
+    )
     randomization: str | Mapping[str, Any] = Field(
         default="none", description="What is drawn per episode: a preset, a file or a mapping [-]"
     )
@@ -112,7 +117,7 @@ class Experiment(Frozen):
     @field_validator("engine")
     @classmethod
     def _engine_exists(cls, name: str) -> str:
-        return one_of("engine", name, ENGINES)
+        return resolved(one_of("engine", name, ENGINES))
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:

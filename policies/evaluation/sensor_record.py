@@ -13,6 +13,7 @@ import policies
 from policies.learned import LearnedPolicy
 from policies.stepping import steps
 from slipgym.envs.bullet_simulation import BulletSimulation
+from slipgym.envs.engines import resolved
 from slipgym.envs.observation import ObservationBuffers
 from slipgym.sensors.force_torque import HISTORY, sensed
 from slipgym.sensors.slip_velocity import read_slip
@@ -53,7 +54,7 @@ def record_sensors(
     env_id = find(task).id
     if finger not in (1, 2):
         raise ValueError(f"finger = {finger!r} must be 1 or 2")
-    if keywords.get("engine") == "planar":
+    if resolved(keywords.get("engine", "auto")) == "planar":
         raise ValueError("engine = 'planar' takes only the samples that are read: record with 'bullet'")
     actor = policies.load(policy)
     env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **{**policies.modes(actor), **keywords})

@@ -21,8 +21,7 @@ import numpy as np
 
 from estimator.plain_files import check_regular
 from slipgym import atomic_io
-from slipgym.envs.simulation_state import SimulationState
-from slipgym.envs.state import EnvState, VectorState
+from slipgym.envs.states import EnvState, SimulationState, VectorState
 from slipgym.world.plant import Plant
 from slipgym.world.scene import Box
 from slipgym.world.snapshot import EngineState

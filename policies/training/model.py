@@ -17,7 +17,7 @@ from torch import nn
 from policies.training import vector
 from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv, Moments
-from policies.training.state_checks import check_array, check_counters, check_twister, fits
+from policies.training.state_checks import check_like, fits
 
 _CLASSES: dict[str, Any] = {"ppo": PPO, "recurrent_ppo": RecurrentPPO, "sac": SAC, "tqc": TQC}
 _ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "elu": nn.ELU}
@@ -117,23 +117,16 @@ def set_state(model: Any, state: dict[str, Any]) -> None:
 
 
 def _check(model: Any, state: dict[str, Any]) -> None:
-    """Raise ValueError if a state has other shapes than this learner, or positions beyond its arrays."""
-    n, observed = model.n_envs, model.observation_space.shape
-    check_counters(state["counters"], _COUNTERS)
-    for name, shape, kinds in zip(_LAST, ((n, *observed), (n,), (n, *observed)), "fbf", strict=True):
-        if state["last"][name] is not None:
-            check_array(name, state["last"][name], shape, kinds)
-    check_twister(state["generators"]["numpy"])
+    """Raise ValueError if a state has other shapes than this learner, or holds NaN."""
+    own = get_state(model, replay=False) | {"parameters": None, "lstm": None, "environments": None}
+    seen = np.zeros((model.n_envs, *model.observation_space.shape), np.float32)
+    last = dict(zip(_LAST, (seen, np.zeros(model.n_envs, bool), seen), strict=True))
+    own["last"] = {name: like if state["last"][name] is not None else None for name, like in last.items()}
     if "replay" in state:
         saved, buffer = state["replay"], model.replay_buffer
         size = buffer.buffer_size if saved["full"] else saved["pos"]
-        if type(saved["full"]) is not bool or type(saved["pos"]) is not int:
-            raise ValueError("replay.full must be true or false, replay.pos a whole number")
-        if not 0 <= saved["pos"] <= buffer.buffer_size:
-            raise ValueError(f"replay.pos = {saved['pos']} must be from 0 to {buffer.buffer_size}")
-        for name in _REPLAY:
-            own = getattr(buffer, name)
-            check_array(f"replay.{name}", saved[name], (size, *own.shape[1:]), own.dtype.kind)
+        own["replay"] = {name: getattr(buffer, name)[:size] for name in _REPLAY} | {"pos": 0, "full": False}
+    check_like("learner", {**state, "environments": None}, own)  # those check theirs
 
 
 def _set_state(model: Any, state: dict[str, Any]) -> None:
@@ -183,10 +176,7 @@ def normalisation(envs: VecNormalize) -> dict[str, Any]:
 def set_normalisation(envs: VecNormalize, state: dict[str, Any]) -> None:
     """Go on from statistics."""
     moments = {"returns": envs.ret_rms, **({"observations": envs.obs_rms} if envs.norm_obs else {})}
-    for name, rms in moments.items():
-        for key in ("mean", "var"):
-            check_array(f"normalisation.{name}.{key}", np.asarray(state[name][key]), np.shape(rms.mean))
-    check_array("normalisation.running", state["running"], (envs.num_envs,))
+    check_like("normalisation", state, normalisation(envs))
     for name, rms in moments.items():
         rms.mean, rms.var, rms.count = (state[name][key] for key in ("mean", "var", "count"))
     envs.returns = state["running"].copy()

@@ -1,4 +1,4 @@
-"""Checks what a checkpoint holds of the learner, before anything of it is used."""
+"""Checks what a checkpoint holds of the learner against the learner itself, before anything of it is used."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 
-_WORDS = 624
-"""Of the state of a Mersenne twister."""
 FAULTS = (
     *(KeyError, IndexError, TypeError, ValueError, AttributeError),
     *(RuntimeError, ArithmeticError, AssertionError, MemoryError),
@@ -31,31 +29,35 @@ def fits(what: str) -> Iterator[None]:
         raise ValueError(f"{what} does not fit this run: {type(error).__name__}: {message:.200}") from error
 
 
-def check_counters(counters: Mapping[str, Any], names: tuple[str, ...]) -> None:
-    """Raise ValueError unless these are the counters of a learner."""
-    if set(counters) != set(names) or not all(type(value) in (int, float) for value in counters.values()):
-        raise ValueError(f"counters must be numbers by the names {', '.join(names)}")
-
-
-def check_array(name: str, given: Any, shape: tuple[int, ...], kinds: str = "f") -> None:
-    """Raise ValueError unless this is an array of such a shape and kind of numbers, all finite.
+def check_like(name: str, given: Any, own: Any) -> None:
+    """Raise ValueError unless a tree has the shape of another one, and all its numbers are finite.
 
     Args:
         name: Its name, for messages.
-        given: The array.
-        shape: The shape.
-        kinds: Letters of numpy's kinds of dtypes.
+        given: Mappings, lists, tuples, arrays, numbers and texts.
+        own: The other one; None stands for any value.
     """
-    if not isinstance(given, np.ndarray) or given.shape != shape or given.dtype.kind not in kinds:
-        raise ValueError(f"{name} must be an array {shape}")
-    if not np.isfinite(given).all():
-        raise ValueError(f"{name} holds a number that is not finite")
+    if isinstance(given, np.ndarray):
+        if isinstance(own, np.ndarray) and (given.shape, given.dtype.kind) != (own.shape, own.dtype.kind):
+            raise ValueError(f"{name} must be an array {own.shape} of {own.dtype.name}")
+        if given.dtype.kind == "f" and not np.isfinite(given).all():
+            raise ValueError(f"{name} holds a number that is not finite")
+    if own is not None and not _same_kind(given, own):
+        raise ValueError(f"{name} = {given!r:.40} must be of the kind of {own!r:.40}")
+    pairs: Any = ()
+    if isinstance(given, Mapping):
+        pairs = ((key, each, own[key] if own else None) for key, each in given.items())
+    elif isinstance(given, list | tuple):
+        pairs = ((k, each, own[k] if own else None) for k, each in enumerate(given))
+    for key, each, other in pairs:
+        check_like(f"{name}.{key}", each, other)
 
 
-def check_twister(given: Any) -> None:
-    """Raise ValueError unless this is a state of numpy's Mersenne twister: numpy checks no position in it."""
-    kind, words, position, *_ = given
-    if kind != "MT19937" or not isinstance(words, np.ndarray) or words.shape != (_WORDS,):
-        raise ValueError("generators.numpy is no state of a Mersenne twister")
-    if type(position) is not int or not 0 <= position <= _WORDS:
-        raise ValueError(f"generators.numpy: position {position!r:.40} must be from 0 to {_WORDS}")
+def _same_kind(given: Any, own: Any) -> bool:
+    if isinstance(own, Mapping):
+        return isinstance(given, Mapping) and given.keys() == own.keys()
+    if isinstance(own, list | tuple):
+        return type(given) is type(own) and len(given) == len(own)
+    if isinstance(own, str):
+        return given == own
+    return type(given) is type(own) or {type(given), type(own)} == {int, float}

@@ -14,7 +14,7 @@ from policies.training.adapter import SlipVecEnv, make_vec_env
 from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv
 from policies.training.residual import ResidualVecEnv
-from policies.training.state_checks import check_array
+from policies.training.state_checks import check_like
 from slipgym.tasks import find
 
 
@@ -123,8 +123,8 @@ def set_state(envs: Any, state: dict[str, Any]) -> None:
         envs.set_state(state["residual"])
         set_state(envs.venv, state)
         return
-    check_array("environments.returns", state["returns"], (envs.num_envs,))
-    check_array("environments.lengths", state["lengths"], (envs.num_envs,), "i")
+    own = {"returns": envs.episode_returns, "lengths": envs.episode_lengths}
+    check_like("environments", {name: state[name] for name in own}, own)
     if len(state["envs"]) != (1 if _is_batch(envs) else envs.num_envs):
         raise ValueError(f"environments.envs holds {len(state['envs'])} states")
     for index, one in enumerate(state["envs"]):

@@ -1,14 +1,24 @@
 """Base class of the configuration models: immutable, strictly typed, finite numbers only."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from slipgym.config.plain import plain
 
 
 class Frozen(BaseModel):
-    """A part of the configuration: immutable, no unknown keys, no silent conversions, finite numbers only."""
+    """A part of the configuration: immutable, no unknown keys, no silent conversions, finite numbers only.
+
+    Numbers, texts and arrays of numpy count as Python's.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _without_numpy(cls, values: Any) -> Any:
+        return plain(values)
 
 
 def as_tuple(value: object) -> object:

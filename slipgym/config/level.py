@@ -60,8 +60,13 @@ class Chosen(NamedTuple):
     level: Level
     source: str
     """File or argument, for the messages of errors."""
-    argument: str | dict[str, Any]
-    """JSON-able argument that chooses it again."""
+    name: str | None = None
+    """Its name; None: it is the user's own."""
+
+    @property
+    def argument(self) -> str | dict[str, Any]:
+        """Argument that chooses it again, JSON-able once a task has accepted its settings."""
+        return self.name or self.level.model_dump(mode="json", exclude_unset=True)
 
 
 def level_names(task: str) -> list[str]:
@@ -102,8 +107,7 @@ def load_level(choice: Choice, task: str) -> Chosen:
 
 
 def _own(values: Mapping[str, Any], source: str) -> Chosen:
-    level = validate(values, Level, source)
-    return Chosen(level, source, level.model_dump(mode="json", exclude_unset=True))
+    return Chosen(validate(values, Level, source), source)
 
 
 def _levels(task: str) -> Mapping[str, Mapping[str, Any]]:

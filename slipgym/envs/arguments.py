@@ -31,6 +31,7 @@ import estimator as estimators
 from slipgym.config.errors import unknown
 from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
 from slipgym.config.physics import ContactModel
+from slipgym.config.plain import plain
 
 FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
 ActionMode: TypeAlias = Literal[
@@ -42,7 +43,7 @@ ActionMode: TypeAlias = Literal[
     "grip_force_wrist_guess",
 ]
 ObservationMode: TypeAlias = Literal["flat", "deviations", "sensor", "dict"]
-Engine: TypeAlias = Literal["bullet", "planar"]
+Engine: TypeAlias = Literal["auto", "bullet", "planar"]
 
 FRICTION_SOURCES: tuple[str, ...] = get_args(FrictionSource)
 OBSERVATION_MODES: tuple[str, ...] = get_args(ObservationMode)
@@ -124,7 +125,8 @@ class ScalarArguments(CommonArguments, total=False):
     """Keyword arguments of a `SlipEnv`."""
 
     engine: Annotated[
-        Engine, Argument("bullet", "engine that moves the bodies: PyBullet or planar (see docs/batch.md)")
+        Engine,
+        Argument("auto", "engine that moves the bodies (see docs/batch.md); auto: PyBullet if installed"),
     ]
     render_mode: Annotated[
         Literal["human", "rgb_array", "depth_array"] | None,
@@ -149,6 +151,14 @@ class VectorArguments(CommonArguments, total=False):
         Argument(
             None,
             "threads that share the environments; `None`: one per processor, each with at least 32",
+        ),
+    ]
+    max_episode_steps: Annotated[
+        int | None,
+        Argument(
+            None,
+            "steps after which an episode is truncated, if it has not ended; `None`: its own length",
+            least=1,
         ),
     ]
     render_mode: Annotated[
@@ -208,15 +218,9 @@ def fields(kind: type) -> dict[str, Field]:
             choice for member in members if get_origin(member) is Literal for choice in get_args(member)
         ]
         optional = NoneType in members
+        limits = argument.least, argument.most
         found[name] = Field(
-            name,
-            annotation,
-            argument.default,
-            argument.doc,
-            tuple(choices),
-            optional,
-            argument.least,
-            argument.most,
+            name, annotation, argument.default, argument.doc, tuple(choices), optional, *limits
         )
     return found
 
@@ -230,7 +234,7 @@ def complete(kind: type, given: Mapping[str, Any]) -> dict[str, Any]:
     """
     known = fields(kind)
     refuse_unknown(given, known)
-    values = {name: given.get(name, field.default) for name, field in known.items()}
+    values = {name: plain(given.get(name, field.default)) for name, field in known.items()}
     for name, value in values.items():
         known[name].check(value)
     return values

@@ -18,8 +18,7 @@ from slipgym.envs.nan_guard import Guard
 from slipgym.envs.observation import SENSORS, ObservationBuffers
 from slipgym.envs.reset_kernels import WARM_UP_STEPS
 from slipgym.envs.simulation import Simulation
-from slipgym.envs.simulation_state import SimulationState
-from slipgym.envs.state_checks import check_engine
+from slipgym.envs.states import SimulationState
 from slipgym.sensors.force_torque import roomier
 from slipgym.tasks import Task
 from slipgym.tasks.disturbance import bear_all, shake_tilt
@@ -108,11 +107,6 @@ class BulletSimulation(Simulation):
     def get_state(self) -> SimulationState:
         """See `Simulation.get_state`."""
         return replace(super().get_state(), engine=self.world.get_state())
-
-    def check_state(self, state: SimulationState, ready: np.ndarray) -> None:
-        """See `Simulation.check_state`."""
-        super().check_state(state, ready)
-        check_engine(state.engine, state.boxes[0])
 
     def set_state(self, state: SimulationState, ready: np.ndarray) -> None:
         """See `Simulation.set_state`.

@@ -10,7 +10,6 @@ import numpy as np
 from slipgym._numba.fixed import Fixed
 from slipgym.envs import privileged
 from slipgym.envs.observation import DEVIATIONS, ObservationBuffers, columns, wrist_part
-from slipgym.envs.record_checks import check_array, check_finite
 from slipgym.envs.simulation import Simulation
 from slipgym.envs.stages import STATE
 from slipgym.tasks.task import Column
@@ -115,16 +114,6 @@ class Observer:
             return self._frames.copy()
         self.again()
         return self.buffers.out[:, np.newaxis].copy()
-
-    def check_state(self, frames: np.ndarray, rows: np.ndarray) -> None:
-        """Raise ValueError unless these are the last observations of environments like these.
-
-        Args:
-            frames: (n, history + 1, m).
-            rows: Environments that have an episode, (n,) bool.
-        """
-        shape = len(rows), self.history + 1, len(self.columns)
-        check_finite("frames", check_array("frames", frames, np.float32, shape)[rows])
 
     def set_state(self, frames: np.ndarray, rows: np.ndarray) -> None:
         """Restore the history of some rows (n,) bool; without one, the simulation's state suffices."""

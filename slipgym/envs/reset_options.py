@@ -32,6 +32,7 @@ class RowOptions:
         rows, mask = None, None
         if isinstance(given, dict):
             rows, mask = given.pop("rows", None), given.pop("reset_mask", None)
+            rows = rows.tolist() if isinstance(rows, np.ndarray) else rows
         self.mask = np.ones(n, dtype=bool) if mask is None else _checked_mask(mask, n)
         self._common = kind.parse(given)
         self._rows: list[EpisodeOptions] | None = None

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from gymnasium.utils import seeding
 
-from slipgym.envs.record_checks import damaged
-from slipgym.envs.state import restored_generator
+from slipgym.envs.states import restored_generator
 
 
 class Generators:
@@ -56,13 +55,7 @@ class Generators:
         return [self[i].bit_generator.state for i in range(self._n)]
 
     def restored(self, states: Sequence[Mapping[str, Any]]) -> Generators:
-        """Generators with these states.
-
-        Raises:
-            ValueError: There are not as many, or one is no state of a generator.
-        """
-        if not isinstance(states, list | tuple) or len(states) != self._n:
-            raise damaged(f"generators must be a list of {self._n}")
+        """Generators with these states, one for each environment."""
         made = Generators(self._n)
         made._generators[:] = map(restored_generator, states)
         return made

@@ -20,10 +20,8 @@ from slipgym.envs.hardware_randomization import prepare_hardware
 from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
-from slipgym.envs.record_checks import damaged
-from slipgym.envs.simulation_state import SimulationState
 from slipgym.envs.stages import compiled_stages
-from slipgym.envs.state_checks import check_arrays, check_objects, check_plant
+from slipgym.envs.states import SimulationState, check_layout
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.options import EpisodeOptions
@@ -54,6 +52,7 @@ class Simulation(ABC):
         materials: Name of every episode's material.
         boxes: Every episode's object.
         drawn: Values that the randomization sampled for every episode.
+        blank: The values that all episodes begin with, EPISODE (1,).
         ground_truth: True (mu_s, mu_c, r) now and full confidence, (n, 11); columns as `estimated`.
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
         estimated: Estimates of both fingers merged, with their confidence and deviations, (n, 11).
@@ -90,7 +89,7 @@ class Simulation(ABC):
         self.step_time = 1.0 / config.physics.control_rate
         self._sampler = EpisodeSampler(config, settings, task, randomizer, self.episode)
         self.materials, self.boxes = self._sampler.materials, self._sampler.boxes
-        self.drawn = self._sampler.drawn
+        self.drawn, self.blank = self._sampler.drawn, self._sampler.blank
         plant, learned = self.plant, self.estimator
         self.state = BatchState(
             worlds=plant.world,
@@ -230,21 +229,9 @@ class Simulation(ABC):
         return SimulationState(None, deepcopy(self.plant), arrays, list(self.materials), list(self.boxes))
 
     def check_state(self, state: SimulationState, ready: np.ndarray) -> None:
-        """Check a state before anything of it is restored: compiled code checks no index.
-
-        Args:
-            state: The state.
-            ready: Environments that have an episode in it, (n,) bool.
-
-        Raises:
-            ValueError: An environment like this cannot have written it.
-        """
-        if type(state) is not SimulationState:
-            raise damaged(f"simulation must be a SimulationState, got {type(state).__name__}")
-        check_plant(state.plant, self.plant, ready)
-        blank, estimator = self._sampler.blank, self.estimator.name
-        check_arrays(state.arrays, self._arrays(), blank, estimator, ready)
-        check_objects(state.materials, state.boxes, self.config.materials, ready)
+        """Check a whole state before anything of it is restored, see `check_layout`."""
+        own = SimulationState(None, self.plant, self._arrays(), self.materials, self.boxes)
+        check_layout(state, own, ready)
 
     def set_state(self, state: SimulationState, ready: np.ndarray) -> None:
         """Restore a state that `check_state` has accepted.

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Unpack
 import gymnasium as gym
 import numpy as np
 
+from slipgym.config.plain import plain
 from slipgym.envs.arguments import ScalarArguments, complete, documented
+from slipgym.envs.conventions import Conventions, horizon
+from slipgym.envs.engines import resolved, simulation_of
 from slipgym.envs.info_copies import info_reader
-from slipgym.envs.setup import MakeSimulation, Setup
-from slipgym.envs.simulation import Simulation
-from slipgym.envs.state import EnvState, checked, restored_generator, restored_seed
+from slipgym.envs.setup import Setup
+from slipgym.envs.states import EnvState, checked, restored_generator
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
 
@@ -20,24 +22,8 @@ if TYPE_CHECKING:
     from slipgym.rendering.discrepancy import Discrepancy
 
 
-def _bullet(*arguments: Any) -> Simulation:
-    from slipgym.envs.bullet_simulation import BulletSimulation
-
-    return BulletSimulation(*arguments)
-
-
-def _planar(*arguments: Any) -> Simulation:
-    from slipgym.envs.planar_simulation import PlanarSimulation
-
-    return PlanarSimulation(*arguments)
-
-
-_SIMULATIONS: dict[str, MakeSimulation] = {"bullet": _bullet, "planar": _planar}
-"""Engine -> simulation; PyBullet is loaded on first use."""
-
-
 @documented(ScalarArguments)
-class SlipEnv(gym.Env[Any, np.ndarray]):
+class SlipEnv(Conventions, gym.Env[Any, np.ndarray]):
     """An environment with a box between the two pads of a gripper; one step is `frame_skip` control steps.
 
     `slipgym.envs.environment` makes a subclass for each `Task`, whose docstring describes spaces and rewards.
@@ -49,6 +35,10 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         ValueError: The value of an argument is unknown or not allowed.
         TypeError: An argument is unknown.
         RuntimeError: A window cannot open here; `metadata["render_modes"]` then lacks "human".
+        ModuleNotFoundError: PyBullet is asked for and not installed.
+
+    Attributes:
+        engine: "bullet" or "planar".
     """
 
     task: ClassVar[Task]
@@ -59,8 +49,9 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
 
     def __init__(self, **arguments: Unpack[ScalarArguments]) -> None:
         values = complete(ScalarArguments, arguments)
-        engine, render_mode, frame_skip = values["engine"], values["render_mode"], values["frame_skip"]
-        setup = Setup(self.task, values, _SIMULATIONS[engine])
+        self.engine = resolved(values["engine"])
+        render_mode, frame_skip = values["render_mode"], values["frame_skip"]
+        setup = Setup(self.task, values, simulation_of(self.engine))
         self.config, self.settings = setup.config, setup.settings
         self.randomization, self.material = setup.randomization, setup.material
         self.render_mode, self._frame_skip = render_mode, frame_skip
@@ -71,7 +62,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self.columns, self.privileged_columns = self._observer.columns, self._observer.privileged
         self.action_columns = self._actions.columns
         self.action_space, self.observation_space = self._actions.space, self._observer.space
-        self._arguments = {**setup.arguments, "engine": engine}
+        self._arguments = {**setup.arguments, "engine": self.engine}
         self._report = info_reader(self.simulation.infos, self.task.term_names)
         self._renderer: Any = None
         if render_mode is not None:
@@ -79,6 +70,8 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
 
             self._renderer = Renderer(render_mode, self.simulation)
         self._ready = False
+        self._horizon = horizon(self.task, self.settings, self.simulation.blank, frame_skip)
+        self._own = frozenset(vars(self))
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -101,7 +94,7 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         generator, its_seed = self._np_random, self._np_random_seed
         state = {} if generator is None else generator.bit_generator.state
         try:
-            super().reset(seed=seed)
+            super().reset(seed=plain(seed))
             self._ready = False
             self.simulation.reset(asked, self.material, self.np_random)
             if self._renderer is not None:
@@ -207,23 +200,22 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
 
         Raises:
             TypeError: `state` is not a state.
-            ValueError: The state belongs to an environment with other arguments, or no environment wrote it.
-                The environment is as before, or needs a reset if PyBullet refuses its part.
+            ValueError: The state belongs to an environment with other arguments or version, or is damaged;
+                nothing changes.
             RuntimeError: This environment is closed.
         """
         checked(state, EnvState).check({"task": self.task.name, **self._arguments})
         self.simulation.check_open()
-        generator, seed = restored_generator(state.generator), restored_seed(state.seed)
+        generator = restored_generator(state.generator)
         if state.simulation is not None:
             self.simulation.check_state(state.simulation, _ONE)
-            self._observer.check_state(state.frames, _ONE)
         self._ready = False
         if state.simulation is not None:
             self.simulation.set_state(state.simulation, _ONE)
             if self._renderer is not None:
                 self._renderer.begin()
             self._observer.set_state(state.frames, _ONE)
-        self._np_random, self._np_random_seed = generator, seed
+        self._np_random, self._np_random_seed = generator, state.seed
         self._ready = state.simulation is not None
 
     def _check_object(self) -> None:
@@ -232,10 +224,10 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
             raise RuntimeError("call reset() first: there is no object yet")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickling and copying make an independent environment in the same state."""
+        """Pickling and copying make an independent environment in the same state, see `Conventions`."""
         state = None if self.simulation.closed else self.get_state()
         arguments = {**self._arguments, "render_mode": self.render_mode}
-        return _rebuild, (type(self), arguments, state, self.spec)
+        return _rebuild, (type(self), arguments, state), self._kept()
 
     def close(self) -> None:
         """Release the physics client; closing twice is harmless."""
@@ -245,9 +237,9 @@ class SlipEnv(gym.Env[Any, np.ndarray]):
         self._ready = False
 
 
-def _rebuild(kind: type[SlipEnv], arguments: Mapping[str, Any], state: EnvState | None, spec: Any) -> SlipEnv:
-    env = kind(**arguments)
-    env.spec = spec
+def _rebuild(kind: type[SlipEnv], arguments: Mapping[str, Any], state: EnvState | None) -> SlipEnv:
+    env = kind.__new__(kind)
+    SlipEnv.__init__(env, **arguments)  # a subclass of the user's may take other arguments
     if state is None:
         env.close()
     else:

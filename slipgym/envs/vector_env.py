@@ -13,14 +13,15 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
+from slipgym.config.plain import plain
 from slipgym.envs.arguments import VectorArguments, complete, documented, one_of
+from slipgym.envs.conventions import Conventions, horizon
 from slipgym.envs.infos import final
 from slipgym.envs.planar_simulation import PlanarSimulation
-from slipgym.envs.record_checks import check_flags
 from slipgym.envs.reset_options import RowOptions
 from slipgym.envs.seeds import Generators
 from slipgym.envs.setup import Setup
-from slipgym.envs.state import VectorState, checked
+from slipgym.envs.states import VectorState, checked
 from slipgym.envs.vector_rendering import Pictures
 from slipgym.tasks import TASKS, Task
 from slipgym.tasks.options import EpisodeOptions
@@ -29,7 +30,7 @@ from slipgym.tasks.options import EpisodeOptions
 @documented(
     VectorArguments, inspect.Parameter("task", inspect.Parameter.POSITIONAL_OR_KEYWORD, annotation=str)
 )
-class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
+class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
     """A vector environment of a task on the planar engine; one compiled call steps all n environments.
 
     Environment i equals, bit for bit, the scalar environment with `engine="planar"` seeded with seed + i,
@@ -47,7 +48,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "depth_array"], "render_fps": 120}  # noqa: RUF012
 
     def __init__(self, task: str, **arguments: Unpack[VectorArguments]) -> None:
-        values = complete(VectorArguments, _without_scalar(arguments))
+        values = complete(VectorArguments, _without_scalar(plain(arguments)))
         self.task: Task = TASKS[one_of("task", task, TASKS)]
         num_envs, threads, frame_skip = values["num_envs"], values["threads"], values["frame_skip"]
         self.num_envs = num_envs
@@ -64,19 +65,25 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         self.autoreset_mode = AutoresetMode(values["autoreset_mode"])
         rate = self.config.physics.control_rate / frame_skip
         self.metadata = {**self.metadata, "render_fps": rate, "autoreset_mode": self.autoreset_mode}
+        self._limit: int | None = values["max_episode_steps"]
+        own = horizon(self.task, self.settings, self.simulation.blank, frame_skip)
+        self._horizon = self._limit if own is None or (self._limit or own) < own else own
         self._made_of = {
             "task": self.task.name,
             **setup.arguments,
             "num_envs": num_envs,
             "autoreset_mode": self.autoreset_mode.value,
+            "max_episode_steps": self._horizon,
         }
-        self._shown = {name: values[name] for name in ("threads", "render_mode", "render_rows")}
+        shown = "threads", "render_mode", "render_rows", "max_episode_steps"
+        self._shown = {name: values[name] for name in shown}
         self._generators = Generators(num_envs)
         self.render_mode = values["render_mode"]
         self._pictures = Pictures(self.simulation, self.render_mode, values["render_rows"])
         self._options = self.task.options.parse(None)
         self._ready = np.zeros(num_envs, dtype=bool)
         self._over = np.zeros(num_envs, dtype=bool)
+        self._own = frozenset(vars(self))
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
@@ -96,7 +103,7 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         """
         self.simulation.check_open()
         asked = RowOptions(options, self.num_envs, self.task.options)
-        self._generators.seed(seed, asked.mask)
+        self._generators.seed(plain(seed), asked.mask)
         rows = np.flatnonzero(asked.mask)
         self._ready[rows] = self._over[rows] = False
         self._begin(rows, asked)
@@ -145,6 +152,8 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
         simulation.step(chosen, table, self._frame_skip, active, buffers, partial(self._begin, rows))
         self._observer.next(active)
         rewards, terminated, truncated = simulation.rewards, simulation.terminated, simulation.truncated
+        if self._limit is not None:  # as Gymnasium's TimeLimit, whether or not the episode ends anyway
+            truncated |= active & (simulation.episode["step"] >= self._limit * self._frame_skip)
         self._pictures.keep(active)
         over = terminated | truncated
         ended: dict[str, Any] = {}
@@ -187,28 +196,26 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
 
         Raises:
             TypeError: `state` is not a state.
-            ValueError: The state belongs to an environment with other arguments, or no environment wrote it;
+            ValueError: The state belongs to an environment with other arguments or version, or is damaged;
                 nothing changes.
             RuntimeError: This environment is closed.
         """
         checked(state, VectorState).check(self._made_of)
         self.simulation.check_open()
-        generators = self._generators.restored(state.generators)
-        ready, over = (check_flags(name, getattr(state, name), self.num_envs) for name in ("ready", "over"))
+        generators, ready = self._generators.restored(state.generators), state.ready.copy()
         self.simulation.check_state(state.simulation, ready)
-        self._observer.check_state(state.frames, ready)
         self._ready = np.zeros(self.num_envs, dtype=bool)
         self.simulation.set_state(state.simulation, ready)
         self._generators = generators
         self._observer.set_state(state.frames, ready)
         self._pictures.begin(np.flatnonzero(ready))
-        self._over = over
+        self._over = state.over.copy()
         self._ready = ready
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickling and copying make an independent environment in the same state."""
+        """Pickling and copying make an independent environment in the same state, see `Conventions`."""
         state = None if self.simulation.closed else self.get_state()
-        return _rebuild, ({**self._made_of, **self._shown}, state, self.spec)
+        return _rebuild, (type(self), {**self._made_of, **self._shown}, state), self._kept()
 
     def close_extras(self, **_: Any) -> None:
         """End the threads."""
@@ -231,14 +238,16 @@ class SlipVectorEnv(gym.vector.VectorEnv[Any, np.ndarray, np.ndarray]):
 
 
 def _without_scalar(arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Remove `engine`, which must be "planar", and the former argument `infos` from keyword arguments.
+    """Remove `engine`, which must be "planar" or "auto", and the former argument `infos`.
+
+    A limit of -1 steps is none, as for `gymnasium.make`.
 
     Raises:
-        ValueError: The engine is not "planar", or the value of `infos` was never allowed.
+        ValueError: The engine is another one, or the value of `infos` was never allowed.
     """
     given = dict(arguments)
     engine = given.pop("engine", "planar")
-    if engine != "planar":
+    if engine not in ("planar", "auto"):
         raise ValueError(
             f"engine = {engine!r}: the batch runs on the planar engine alone; for PyBullet use "
             'gym.make_vec(..., vectorization_mode="async")'
@@ -247,12 +256,16 @@ def _without_scalar(arguments: Mapping[str, Any]) -> dict[str, Any]:
         one_of("infos", given.pop("infos"), ("all", "ends"))
         message = "infos is gone: infos of all environments are always returned"
         warnings.warn(message, DeprecationWarning, stacklevel=3)
+    if given.get("max_episode_steps") == -1:
+        del given["max_episode_steps"]
     return given
 
 
-def _rebuild(arguments: Mapping[str, Any], state: VectorState | None, spec: Any) -> SlipVectorEnv:
-    env = SlipVectorEnv(**arguments)
-    env.spec = spec
+def _rebuild(
+    kind: type[SlipVectorEnv], arguments: Mapping[str, Any], state: VectorState | None
+) -> SlipVectorEnv:
+    env = kind.__new__(kind)
+    SlipVectorEnv.__init__(env, **arguments)  # a subclass of the user's may take other arguments
     if state is None:
         env.close()
     else:

@@ -21,7 +21,7 @@ print(env.step(env.action_space.sample())[0].shape)
 envs = gym.make_vec("slipgym/Hold-v0", num_envs=2)
 print(envs.reset(seed=0)[0].shape)
 try:
-    gym.make("slipgym/Hold-v0")
+    gym.make("slipgym/Hold-v0", engine="bullet")
 except ModuleNotFoundError as error:
     print(error.name, error)
 """

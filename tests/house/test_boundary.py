@@ -16,6 +16,7 @@ PUBLIC = (
     "slipgym.envs",
     "slipgym.envs.actions",
     "slipgym.envs.arguments",
+    "slipgym.envs.engines",
     "slipgym.envs.observation",
     "slipgym.envs.simulation",
     "slipgym.registration",

@@ -1,0 +1,82 @@
+"""Gives environments a spec that says how long they last, and copies that keep what a user has changed."""
+
+from __future__ import annotations
+
+import os
+from copy import copy, deepcopy
+from enum import Enum
+from typing import Any
+
+import numpy as np
+from gymnasium.envs.registration import EnvSpec
+
+from slipgym.config import TaskConfig
+from slipgym.config.plain import plain
+from slipgym.tasks import Task
+
+_SPACES = "action_space", "observation_space", "single_action_space", "single_observation_space"
+_LIMIT = "max_episode_steps"
+"""Keyword argument of a vector environment that `gymnasium.make_vec` takes from the spec."""
+_RESTORED = "_np_random", "_np_random_seed"
+"""Attributes of a scalar environment that its state holds."""
+
+
+class Conventions:
+    """Base class of scalar and vector environments: `spec`, and what their copies keep."""
+
+    _spec: EnvSpec | None = None
+    _horizon: int | None = None
+    """Steps of an episode with the environment's settings; None: they differ from episode to episode."""
+    _own: frozenset[str] = frozenset()
+    """Names of the attributes that the constructor sets."""
+
+    @property
+    def spec(self) -> EnvSpec | None:
+        """Arguments of `gymnasium.make`, all JSON-able, and the steps of an episode, `max_episode_steps`.
+
+        The environment ends its episodes itself: `gymnasium.make(id)` puts no `TimeLimit` around it.
+        """
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: EnvSpec | None) -> None:
+        self._spec = made = copy(spec)
+        if made is not None:
+            made.kwargs = {name: _jsonable(value) for name, value in made.kwargs.items()}
+            limit = made.kwargs.pop(_LIMIT, made.max_episode_steps)
+            made.max_episode_steps = self._horizon if limit in (None, -1) else limit
+
+    def _kept(self) -> dict[str, Any]:
+        """Attributes that a copy takes over: spaces with their generators, spec, and those of the user."""
+        mine = vars(self)
+        kept = {name: deepcopy(mine[name]) for name in (*_SPACES, "metadata", "_spec") if name in mine}
+        users = mine.keys() - self._own - {*_RESTORED, "_spec"}
+        return kept | {name: mine[name] for name in sorted(users)}
+
+
+def horizon(task: Task, settings: TaskConfig, blank: np.ndarray, frame_skip: int) -> int | None:
+    """Steps of an episode without reset options; None if episodes differ.
+
+    Args:
+        task: The task.
+        settings: Its settings.
+        blank: The values that all episodes begin with, EPISODE (1,).
+        frame_skip: Control steps per step.
+    """
+    lengths = set()
+    for seed in range(2):
+        episode = blank.copy()
+        try:
+            task.start(settings, task.options.parse(None), np.random.default_rng(seed), episode[0])
+        except Exception:  # a task of the user's that needs a sampled episode; reset says what is wrong
+            return None
+        lengths.add(-(-episode["steps"].item() // frame_skip))
+    return lengths.pop() if len(lengths) == 1 else None
+
+
+def _jsonable(value: Any) -> Any:
+    """A keyword argument as JSON can hold it: paths and modes of autoreset as text."""
+    value = plain(value)
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    return value.value if isinstance(value, Enum) else value
