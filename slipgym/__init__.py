@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING, Any
 from slipgym.registration import register
 
 if TYPE_CHECKING:
-    from slipgym.envs.environment import register_task
+    from slipgym.envs import register_task
 
 __all__ = ["__version__", "register_task"]
 __version__ = "0.2.0"
@@ -40,7 +40,7 @@ register()
 
 def __getattr__(name: str) -> Any:
     if name == "register_task":  # loads numba: on first use
-        from slipgym.envs.environment import register_task
+        from slipgym.envs import register_task
 
         return register_task
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

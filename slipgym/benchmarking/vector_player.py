@@ -9,8 +9,8 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.config.hardware import GripperConfig
-from slipgym.envs.threads import Threads
 from slipgym.envs.vector_env import SlipVectorEnv
+from slipgym.threads import Threads
 
 SLIP_LIMIT = 1.0, 4.0
 """Commanded forces of the headline workload, about the slip limit [N]."""

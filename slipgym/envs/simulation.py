@@ -14,13 +14,12 @@ from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
 from slipgym.envs.control_step import BatchState
-from slipgym.envs.episode_sampler import EpisodeSampler
-from slipgym.envs.estimator_choice import chosen_estimator, informed
-from slipgym.envs.hardware_randomization import prepare_hardware
+from slipgym.envs.estimates import chosen_estimator, informed
 from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
 from slipgym.envs.record_checks import damaged
+from slipgym.envs.reset import EpisodeSampler, prepare_hardware
 from slipgym.envs.simulation_state import SimulationState
 from slipgym.envs.stages import compiled_stages
 from slipgym.envs.state_checks import check_arrays, check_objects, check_plant

@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.envs.arguments import ScalarArguments, complete, documented
-from slipgym.envs.info_copies import info_reader
+from slipgym.envs.infos import info_reader
 from slipgym.envs.setup import MakeSimulation, Setup
 from slipgym.envs.simulation import Simulation
 from slipgym.envs.state import EnvState, checked, restored_generator, restored_seed

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from slipgym.config import load
-from slipgym.envs import privileged
 from slipgym.envs.actions import ACTION_MODES, components
 from slipgym.envs.arguments import OBSERVATION_MODES
 from slipgym.envs.observation import DEVIATION_COLUMNS, WRIST
+from slipgym.envs.observer import privileged_columns
 
 PAGE = (Path(__file__).parents[2] / "docs" / "modes.md").read_text(encoding="utf-8")
 CONFIG = load()
@@ -34,7 +34,7 @@ def test_every_observation_mode_and_column_is_listed():
         assert row(column) in PAGE
     for column in DEVIATION_COLUMNS:
         assert row(column) in PAGE
-    table = "\n".join(f"{row(column)}" for column in privileged.columns(CONFIG))
+    table = "\n".join(f"{row(column)}" for column in privileged_columns(CONFIG))
     assert f"| Column | Min | Max | Unit | Meaning |\n|---|---|---|---|---|\n{table}\n\n" in PAGE
 
 
