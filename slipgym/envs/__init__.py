@@ -12,7 +12,7 @@ The way of an action to the contact and back to an observation, file by file (be
    `envs/bullet_simulation.py` of one environment, `envs/planar_simulation.py` of thousands, in parts that
    `threads.py` hands out. `envs/control_step.py` has the stages of a control step, which both engines call in
    the same order; `envs/stages.py` compiles them.
-4. Stage *begin*: `tasks/episode.py`, `tasks/disturbance.py` and the task's file script wrist and disturbances.
+4. Stage *begin*: `tasks/episode.py`, `tasks/disturbance.py` and the task's file script wrist and pushes.
 5. The motion: `world/planar_engine.py`, or `world/bullet_engine.py` with PyBullet; both go through
    `world/substep.py` to the contact, `contact/coupled.py`.
 6. Stage *measure*: `sensors/measure.py` reads the sensors of both fingers.
@@ -23,8 +23,8 @@ The way of an action to the contact and back to an observation, file by file (be
 
 An episode begins in `envs/reset.py`, called from `Simulation.reset_rows`: `envs/randomizer.py` samples the
 numbers that `envs/values.py` declares, `envs/sampling_kernels.py` makes initial conditions of them, and
-`envs/reset_kernels.py` applies these to bodies, pads and sensors. `envs/reset_options.py` checks the seeds and
-options that the `reset` of many environments gets.
+`envs/reset_kernels.py` applies these to bodies, pads and sensors. `envs/reset_options.py` checks the seeds
+and options that the `reset` of many environments gets.
 
 States of environments: `envs/state.py`. Pages of the documentation: `envs/docstring.py`.
 """
