@@ -125,6 +125,8 @@ CELL_FIELDS = 12
 """Rows of a patch, an array (CELL_FIELDS, n): one quantity in a row lets loops over n cells vectorise."""
 
 
+CONFIGURED = {"shear_compliance": "compliance"}
+"""Name in `slipgym.config.pad` -> name in `PAD_PARAMETERS`, where they differ."""
 NEUTRAL: dict[str, float] = {
     "stribeck_exponent": 2.0,
     "axes": 1.0,

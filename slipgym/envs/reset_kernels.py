@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from slipgym._numba.compiled import compiled, pointed
+from slipgym._numba.generate import generate
+from slipgym.config.pad import EFFECTS
 from slipgym.contact.anisotropy import friction_axes, stretch
+from slipgym.contact.records import CONFIGURED
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
 from slipgym.sensors.unloaded import READINGS, read_unloaded
@@ -118,14 +121,19 @@ def equip(starts, values, hardware, patches, pads, cells, fingers, force_torque,
         set_patches(starts, patches, pads, cells)
 
 
-@compiled
-def randomize_pad(pad, value):
-    """Set the sampled parameters of a PAD record but its friction and radius."""
-    pad.stribeck_velocity, pad.sigma_0 = value.stribeck_velocity, value.sigma_0
-    pad.load_exponent, pad.radius_exponent = value.load_exponent, value.radius_exponent
-    pad.cop_lever, pad.compliance = value.cop_lever, value.shear_compliance
-    pad.creep, pad.aging = value.creep, value.aging
-    pad.axes[0], pad.axes[1] = friction_axes(value.anisotropy)
+randomize_pad = generate(
+    "randomize_pad",
+    ("pad", "value"),
+    [
+        "pad.stribeck_velocity, pad.sigma_0 = value.stribeck_velocity, value.sigma_0",
+        *(f"pad.{CONFIGURED.get(name, name)} = value.{name}" for name in EFFECTS if name != "anisotropy"),
+        "pad.axes[0], pad.axes[1] = friction_axes(value.anisotropy)",
+    ],
+    {"friction_axes": friction_axes},
+    compiled,
+    __file__,
+    "Set the sampled parameters of a PAD record, from VALUES, but its friction and radius.",
+)
 
 
 @compiled
