@@ -9,35 +9,42 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.contact.fields import comparison, joined, reset
 
-PAD_PARAMETERS = np.dtype(
+PAD_FIXED = np.dtype(
     [
         ("surface", "i8"),  # limit surface of a pad without cells: ELLIPSOID or DISC
+        ("stribeck_exponent", "f8"),  # gamma [-]
+        ("sigma_1", "f8"),  # bristle damping per normal force [s/m]
+        ("sigma_2", "f8"),  # viscous friction per normal force [s/m]
+        # of `slipgym.contact.soft_pad`
+        ("reference_force", "f8"),  # normal force at which mu_c, mu_s and r hold [N]
+        ("radius_max", "f8"),  # largest r [m]
+        ("shear_time", "f8"),  # damping of the rubber over its stiffness [s]
+        ("creep_time", "f8"),  # time constant of `creep` [s]
+        ("aging_time", "f8"),  # dwell time at which aging begins [s]
+        ("aging_distance", "f8"),  # slip after which it is lost [m]
+    ]
+)
+"""Parameters that the configuration fixes for all episodes."""
+PAD_EPISODE = np.dtype(
+    [
         ("mu_c", "f8"),  # Coulomb friction, at the reference force [-]
         ("mu_s", "f8"),  # static friction, at the reference force and just after a slip [-]
         ("stribeck_velocity", "f8"),  # v_s [m/s]
-        ("stribeck_exponent", "f8"),  # gamma [-]
         ("sigma_0", "f8"),  # bristle stiffness per normal force [1/m]
-        ("sigma_1", "f8"),  # bristle damping per normal force [s/m]
-        ("sigma_2", "f8"),  # viscous friction per normal force [s/m]
         ("r", "f8"),  # radius of the equivalent rim contact, at the reference force [m]
         ("cop", "f8", 2),  # centre of pressure in the pad frame, without tangential load [m]
         ("axes", "f8", 2),  # friction along the pad's x and y over its mean [-]
         # of `slipgym.contact.soft_pad`; 0 switches an effect off
-        ("reference_force", "f8"),  # normal force at which mu_c, mu_s and r hold [N]
         ("load_exponent", "f8"),  # friction falls with the normal force to the power of this [-]
         ("radius_exponent", "f8"),  # r grows with it [-]
-        ("radius_max", "f8"),  # largest r [m]
         ("cop_lever", "f8"),  # shift of the centre of pressure over tangential by normal force [m]
         ("compliance", "f8"),  # tangential compliance of the rubber [m/N]
-        ("shear_time", "f8"),  # its damping over its stiffness [s]
         ("creep", "f8"),  # fraction of its stiffness that relaxes [-]
-        ("creep_time", "f8"),  # time constant of that [s]
         ("aging", "f8"),  # growth of mu_s - mu_c per e-fold of dwell time [-]
-        ("aging_time", "f8"),  # dwell time at which that begins [s]
-        ("aging_distance", "f8"),  # slip after which it is lost [m]
     ]
 )
-"""What a pad is in an episode; disturbances change its friction."""
+"""Parameters that an episode may have of its own; disturbances change the friction."""
+PAD_PARAMETERS = joined(PAD_FIXED, PAD_EPISODE)
 PAD_STATE = np.dtype(
     [
         ("normal", "f8"),  # normal force [N]

@@ -41,15 +41,22 @@ WORLD = np.dtype(
 )
 """One object held by one gripper, seen from finger 2: the grip axis points at the viewer."""
 
-FINGER_PARAMETERS = np.dtype(
+FINGER_FIXED = np.dtype(
     [
-        ("lag", "f8"),  # time constant of the force loop [s]
-        ("dead_ticks", "i8"),  # dead time in ticks
-        ("gain", "f8"),  # actuator force over the commanded [-]
         ("force_limit", "f8"),  # hard limit of the actuator [N]
         ("open_below", "f8"),  # commands below it open the force loop [N]
     ]
 )
+"""Parameters that the configuration fixes for all episodes."""
+FINGER_EPISODE = np.dtype(
+    [
+        ("lag", "f8"),  # time constant of the force loop [s]
+        ("dead_ticks", "i8"),  # dead time in ticks
+        ("gain", "f8"),  # actuator force over the commanded [-]
+    ]
+)
+"""Parameters that an episode may have of its own."""
+FINGER_PARAMETERS = joined(FINGER_FIXED, FINGER_EPISODE)
 FINGER_STATE = np.dtype(
     [
         ("queued", "i8"),  # commands ever queued
