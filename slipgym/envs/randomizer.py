@@ -25,7 +25,7 @@ from slipgym.envs.sampling_kernels import (
     sample_values,
     schedule,
 )
-from slipgym.envs.values import FIXED_BY, FRICTION, NAMES, SIZE, VALUES, flat, labels, nominal_values, places
+from slipgym.envs.values import FIXED_BY, FRICTION, NAMES, PLACES, SIZE, VALUES, flat, labels, nominal_values
 from slipgym.tasks.options import EpisodeOptions
 
 UNIFORMS = 8
@@ -136,7 +136,7 @@ class Randomizer:
         numbers["at"], numbers["nominal"] = -1, flat(self._nominal)[0]
         count = 0
         for name in self.drawn:
-            field, own = getattr(self._ranges, name), numbers[places(name)]
+            field, own = getattr(self._ranges, name), numbers[PLACES[name]]
             own["rule"] = PLAIN if name in FRICTION else GATED if name in NAMES else BLENDED
             if name in NAMES:
                 field = Distribution(choices=tuple(float(indices[name].index(each)) for each in field))
@@ -281,7 +281,7 @@ class Drawn:
 
     def _texts(self, rows: list[int]) -> tuple[list[str], list[str]]:
         """`TEXTS` of environments."""
-        places_of = self._numbers[rows, len(FIRST) + places("pressure").start].tolist()
+        places_of = self._numbers[rows, len(FIRST) + PLACES["pressure"].start].tolist()
         happened, kinds = self._happened[rows].tolist(), self._randomizer.kinds
         pressures = [self._pressures[round(place)] for place in places_of]
         return pressures, [", ".join(compress(kinds, flags)) for flags in happened]
@@ -293,7 +293,7 @@ def _columns(known: tuple[str, ...]) -> tuple[list[str], list[int]]:
     names: list[str] = list(FIRST)
     columns = list(range(len(FIRST)))
     for name in known[len(FIRST) :]:
-        own = places(name)
+        own = PLACES[name]
         names += labels(name)
         columns += range(len(FIRST) + own.start, len(FIRST) + own.stop)
     return names, columns

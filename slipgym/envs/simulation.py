@@ -129,14 +129,9 @@ class Simulation(ABC):
         return self.ground_truth[:, :3]
 
     @property
-    def ended_early(self) -> bool:
-        """Whether the first environment's object was dropped, or its task ended the episode."""
-        return self._dropped.item(0) or self._ended.item(0)
-
-    @property
     def over(self) -> bool:
         """Whether the first environment's episode has ended."""
-        return self.ended_early or self.timed_out
+        return self._dropped.item(0) or self._ended.item(0) or self.timed_out
 
     @property
     def timed_out(self) -> bool:

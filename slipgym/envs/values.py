@@ -31,11 +31,6 @@ DIFFERENCES = {
 """Name in the configuration, in `Ranges` and among the reset options -> what it consists of."""
 
 
-def nominal_differences(config: Config) -> dict[str, np.ndarray]:
-    """Numbers of `DIFFERENCES` without randomization."""
-    return {name: np.ravel(getattr(getattr(config, own.group), name)) for name, own in DIFFERENCES.items()}
-
-
 def fixed_differences(config: Config, options: EpisodeOptions) -> dict[str, np.ndarray]:
     """Numbers of `DIFFERENCES` that options fix.
 
@@ -98,7 +93,8 @@ VALUES = np.dtype(
 SIZE = VALUES.itemsize // 8
 """Numbers in `VALUES`."""
 _ENDS = np.cumsum([VALUES[name].itemsize // 8 for name in VALUES.names or ()]).tolist()
-_PLACES = dict(zip(VALUES.names or (), map(slice, [0, *_ENDS], _ENDS), strict=True))
+PLACES = dict(zip(VALUES.names or (), map(slice, [0, *_ENDS], _ENDS), strict=True))
+"""Field -> where its numbers stand in `flat`."""
 FIXED_BY = {
     "mass_scale": "object_mass",
     "size_scale": "object_size",
@@ -114,7 +110,7 @@ def nominal_values(config: Config) -> np.ndarray:
     """VALUES (1,) without randomization."""
     contact, gripper = config.contact, config.gripper
     values = np.zeros(1, VALUES)
-    own = {
+    nominal = {
         "stribeck_velocity": contact.stribeck_velocity,
         "sigma_0": contact.sigma_0,
         "radius_scale": 1.0,
@@ -127,9 +123,9 @@ def nominal_values(config: Config) -> np.ndarray:
         "materials": -1.0,
         **{name: getattr(contact.pad, name) for name in EFFECTS},
         **dict.fromkeys(FRICTION, np.nan),
-        **nominal_differences(config),
+        **{name: np.ravel(getattr(getattr(config, own.group), name)) for name, own in DIFFERENCES.items()},
     }
-    for name, value in own.items():
+    for name, value in nominal.items():
         values[name] = value
     return values
 
@@ -137,11 +133,6 @@ def nominal_values(config: Config) -> np.ndarray:
 def flat(values: np.ndarray) -> np.ndarray:
     """VALUES (m,) as plain numbers (m, SIZE), in the same memory."""
     return values.view(np.float64).reshape(len(values), SIZE)
-
-
-def places(name: str) -> slice:
-    """Where the numbers of a field stand in `flat`."""
-    return _PLACES[name]
 
 
 def labels(name: str) -> list[str]:
