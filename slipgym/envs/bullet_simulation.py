@@ -255,9 +255,7 @@ class BulletSimulation(Simulation):
         bear_all(episode, self.plant.world)
         self._guard.reset()
         for _ in range(WARM_UP_STEPS):
-            self.world.command(force)
-            pose, _, wrist, normals, _ = self.world.move()
-            self._calls.finish(pose, wrist, normals, -1)
+            self._settle(force)
         self._calls.open(starts, self._fresh)
 
     def _bind(self, buffers: ObservationBuffers) -> None:
@@ -284,3 +282,9 @@ class BulletSimulation(Simulation):
         if bad > 0:
             world.discard()
             self._guard.check(bad)
+
+    def _settle(self, force: float) -> None:
+        """One control step of the world and its sensors alone, with a grip force per finger [N]."""
+        self.world.command(force)
+        pose, _, wrist, normals, _ = self.world.move()
+        self._calls.finish(pose, wrist, normals, -1)

@@ -1,4 +1,4 @@
-"""Infos: a table of their entries, buffers that hold them for all environments, and what a caller gets.
+"""Declares the entries of infos in tables, holds them for all environments, and returns them to callers.
 
 The numbers of an environment are one row of a plain array, vectors of three first: the row is also a table of
 three columns. A structured array would be slower: numpy copies its records field by field.
