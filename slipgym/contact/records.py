@@ -130,6 +130,8 @@ RELAXED_X, RELAXED_Y = 10, 11
 """The part of it to which the relaxing stiffness has come [m]."""
 CELL_FIELDS = 12
 """Rows of a patch, an array (CELL_FIELDS, n): one quantity in a row lets loops over n cells vectorise."""
+CELL_PARAMETERS = LOAD + 1
+"""The first so many are parameters, the others state, but for ELASTIC_LIMIT, which is scratch."""
 
 
 CONFIGURED = {"shear_compliance": "compliance"}
@@ -196,14 +198,29 @@ def rest(pads: np.ndarray) -> None:
 
 
 @compiled
-def same_patches(cells: np.ndarray) -> bool:
-    """Whether two patches (2, CELL_FIELDS, n) agree in all rows but what each sub-step computes first."""
+def idle(row: int, pad: Pad) -> bool:
+    """Whether a row of a patch may differ where pads are the same: it is scratch, or 0 on rigid pads."""
+    return row == ELASTIC_LIMIT or (pad.compliance == 0.0 and SHEAR_X <= row <= RELAXED_Y)
+
+
+@compiled
+def same_patches(cells: np.ndarray, pad: Pad) -> bool:
+    """Whether the patches (2, CELL_FIELDS, n) of pads like `pad` have the same parameters and state."""
     differ = 0
     for row in range(cells.shape[1]):
-        if row != ELASTIC_LIMIT:
+        if not idle(row, pad):
             for i in range(cells.shape[2]):
                 differ += cells[0, row, i] != cells[1, row, i]
     return differ == 0
+
+
+@compiled
+def copy_patch_state(cells: np.ndarray, pad: Pad) -> None:
+    """Copy the state of the first of two patches that are the same, see `same_patches`, to the second."""
+    if cells.ndim == 3:  # patches, not (2, 0)
+        for row in range(CELL_PARAMETERS, cells.shape[1]):
+            if not idle(row, pad):
+                cells[1, row] = cells[0, row]
 
 
 @compiled

@@ -11,7 +11,7 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym._numba.rows import row_of
 from slipgym.contact.kinds import PATCHES, set_normal
-from slipgym.contact.records import Pad, Pair, same_pads, same_patches
+from slipgym.contact.records import Pad, Pair, copy_patch_state, same_pads, same_patches
 from slipgym.contact.soft_pad import load_pad
 from slipgym.sensors.force_torque import next_sample_read, sample_force_torque
 from slipgym.world.actuator import (
@@ -70,7 +70,7 @@ def step_world(
     done = advance_substeps(world, (pads[i, 0],), patches, (first,), sensors, (slip_sensors[i, 0],))
     pads[i, 1] = pads[i, 0]
     if cells is not None:
-        cells[i, 1] = cells[i, 0]
+        copy_patch_state(cells[i], pads[i, 0])
     copy_finger_state(first, second)
     for k in range(3):
         slip_sensors[i, 1].moved[k] = slip_sensors[i, 0].moved[k]
@@ -82,7 +82,7 @@ def alike(pads: Records, cells: np.ndarray | None, fingers: Records) -> bool:
     """Whether both pads, their patches and both fingers are the same in parameters and state."""
     if not (same_pads(pads[0], pads[1]) and same_fingers(fingers[0], fingers[1])):
         return False
-    return cells is None or cells.ndim != PATCHES or same_patches(cells)
+    return cells is None or cells.ndim != PATCHES or same_patches(cells, pads[0])
 
 
 @compiled
