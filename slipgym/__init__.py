@@ -31,7 +31,7 @@ from slipgym.registration import register
 from slipgym.version import __version__
 
 if TYPE_CHECKING:
-    from slipgym.envs.environment import register_task
+    from slipgym.envs import register_task
 
 __all__ = ["__version__", "register_task"]
 
@@ -40,7 +40,7 @@ register()
 
 def __getattr__(name: str) -> Any:
     if name == "register_task":  # loads numba: on first use
-        from slipgym.envs.environment import register_task
+        from slipgym.envs import register_task
 
         return register_task
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

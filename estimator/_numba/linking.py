@@ -149,7 +149,7 @@ class _NamedCompiler(Compiler):
         """Compile a function; as numba's own, but for the name."""
         state = self.state
         content = "\0".join([digest(self.kernel), str(state.flags), *map(str, state.args)])
-        identity = FunctionIdentity.from_function(func)
+        identity: Any = FunctionIdentity.from_function(func)
         identity.unique_id = hashlib.sha256(content.encode()).hexdigest()[:32]
         identity.unique_name = f"{identity.func_qualname}${identity.unique_id}"
         state.func_id, state.lifted, state.lifted_from = identity, (), None
@@ -228,8 +228,10 @@ class Kernel(CPUDispatcher):
     """Of a signature: keeps other processes from compiling the same program at the same time."""
 
     def __init__(self, py_func: Any, locals: Any = None, targetoptions: Any = None) -> None:
-        super().__init__(py_func, locals, targetoptions, pipeline_class=partial(_ProgramCompiler, self))
-        self.part = _Part(py_func, locals, targetoptions, pipeline_class=partial(_PartCompiler, self))
+        program: Any = partial(_ProgramCompiler, self)
+        part: Any = partial(_PartCompiler, self)
+        super().__init__(py_func, locals, targetoptions, pipeline_class=program)
+        self.part = _Part(py_func, locals, targetoptions, pipeline_class=part)
 
     def compile(self, sig: Any) -> Any:
         """Compile or load the program for a signature; returns its entry point."""

@@ -14,7 +14,7 @@ from lab.benchmarking.twins import Twins
 from slipgym.benchmarking.report import Figure
 from slipgym.benchmarking.timing import Comparison, compare
 from slipgym.benchmarking.vector_player import SLIP_LIMIT, VectorPlayer
-from slipgym.envs.threads import Threads
+from slipgym.threads import Threads
 
 SIZES = 1, 16, 256, 4096
 EVERY_FORCE = 0.0, 100.0

@@ -5,17 +5,10 @@ from typing import Annotated
 from pydantic import Field
 
 from slipgym.config.base import Frozen
+from slipgym.config.pad_ranges import PadRanges
 
-EFFECTS = (
-    "load_exponent",
-    "radius_exponent",
-    "cop_lever",
-    "shear_compliance",
-    "creep",
-    "aging",
-    "anisotropy",
-)
-"""Fields of `PadConfig` that switch an effect off when they are 0."""
+EFFECTS = tuple(PadRanges.model_fields)
+"""Fields of `PadConfig` that switch an effect off when they are 0: those that can be randomized."""
 
 
 class PadConfig(Frozen):

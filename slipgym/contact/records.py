@@ -7,55 +7,74 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from slipgym._numba.compiled import compiled
+from slipgym.contact.fields import comparison, joined, reset
 
-PAD = np.dtype(
+PAD_FIXED = np.dtype(
     [
-        # parameters
         ("surface", "i8"),  # limit surface of a pad without cells: ELLIPSOID or DISC
+        ("stribeck_exponent", "f8"),  # gamma [-]
+        ("sigma_1", "f8"),  # bristle damping per normal force [s/m]
+        ("sigma_2", "f8"),  # viscous friction per normal force [s/m]
+        # of `slipgym.contact.soft_pad`
+        ("reference_force", "f8"),  # normal force at which mu_c, mu_s and r hold [N]
+        ("radius_max", "f8"),  # largest r [m]
+        ("shear_time", "f8"),  # damping of the rubber over its stiffness [s]
+        ("creep_time", "f8"),  # time constant of `creep` [s]
+        ("aging_time", "f8"),  # dwell time at which aging begins [s]
+        ("aging_distance", "f8"),  # slip after which it is lost [m]
+    ]
+)
+"""Parameters that the configuration fixes for all episodes."""
+PAD_EPISODE = np.dtype(
+    [
         ("mu_c", "f8"),  # Coulomb friction, at the reference force [-]
         ("mu_s", "f8"),  # static friction, at the reference force and just after a slip [-]
         ("stribeck_velocity", "f8"),  # v_s [m/s]
-        ("stribeck_exponent", "f8"),  # gamma [-]
         ("sigma_0", "f8"),  # bristle stiffness per normal force [1/m]
-        ("sigma_1", "f8"),  # bristle damping per normal force [s/m]
-        ("sigma_2", "f8"),  # viscous friction per normal force [s/m]
         ("r", "f8"),  # radius of the equivalent rim contact, at the reference force [m]
         ("cop", "f8", 2),  # centre of pressure in the pad frame, without tangential load [m]
         ("axes", "f8", 2),  # friction along the pad's x and y over its mean [-]
-        # parameters of `slipgym.contact.soft_pad`; 0 switches an effect off
-        ("reference_force", "f8"),  # normal force at which mu_c, mu_s and r hold [N]
+        # of `slipgym.contact.soft_pad`; 0 switches an effect off
         ("load_exponent", "f8"),  # friction falls with the normal force to the power of this [-]
         ("radius_exponent", "f8"),  # r grows with it [-]
-        ("radius_max", "f8"),  # largest r [m]
         ("cop_lever", "f8"),  # shift of the centre of pressure over tangential by normal force [m]
         ("compliance", "f8"),  # tangential compliance of the rubber [m/N]
-        ("shear_time", "f8"),  # its damping over its stiffness [s]
         ("creep", "f8"),  # fraction of its stiffness that relaxes [-]
-        ("creep_time", "f8"),  # time constant of that [s]
         ("aging", "f8"),  # growth of mu_s - mu_c per e-fold of dwell time [-]
-        ("aging_time", "f8"),  # dwell time at which that begins [s]
-        ("aging_distance", "f8"),  # slip after which it is lost [m]
-        # present values that follow from parameters and state
+    ]
+)
+"""Parameters that an episode may have of its own; disturbances change the friction."""
+PAD_PARAMETERS = joined(PAD_FIXED, PAD_EPISODE)
+PAD_STATE = np.dtype(
+    [
+        ("normal", "f8"),  # normal force [N]
         ("friction_scale", "f8"),  # of mu_c and mu_s, from the normal force [-]
         ("static_gain", "f8"),  # of mu_s - mu_c, from the dwell time [-]
         ("radius", "f8"),  # of the equivalent rim contact, a patch's unit of length [m]
         ("pressure_centre", "f8", 2),  # in the pad frame [m]
-        ("prepared", "f8"),  # length of the sub-step that `give` and `recall` belong to [s]
-        ("give", "f8"),  # compliance of the rubber within this sub-step [m/N]
-        ("recall", "f8", 2),  # weights of `shear` and `relaxed` in its force over its stiffness [-]
-        ("relaxing", "f8"),  # fraction of the way to `shear` that `relaxed` goes in this sub-step [-]
-        # state
         ("z", "f8", 3),  # bristle state in the scaled displacement (x, y, r theta) [m]
-        ("shear", "f8", 3),  # scaled displacement of the rubber's surface against the finger [m]
-        ("relaxed", "f8", 3),  # the part of it to which the relaxing stiffness has come [m]
-        ("dwell", "f8"),  # age of the contact [s]
         ("slip_speed", "f8"),  # scaled slip speed; does not rise in stick [m/s]
         ("slip_rate", "f8"),  # its rate of change [m/s^2]
         ("half_step", "f8"),  # half of the last sub-step: speed and twist are means, those of its middle [s]
         ("twist", "f8", 3),  # scaled slip twist of a patch [m/s]
         ("twist_rate", "f8", 3),  # its rate of change [m/s^2]
-        ("normal", "f8"),  # normal force [N]
         ("wrench", "f8", 3),  # on the object at the centre of pressure, pad frame [N, N, N m]
+        ("shear", "f8", 3),  # scaled displacement of the rubber's surface against the finger [m]
+        ("relaxed", "f8", 3),  # the part of it to which the relaxing stiffness has come [m]
+        ("dwell", "f8"),  # age of the contact [s]
+        ("aged", "f8"),  # dwell time for which `static_gain` was computed [s]
+        ("turn", "f8"),  # position on the disc's curve
+        ("elastic_limit", "f8"),  # longest deflection g / sigma_0 in the last sub-step [m]
+        ("load_anchor", "f8", 4),  # normal force, friction scale, radius about which both are expanded; r
+    ]
+)
+"""What a sub-step finds of those before."""
+PAD_SCRATCH = np.dtype(
+    [
+        ("prepared", "f8"),  # length of the sub-step that the next three belong to [s]
+        ("give", "f8"),  # compliance of the rubber within this sub-step [m/N]
+        ("recall", "f8", 2),  # weights of `shear` and `relaxed` in its force over its stiffness [-]
+        ("relaxing", "f8"),  # fraction of the way to `shear` that `relaxed` goes in this sub-step [-]
         # of `slipgym.contact.soft_kernel`: coefficients of this sub-step, see `slipgym.contact.bristle`
         ("loaded", "f8", 2),  # normal force [N] and sub-step [s] that they belong to
         ("stiffness", "f8", 3),  # elastic, damping and viscous force per displacement [N/m]
@@ -65,13 +84,17 @@ PAD = np.dtype(
         ("mapped", "f8", 3),  # bristle state after it [m]
         ("slip", "f8", 3),  # what of it is slip, scaled [m]
         ("stuck", "i8"),  # whether the bristles stick
-        ("turn", "f8"),  # position on the disc's curve
-        ("elastic_limit", "f8"),  # longest deflection g / sigma_0 in the last sub-step [m]
-        ("load_anchor", "f8", 4),  # normal force, friction scale, radius about which both are expanded; r
-        ("aged", "f8"),  # dwell time for which `static_gain` was computed [s]
     ]
 )
-"""One pad: parameters of the limit surface, bristle state and last wrench."""
+"""What a sub-step computes from parameters and state before it reads it: it may differ where these agree."""
+PAD = joined(PAD_PARAMETERS, PAD_STATE, PAD_SCRATCH)
+"""One pad."""
+same_pads = comparison(
+    "same_pads",
+    (PAD_PARAMETERS, PAD_STATE),
+    __file__,
+    "Whether two pads have the same parameters and state: they then do the same under the same motion.",
+)
 
 ELLIPSOID, DISC = 0, 1
 """Limit surfaces of a pad without cells."""
@@ -107,8 +130,12 @@ RELAXED_X, RELAXED_Y = 10, 11
 """The part of it to which the relaxing stiffness has come [m]."""
 CELL_FIELDS = 12
 """Rows of a patch, an array (CELL_FIELDS, n): one quantity in a row lets loops over n cells vectorise."""
+CELL_PARAMETERS = LOAD + 1
+"""The first so many are parameters, the others state, but for ELASTIC_LIMIT, which is scratch."""
 
 
+CONFIGURED = {"shear_compliance": "compliance"}
+"""Name in `slipgym.config.pad` -> name in `PAD_PARAMETERS`, where they differ."""
 NEUTRAL: dict[str, float] = {
     "stribeck_exponent": 2.0,
     "axes": 1.0,
@@ -126,7 +153,7 @@ def pads(shape: int | tuple[int, ...], **parameters: float) -> np.ndarray:
 
     Args:
         shape: Shape of the array.
-        **parameters: Values of the parameter fields of `PAD`, broadcast over the array.
+        **parameters: Values of fields of `PAD_PARAMETERS`, broadcast over the array.
     """
     array = np.zeros(shape, PAD)
     for name, value in {**NEUTRAL, **parameters}.items():
@@ -149,27 +176,51 @@ def patch(positions: np.ndarray, loads: np.ndarray) -> np.ndarray:
     return cells
 
 
+_STARTS = {
+    "normal": "record.normal",  # the fingers set it
+    "friction_scale": "1.0",
+    "static_gain": "1.0",
+    "radius": "record.r",
+    "pressure_centre[0]": "record.cop[0]",
+    "pressure_centre[1]": "record.cop[1]",
+    "turn": "0.5",
+}
+_rest_pad = reset(
+    "_rest_pad", (PAD_STATE, PAD_SCRATCH), _STARTS, __file__, "Bring a pad to rest, see `rest`."
+)
+
+
 @compiled
 def rest(pads: np.ndarray) -> None:
     """Bring pads, an array (n,) of `PAD`, to rest: no deflection, no speed, no wrench."""
     for i in range(pads.shape[0]):
-        pad = pads[i]
-        pad.z[:] = 0.0
-        pad.shear[:] = 0.0
-        pad.relaxed[:] = 0.0
-        pad.dwell = pad.aged = 0.0
-        pad.turn = 0.5
-        pad.elastic_limit = 0.0
-        pad.load_anchor[:] = 0.0
-        pad.prepared = 0.0
-        pad.loaded[:] = 0.0
-        pad.friction_scale = pad.static_gain = 1.0
-        pad.radius = pad.r
-        pad.pressure_centre[0], pad.pressure_centre[1] = pad.cop[0], pad.cop[1]
-        pad.slip_speed = pad.slip_rate = pad.half_step = 0.0
-        pad.twist[:] = 0.0
-        pad.twist_rate[:] = 0.0
-        pad.wrench[:] = 0.0
+        _rest_pad(pads[i])
+
+
+@compiled
+def idle(row: int, pad: Pad) -> bool:
+    """Whether a row of a patch may differ where pads are the same: it is scratch, or 0 on rigid pads."""
+    return row == ELASTIC_LIMIT or (pad.compliance == 0.0 and SHEAR_X <= row <= RELAXED_Y)
+
+
+@compiled
+def same_patches(cells: np.ndarray, pad: Pad) -> bool:
+    """Whether the patches (2, CELL_FIELDS, n) of pads like `pad` have the same parameters and state."""
+    differ = 0
+    for row in range(cells.shape[1]):
+        if not idle(row, pad):
+            for i in range(cells.shape[2]):
+                differ += cells[0, row, i] != cells[1, row, i]
+    return differ == 0
+
+
+@compiled
+def copy_patch_state(cells: np.ndarray, pad: Pad) -> None:
+    """Copy the state of the first of two patches that are the same, see `same_patches`, to the second."""
+    if cells.ndim == 3:  # patches, not (2, 0)
+        for row in range(CELL_PARAMETERS, cells.shape[1]):
+            if not idle(row, pad):
+                cells[1, row] = cells[0, row]
 
 
 @compiled

@@ -99,7 +99,6 @@ class Actions:
     Attributes:
         columns: Components of an action, with the range that [-1, 1] stands for.
         table: The same as COMPONENT (m,), for `interpret`.
-        moves_wrist: Whether an action commands the wrist.
         space: Box(-1, 1, (m,), float32).
     """
 
@@ -108,7 +107,6 @@ class Actions:
         self.columns = components(mode, config, wrist_speed)
         rows = [(PLACES.index(column.name), column.low, column.high) for column in self.columns]
         self.table = np.array(rows, COMPONENT)
-        self.moves_wrist = any(0 < place < _INCREMENT for place, *_ in rows)
         self._shape = (len(rows),)
         self._batch = np.zeros((1, len(rows)))
         self.space = gym.spaces.Box(-1.0, 1.0, self._shape, dtype=np.float32)

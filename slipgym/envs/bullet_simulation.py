@@ -1,28 +1,137 @@
-"""The simulation of one environment with PyBullet."""
+"""Steps and resets one environment with PyBullet: two compiled calls before and after it moves the bodies."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import replace
+from functools import cache, partial
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from numba import types
 
-from slipgym._numba.compiled import patience
-from slipgym._numba.fixed import Fixed
+from slipgym._numba.calls import entry_point
+from slipgym._numba.compiled import compiled, patience
+from slipgym._numba.fixed import Fixed, FixedType, opened
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMPONENT
-from slipgym.envs.bullet_step import BulletStep, fixed_action
 from slipgym.envs.nan_guard import Guard
 from slipgym.envs.observation import SENSORS, ObservationBuffers
-from slipgym.envs.reset_kernels import WARM_UP_STEPS
+from slipgym.envs.reset_kernels import HARDWARE, START, WARM_UP_STEPS
 from slipgym.envs.simulation import Simulation
+from slipgym.envs.stages import (
+    ACTION,
+    BUFFERS,
+    F2,
+    F3,
+    FRESH,
+    INFOS,
+    STATE,
+    VALUES_TYPE,
+    WHOLE,
+    array,
+    cells_type,
+    compiled_stages,
+)
 from slipgym.envs.states import SimulationState
 from slipgym.sensors.force_torque import roomier
 from slipgym.tasks import Task
 from slipgym.tasks.disturbance import bear_all, shake_tilt
 from slipgym.world.bullet_engine import BulletWorld
+from slipgym.world.bullet_rows import PAIR, POSE, VECTOR, queue, read_engine
+
+
+@compiled
+def _begin(fixed, action, fresh):
+    """Begin a control step and queue the commanded grip force.
+
+    Args:
+        fixed: `Fixed` pointers to the stages, `BatchState`, FORCE_TORQUE (1, 2), where observations and infos
+            are written, and rows of the guard.
+        action: Actions, their meaning and flags, as in `slipgym.envs.control_step.begin`; `Fixed`, so that
+            its arrays are not taken apart at each call.
+        fresh: Whether the reward terms start at 0.
+
+    Returns:
+        Mass of the object [kg].
+    """
+    stages, state, _, _, infos, _ = opened(fixed)
+    if fresh:
+        infos.terms[:] = 0.0
+    stages.begin(stages.script_wrist, state, opened(action), 0, 1)
+    queue(state.worlds, state.fingers, state.commands[0, 0])
+    return state.worlds[0].mass
+
+
+@compiled
+def _finish(fixed, pose, wrist, normals, at):
+    """End a control step: take over the engine's reading, measure, estimate, evaluate, observe.
+
+    Args:
+        fixed: As in `_begin`.
+        pose: As in `slipgym.world.bullet_rows.read_engine`, like the next two.
+        wrist: Positions of the joints.
+        normals: Normal forces.
+        at: Row of the guard's table that `slipgym.envs.nan_guard.note` writes; -1: a step of a world that
+            settles, which is only measured.
+
+    Returns:
+        As `slipgym.envs.nan_guard.note`.
+    """
+    stages, state, force_torque, buffers, infos, kept = opened(fixed)
+    read_engine(state.worlds, state.fingers, pose, wrist, normals)
+    stages.measure(state, force_torque, 0, 1)
+    if at < 0:
+        return 0
+    stages.estimate(stages.update, state, 0, 1)
+    stages.evaluate(stages.evaluate_step, state, 0, 1)
+    for k in range(infos.terms.shape[1]):
+        infos.terms[0, k] += state.episodes[0].terms[k]
+    stages.look(state, buffers, 0, 1)
+    stages.report(state, infos.numbers, infos.flags, 0, 1)
+    return stages.note(kept, at, state, 0)
+
+
+@compiled
+def _equip(fixed, starts, values, hardware, patches, cells):
+    """Prepare an episode, see `slipgym.envs.reset_kernels.equip_rows`; `fixed` as in `_begin`."""
+    stages, state, force_torque, _, _, _ = opened(fixed)
+    stages.equip(starts, values, hardware, patches, state, cells, force_torque)
+
+
+@compiled
+def _open(fixed, starts, fresh):
+    """Begin an episode of a world that has settled, see `slipgym.envs.reset_kernels.open_episodes`."""
+    stages, state, force_torque, _, infos, _ = opened(fixed)
+    stages.open(stages.update, starts, fresh, state, force_torque, infos.terms)
+    stages.evaluate(stages.evaluate_step, state, 0, 1)
+    stages.report(state, infos.numbers, infos.flags, 0, 1)
+
+
+@cache
+def _compiled_step(
+    task: Any, update: Any, force_torque: np.dtype, cells: int
+) -> tuple[Any, Any, dict[str, Any]]:
+    """Pointers to the stages, the type of what is fixed, and the four programs of this file by name."""
+    stages = compiled_stages(task, update, force_torque, cells)
+    kind = types.Tuple([stages.kind, STATE, array(force_torque, 2), BUFFERS, INFOS, F2])
+    starts = array(START)
+    arguments = {
+        _begin: (FixedType(ACTION), types.boolean),
+        _finish: (POSE, VECTOR, PAIR, WHOLE),
+        _equip: (starts, VALUES_TYPE, array(HARDWARE), F3, cells_type(cells)),
+        _open: (starts, FRESH),
+    }
+    programs = {}
+    with patience(f"the control step of {task.name} with PyBullet", len(arguments)) as one_more:
+        for function, others in arguments.items():
+            name = function.py_func.__name__.lstrip("_")
+            programs[name] = entry_point(function, (FixedType(kind), *others))
+            one_more()
+    return stages.linked, kind, programs
+
 
 _NO_ACTION = np.zeros((1, 0)), np.zeros(0, COMPONENT), np.ones(1, dtype=bool)
 """Changes no command."""
@@ -55,12 +164,11 @@ class BulletSimulation(Simulation):
         self._guard = Guard()
         self._first = True
         self._given: tuple[np.ndarray, ...] = _NO_ACTION
-        self._action = self._no_action = fixed_action(*_NO_ACTION)
+        self._action = self._no_action = Fixed(_NO_ACTION, ACTION)
         m = len(SENSORS) + len(task.columns)
         low, high = np.full((2, m), [[-np.inf], [np.inf]], dtype=np.float32)
         out = np.zeros((1, m), dtype=np.float32)
-        self._unseen = ObservationBuffers(np.zeros(0, dtype=np.int64), self.estimated, low, high, out)
-        self._bind(self._unseen)
+        self._bind(ObservationBuffers(np.zeros(0, dtype=np.int64), self.estimated, low, high, out))
 
     def step(
         self,
@@ -71,14 +179,14 @@ class BulletSimulation(Simulation):
         buffers: ObservationBuffers,
     ) -> None:
         """See `Simulation.step`."""
-        if buffers is not self._calls.buffers:
+        if buffers is not self._buffers:
             self._bind(buffers)
         if not active.item(0):
             self.infos.terms[:] = 0.0
             return
         if actions is not self._given[0] or components is not self._given[1] or active is not self._given[2]:
             self._given = actions, components, active
-            self._action = fixed_action(*self._given)
+            self._action = Fixed(self._given, ACTION)
         for k in range(skip):
             self._control_step(self._action, k == 0)
             if k + 1 < skip and self.over:
@@ -92,7 +200,7 @@ class BulletSimulation(Simulation):
         """
         self.plant.force_torque = roomier(self.plant.force_torque, count)
         self._choose_programs()
-        self._bind(self._calls.buffers)
+        self._bind(self._buffers)
         self.world.bind()
 
     def sample(self, force: float) -> None:
@@ -146,15 +254,17 @@ class BulletSimulation(Simulation):
 
     def _bind(self, buffers: ObservationBuffers) -> None:
         """Have control steps write the observations to these buffers."""
-        self._calls = BulletStep(
-            self._kinds, self.state, self.plant.force_torque, buffers, self.infos, self._guard.rows
-        )
+        linked, kind, programs = _compiled_step(*self._kinds)
+        own = self.state, self.plant.force_torque, buffers, self.infos, self._guard.rows
+        fixed = Fixed((linked, *own), kind)
+        self._buffers = buffers
+        self._calls = SimpleNamespace(**{name: partial(each, fixed) for name, each in programs.items()})
 
     def _control_step(self, action: Fixed, fresh: bool) -> None:
         """The stages of `slipgym.envs.control_step`; PyBullet moves the bodies.
 
         Args:
-            action: See `fixed_action`.
+            action: As in `_begin`.
             fresh: Whether the reward terms start at 0.
         """
         world, calls = self.world, self._calls

@@ -1,4 +1,4 @@
-"""Infos: a table of their entries, and the buffers that hold them for all environments.
+"""Declares the entries of infos in tables, holds them for all environments, and returns them to callers.
 
 The numbers of an environment are one row of a plain array, vectors of three first: the row is also a table of
 three columns. A structured array would be slower: numpy copies its records field by field.
@@ -7,13 +7,15 @@ three columns. A structured array would be slower: numpy copies its records fiel
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache, partial
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from slipgym._numba.compiled import compiled
+from slipgym._numba.generate import generate
 from slipgym.envs.readings import row_writer
 
 
@@ -234,3 +236,60 @@ def write_infos(numbers, flags, worlds, pads, fingers, episodes, ground_truth, e
     for i in range(numbers.shape[0]):
         _write_numbers(numbers[i], i, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger)
         _write_flags(flags[i], i, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger)
+
+
+InfoReader: TypeAlias = Callable[[], tuple[dict[str, Any], float, bool, bool]]
+"""Copies the infos of the first environment.
+
+Returns:
+    The info, the sum of its reward terms, whether the episode has ended early, and whether it has its full
+    length.
+"""
+
+
+def info_reader(buffer: InfoBuffer, terms: Sequence[str]) -> InfoReader:
+    """Return the `InfoReader` of a buffer. The arrays of an info share memory that only they use.
+
+    PyBullet's step leaves nothing in the processor's cache: few calls matter more here than short ones. The
+    reader's source is therefore generated, without a loop.
+
+    Args:
+        buffer: The buffer; its arrays must stay the same.
+        terms: Names of the reward terms.
+    """
+    numbers, (flags, *_), (values, *_) = buffer.numbers, buffer.flags, buffer.terms
+    return partial(
+        _reader(tuple(terms)), numbers.reshape(-1, 3).copy, numbers.item, flags.tolist, values.tolist
+    )
+
+
+@cache
+def _reader(terms: tuple[str, ...]) -> Callable[..., Any]:
+    """A function (rows, number, flags, terms) that makes an info of what these four functions return."""
+    flags, values = [f"flag_{k}" for k in range(len(FLAGS))], [f"term_{k}" for k in range(len(terms))]
+    reads = {info.name: _read(info) for info in NUMBERS}
+    reads |= {info.name: flag for info, flag in zip(FLAGS, flags, strict=True)}
+    reads["reward_terms"] = _display(dict(zip(terms, values, strict=True)))
+    body = [
+        "table, values = rows(), terms()",
+        f"[{', '.join(values)}] = values",
+        f"{', '.join(flags)}, early, full = flags()",
+        f"return {_display({name: reads[name] for name in INFO_NAMES})}, sum(values), early, full",
+    ]
+    arguments = "rows", "number", "flags", "terms"
+    return generate("_take", arguments, body, {}, lambda made: made, __file__, "See `InfoReader`.")
+
+
+def _read(info: Info) -> str:
+    """Expression for an entry of `NUMBERS` in terms of a copy of the row, which has three columns."""
+    row, column = divmod(PARTS[info.name].start, 3)
+    if not info.shape:
+        return f"number({PARTS[info.name].start})"
+    if len(info.shape) == 2:
+        return f"table[{row}:{row + info.shape[0]}]"
+    return f"table[{row}]" if info.shape == (3,) else f"table[{row}, {column}:{column + info.shape[0]}]"
+
+
+def _display(entries: dict[str, str]) -> str:
+    """Source text of a dictionary: keys, and expressions of values."""
+    return "{" + ", ".join(f"{name!r}: {read}" for name, read in entries.items()) + "}"

@@ -9,7 +9,7 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.envs.actions import ACTION_MODES
-from slipgym.envs.merging import merged_mu_c, merged_mu_s, weighted_mean
+from slipgym.envs.estimates import merged_mu_c, merged_mu_s, weighted_mean
 from slipgym.envs.readings import Reading, choice_reader, row_writer
 from slipgym.tasks.task import Column, Task
 

@@ -1,19 +1,203 @@
-"""The simulation of n environments with the planar engine; one compiled call steps all of them."""
+"""Steps and resets n environments with the planar engine: one compiled call for all of them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
+from numba import types
 
+from slipgym._numba.compiled import patience, pointed, unlocked
+from slipgym._numba.prefetch import fetch
 from slipgym.config import Config, Randomization, TaskConfig
-from slipgym.envs.nan_guard import Guard
+from slipgym.envs.nan_guard import Guard, sound
 from slipgym.envs.observation import ObservationBuffers
-from slipgym.envs.planar_step import compiled_batch
+from slipgym.envs.reset_kernels import HARDWARE, START, WARM_UP_STEPS, grip
 from slipgym.envs.simulation import Simulation
-from slipgym.envs.threads import Threads
+from slipgym.envs.stages import (
+    ACTION,
+    BUFFERS,
+    F1,
+    F3,
+    FLAGS,
+    FRESH,
+    INFOS,
+    STATE,
+    VALUES_TYPE,
+    WHOLE,
+    Program,
+    array,
+    cells_type,
+    compiled_stages,
+)
 from slipgym.tasks import Task
+from slipgym.threads import Threads
+from slipgym.world.planar_engine import step_world
+
+BLOCK = 16
+"""Number of rows that are stepped together: few enough to stay in the processor's caches, and enough for it
+to prefetch each array."""
+
+
+@pointed
+def _move(state, cells, force_torque, lo, hi):
+    """Move the bodies of rows lo to hi with the planar engine, and prefetch those of the next block.
+
+    Args:
+        state: `BatchState`.
+        cells: As `slipgym.world.plant.Plant.cells`.
+        force_torque: FORCE_TORQUE (n, 2).
+        lo: First row.
+        hi: Row after the last.
+    """
+    for i in range(lo, hi):
+        ahead = i + hi - lo  # the same row of the next block
+        fetch(state.worlds, ahead, ahead + 1)
+        fetch(state.pads, ahead, ahead + 1)
+        fetch(state.fingers, ahead, ahead + 1)
+        fetch(force_torque, ahead, ahead + 1)
+        fetch(state.slip_sensors, ahead, ahead + 1)
+        step_world(
+            state.worlds, state.pads, cells, state.fingers, force_torque, state.slip_sensors,
+            state.commands[i, 0], i,
+        )  # fmt: skip
+
+
+@unlocked
+def _drive(stages, move, state, contact, buffers, action, results, skip, lo, hi):
+    """Make `skip` control steps in the active rows among lo to hi; a row stops when its episode ends.
+
+    Rewards, ends of episodes and infos are gathered here, while the rows are in the cache: gathering them
+    later from thousands of records would cost a cache miss each.
+
+    Args:
+        stages: `Linked`.
+        move: `_move`.
+        state: `BatchState`.
+        contact: Patches and force/torque sensors, as in `_move`.
+        buffers: `ObservationBuffers`.
+        action: Actions (n, m), their meaning COMPONENT (m,), and which rows are active (n,).
+        results: Output: infos as in `InfoBuffer`, the sums of the reward terms (n,), and whether each episode
+            was terminated and truncated (n,).
+        skip: Number of control steps.
+        lo: First row.
+        hi: Row after the last.
+
+    Returns:
+        The first row with a number that is not finite; -1 if there is none.
+    """
+    cells, force_torque = contact
+    active = action[2]
+    numbers, flags, terms, rewards, terminated, truncated = results
+    episodes = state.episodes
+    bad = -1
+    size = BLOCK if skip == 1 else 1
+    start = lo
+    while start < hi:
+        stop = start
+        while stop < hi and active[stop] and stop - start < size:
+            for k in range(terms.shape[1]):
+                terms[stop, k] = 0.0
+            stop += 1
+        if stop == start:
+            start += 1
+            continue
+        for _ in range(skip):
+            stages.begin(stages.script_wrist, state, action, start, stop)
+            move(state, cells, force_torque, start, stop)
+            stages.measure(state, force_torque, start, stop)
+            stages.estimate(stages.update, state, start, stop)
+            stages.evaluate(stages.evaluate_step, state, start, stop)
+            over = False
+            for i in range(start, stop):
+                ahead = i + stop - start  # the same row of the next block
+                fetch(state.estimator_states[:, 0], 2 * ahead, 2 * ahead + 2)
+                fetch(state.estimates, 2 * ahead, 2 * ahead + 2)
+                fetch(episodes, ahead, ahead + 1)
+                for k in range(terms.shape[1]):
+                    terms[i, k] += episodes[i].terms[k]
+                if bad < 0 and not sound(
+                    i, state.worlds, state.pads, state.fingers, state.per_finger, episodes
+                ):
+                    bad = i
+                over = episodes[i].dropped or episodes[i].ended or episodes[i].step >= episodes[i].steps
+            if over:  # a block of several rows has a single control step anyway
+                break
+        stages.look(state, buffers, start, stop)
+        for i in range(start, stop):
+            rewards[i] = 0.0
+            for k in range(terms.shape[1]):
+                rewards[i] += terms[i, k]
+            terminated[i] = episodes[i].dropped or episodes[i].ended
+            truncated[i] = episodes[i].step >= episodes[i].steps and not terminated[i]
+        stages.report(state, numbers, flags, start, stop)
+        start = stop
+    return bad
+
+
+@unlocked
+def _start(stages, move, starts, values, state, contact, begun, infos):
+    """Begin episodes.
+
+    Args:
+        stages: `Linked`.
+        move: `_move`.
+        starts: START (m,).
+        values: VALUES (m,).
+        state: `BatchState` of all rows.
+        contact: Patches and force/torque sensors, as in `_move`.
+        begun: Hardware and patches of `equip`, and of both fingers the initial states of the estimators, as
+            bytes, and estimates.
+        infos: Output, see `InfoBuffer`.
+    """
+    cells, force_torque = contact
+    hardware, patches, fresh = begun
+    stages.equip(starts, values, hardware, patches, state, cells, force_torque)
+    grip(starts, state.episodes, state.worlds, state.pads, cells, state.fingers)
+    for k in range(starts.shape[0]):
+        i = starts[k].row
+        state.commands[i, 0] = starts[k].force
+        for _ in range(WARM_UP_STEPS):
+            move(state, cells, force_torque, i, i + 1)
+            stages.measure(state, force_torque, i, i + 1)
+    stages.open(stages.update, starts, fresh, state, force_torque, infos.terms)
+    for k in range(starts.shape[0]):
+        i = starts[k].row
+        stages.evaluate(stages.evaluate_step, state, i, i + 1)
+        stages.report(state, infos.numbers, infos.flags, i, i + 1)
+
+
+@cache
+def compiled_batch(task: Any, update: Any, force_torque: np.dtype, cells: int) -> tuple[Any, Any]:
+    """Return the compiled functions that step and reset environments of the planar engine.
+
+    The first call on a machine compiles them, see docs/numba.md.
+
+    Args:
+        task: The task.
+        update: The estimator's compiled `update_batch`.
+        force_torque: Dtype of the force/torque sensors.
+        cells: Dimensions of `slipgym.world.plant.Plant.cells`, 0 for None.
+
+    Returns:
+        Functions of the arguments of `_drive` and `_start` but the first two.
+    """
+    stages = compiled_stages(task, update, force_torque, cells)
+    contact = types.Tuple([cells_type(cells), array(force_torque, 2)])
+    with patience(f"the batch of {task.name}", 3) as one_more:
+        rows = WHOLE, WHOLE
+        move = Program(_move, types.void(STATE, *contact.types, *rows))
+        one_more()
+        results = types.Tuple([*INFOS.types, F1, FLAGS, FLAGS])
+        arguments = STATE, contact, BUFFERS, ACTION, results, WHOLE
+        drive = stages.program(_drive, WHOLE, move.known, *arguments, *rows)
+        one_more()
+        begun = types.Tuple([array(HARDWARE), F3, FRESH])
+        arguments = array(START), VALUES_TYPE, STATE, contact, begun, INFOS
+        start = stages.program(_start, types.void, move.known, *arguments)
+    return partial(drive, move.pointer), partial(start, move.pointer)
 
 
 class PlanarSimulation(Simulation):

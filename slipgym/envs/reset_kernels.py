@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from slipgym._numba.compiled import compiled, pointed
+from slipgym._numba.generate import generate
+from slipgym.config.pad import EFFECTS
 from slipgym.contact.anisotropy import friction_axes, stretch
+from slipgym.contact.records import CONFIGURED
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
 from slipgym.sensors.unloaded import READINGS, read_unloaded
@@ -73,8 +76,36 @@ def grip(starts, episodes, worlds, pads, cells, fingers):
         bear(episodes[i], worlds[i])
 
 
+randomize_pad = generate(
+    "randomize_pad",
+    ("pad", "value"),
+    [
+        "pad.stribeck_velocity, pad.sigma_0 = value.stribeck_velocity, value.sigma_0",
+        *(f"pad.{CONFIGURED.get(name, name)} = value.{name}" for name in EFFECTS if name != "anisotropy"),
+        "pad.axes[0], pad.axes[1] = friction_axes(value.anisotropy)",
+    ],
+    {"friction_axes": friction_axes},
+    compiled,
+    __file__,
+    "Set the sampled parameters of a PAD record, from VALUES, but its friction and radius.",
+)
+
+
 @compiled
-def equip(starts, values, hardware, patches, pads, cells, fingers, force_torque, slip_sensors, ground_truth):
+def set_patches(starts, patches, pads, cells):
+    """Give pads the patch of their pressure profile, stretched by their axes; see `equip_rows`."""
+    if cells is None:
+        return
+    if cells.ndim == PATCHES_OF_WORLDS:
+        for k in range(starts.shape[0]):
+            for f in range(2):
+                patch = cells[starts[k].row, f]
+                patch[:] = patches[starts[k].pressure]
+                stretch(patch, pads[starts[k].row, f].axes)
+
+
+@pointed
+def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
     """Set the parameters of pads, force loops and sensors; reset the sensors. `grip` comes later.
 
     Args:
@@ -82,14 +113,11 @@ def equip(starts, values, hardware, patches, pads, cells, fingers, force_torque,
         values: VALUES (m,).
         hardware: HARDWARE (1,).
         patches: Patch of each pressure profile, (p, CELL_FIELDS, q).
-        pads: PAD (n, 2).
+        state: `BatchState`; of `ground_truth` mu_s, mu_c, r are set, mean of both pads.
         cells: Patches (n, 2, CELL_FIELDS, q); None for ellipsoids.
-        fingers: FINGER (n, 2).
         force_torque: FORCE_TORQUE (n, 2).
-        slip_sensors: SLIP_SENSOR (n, 2).
-        ground_truth: Output (n, 11), of which the first three are mu_s, mu_c, r, mean of both pads.
     """
-    own = hardware[0]
+    own, pads, fingers, slip_sensors = hardware[0], state.pads, state.fingers, state.slip_sensors
     for k in range(starts.shape[0]):
         start, value = starts[k], values[k]
         i = start.row
@@ -109,45 +137,13 @@ def equip(starts, values, hardware, patches, pads, cells, fingers, force_torque,
                 force_torque[i, f].bias[a] = scale * start.biases[f, a]
                 if own.randomized:
                     force_torque[i, f].noise[a] = value.noise_scale * own.noise[a]
-        first, second = pads[i, 0], pads[i, 1]
+        first, second, ground_truth = pads[i, 0], pads[i, 1], state.ground_truth
         ground_truth[i, 0] = 0.5 * (first.mu_s + second.mu_s)
         ground_truth[i, 1] = 0.5 * (first.mu_c + second.mu_c)
         ground_truth[i, 2] = 0.5 * (first.r + second.r)
         start_sensors(force_torque[i], slip_sensors[i], start.keys, start.shares)
     if own.randomized:
         set_patches(starts, patches, pads, cells)
-
-
-@compiled
-def randomize_pad(pad, value):
-    """Set the sampled parameters of a PAD record but its friction and radius."""
-    pad.stribeck_velocity, pad.sigma_0 = value.stribeck_velocity, value.sigma_0
-    pad.load_exponent, pad.radius_exponent = value.load_exponent, value.radius_exponent
-    pad.cop_lever, pad.compliance = value.cop_lever, value.shear_compliance
-    pad.creep, pad.aging = value.creep, value.aging
-    pad.axes[0], pad.axes[1] = friction_axes(value.anisotropy)
-
-
-@compiled
-def set_patches(starts, patches, pads, cells):
-    """Give pads the patch of their pressure profile, stretched by their axes; see `equip`."""
-    if cells is None:
-        return
-    if cells.ndim == PATCHES_OF_WORLDS:
-        for k in range(starts.shape[0]):
-            for f in range(2):
-                patch = cells[starts[k].row, f]
-                patch[:] = patches[starts[k].pressure]
-                stretch(patch, pads[starts[k].row, f].axes)
-
-
-@pointed
-def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
-    """`equip` for the arrays of a `BatchState`, and two that are passed apart."""
-    equip(
-        starts, values, hardware, patches, state.pads, cells, state.fingers, force_torque, state.slip_sensors,
-        state.ground_truth,
-    )  # fmt: skip
 
 
 @compiled

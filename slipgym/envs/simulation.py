@@ -14,12 +14,11 @@ from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
 from slipgym.envs.control_step import BatchState
-from slipgym.envs.episode_sampler import EpisodeSampler
-from slipgym.envs.estimator_choice import chosen_estimator, informed
-from slipgym.envs.hardware_randomization import prepare_hardware
+from slipgym.envs.estimates import chosen_estimator, informed
 from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
+from slipgym.envs.reset import EpisodeSampler, prepare_hardware
 from slipgym.envs.stages import compiled_stages
 from slipgym.envs.states import SimulationState, check_layout
 from slipgym.tasks import Task
@@ -129,14 +128,9 @@ class Simulation(ABC):
         return self.ground_truth[:, :3]
 
     @property
-    def ended_early(self) -> bool:
-        """Whether the first environment's object was dropped, or its task ended the episode."""
-        return self._dropped.item(0) or self._ended.item(0)
-
-    @property
     def over(self) -> bool:
         """Whether the first environment's episode has ended."""
-        return self.ended_early or self.timed_out
+        return self._dropped.item(0) or self._ended.item(0) or self.timed_out
 
     @property
     def timed_out(self) -> bool:

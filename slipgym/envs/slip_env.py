@@ -12,7 +12,7 @@ from slipgym.config.plain import plain
 from slipgym.envs.arguments import ScalarArguments, complete, documented
 from slipgym.envs.conventions import Conventions, horizon
 from slipgym.envs.engines import resolved, simulation_of
-from slipgym.envs.info_copies import info_reader
+from slipgym.envs.infos import info_reader
 from slipgym.envs.setup import Setup
 from slipgym.envs.states import EnvState, checked, restored_generator
 from slipgym.screen import obstacle

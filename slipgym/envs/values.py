@@ -1,12 +1,67 @@
-"""The numbers that a randomization samples for an episode, and how they are called."""
+"""Declares the numbers that a randomization samples for an episode, those of each finger among them."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from slipgym.config import Config
 from slipgym.config.pad import EFFECTS
-from slipgym.envs.finger_differences import DIFFERENCES, nominal_differences
+from slipgym.tasks.options import EpisodeOptions
+
+
+class Difference(NamedTuple):
+    """A quantity that each finger has its own value of."""
+
+    parts: tuple[str, ...]
+    """Suffixes of its numbers' names, in order."""
+    group: str
+    """Group of the configuration that holds it."""
+
+
+_PER_FINGER = ("1", "2")
+DIFFERENCES = {
+    "finger_friction": Difference(_PER_FINGER, "contact"),
+    "finger_radius": Difference(_PER_FINGER, "contact"),
+    "cop_offset": Difference(("x_1", "y_1", "x_2", "y_2"), "contact"),
+    "finger_lag": Difference(_PER_FINGER, "gripper"),
+    "force_gain": Difference(_PER_FINGER, "gripper"),
+}
+"""Name in the configuration, in `Ranges` and among the reset options -> what it consists of."""
+
+
+def fixed_differences(config: Config, options: EpisodeOptions) -> dict[str, np.ndarray]:
+    """Numbers of `DIFFERENCES` that options fix.
+
+    Raises:
+        ValueError: A centre of pressure does not lie on its pad.
+    """
+    if options.cop_offset is not None:
+        config.check_cop_offset("option cop_offset", options.cop_offset)
+    given = {name: getattr(options, name) for name in DIFFERENCES}
+    return {name: np.ravel(value) for name, value in given.items() if value is not None}
+
+
+def check_contacts(config: Config, options: EpisodeOptions, r: float, factors: tuple[float, ...]) -> None:
+    """Check that the contacts of both fingers fit on their pads.
+
+    Args:
+        config: Configuration with the episode's pressure profile.
+        options: Reset options.
+        r: Radius of the equivalent rim contact [m].
+        factors: Radius of each finger over r [-].
+
+    Raises:
+        ValueError: One does not.
+    """
+    config.check_patch("option r", r)
+    largest = r * max(factors)
+    if options.finger_radius is not None:
+        config.check_radius("option finger_radius: the larger radius r", largest)
+    elif largest != r:
+        config.check_patch("option r times finger_radius", largest)
+
 
 FRICTION = ("mu_c", "mu_s", "friction_ratio")
 """Fields without a value of their own in the configuration: NaN unless they are sampled, then at scale 1."""
@@ -38,7 +93,8 @@ VALUES = np.dtype(
 SIZE = VALUES.itemsize // 8
 """Numbers in `VALUES`."""
 _ENDS = np.cumsum([VALUES[name].itemsize // 8 for name in VALUES.names or ()]).tolist()
-_PLACES = dict(zip(VALUES.names or (), map(slice, [0, *_ENDS], _ENDS), strict=True))
+PLACES = dict(zip(VALUES.names or (), map(slice, [0, *_ENDS], _ENDS), strict=True))
+"""Field -> where its numbers stand in `flat`."""
 FIXED_BY = {
     "mass_scale": "object_mass",
     "size_scale": "object_size",
@@ -54,7 +110,7 @@ def nominal_values(config: Config) -> np.ndarray:
     """VALUES (1,) without randomization."""
     contact, gripper = config.contact, config.gripper
     values = np.zeros(1, VALUES)
-    own = {
+    nominal = {
         "stribeck_velocity": contact.stribeck_velocity,
         "sigma_0": contact.sigma_0,
         "radius_scale": 1.0,
@@ -67,9 +123,9 @@ def nominal_values(config: Config) -> np.ndarray:
         "materials": -1.0,
         **{name: getattr(contact.pad, name) for name in EFFECTS},
         **dict.fromkeys(FRICTION, np.nan),
-        **nominal_differences(config),
+        **{name: np.ravel(getattr(getattr(config, own.group), name)) for name, own in DIFFERENCES.items()},
     }
-    for name, value in own.items():
+    for name, value in nominal.items():
         values[name] = value
     return values
 
@@ -77,11 +133,6 @@ def nominal_values(config: Config) -> np.ndarray:
 def flat(values: np.ndarray) -> np.ndarray:
     """VALUES (m,) as plain numbers (m, SIZE), in the same memory."""
     return values.view(np.float64).reshape(len(values), SIZE)
-
-
-def places(name: str) -> slice:
-    """Where the numbers of a field stand in `flat`."""
-    return _PLACES[name]
 
 
 def labels(name: str) -> list[str]:

@@ -18,8 +18,7 @@ from slipgym.envs.arguments import VectorArguments, complete, documented, one_of
 from slipgym.envs.conventions import Conventions, horizon
 from slipgym.envs.infos import final
 from slipgym.envs.planar_simulation import PlanarSimulation
-from slipgym.envs.reset_options import RowOptions
-from slipgym.envs.seeds import Generators
+from slipgym.envs.reset_options import Generators, RowOptions
 from slipgym.envs.setup import Setup
 from slipgym.envs.states import VectorState, checked
 from slipgym.envs.vector_rendering import Pictures

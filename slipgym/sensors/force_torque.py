@@ -13,12 +13,34 @@ from typing import Any
 import numpy as np
 
 from slipgym._numba.compiled import compiled
+from slipgym.contact.fields import joined
 from slipgym.contact.records import Pad
 from slipgym.sensors.misalignment import mixed, share
 from slipgym.sensors.noise import standard_normal
 
 HISTORY = 64
 """Loads that a sensor can keep at most, for its latency."""
+
+
+FORCE_TORQUE_FIXED = np.dtype(
+    [
+        ("period", "i8"),  # ticks between samples
+        ("mirror", "f8"),  # +1 finger 1, -1 finger 2
+        ("drift", "f8", 6),  # standard deviation of the bias step per control step
+        ("resolution", "f8", 6),  # one count, 0 = continuous
+        ("range", "f8", 6),  # saturation
+        ("misaligned", "i8"),  # 1 if `mix` is not the identity, 0 otherwise
+        ("dropout", "f8"),  # probability that a reading is the last one again [-]
+        ("kept", "i8"),  # loads that `history` keeps
+        # what an episode samples from, see `slipgym.sensors.misalignment`
+        ("off_centre", "f8"),  # largest distance of the pad's centre from its place along x and y [m]
+        ("tilt", "f8"),  # largest tilt of the frame about x and y [rad]
+        ("crosstalk", "f8"),  # largest part of an axis's load that another axis reads [-]
+        ("least_delay", "i8"),  # in ticks
+        ("delay_spread", "i8"),  # what may be added, in ticks
+    ]
+)
+"""Fields of FORCE_TORQUE that the configuration fixes for all episodes."""
 
 
 def force_torque(kept: int, misaligned: bool = False) -> np.dtype:
@@ -29,33 +51,20 @@ def force_torque(kept: int, misaligned: bool = False) -> np.dtype:
     """
     large = misaligned or kept > 4
     room, axes = (HISTORY if kept > 16 else 16, 6) if large else (4, 1)
-    return np.dtype(
+    episode = np.dtype(
         [
-            ("period", "i8"),  # ticks between samples
             ("delay", "i8"),  # latency in ticks
-            ("mirror", "f8"),  # +1 finger 1, -1 finger 2
             ("noise", "f8", 6),  # standard deviation per sample [N, N m]
-            ("drift", "f8", 6),  # standard deviation of the bias step per control step
             ("bias", "f8", 6),
-            ("resolution", "f8", 6),  # one count, 0 = continuous
-            ("range", "f8", 6),  # saturation
-            ("misaligned", "i8"),  # 1 if `mix` is not the identity, 0 otherwise
-            ("dropout", "f8"),  # probability that a reading is the last one again [-]
             ("last", "f8", 6),  # reading
             ("key", "u8"),  # of the noise
             ("drift_key", "u8"),  # of the bias's random walk
             ("read", "i8"),  # readings since reset
-            ("kept", "i8"),  # loads that `history` keeps
             ("history", "f8", (room, 6)),  # loads at the newest samples, in turn
             ("mix", "f8", (axes, axes)),  # of the load on all axes
-            # what an episode samples from, see `slipgym.sensors.misalignment`
-            ("off_centre", "f8"),  # largest distance of the pad's centre from its place along x and y [m]
-            ("tilt", "f8"),  # largest tilt of the frame about x and y [rad]
-            ("crosstalk", "f8"),  # largest part of an axis's load that another axis reads [-]
-            ("least_delay", "i8"),  # in ticks
-            ("delay_spread", "i8"),  # what may be added, in ticks
         ]
     )
+    return joined(FORCE_TORQUE_FIXED, episode)
 
 
 def roomier(sensors: np.ndarray, kept: int) -> np.ndarray:

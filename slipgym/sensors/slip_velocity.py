@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from slipgym._numba.compiled import compiled
+from slipgym.contact.fields import joined
 from slipgym.contact.records import Vector
 from slipgym.sensors.misalignment import share
 from slipgym.sensors.noise import standard_normal
@@ -25,28 +26,33 @@ AXES = 2 * CHIPS_MAX  # x and y of the first chip, of the second, ...
 LOST_AFTER = 20
 """Counts of each other chip after which a chip that counted nothing is left out."""
 
-SLIP_SENSOR = np.dtype(
+SLIP_SENSOR_FIXED = np.dtype(
     [
         ("mirror", "f8"),  # +1 finger 1, -1 finger 2
         ("sample_time", "f8"),  # [s]
         ("count", "f8"),  # displacement of one count [m], 0 = continuous
-        ("noise", "f8"),  # standard deviation per axis and sample [m]
         ("range", "f8"),  # largest displacement per axis and sample [m]
         ("window", "i8"),  # samples averaged
-        ("least_delay", "i8"),  # smallest latency of an episode in samples
-        ("delay_spread", "i8"),  # what an episode may add, in samples
+        ("delay_spread", "i8"),  # what an episode may add to the latency, in samples
         ("jitter", "f8"),  # probability that a reading is a sample older [-]
         ("dropout", "f8"),  # probability that a reading is the last one again [-]
         ("scale_spread", "f8"),  # largest relative error of an episode's counts [-]
         ("chip_failure", "f8"),  # probability that one chip counts nothing in an episode [-]
+        ("chips", "i8"),  # how many
+        ("at", "f8", (CHIPS_MAX, 2)),  # where, from the pad centre, in the finger's frame [m]
+        ("spread", "f8"),  # sum of their squared distances from it [m^2]
+    ]
+)
+"""What the configuration fixes for all episodes."""
+SLIP_SENSOR_EPISODE = np.dtype(
+    [
+        ("noise", "f8"),  # standard deviation per axis and sample [m]
+        ("least_delay", "i8"),  # smallest latency of an episode in samples
         ("delay", "i8"),  # latency in samples
         ("scale", "f8"),  # counted over true motion [-]
         ("failed", "i8"),  # chip that counts nothing; -1 for none
         ("delivered", "i8"),  # newest sample delivered, counting from 0
         ("last", "f8", 3),  # reading
-        ("chips", "i8"),  # how many
-        ("at", "f8", (CHIPS_MAX, 2)),  # where, from the pad centre, in the finger's frame [m]
-        ("spread", "f8"),  # sum of their squared distances from it [m^2]
         ("key", "u8"),  # of the noise
         ("moved", "f8", 3),  # slip displacement since the last sample, pad frame [m, m, rad]
         ("carry", "f8", AXES),  # displacement not yet counted [m]
@@ -57,6 +63,8 @@ SLIP_SENSOR = np.dtype(
         ("history", "f8", (HISTORY, 3)),  # slip displacement counted in the newest samples, in turn
     ]
 )
+"""What an episode samples, and state."""
+SLIP_SENSOR = joined(SLIP_SENSOR_FIXED, SLIP_SENSOR_EPISODE)
 
 
 def chip_positions(radius: float, chips: int) -> np.ndarray:

@@ -156,25 +156,22 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     episode["steps"] = max(1, round(settings.duration / episode["step_time"].item()))
 
 
-def track(episode, world):
-    """Compute the least grip at the start, and store the largest slip."""
+def track(episode, world, fingers):
+    """Compute the least grip at the start, add up the grip, and store the largest slip."""
     own = episode.own
     if episode.step == 0:
         own[SCRATCH.peak], own[SCRATCH.mean], _ = rehearse(episode, world)
         own[SCRATCH.allowed] = own[SCRATCH.economy] * own[SCRATCH.mean]
-        own[SCRATCH.spent] = own[SCRATCH.counted] = 0.0
     episode.reference[0], episode.reference[1] = own[SCRATCH.allowed], own[SCRATCH.mean]
     episode.reference[2] = own[SCRATCH.peak]
+    spend(episode, fingers, SCRATCH.spent, SCRATCH.counted)
     track_slip(episode, world)
 
 
 def violated(episode, world, fingers):
     """Whether the object slid far, or the grip has used up what the economy allows."""
-    own = episode.own
-    spend(episode, fingers, SCRATCH.spent, SCRATCH.counted)
-    return (
-        episode.largest_slip > episode.tolerance or own[SCRATCH.spent] > episode.steps * own[SCRATCH.allowed]
-    )
+    allowed = episode.steps * episode.own[SCRATCH.allowed]
+    return episode.largest_slip > episode.tolerance or episode.own[SCRATCH.spent] > allowed
 
 
 @term(scale=0.5)

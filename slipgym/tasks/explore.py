@@ -130,7 +130,7 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     episode["steps"] = max(1, round(settings.duration / episode["step_time"].item()))
 
 
-def track(episode, world):
+def track(episode, world, fingers):
     """Add up the paths of the slip; write log score, regret and the used share of the budget."""
     own, slip = episode.own, world.slip
     if episode.step == 0:

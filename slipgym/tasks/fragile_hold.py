@@ -140,7 +140,7 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
         time += duration
 
 
-def track(episode, world):
+def track(episode, world, fingers):
     """Compute the breaking force at the start, and store the largest slip."""
     own = episode.own
     if episode.step == 0:

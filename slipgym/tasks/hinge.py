@@ -118,7 +118,7 @@ def wrist_velocity(episode, world):
     return 0.0, 0.0, rate
 
 
-def track(episode, world):
+def track(episode, world, fingers):
     """Set the reference to the wrist's pitch, and store the largest slip and tilt."""
     episode.reference[0] = world.wrist[2]
     episode.reference[1] = world.wrist_velocity[2]

@@ -164,12 +164,14 @@ def disturb_hold(shares, amplitudes, ranges, times, episode):
         episode.pushes = k + 1
 
 
-def track(episode, world):
-    """Compute the least grip at the start, and store the largest slip."""
+def track(episode, world, fingers):
+    """Compute the least grip at the start, add up the grip if it is limited, and store the largest slip."""
     own = episode.own
-    if episode.step == 0 and own[SCRATCH.ratio] > 0.0:
-        own[SCRATCH.least], _, _ = rehearse(episode, world)
-        own[SCRATCH.allowed] = own[SCRATCH.ratio] * own[SCRATCH.least]
+    if own[SCRATCH.ratio] > 0.0:
+        if episode.step == 0:
+            own[SCRATCH.least], _, _ = rehearse(episode, world)
+            own[SCRATCH.allowed] = own[SCRATCH.ratio] * own[SCRATCH.least]
+        spend(episode, fingers, SCRATCH.spent, SCRATCH.counted)
     episode.reference[0], episode.reference[1] = own[SCRATCH.allowed], own[SCRATCH.least]
     track_slip(episode, world)
 
@@ -177,11 +179,8 @@ def track(episode, world):
 def violated(episode, world, fingers):
     """Whether the object slid far, or the grip has used up what `grip_limit` allows."""
     own = episode.own
-    far = episode.largest_slip > episode.tolerance
-    if own[SCRATCH.ratio] == 0.0:
-        return far
-    spend(episode, fingers, SCRATCH.spent, SCRATCH.counted)
-    return far or own[SCRATCH.spent] > (episode.steps - own[SCRATCH.begin]) * own[SCRATCH.allowed]
+    allowed = (episode.steps - own[SCRATCH.begin]) * own[SCRATCH.allowed]  # both 0 without `grip_limit`
+    return episode.largest_slip > episode.tolerance or own[SCRATCH.spent] > allowed
 
 
 @term(scale=0.5)

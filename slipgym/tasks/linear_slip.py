@@ -61,7 +61,7 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     schedule(settings, episode)
 
 
-def track(episode, world):
+def track(episode, world, fingers):
     """Update the reference."""
     follow_trapezoid(episode)
 

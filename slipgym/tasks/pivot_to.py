@@ -156,7 +156,7 @@ def wrist_velocity(episode, world):
     return x + fraction * dx - given_x, z + fraction * dz - given_z, 0.0
 
 
-def track(episode, world):
+def track(episode, world, fingers):
     """Set the reference to the goal, and store the largest slip."""
     episode.reference[0] = episode.goal
     track_slip(episode, world)

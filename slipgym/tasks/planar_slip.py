@@ -153,7 +153,7 @@ def hang(slide: float, heading: float, turn: float) -> tuple[float, float, float
     return -slide * math.sin(down), -slide * math.cos(down), turn
 
 
-def track(episode, world):
+def track(episode, world, fingers):
     """Set the reference to the target."""
     target = episode.own[SCRATCH.target]
     for k in range(3):

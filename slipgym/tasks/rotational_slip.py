@@ -84,7 +84,7 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     episode["wrist_start"] = 0.0, 0.0, 0.5 * episode["goal"]
 
 
-def track(episode, world):
+def track(episode, world, fingers):
     """Update the reference, and store the largest slip."""
     follow_trapezoid(episode)
     track_slip(episode, world)

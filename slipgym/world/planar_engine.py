@@ -11,7 +11,7 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym._numba.rows import row_of
 from slipgym.contact.kinds import PATCHES, set_normal
-from slipgym.contact.records import Pad, Pair
+from slipgym.contact.records import Pad, Pair, copy_patch_state, same_pads, same_patches
 from slipgym.contact.soft_pad import load_pad
 from slipgym.sensors.force_torque import next_sample_read, sample_force_torque
 from slipgym.world.actuator import (
@@ -22,7 +22,7 @@ from slipgym.world.actuator import (
     ticks_to_next_command,
 )
 from slipgym.world.object_motion import wrench_at_rest
-from slipgym.world.records import Finger, Records, World
+from slipgym.world.records import Records, World, copy_finger_state, same_fingers
 from slipgym.world.substep import HOLDING, advance_object, resolved_ticks, update_slip
 from slipgym.world.substep_length import longest_common_substep
 
@@ -63,35 +63,26 @@ def step_world(
     sensors = force_torque[i, 0], force_torque[i, 1]
     queue_command(first, world.tick, force)
     queue_command(second, world.tick, force)
-    if not (same_pads(pads[i, 0], pads[i, 1]) and same_fingers(first, second)):
-        both, eyes = (pads[i, 0], pads[i, 1]), (slip_sensors[i, 0], slip_sensors[i, 1])
+    both = pads[i, 0], pads[i, 1]
+    if not alike(both, patches, (first, second)):
+        eyes = slip_sensors[i, 0], slip_sensors[i, 1]
         return advance_substeps(world, both, patches, (first, second), sensors, eyes)
     done = advance_substeps(world, (pads[i, 0],), patches, (first,), sensors, (slip_sensors[i, 0],))
     pads[i, 1] = pads[i, 0]
     if cells is not None:
-        cells[i, 1] = cells[i, 0]
-    second.served, second.command = first.served, first.command
-    second.force, second.contact_force = first.force, first.contact_force
+        copy_patch_state(cells[i], pads[i, 0])
+    copy_finger_state(first, second)
     for k in range(3):
         slip_sensors[i, 1].moved[k] = slip_sensors[i, 0].moved[k]
     return done
 
 
 @compiled
-def same_pads(first: Pad, second: Pad) -> bool:
-    """Whether two pads have the same friction, centre of pressure and state."""
-    same = first.mu_c == second.mu_c and first.mu_s == second.mu_s and first.r == second.r
-    same = same and first.cop[0] == second.cop[0] and first.cop[1] == second.cop[1]
-    for a in range(3):
-        same = same and first.z[a] == second.z[a] and first.shear[a] == second.shear[a]
-    return same and first.slip_speed == second.slip_speed and first.slip_rate == second.slip_rate
-
-
-@compiled
-def same_fingers(first: Finger, second: Finger) -> bool:
-    """Whether two fingers have the same force loop and force."""
-    same = first.lag == second.lag and first.dead_ticks == second.dead_ticks and first.gain == second.gain
-    return same and first.force == second.force and first.command == second.command
+def alike(pads: Records, cells: np.ndarray | None, fingers: Records) -> bool:
+    """Whether both pads, their patches and both fingers are the same in parameters and state."""
+    if not (same_pads(pads[0], pads[1]) and same_fingers(fingers[0], fingers[1])):
+        return False
+    return cells is None or cells.ndim != PATCHES or same_patches(cells, pads[0])
 
 
 @compiled

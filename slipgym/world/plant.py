@@ -6,11 +6,12 @@ import math
 from dataclasses import dataclass, fields
 
 import numpy as np
+from pydantic import BaseModel
 
 from slipgym.config import Config
 from slipgym.contact.anisotropy import friction_axes, stretch
 from slipgym.contact.pressure import OUTER_RADII, patch_cells
-from slipgym.contact.records import DISC, ELLIPSOID, pads, patch, rest
+from slipgym.contact.records import CONFIGURED, DISC, ELLIPSOID, pads, patch, rest
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.force_torque import force_torque
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
@@ -127,9 +128,8 @@ def _pads(config: Config, n: int) -> np.ndarray:
     array["cop"] = contact.cop_offset
     array["surface"] = DISC if contact.model == "disc" else ELLIPSOID
     array["radius_max"] = config.gripper.pad_radius / OUTER_RADII[config.contact.pressure]
-    names = {"shear_compliance": "compliance"}
     for name, value in contact.pad.model_dump(exclude={"anisotropy"}).items():
-        array[names.get(name, name)] = value
+        array[CONFIGURED.get(name, name)] = value
     array["axes"] = friction_axes(contact.pad.anisotropy)
     rest(array.reshape(-1))
     return array
@@ -181,8 +181,7 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     array["period"] = tick_rate // sensor.rate
     array["delay"] = array["least_delay"] = round(sensor.latency * tick_rate)
     array["delay_spread"] = round(sensor.latency_spread * tick_rate)
-    for name in ("off_centre", "tilt", "crosstalk", "dropout"):
-        array[name] = getattr(sensor, name)
+    _take_over(sensor, array)
     array["misaligned"] = misaligned
     array["kept"] = kept
     array["mirror"] = MIRROR
@@ -199,21 +198,25 @@ def _slip_sensors(config: Config, n: int) -> np.ndarray:
     check_slip_latency(config, sensor.latency_samples)
     positions = chip_positions(sensor.chip_radius, sensor.chips)
     slip_sensors = np.zeros((n, 2), SLIP_SENSOR)
+    _take_over(sensor, slip_sensors)
     slip_sensors["mirror"] = MIRROR
     slip_sensors["sample_time"] = 1.0 / sensor.rate
     slip_sensors["count"] = sensor.count if sensor.counts else 0.0
     slip_sensors["noise"] = sensor.noise * sensor.count
     slip_sensors["range"] = sensor.speed_max / sensor.rate
-    slip_sensors["window"] = sensor.window
     slip_sensors["delay"] = slip_sensors["least_delay"] = sensor.latency_samples
     slip_sensors["delay_spread"], slip_sensors["scale_spread"] = sensor.latency_spread, sensor.scale_error
-    for name in ("jitter", "dropout", "chip_failure"):
-        slip_sensors[name] = getattr(sensor, name)
     slip_sensors["scale"], slip_sensors["failed"], slip_sensors["delivered"] = 1.0, -1, -1
-    slip_sensors["chips"] = sensor.chips
     slip_sensors["at"] = positions
     slip_sensors["spread"] = np.sum(positions**2)
     return slip_sensors
+
+
+def _take_over(config: BaseModel, array: np.ndarray) -> None:
+    """Write the values of a configuration into the fields of their names; others have units of their own."""
+    for name, value in config:
+        if name in (array.dtype.names or ()):
+            array[name] = value
 
 
 def _tilt(config: Config, n: int) -> np.ndarray | None:

@@ -6,6 +6,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from slipgym.contact.fields import comparison, joined, transfer
+
 QUEUE = 32  # force commands that can be under way in the dead time
 
 WORLD = np.dtype(
@@ -39,30 +41,63 @@ WORLD = np.dtype(
 )
 """One object held by one gripper, seen from finger 2: the grip axis points at the viewer."""
 
-FINGER = np.dtype(
+FINGER_FIXED = np.dtype(
+    [
+        ("force_limit", "f8"),  # hard limit of the actuator [N]
+        ("open_below", "f8"),  # commands below it open the force loop [N]
+    ]
+)
+"""Parameters that the configuration fixes for all episodes."""
+FINGER_EPISODE = np.dtype(
     [
         ("lag", "f8"),  # time constant of the force loop [s]
         ("dead_ticks", "i8"),  # dead time in ticks
         ("gain", "f8"),  # actuator force over the commanded [-]
-        ("force_limit", "f8"),  # hard limit of the actuator [N]
-        ("open_below", "f8"),  # commands below it open the force loop [N]
+    ]
+)
+"""Parameters that an episode may have of its own."""
+FINGER_PARAMETERS = joined(FINGER_FIXED, FINGER_EPISODE)
+FINGER_STATE = np.dtype(
+    [
         ("queued", "i8"),  # commands ever queued
         ("served", "i8"),  # commands ever put into effect
         ("command", "f8"),  # command in effect, times gain [N]
         ("force", "f8"),  # actuator force now [N]
-        ("relaxed", "f8"),  # sub-step over lag that `decay` and `mean_decay` belong to [-]
-        ("decay", "f8"),  # of the gap to the command over a sub-step [-]
-        ("mean_decay", "f8"),  # its mean over the sub-step [-]
-        ("early_decay", "f8"),  # the same weighted by the time that is left [-]
         ("mean_force", "f8"),  # mean force of both actuators, mean over the engine step [N]
         ("contact_mean_force", "f8"),  # the same over the step of `contact_force` [N]
         ("contact_force", "f8"),  # normal force of the engine, mean over its last step [N]
         ("reaction", "f8", 3),  # friction on the object, world, mean over the engine step
+    ]
+)
+FINGER_SCRATCH = np.dtype(
+    [
+        ("relaxed", "f8"),  # sub-step over lag that the next three belong to [-]
+        ("decay", "f8"),  # of the gap to the command over a sub-step [-]
+        ("mean_decay", "f8"),  # its mean over the sub-step [-]
+        ("early_decay", "f8"),  # the same weighted by the time that is left [-]
+    ]
+)
+FINGER_QUEUE = np.dtype(
+    [
         ("queue_tick", "i8", QUEUE),  # when a command takes effect
         ("queue_force", "f8", QUEUE),  # its value, times gain [N]
     ]
 )
+"""Commands under way. Both fingers get the same ones: where parameters and `queued` agree, these do."""
+FINGER = joined(FINGER_PARAMETERS, FINGER_STATE, FINGER_SCRATCH, FINGER_QUEUE)
 """One finger: force loop, normal contact and the friction impulse it passes on."""
+same_fingers = comparison(
+    "same_fingers",
+    (FINGER_PARAMETERS, FINGER_STATE),
+    __file__,
+    "Whether two fingers that have had the same commands have the same force loop and force.",
+)
+copy_finger_state = transfer(
+    "copy_finger_state",
+    (FINGER_STATE,),
+    __file__,
+    "Copy the state of a finger to one of the same parameters.",
+)
 
 TILT = np.dtype(
     [

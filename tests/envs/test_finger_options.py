@@ -6,7 +6,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from slipgym.envs.finger_differences import DIFFERENCES
+from slipgym.envs.values import DIFFERENCES
 
 LINEAR = "slipgym/LinearSlip-v0"
 FIRM = np.float32([0.2])

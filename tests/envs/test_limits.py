@@ -7,7 +7,7 @@ import pytest
 
 from slipgym.config import Config, load
 from slipgym.config.load import merge
-from slipgym.envs.workload import SLOW, work
+from slipgym.envs.setup import SLOW, work
 
 IDLE = np.zeros(1, np.float32)
 

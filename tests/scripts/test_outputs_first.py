@@ -17,7 +17,6 @@ from policies.commands import (
     record,
     reproduce,
     train,
-    validate,
 )
 
 LOG = "examples/linear_slip_wood.csv.gz"

@@ -1,4 +1,4 @@
-"""Which estimators an environment has, and what they know of its sensors."""
+"""Chooses the estimators of an environment, and merges what they estimate for both fingers."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 
 import estimator as estimators
 from estimator.registry import specification
+from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 
 LATENCY = "velocity_delay"
@@ -41,3 +42,33 @@ def informed(choice: dict[str, Any], config: Config) -> dict[str, Any]:
     """
     known = {field.name for field in fields(specification(choice["name"]).parameters)}
     return {LATENCY: config.sensors.slip.latency_samples, **choice} if LATENCY in known else choice
+
+
+@compiled
+def weighted_mean(a, b, weight_a, weight_b):
+    """Mean of two values by their weights; the plain mean if both weights are 0."""
+    total = weight_a + weight_b
+    return (a * weight_a + b * weight_b) / total if total > 0.0 else 0.5 * (a + b)
+
+
+@compiled
+def mean_mu_s(first, second):
+    """mu_s of both fingers, weighted by confidence."""
+    return weighted_mean(first.mu_s, second.mu_s, first.confidence_mu_s, second.confidence_mu_s)
+
+
+@compiled
+def merged_mu_c(first, second):
+    """mu_c of both fingers; as in `estimator.sample.publish`, a start value yields to a measured mu_s."""
+    mu_c = weighted_mean(first.mu_c, second.mu_c, first.confidence_mu_c, second.confidence_mu_c)
+    if first.confidence_mu_c + second.confidence_mu_c > 0.0:
+        return mu_c
+    if first.confidence_mu_s + second.confidence_mu_s > 0.0:
+        return min(mu_c, mean_mu_s(first, second))
+    return mu_c
+
+
+@compiled
+def merged_mu_s(first, second):
+    """mu_s of both fingers, at least their mu_c: the weights differ, so that the means may cross."""
+    return max(mean_mu_s(first, second), merged_mu_c(first, second))

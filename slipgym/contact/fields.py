@@ -1,0 +1,69 @@
+"""Joins parameters, state and scratch into the type of a record, and generates functions over their fields.
+
+What a field is follows from the part that declares it: no list of names stands elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from slipgym._numba.compiled import compiled
+from slipgym._numba.generate import generate
+
+
+def joined(*parts: np.dtype) -> np.dtype:
+    """The type of a record with the fields of all parts, in their order."""
+    return np.dtype([field for part in parts for field in part.descr])
+
+
+def elements(*parts: np.dtype) -> list[str]:
+    """Every number of the parts as it is written behind a record's name: "normal", "z[0]", "z[1]"."""
+    found = []
+    for part in parts:
+        for name in part.names or ():
+            places = [f"[{', '.join(map(str, index))}]" for index in np.ndindex(part[name].shape)]
+            found += [f"{name}{place.removesuffix('[]')}" for place in places]
+    return found
+
+
+def comparison(name: str, parts: tuple[np.dtype, ...], file: str, doc: str) -> Any:
+    """Generate a compiled function (first, second) -> bool: whether two records agree in all fields of parts.
+
+    Args:
+        name: Name of the function.
+        parts: Parts of the records.
+        file: `__file__` of the module that declares them.
+        doc: Docstring.
+    """
+    body = [f"if first.{each} != second.{each}:\n    return False" for each in elements(*parts)]
+    return generate(name, ("first", "second"), [*body, "return True"], {}, compiled, file, doc)
+
+
+def transfer(name: str, parts: tuple[np.dtype, ...], file: str, doc: str) -> Any:
+    """Generate a compiled function (source, target) that copies all fields of parts.
+
+    Args:
+        name: As in `comparison`, like the others.
+        parts: See there.
+        file: See there.
+        doc: See there.
+    """
+    body = [f"target.{each} = source.{each}" for each in elements(*parts)]
+    return generate(name, ("source", "target"), body, {}, compiled, file, doc)
+
+
+def reset(name: str, parts: tuple[np.dtype, ...], starts: Mapping[str, str], file: str, doc: str) -> Any:
+    """Generate a compiled function (record) that sets all fields of parts, to 0 unless given.
+
+    Args:
+        name: As in `comparison`, like the others.
+        parts: See there.
+        starts: Element, as in `elements` -> expression of `record`.
+        file: See there.
+        doc: See there.
+    """
+    body = [f"record.{each} = {starts.get(each, '0')}" for each in elements(*parts)]
+    return generate(name, ("record",), body, {}, compiled, file, doc)
