@@ -1,7 +1,7 @@
 """Puts compiled programs into the wheel, if SLIPGYM_PROGRAMS names a folder of them.
 
-`slipgym warmup --into` fills the folder, `make wheel` does both. Such a wheel is for one version of Python and
-for Linux on x86-64.
+`slipgym warmup --into` fills the folder; `make wheel` does both. Such a wheel is for one version of Python
+and for Linux on x86-64.
 """
 
 import os

@@ -1,4 +1,4 @@
-"""Where the pushes come from: the repository and its logs, with digests."""
+"""Finds the repository of pushes and its logs, and checks their digests."""
 
 from __future__ import annotations
 

@@ -1,6 +1,5 @@
 """Pages and modules say what they do: no first line that is a noun clause, no long paragraph.
 
-`NOT_YET` holds pages and folders that are still to be mended; it should only become shorter.
 `python tests/house/test_sentences.py` prints what is wrong.
 """
 
@@ -21,18 +20,10 @@ MODULES = sorted(
     for package in ("slipgym", "estimator", "policies", "scripts", "lab")
     for path in ROOT.glob(f"{package}/**/*.py")
 )
-NOT_YET = (
-    *("estimator/_numba", "slipgym/_numba", "slipgym/envs", "slipgym/validation", "slipgym/benchmarking"),
-    *("policies/research", "lab", "docs/adaptive.md", "docs/numba.md", "docs/study.md"),
-)
 
 
 def name(place: Path) -> str:
     return place.relative_to(ROOT).as_posix()
-
-
-def mended(place: Path) -> bool:
-    return not any(f"{name(place)}/".startswith(f"{left}/") for left in NOT_YET)
 
 
 def blocks(page: str) -> list[str]:
@@ -63,13 +54,13 @@ def faults(place: Path) -> list[str]:
     return faults_of_page(text) if place.suffix == ".md" else faults_of_module(text)
 
 
-@pytest.mark.parametrize("page", filter(mended, PAGES), ids=name)
+@pytest.mark.parametrize("page", PAGES, ids=name)
 def test_a_page_has_short_paragraphs_and_begins_with_a_sentence(page):
     assert faults(page) == []
 
 
 def test_a_module_begins_with_a_sentence():
-    assert {name(module): faults(module) for module in MODULES if mended(module) and faults(module)} == {}
+    assert {name(module): faults(module) for module in MODULES if faults(module)} == {}
 
 
 def test_faults_are_found():
@@ -88,4 +79,4 @@ def test_faults_are_found():
 if __name__ == "__main__":
     for place in (*PAGES, *MODULES):
         for fault in faults(place):
-            print(f"{'' if mended(place) else '(not yet) '}{name(place)}: {fault}")
+            print(f"{name(place)}: {fault}")

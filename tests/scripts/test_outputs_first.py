@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from lab.commands import reproduce
 from policies.commands import (
     demo,
     estimate,
@@ -15,7 +16,6 @@ from policies.commands import (
     play,
     policy_leaderboard,
     record,
-    reproduce,
     train,
 )
 
