@@ -13,6 +13,7 @@ COMMANDS = {
     "jumps": "Print how soon mu_c is right after friction jumps.",
     "loop-ablation": 'Print what "adaptive" loses in the loop.',
     "pushes": "Compare the estimators on real pushes of a block.",
+    "rank": "Compare the order of returns with that of success.",
     "reproduce": "Reproduce the paper's analyses.",
     "ship": "Add trained policies to the pretrained ones.",
     "smoother": "Print a fit that knows all but the unknowns.",

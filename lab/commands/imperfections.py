@@ -1,5 +1,8 @@
 """Prints what each imperfection of the sensors "lab" costs in the loop."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import typer
 
 from lab.commands.options import Episodes, Seed, application
@@ -24,7 +27,15 @@ def main(
     seed: Seed = 0,
 ) -> None:
     """Print the estimators in the loop with each imperfection of "lab" alone."""
-    from policies.leaderboard.one_imperfection import one_imperfection
-
     environments = {"randomization": randomization, "contact": contact}
     typer.echo(report(episodes, seed, estimators, task, parameter, one_imperfection(), environments))
+
+
+def one_imperfection() -> Mapping[str, Mapping[str, Any]]:
+    """Label -> arguments of the environments: none, one imperfection of "lab" each, all."""
+    from policies.leaderboard.one_imperfection import IMPERFECTIONS, values_of
+
+    cases: dict[str, Mapping[str, Any]] = {"realistic": {"sensors": "realistic"}}
+    for label in IMPERFECTIONS:
+        cases[label] = {"sensors": "realistic", "config": {"sensors": values_of(label)}}
+    return cases | {"lab": {"sensors": "lab"}}

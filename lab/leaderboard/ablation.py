@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 from tqdm import tqdm
 
+from lab.leaderboard.opened import opened
 from policies.evaluation.frames import values, where
 from policies.leaderboard.closed_loop import closed_loop
 from policies.leaderboard.groups import GROUPS
-from policies.leaderboard.imperfect import opened
 from policies.leaderboard.ranking import by_group, ranked
 from policies.leaderboard.run import Entrants, evaluate
 from policies.leaderboard.scenario import FIELDS

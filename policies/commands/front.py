@@ -30,7 +30,6 @@ COMMANDS = {
     "validate": "Check the physics against its acceptance figures.",
     "benchmark": "Measure the speed of the environments.",
     "warmup": "Compile everything once, for images and CI.",
-    "rank": "Compare the order of returns with that of success.",
     "export-policy": "Write a learned policy as an ONNX graph.",
     "import-policy": "Read a zip of Stable-Baselines3 safely.",
 }

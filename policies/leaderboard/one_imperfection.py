@@ -1,4 +1,4 @@
-"""Separates the imperfections of the sensors "lab": each alone, or all but some."""
+"""Separates the imperfections of the sensors "lab"."""
 
 from __future__ import annotations
 
@@ -22,14 +22,6 @@ IMPERFECTIONS = {
     "lost readings": {"force_torque": ("dropout",), "slip": ("dropout",)},
 }
 """Label -> for each sensor the parameters in which "lab" differs from "realistic"."""
-
-
-def one_imperfection() -> Mapping[str, Mapping[str, Any]]:
-    """Label -> arguments of the environments: none, one imperfection of "lab" each, all."""
-    cases: dict[str, Mapping[str, Any]] = {"realistic": {"sensors": "realistic"}}
-    for label in IMPERFECTIONS:
-        cases[label] = {"sensors": "realistic", "config": {"sensors": values_of(label)}}
-    return cases | {"lab": {"sensors": "lab"}}
 
 
 def values_of(label: str, preset: str = "lab") -> Values:

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import gymnasium as gym
 import numpy as np
 
 from policies import registry
+from policies.controllers.constant_force import ConstantForcePolicy
+from policies.controllers.no_friction_info import NoFrictionInfo
+from policies.controllers.slip_memory import SlipMemory
 from policies.controllers.table import CLASSES
 from policies.evaluation.play import play
-from policies.learned import LearnedPolicy
-from policies.reward_order.zoo import Member, constant, controllers, learned, remembering
+from policies.learned import LearnedPolicy, pretrained
+from policies.registry import Policy
 from slipgym.config import load
 from slipgym.tasks import find
 
@@ -21,6 +24,59 @@ CANDIDATES = 16
 """Constant forces that are tried, spaced geometrically over the gripper's range."""
 _SELECTION_SEED = 10_000_000
 """Of the first episode on which the constant force is chosen."""
+
+
+class Member(NamedTuple):
+    """A policy and what its environments are made with."""
+
+    name: str
+    policy: Policy
+    arguments: Mapping[str, Any]
+
+
+def constant(force: float) -> Member:
+    """A constant grip force [N]."""
+    arguments = {"friction_source": "none", "action_mode": "grip_force"}
+    return Member(f"constant {force:g} N", ConstantForcePolicy(force), arguments)
+
+
+def controllers(key: str, called: str = "controller") -> list[Member]:
+    """A controller with every friction source.
+
+    Args:
+        key: Its name: that of a task, or another one of `policies.controllers.table.CLASSES`.
+        called: How the members' names begin.
+    """
+    made, blind = registry.make(key), NoFrictionInfo(key)
+    members = [Member(f"{called}, none", blind, {**registry.modes(blind), "friction_source": "none"})]
+    for source in ("nominal", "estimated", "true"):
+        arguments = {**registry.modes(made), "friction_source": source}
+        members.append(Member(f"{called}, {source}", made, arguments))
+    return members
+
+
+def remembering(key: str) -> Member:
+    """A controller without friction information that remembers slips.
+
+    Args:
+        key: Its name.
+    """
+    made = SlipMemory(key)
+    return Member("controller, memory of slips", made, {**made.modes, "friction_source": "none"})
+
+
+def learned(key: str) -> list[Member]:
+    """The policies of a task that come with slipgym.
+
+    Args:
+        key: Of the task.
+    """
+    members = []
+    for source in ("estimated", "true", "none"):
+        if (name := f"{key}_{source}") in pretrained.folders():
+            policy = LearnedPolicy(pretrained.folders()[name])
+            members.append(Member(f"learned, {source}", policy, {"friction_source": source, **policy.modes}))
+    return members
 
 
 def best_constant(task: str, arguments: Mapping[str, Any], episodes: int) -> Member:

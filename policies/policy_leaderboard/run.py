@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import gymnasium as gym
+import numpy as np
 import pandas as pd
 from tqdm import tqdm
 
+from policies.evaluation.play import Played, play
 from policies.evaluation.statistics import share_interval
-from policies.reward_order.episodes import episodes_of
-from policies.reward_order.zoo import Member
+from policies.policy_leaderboard.entries import Member
 from slipgym.tasks import find
 
 COLUMNS = (
@@ -18,6 +20,35 @@ COLUMNS = (
     "slid [mm]",
 )  # fmt: skip
 """Of the table: `low` and `high` bound the interval of 95 % of what was solved [%]."""
+ROWS = {"planar": 1000, "bullet": 50}
+"""Most environments side by side; one of PyBullet takes 28 MB."""
+
+
+def episodes_of(
+    task: str, member: Member, episodes: int, arguments: Mapping[str, Any], engine: str = "planar"
+) -> Played:
+    """Plays episodes with a policy; episode i has the seed i.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        member: The policy.
+        episodes: How many.
+        arguments: Further arguments of the environments, such as `level`.
+        engine: "planar" or "bullet".
+    """
+    made, parts = {**arguments, **member.arguments}, []
+    for first in range(0, episodes, ROWS[engine]):
+        seeds = range(first, min(first + ROWS[engine], episodes))
+        if engine == "planar":
+            envs = gym.make_vec(f"slipgym:{find(task).id}", len(seeds), "vector_entry_point", **made)
+        else:
+            kind = {"engine": engine, "disable_env_checker": True}
+            envs = gym.make_vec(f"slipgym:{find(task).id}", len(seeds), "sync", **kind, **made)
+        try:
+            parts.append(play(envs, member.policy, seeds))
+        finally:
+            envs.close()
+    return Played(*(np.concatenate(values) for values in zip(*parts, strict=True)))
 
 
 def outcomes(

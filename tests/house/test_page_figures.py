@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from policies.policy_leaderboard.entries import Member, controllers, learned
 from policies.policy_leaderboard.run import outcomes
-from policies.reward_order.zoo import Member, controllers, learned
 from slipgym.tasks import find
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -9,7 +9,7 @@ import estimator
 from lab.leaderboard import ablation
 from lab.leaderboard.ablation import FULL, WITHOUT, worth
 from lab.leaderboard.delays import delays
-from policies.leaderboard.imperfect import opened
+from lab.leaderboard.opened import opened
 from policies.leaderboard.run import evaluate
 from policies.leaderboard.scenario import FIELDS
 from policies.leaderboard.scenarios import QUICK

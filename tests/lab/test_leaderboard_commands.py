@@ -6,7 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from lab.commands.imperfections import one_imperfection
 from lab.leaderboard.ablation import WITHOUT
+from policies.leaderboard.one_imperfection import IMPERFECTIONS
+from slipgym.config import load
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -32,6 +35,13 @@ def test_the_ablation_has_a_row_for_each_thing():
     assert printed.startswith("| without |")
     assert len(printed.splitlines()) == 2 + len(WITHOUT)
     assert all(f"\n| {label} |" in printed for label in WITHOUT)
+
+
+def test_each_imperfection_of_the_laboratory_stands_alone():
+    cases = one_imperfection()
+    assert list(cases) == ["realistic", *IMPERFECTIONS, "lab"]
+    tilt = load(sensors="lab").sensors.force_torque.tilt
+    assert cases["tilt"]["config"] == {"sensors": {"force_torque": {"tilt": tilt}}}
 
 
 def call(*command):

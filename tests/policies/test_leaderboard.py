@@ -13,7 +13,7 @@ from estimator.estimate import ESTIMATE
 from estimator.registry import specification
 from policies.leaderboard import run_leaderboard
 from policies.leaderboard.groups import GROUPS
-from policies.leaderboard.one_imperfection import IMPERFECTIONS, one_imperfection, without
+from policies.leaderboard.one_imperfection import IMPERFECTIONS, without
 from policies.leaderboard.ranking import ranked, winners
 from policies.leaderboard.replay import replay
 from policies.leaderboard.rubber import swinging
@@ -139,9 +139,6 @@ def test_single_imperfections_are_all_that_differs_between_the_presets():
     differ = {(s, name) for s in lab for name in lab[s] if lab[s][name] != realistic[s][name]}
     listed = [(s, name) for case in IMPERFECTIONS.values() for s, names in case.items() for name in names]
     assert sorted(listed) == sorted(differ)
-    cases = one_imperfection()
-    assert list(cases) == ["realistic", *IMPERFECTIONS, "lab"]
-    assert cases["tilt"]["config"] == {"sensors": {"force_torque": {"tilt": lab["force_torque"]["tilt"]}}}
 
 
 def test_sensors_without_some_imperfections():

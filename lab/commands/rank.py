@@ -31,9 +31,9 @@ def main(
     estimator: Annotated[str, typer.Option(help="Estimator of the environments.")] = DEFAULT,
 ) -> None:
     """Print success and mean return of many policies, and how often both have the same order."""
+    from lab.reward_order.run import compared, played, sentence
+    from lab.reward_order.zoo import zoo
     from policies.leaderboard.tables import markdown
-    from policies.reward_order.run import compared, played, sentence
-    from policies.reward_order.zoo import zoo
     from slipgym.config.level import level_names
     from slipgym.tasks import find
 

@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from policies.reward_order.run import (
+from lab.reward_order.run import (
     DROPPED,
     RETURN,
     SUCCESS,
@@ -13,7 +13,7 @@ from policies.reward_order.run import (
     sentence,
     spread,
 )
-from policies.reward_order.zoo import zoo
+from lab.reward_order.zoo import zoo
 from slipgym.tasks import TASKS
 
 TRAIN = {"randomization": "train"}

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from policies import registry
-from policies.controllers.constant_force import ConstantForcePolicy
-from policies.controllers.no_friction_info import NoFrictionInfo
-from policies.controllers.slip_memory import SlipMemory
-from policies.learned import LearnedPolicy, pretrained
+from policies.policy_leaderboard.entries import Member, constant, controllers, learned
 from policies.registry import Policy
 from slipgym.config import load
 from slipgym.envs.actions import components
@@ -21,14 +17,6 @@ GRIPS = 9
 """Constant forces, spaced geometrically over the gripper's range."""
 NOISES = (0.05, 0.1, 0.2, 0.4)
 """Standard deviations of the noise on the actions of the controller with true friction."""
-
-
-class Member(NamedTuple):
-    """A policy and what its environments are made with."""
-
-    name: str
-    policy: Policy
-    arguments: Mapping[str, Any]
 
 
 class Disturbed:
@@ -80,48 +68,3 @@ def zoo(task: str) -> list[Member]:
         arguments = {**registry.modes(made), "friction_source": "true"}
         members.append(Member(f"controller, true, noise {size:g}", Disturbed(made, size, width), arguments))
     return [*members, *learned(key)]
-
-
-def constant(force: float) -> Member:
-    """A constant grip force [N]."""
-    arguments = {"friction_source": "none", "action_mode": "grip_force"}
-    return Member(f"constant {force:g} N", ConstantForcePolicy(force), arguments)
-
-
-def controllers(key: str, called: str = "controller") -> list[Member]:
-    """A controller with every friction source.
-
-    Args:
-        key: Its name: that of a task, or another one of `policies.controllers.table.CLASSES`.
-        called: How the members' names begin.
-    """
-    made, blind = registry.make(key), NoFrictionInfo(key)
-    members = [Member(f"{called}, none", blind, {**registry.modes(blind), "friction_source": "none"})]
-    for source in ("nominal", "estimated", "true"):
-        arguments = {**registry.modes(made), "friction_source": source}
-        members.append(Member(f"{called}, {source}", made, arguments))
-    return members
-
-
-def remembering(key: str) -> Member:
-    """A controller without friction information that remembers slips.
-
-    Args:
-        key: Its name.
-    """
-    made = SlipMemory(key)
-    return Member("controller, memory of slips", made, {**made.modes, "friction_source": "none"})
-
-
-def learned(key: str) -> list[Member]:
-    """The policies of a task that come with slipgym.
-
-    Args:
-        key: Of the task.
-    """
-    members = []
-    for source in ("estimated", "true", "none"):
-        if (name := f"{key}_{source}") in pretrained.folders():
-            policy = LearnedPolicy(pretrained.folders()[name])
-            members.append(Member(f"learned, {source}", policy, {"friction_source": source, **policy.modes}))
-    return members

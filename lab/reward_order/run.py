@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 from tqdm import tqdm
 
-from policies.reward_order.episodes import episodes_of
-from policies.reward_order.zoo import Member
+from policies.policy_leaderboard.entries import Member
+from policies.policy_leaderboard.run import episodes_of
 from slipgym.tasks import find
 
 SUCCESS, DROPPED, RETURN = "success [%]", "dropped [%]", "mean return"
