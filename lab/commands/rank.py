@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from estimator.registry import DEFAULT
+from lab.commands.options import application, wrong_arguments
 from policies.commands.several import TASKS, Tasks
 
 EPILOG = """
@@ -16,7 +17,7 @@ Examples:\n
 \n
 docs/rewards.md explains the tables.
 """
-app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+app = application()
 
 
 @app.command(epilog=EPILOG)
@@ -37,7 +38,7 @@ def main(
     from slipgym.config.level import level_names
     from slipgym.tasks import find
 
-    try:
+    with wrong_arguments():
         found = {}
         for task in tasks or TASKS:
             for name in level or level_names(find(task).key):
@@ -45,5 +46,3 @@ def main(
                 table = found[find(task).name, name] = played(task, zoo(task), episodes, made)
                 typer.echo(f"\n{task}, {name}\n\n{markdown(table)}\n\n{sentence(table)}")
         typer.echo(f"\n{markdown(compared(found), 1)}")
-    except (ValueError, FileNotFoundError) as error:
-        raise typer.BadParameter(str(error)) from error

@@ -6,16 +6,17 @@ is tuned to the distribution of episodes, which nobody could do for a single new
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import gymnasium as gym
 import numpy as np
 from tqdm import tqdm
 
 from policies.controllers.constant_force import ConstantForcePolicy
+from policies.evaluation.batch import row_options
 from policies.evaluation.experiment import Experiment
-from policies.evaluation.plan import seed
+from policies.evaluation.plan import plan
 from policies.evaluation.play import Played, play
 from slipgym.tasks import find
 
@@ -61,38 +62,25 @@ def run_constant(experiment: Experiment, forces: Sequence[float], progress: bool
         forces: Forces per finger [N].
         progress: Whether to show a progress bar.
     """
-    rows = [
-        (seed(experiment.seed, material, options, number), _options(material, options))
-        for material in experiment.materials
-        for options in experiment.combinations()
-        for number in range(experiment.trials)
-    ]
+    alone = {"policies": experiment.policies[:1], "friction": experiment.friction[:1]}
+    trials = plan(experiment.model_copy(update=alone))
+    seeds, options = zip(*((trial.seed, row_options(trial)) for trial in trials), strict=True)
+    config = dict(experiment.config)
     envs = gym.make_vec(
         f"slipgym:{find(experiment.task).id}",
-        len(rows),
+        len(trials),
         "vector_entry_point",
         action_mode="grip_force",
         friction_source="none",
         sensors=experiment.sensors,
         randomization=experiment.randomization,
         level=experiment.level,
-        config=dict(experiment.config),
+        config=config,
     )
     try:
         bar = tqdm(forces, desc=f"{experiment.task}, constant grip", unit="force", disable=not progress)
-        return [_run(envs, experiment, force, rows) for force in bar]
+        return [
+            Outcomes(force, play(envs, ConstantForcePolicy(force, config), seeds, options)) for force in bar
+        ]
     finally:
         envs.close()
-
-
-def _run(
-    envs: Any, experiment: Experiment, force: float, rows: Sequence[tuple[int, Mapping[str, Any]]]
-) -> Outcomes:
-    policy = ConstantForcePolicy(force, dict(experiment.config))
-    seeds, options = zip(*rows, strict=True)
-    return Outcomes(force, play(envs, policy, seeds, options))
-
-
-def _options(material: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options of reset; a material that is drawn at random is left out."""
-    return {**options, **({} if material == "random" else {"material": material})}

@@ -44,15 +44,14 @@ def anisotropic(effort: Effort) -> Iterator[Scenario]:
         yield Scenario("anisotropy", f"± {100 * anisotropy:.0f} %", (Run(record, {"mu_c": late, "r": late}),))
 
 
-def swinging(friction: float, radius: float, duration: float = 3.0) -> Course:
-    """`turning` under a normal force that swings; friction and r follow it.
+def swinging(friction: float, radius: float) -> Course:
+    """3 s of `turning` under a normal force that swings; friction and r follow it.
 
     Args:
         friction: mu falls with the normal force to the power of this [-].
         radius: r grows with it to the power of this [-].
-        duration: Of the slip at full speed [s].
     """
-    course = turning(duration)
+    course = turning(3.0)
     points = list(course.points)
     for k, t in enumerate(course.times):
         ratio = 1.0 + SWING * math.sin(2.0 * math.pi * t / PERIOD)

@@ -17,7 +17,7 @@ ALGORITHMS = {
     "RecurrentPPO": "sb3_contrib",
 }
 """Class -> package."""
-_ACTIVATIONS = {"Tanh": "tanh", "ReLU": "relu", "ELU": "elu"}
+ACTIVATIONS = {"Tanh": "tanh", "ReLU": "relu", "ELU": "elu"}
 LSTM = {
     "input_weight": "weight_ih_l",
     "hidden_weight": "weight_hh_l",
@@ -59,14 +59,14 @@ def network_of(model: Any) -> Network:
             raise ValueError(f"{lstm}: a file holds LSTM layers with bias, without projection and dropout")
         memory = Memory(size=lstm.hidden_size, layers=lstm.num_layers)
     activation = model.policy.activation_fn.__name__
-    if activation not in _ACTIVATIONS:
-        raise ValueError(unknown("activation", activation, _ACTIVATIONS))
+    if activation not in ACTIVATIONS:
+        raise ValueError(unknown("activation", activation, ACTIVATIONS))
     return Network.model_validate(
         {
             "kind": "lstm" if memory else "mlp",
             "memory": memory,
             "layers": _widths(_actor(model)[:-1]),
-            "activation": _ACTIVATIONS[activation],
+            "activation": ACTIVATIONS[activation],
             "squash": bool(model.policy.squash_output),
         }
     )
@@ -115,9 +115,9 @@ def _linear(modules: Iterable[Any]) -> list[Any]:
         kind = type(module).__name__
         if kind == "Linear" and module.bias is not None:
             found.append(module)
-        elif kind not in _ACTIVATIONS:
+        elif kind not in ACTIVATIONS:
             raise ValueError(
-                f"layer {module}: a file holds dense layers with bias and {', '.join(_ACTIVATIONS)}"
+                f"layer {module}: a file holds dense layers with bias and {', '.join(ACTIVATIONS)}"
             )
     return found
 

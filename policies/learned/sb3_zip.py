@@ -22,7 +22,7 @@ import numpy as np
 from estimator.plain_files import check_regular
 from policies.learned import files
 from policies.learned.export import described
-from policies.learned.extract import LSTM, array
+from policies.learned.extract import ACTIVATIONS, LSTM, array
 from policies.versions import versions
 from slipgym.atomic_io import check_folder
 from slipgym.config.errors import unknown
@@ -31,7 +31,6 @@ LIMIT = 2**28
 """Most bytes of a member of the zip."""
 _WEIGHTS, _DATA = "policy.pth", "data"
 _ACTIVATION = re.compile(r"<class 'torch\.nn\.modules\.activation\.(\w+)'>")
-_ACTIVATIONS = {"Tanh": "tanh", "ReLU": "relu", "ELU": "elu"}
 _ACTORS = {"PPO": ("mlp_extractor.policy_net", "action_net"), "SAC": ("actor.latent_pi", "actor.mu")}
 
 
@@ -136,9 +135,9 @@ def _plain(text: bytes) -> dict[str, Any]:
     activation = keywords.get("activation_fn") if isinstance(keywords, dict) else None
     if activation is not None:
         match = _ACTIVATION.fullmatch(activation) if isinstance(activation, str) else None
-        if match is None or match[1] not in _ACTIVATIONS:
-            raise ValueError(unknown("activation", str(activation), _ACTIVATIONS))
-        activation = _ACTIVATIONS[match[1]]
+        if match is None or match[1] not in ACTIVATIONS:
+            raise ValueError(unknown("activation", str(activation), ACTIVATIONS))
+        activation = ACTIVATIONS[match[1]]
     return {"steps": steps, "use_sde": found.get("use_sde") is True, "activation": activation}
 
 

@@ -11,9 +11,10 @@ import pandas as pd
 
 from policies.evaluation.constant_grip import CANDIDATES, best_force, run_constant
 from policies.evaluation.experiment import Experiment
-from policies.evaluation.statistics import Interval, mean_interval, share_interval
+from policies.evaluation.statistics import mean_interval, share_interval
 from policies.study.config import Study
 from policies.study.store import sources
+from policies.study.tables import spread
 from slipgym import atomic_io
 from slipgym.config.yaml_model import validate
 
@@ -76,11 +77,4 @@ def _outcomes(experiment: Experiment, candidates: int, progress: bool) -> dict[s
         "dropped": share_interval(int(found.dropped.sum()), n),
         "return": mean_interval(found.reward),
     }
-    row: dict[str, Any] = {"force_N": force, "n": n}
-    for name, interval in figures.items():
-        row |= _columns(name, interval)
-    return row
-
-
-def _columns(name: str, interval: Interval) -> dict[str, float]:
-    return {name: interval.value, f"{name}_low": interval.low, f"{name}_high": interval.high}
+    return {"force_N": force, "n": n, **spread(figures)}

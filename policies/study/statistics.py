@@ -50,17 +50,16 @@ class Bootstrap:
 
     Args:
         strata: The stratum of each episode, (n,).
-        resamples: How many.
     """
 
-    def __init__(self, strata: np.ndarray, resamples: int = RESAMPLES) -> None:
+    def __init__(self, strata: np.ndarray) -> None:
         rng = np.random.default_rng(0)
-        self._at = np.empty((resamples, len(strata)), dtype=np.int64)
+        self._at = np.empty((RESAMPLES, len(strata)), dtype=np.int64)
         names, sizes = np.unique(strata, return_counts=True)
         self._spread = 1.0 if sizes.min() > 1 else np.nan
         for stratum in names:
             members = np.flatnonzero(strata == stratum)
-            self._at[:, members] = rng.choice(members, (resamples, len(members)))
+            self._at[:, members] = rng.choice(members, (RESAMPLES, len(members)))
 
     def __call__(self, values: np.ndarray) -> Drawn:
         """The mean over the episodes, (n,), in the order of the strata."""

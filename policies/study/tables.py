@@ -58,7 +58,7 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
             "n": len(group),
             "blocks": " ".join(f"{share:.3f}" for share in by_block),
         }
-        rows.append(row | _spread(figures))
+        rows.append(row | spread(figures))
     return pd.DataFrame(rows)
 
 
@@ -107,7 +107,7 @@ def transfer(episodes: pd.DataFrame, study: Study) -> pd.DataFrame:
                 row = dict(zip(["task", "preset", "kind"], keys, strict=True))
                 figures = {"core": _percent(core), "bullet": _percent(bench)}
                 figures["difference"] = difference.interval
-                rows.append({"contact": planar.contact, **row, "n": len(group), **_spread(figures)})
+                rows.append({"contact": planar.contact, **row, "n": len(group), **spread(figures)})
     return pd.DataFrame(rows)
 
 
@@ -125,7 +125,7 @@ def _share(drawn: dict[str, Drawn]) -> dict[str, Any]:
     else:
         verdict = "the truth does harm" if whole.interval.high < 0.0 else "not significant"
     differences = ends({"true-none": whole, "estimated-none": part})
-    return {**differences, **_spread({"share": share}), "verdict": verdict}
+    return {**differences, **spread({"share": share}), "verdict": verdict}
 
 
 def _over_tasks(episodes: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
@@ -157,10 +157,10 @@ def strata(episodes: pd.DataFrame) -> np.ndarray:
 
 def ends(figures: dict[str, Drawn]) -> dict[str, float]:
     """Figures with their intervals as columns."""
-    return _spread({name: drawn.interval for name, drawn in figures.items()})
+    return spread({name: drawn.interval for name, drawn in figures.items()})
 
 
-def _spread(figures: dict[str, Interval]) -> dict[str, float]:
+def spread(figures: dict[str, Interval]) -> dict[str, float]:
     """Intervals as columns."""
     row = {}
     for name, interval in figures.items():

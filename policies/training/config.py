@@ -15,6 +15,7 @@ from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO
 from slipgym.config import load, load_randomization
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.errors import unknown
+from slipgym.config.load import merge
 from slipgym.envs.arguments import CommonArguments, fields
 from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import TASKS, configure, find
@@ -204,7 +205,7 @@ class Training(Frozen):
     def shaped(self) -> Environment:
         """The environment in which it learns."""
         values = self.environment.model_dump()
-        values["config"] = _merged(values["config"], self.shaping)
+        values["config"] = merge(values["config"], self.shaping)
         return Environment.model_validate(values)
 
     def combinations(self) -> list[dict[str, Any]]:
@@ -217,11 +218,3 @@ class Training(Frozen):
     def hyperparameters(self) -> PPO | SAC:
         """Those of the algorithm."""
         return getattr(self, self.algorithm)
-
-
-def _merged(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """Nested mappings, with other values."""
-    merged = dict(base)
-    for key, value in overrides.items():
-        merged[key] = _merged(merged.get(key, {}), value) if isinstance(value, Mapping) else value
-    return merged

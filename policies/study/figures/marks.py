@@ -19,17 +19,16 @@ COLOURS = {
 """Friction source -> its colour."""
 
 
-def panels(names: Sequence[str], rows: int, height: float, share: bool = True) -> tuple[Figure, list[Axes]]:
+def panels(names: Sequence[str], rows: int, height: float) -> tuple[Figure, list[Axes]]:
     """A column for each name, its rows from top to bottom.
 
     Args:
         names: Titles of the columns.
         rows: How many rows each has.
         height: Of a row [inch].
-        share: Whether the columns share their rows' labels.
     """
     figure = Figure(figsize=(8.6, 0.9 + height * rows))
-    axes = figure.subplots(1, len(names), sharey=share, squeeze=False)[0]
+    axes = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
     for each, name in zip(axes, names, strict=True):
         each.set_title(name)
         each.set_ylim(rows - 0.5, -0.5)

@@ -10,7 +10,7 @@ import torch
 from torch import nn
 
 from policies.learned.description import Column, Memory, Network, Normalisation
-from policies.learned.extract import array
+from policies.learned.extract import LSTM, array
 from policies.training.imitation.config import Imitation
 
 EPSILON = 1e-8
@@ -80,13 +80,8 @@ class Student(nn.Module):
         """Tensors by their names in a policy's file, see `policies.learned.tensors.expected`."""
         found = {"observation.mean": self.mean.numpy().copy(), "observation.var": self.var.numpy().copy()}
         if self.memory is not None:
-            for ours, theirs in (
-                ("input_weight", self.memory.weight_ih_l0),
-                ("hidden_weight", self.memory.weight_hh_l0),
-                ("input_bias", self.memory.bias_ih_l0),
-                ("hidden_bias", self.memory.bias_hh_l0),
-            ):
-                found[f"memory.0.{ours}"] = array(theirs)
+            for ours, theirs in LSTM.items():
+                found[f"memory.0.{ours}"] = array(getattr(self.memory, f"{theirs}0"))
         for k, layer in enumerate(self.dense):
             found[f"layers.{k}.weight"], found[f"layers.{k}.bias"] = array(layer.weight), array(layer.bias)
         return found
