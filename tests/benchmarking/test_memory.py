@@ -27,6 +27,7 @@ def test_every_environment_takes_as_much():
     assert few == pytest.approx(many, rel=0.01)  # the parameters of the estimators are shared
 
 
+@pytest.mark.slow
 def test_cells_and_history_come_on_top():
     env = gym.make_vec(ID, num_envs=1)
     columns = len(env.columns)

@@ -4,6 +4,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pandas as pd
+import pytest
 
 import estimator
 from lab.leaderboard import ablation
@@ -15,6 +16,7 @@ from policies.leaderboard.scenario import FIELDS
 from policies.leaderboard.scenarios import QUICK
 
 
+@pytest.mark.slow
 def test_late_velocities_have_a_row_for_each_material_and_delay():
     found = delays(replace(QUICK, materials=("wood", "case")))
     assert len(found) == 8

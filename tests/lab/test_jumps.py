@@ -35,6 +35,7 @@ def test_a_finger_counts_if_it_was_right_and_slips():
     assert summary(course, without)["seen"] == 0
 
 
+@pytest.mark.slow
 def test_the_moment_of_the_jump_does_not_depend_on_its_size():
     small, large = (watched(TASKS[0], 3, 3, factor, **LAB).mu_c for factor in (1.06, 1.35))
     moments = [np.abs(mu_c / mu_c[0] - 1.0).argmax(axis=0) for mu_c in (small, large)]
@@ -50,6 +51,7 @@ def test_knowing_when_friction_jumps_changes_nothing_before():
     assert not np.array_equal(course.error, informed.error)
 
 
+@pytest.mark.slow
 def test_planar_slip_is_right_again():
     """Disc, realistic sensors, as `slipgym jumps` prints it: three of four fingers at least.
 
@@ -62,6 +64,7 @@ def test_planar_slip_is_right_again():
         assert found["without jump"] >= 95.0
 
 
+@pytest.mark.slow
 def test_an_estimator_that_never_learns_is_never_right_again():
     deaf = {"name": "adaptive", "mu_c0": 0.5, "sd_log_mu_c0": 1e-9, "drift": 1e-9, "drift_at_rest": 0.0}
     deaf |= {"sd_jump": 1e-9, "jump_odds": 1e9, "sd_load_exponent": 1e-9, "hard": 0.0}

@@ -107,6 +107,7 @@ def test_sequences_in_a_batch_do_not_touch_each_other():
     assert again.loss(data).item() == network.loss(data).item()
 
 
+@pytest.mark.slow
 def test_a_fit_learns_and_is_the_same_for_a_seed():
     data = made_up((40,) * 24, np.random.default_rng(1))
     training = config.read({**TINY, "updates": 120, "batch": 8})
