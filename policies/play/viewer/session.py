@@ -12,11 +12,11 @@ import numpy as np
 
 import policies
 from policies.learned import LearnedPolicy
-from policies.play.screenshot import own_policy
 from policies.play.viewer import interventions
 from policies.play.viewer.history import History
 from policies.play.watch import Outcome
 from policies.registry import Policy
+from policies.task_names import own_policy
 from slipgym.config.errors import unknown
 from slipgym.config.load import merge, read_overrides
 from slipgym.tasks import find
