@@ -40,7 +40,7 @@ benchmark: $(VENV)/.dev ## steps per second
 	$(RUN) scripts/benchmark.py
 
 validate: $(VENV)/.dev ## the acceptance figures of the physics
-	$(RUN) scripts/validate.py
+	$(RUN) scripts/validate.py && $(RUN) -m slipgym validate-parts
 
 torture: $(VENV)/.dev ## attacks on the public interface for some hours; goes on where it was stopped
 	$(RUN) -m slipgym torture

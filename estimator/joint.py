@@ -259,19 +259,7 @@ def _update(state, p, prior, t, wrench, twist, estimate):
 
 @entry_point(STATE, JointParameters.dtype())
 def update_batch(states, parameters, t, wrenches, twists, estimates):
-    """Updates n fingers by one sample each.
-
-    A row with NaN or a reading from `estimator.sample.LARGEST` on, or whose t is not later than its last,
-    is left unchanged.
-
-    Args:
-        states: (n,) of dtype STATE, changed in place.
-        parameters: (1,), shared, or (n,) of dtype JointParameters.dtype().
-        t: Time [s].
-        wrenches: (n, 4) f_x, f_y, f_n, tau [N, N, N, N m] at the CoP.
-        twists: (n, 3) v_x, v_y, omega [m/s, m/s, rad/s] at the CoP.
-        estimates: (n,) of dtype ESTIMATE, written.
-    """
+    """Updates n fingers by one sample each; see `estimator.registry.Specification`."""
     p = parameters[0]
     prior = _priors(p)
     for i in range(len(states)):

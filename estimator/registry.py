@@ -45,7 +45,13 @@ class Specification:
     initial_states: Callable[[NDArray[np.void]], NDArray[np.void]]
     """parameters (m,) -> states (m,) before the first sample; the state dtype begins with COMMON_STATE."""
     update_batch: Callable[..., None]
-    """Compiled: (states (n,), parameters (1,) or (n,), t, wrenches (n, 4), twists (n, 3), estimates (n,))."""
+    """Compiled: (states, parameters, t, wrenches, twists, estimates); updates n fingers by one sample each.
+
+    The states (n,) and the estimates (n,) of dtype ESTIMATE are written. The parameters are (1,), shared, or
+    (n,); t is the time [s]; wrenches (n, 4) hold f_x, f_y, f_n, tau [N, N, N, N m] and twists (n, 3) hold
+    v_x, v_y, omega [m/s, m/s, rad/s], both at the CoP. A row with NaN or a reading from
+    `estimator.sample.LARGEST` on, or whose t is not later than its last, is left unchanged.
+    """
     filter_matrices: Callable[[NDArray[np.void]], FilterMatrices] | None = None
     """states (n,) -> matrices of the filters; None: it has no such matrices."""
 

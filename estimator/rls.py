@@ -236,19 +236,7 @@ def _update(state, p, t, wrench, twist, estimate):
 
 @entry_point(STATE, RlsParameters.dtype())
 def update_batch(states, parameters, t, wrenches, twists, estimates):
-    """Updates n fingers by one sample each.
-
-    A row with NaN or a reading from `estimator.sample.LARGEST` on, or whose t is not later than its last,
-    is left unchanged.
-
-    Args:
-        states: (n,) of dtype STATE, changed in place.
-        parameters: (1,), shared, or (n,) of dtype RlsParameters.dtype().
-        t: Time [s].
-        wrenches: (n, 4) f_x, f_y, f_n, tau [N, N, N, N m] at the CoP.
-        twists: (n, 3) v_x, v_y, omega [m/s, m/s, rad/s] at the CoP.
-        estimates: (n,) of dtype ESTIMATE, written.
-    """
+    """Updates n fingers by one sample each; see `estimator.registry.Specification`."""
     for i in range(len(states)):
         p = parameters[min(i, len(parameters) - 1)]
         wrench = wrenches[i, 0], wrenches[i, 1], wrenches[i, 2], wrenches[i, 3]

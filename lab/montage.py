@@ -11,9 +11,9 @@ import numpy as np
 from PIL import Image
 
 import policies
-from policies.play.screenshot import own_policy, take_screenshot
 from policies.play.video import Gif
 from policies.stepping import steps
+from policies.task_names import own_policy
 from slipgym.atomic_io import new_file
 from slipgym.registration import ENVIRONMENTS
 from slipgym.rendering import camera
@@ -24,6 +24,8 @@ RATE = 10
 """Frames per second."""
 COLUMNS = 3
 """Episodes in a row."""
+FRACTION = 0.62
+"""Of an episode, after which a picture of it is taken."""
 REST = 0.8
 """Time that each episode's last picture stays, at least [s]."""
 
@@ -84,6 +86,31 @@ def tiled(views: Sequence[np.ndarray]) -> np.ndarray:
         row, column = divmod(k, columns)
         whole[row * height : (row + 1) * height, column * width : (column + 1) * width] = view
     return whole
+
+
+def take_screenshot(env_id: str, material: str, seed: int = 0) -> np.ndarray:
+    """A picture from the middle of an episode.
+
+    Args:
+        env_id: Id of an environment.
+        material: Name of a material.
+        seed: Of the environment.
+
+    Returns:
+        (480, 720, 3) uint8.
+    """
+    policy = policies.make(own_policy(env_id))
+    modes = policies.modes(policy)
+    env: Any = gym.make(env_id, render_mode="rgb_array", material=material, **modes).unwrapped
+    try:
+        observation, _ = env.reset(seed=seed)
+        episode = env.simulation.episode[0]
+        for _ in steps(env, policy, observation):
+            if episode["step"] >= FRACTION * episode["steps"]:
+                break
+        return env.render()
+    finally:
+        env.close()
 
 
 def write_screenshots(folder: Path, seed: int = 0) -> Iterator[Path]:

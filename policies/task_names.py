@@ -1,10 +1,11 @@
-"""Accepts every spelling of a task's name: "linear_slip", "LinearSlip", its id, or "module:attribute"."""
+"""Accepts every spelling of a task's name, such as "linear_slip" or "LinearSlip", and finds its policy."""
 
 from __future__ import annotations
 
 import os
 
 from estimator.reference import is_reference
+from policies import registry
 from slipgym.config.yaml_model import names
 from slipgym.tasks import find
 
@@ -39,3 +40,13 @@ def canonical(name: str) -> str:
     """
     task = find(name)
     return name if is_reference(name) else task.name
+
+
+def own_policy(task: str) -> str:
+    """The policy named like a task's group in the configuration; a constant force if there is none.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+    """
+    key = find(task).key
+    return key if key in registry.names() else "constant_force"

@@ -35,8 +35,6 @@ SHAPES: Mapping[str, tuple[int, ...]] = {
     "start": (TARGETS,),
 }
 """Tensor -> its shape; all are float32. The columns are normalised to (x - centre) scale."""
-TENSORS = np.dtype([(name, np.float32, shape) for name, shape in SHAPES.items()])
-"""The tensors as a record, without gaps."""
 NOTE = "about"
 """Entry with a text: origin and licence."""
 

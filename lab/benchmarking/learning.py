@@ -15,10 +15,10 @@ from stable_baselines3.common.vec_env import DummyVecEnv, VecEnv, VecMonitor
 from lab.benchmarking.measure import ACTIONS
 from lab.benchmarking.sample_cost import configuration, sample_cost
 from lab.benchmarking.stopwatches import Stopwatches
+from lab.benchmarking.timing import Block, compare
 from policies.training.adapter import make_vec_env
 from slipgym.benchmarking import report
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.timing import Block, compare
 
 LIBRARIES = ("stable-baselines3", "torch")
 BATCH, SCALAR = 256, 8

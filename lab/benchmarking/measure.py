@@ -16,8 +16,8 @@ import numpy as np
 from lab.benchmarking.bare import BareLoop
 from lab.benchmarking.numpy_patch import NumpyPatch
 from lab.benchmarking.stopwatches import Stopwatches, per_call
+from lab.benchmarking.timing import compare
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.timing import compare
 from slipgym.contact import DistributedContact, EllipsoidContact
 from slipgym.envs import bullet_simulation as loops
 from slipgym.envs.slip_env import SlipEnv

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from slipgym.benchmarking.timing import Block
+from lab.benchmarking.timing import Block
 
 SECOND = 1.0
 """Time for which speeds are given as what is done in it."""

@@ -7,9 +7,9 @@ from pathlib import Path
 from lab.benchmarking import measure
 from lab.benchmarking.batch import batch
 from lab.benchmarking.layers import layers
+from lab.benchmarking.resets import resets
 from lab.benchmarking.substeps import softer, substeps
 from slipgym.benchmarking import report
-from slipgym.benchmarking.resets import resets
 
 
 def with_bullet(env_id: str, pairs: int, json: Path | None = None) -> None:

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from lab.benchmarking.measure import OPTIONS, Player
+from lab.benchmarking.timing import compare
 from slipgym._numba.compiled import compiled
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.timing import compare
 from slipgym.world.plant import Plant
 from slipgym.world.substep import substep
 

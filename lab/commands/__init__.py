@@ -19,5 +19,6 @@ COMMANDS = {
     "smoother": "Print a fit that knows all but the unknowns.",
     "torture": "Attack the public interface for some hours.",
     "train-estimator": 'Train the network of the estimator "gru".',
+    "validate-parts": "Check steps, engines, patches and tilt.",
 }
 """Name of each sub-command and its line of help."""

@@ -8,12 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from lab.limit_surface_exact import exact_friction
 from lab.reproduction.fixed_point import disc_bias
+from lab.validation.patch_surface import MU_C, RADIUS, steady_friction, surface_twists
 from policies.evaluation.plots.style import STYLE, note
 from slipgym.contact import DistributedContact
-from slipgym.contact.limit_surface_exact import exact_friction
 from slipgym.contact.pressure import OUTER_RADII
-from slipgym.validation.patch_surface import MU_C, RADIUS, steady_friction, surface_twists
 
 CELLS = 21
 MARKS = {"uniform": "o", "hertz": "D", "rim": "s"}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from lab.limit_surface_exact import exact_friction
 from lab.suite.rig import PATCH_RADIUS, Grasp, R
-from slipgym.contact.limit_surface_exact import exact_friction
 
 _SCALE = np.array([1.0, 1.0, PATCH_RADIUS / R])
 

@@ -30,7 +30,7 @@ def main(
         Path | None, typer.Option(help="File to write the figures to, too.", show_default=False)
     ] = None,
 ) -> None:
-    """Print steps per second of single environments and of batches, starts of episodes, memory."""
+    """Print steps per second of single environments and of batches, and their memory."""
     from slipgym.benchmarking.run import benchmark
     from slipgym.tasks import find
 

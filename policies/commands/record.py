@@ -50,7 +50,7 @@ def main(
     from estimator.records import parse_settings
     from policies.evaluation.record_files import check_targets, save_record
     from policies.evaluation.sensor_record import record_sensors
-    from policies.play import own_policy
+    from policies.task_names import own_policy
 
     *before, last = files
     if len(before) > (policy is None):

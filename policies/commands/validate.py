@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 from tqdm import tqdm
@@ -25,21 +25,17 @@ docs/physics.md explains the figures.
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
+Only: TypeAlias = Annotated[
+    list[str] | None, typer.Option(help="Experiments to run; all if none.", show_default=False)
+]
+
+
 @app.command(epilog=EPILOG, cls=taking_several("--only"))
-def main(
-    only: Annotated[
-        list[str] | None, typer.Option(help="Experiments to run; all if none.", show_default=False)
-    ] = None,
-) -> None:
+def main(only: Only = None) -> None:
     """Print the acceptance figures of the physics; exit code 1 if one is not met."""
-    from estimator.suggestions import unknown
     from slipgym.validation import EXPERIMENTS
 
-    names = [experiment.__name__ for experiment in EXPERIMENTS]
-    for name in only or ():
-        if name not in names:
-            raise typer.BadParameter(unknown("unknown name", name, names), param_hint="--only")
-    if accept(only or names):
+    if accept(EXPERIMENTS, only):
         raise typer.Exit(1)
 
 
@@ -49,14 +45,22 @@ def line(figure: Figure) -> str:
     return f"{figure.name:<54} {'<= ' + required:>13} {measured:>13}  {'yes' if figure.ok else 'NO'}"
 
 
-def accept(chosen: Sequence[str]) -> int:
-    """Print the acceptance figures of some experiments; returns how many are not met."""
-    from slipgym.validation import EXPERIMENTS
+def accept(experiments: Sequence[Callable[[], Iterable[Figure]]], only: Sequence[str] | None) -> int:
+    """Print the figures of some experiments, all if `only` is empty; returns how many are not met.
 
+    Raises:
+        typer.BadParameter: A name in `only` is none of an experiment.
+    """
+    from estimator.suggestions import unknown
+
+    known = {experiment.__name__: experiment for experiment in experiments}
+    for name in only or ():
+        if name not in known:
+            raise typer.BadParameter(unknown("unknown name", name, list(known)), param_hint="--only")
     failed = 0
     tqdm.write(HEAD)
-    for experiment in tqdm([e for e in EXPERIMENTS if e.__name__ in chosen], disable=None, leave=False):
-        for figure in experiment():
+    for name in tqdm([name for name in known if not only or name in only], disable=None, leave=False):
+        for figure in known[name]():
             tqdm.write(line(figure))
             failed += not figure.ok
     return failed

@@ -54,6 +54,15 @@ class GainPolicy(ForcePolicy, Generic[G]):
         values = {} if gains is None else gains.model_dump()
         self.gains: G = validate({**values, **parameters}, self.Gains, type(self).__name__)  # type: ignore[assignment]
         self.prior = prior or self.prior_default
+        self._dt = 1.0 / self.config.physics.control_rate
+        self._prepare(config)
+
+    def _prepare(self, config: Overrides | None) -> None:
+        """Set what follows from gains, prior and configuration; by default nothing does.
+
+        Args:
+            config: Overrides of the environment's configuration.
+        """
 
     @property
     def modes(self) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from estimator.estimate import deviation_of
 from policies.controllers.base import Columns, State
 from policies.controllers.gains import Fraction, GainPolicy
 from policies.controllers.last_slip import combined, weight_of
-from policies.controllers.sensing import ConservativePrior, both, scaled_speed
+from policies.controllers.sensing import both, scaled_speed
 from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
 
@@ -81,14 +81,7 @@ class LiftingPolicy(GainPolicy[L]):
 
     remembers_slips = True
 
-    def __init__(
-        self,
-        gains: L | None = None,
-        prior: ConservativePrior | None = None,
-        config: Overrides | None = None,
-        **parameters: Any,
-    ) -> None:
-        super().__init__(gains, prior, config, **parameters)
+    def _prepare(self, config: Overrides | None) -> None:
         settings: Any = self.settings
         self._tares = int(self.gains.tare * settings.settle * self.config.physics.control_rate)
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from policies.controllers.base import Columns, State
@@ -11,7 +9,7 @@ from policies.controllers.gains import GainPolicy
 from policies.controllers.lateness import Lateness, LatenessGains, watched
 from policies.controllers.linear_slip_continuous import ContinuousLinearSlipGains, ContinuousLinearSlipPolicy
 from policies.controllers.linear_slip_leaps import LinearSlipLeapPolicy
-from policies.controllers.sensing import ConservativePrior, scaled_speed, tangential
+from policies.controllers.sensing import scaled_speed, tangential
 from slipgym.config import Overrides
 
 
@@ -39,18 +37,10 @@ class LinearSlipPolicy(GainPolicy[LinearSlipGains]):
     task = "LinearSlip"
     Gains = LinearSlipGains
 
-    def __init__(
-        self,
-        gains: LinearSlipGains | None = None,
-        prior: ConservativePrior | None = None,
-        config: Overrides | None = None,
-        **parameters: Any,
-    ) -> None:
-        super().__init__(gains, prior, config, **parameters)
+    def _prepare(self, config: Overrides | None) -> None:
         chosen = {name: getattr(self.gains, name) for name in ContinuousLinearSlipGains.model_fields}
         self._continuous = ContinuousLinearSlipPolicy(prior=self.prior, config=config, **chosen)
         self._leaps = LinearSlipLeapPolicy(prior=self.prior, config=config)
-        self._dt = 1.0 / self.config.physics.control_rate
         own = len(Lateness._fields)
         self._parts = own, own + self._continuous.initial_state(1).shape[1]  # where the other memories begin
 

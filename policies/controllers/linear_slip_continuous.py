@@ -7,8 +7,7 @@ from pydantic import Field
 
 from policies.controllers.base import Columns, State
 from policies.controllers.gains import Fraction, GainPolicy
-from policies.controllers.sensing import ConservativePrior, both, tangential
-from slipgym.config import Overrides
+from policies.controllers.sensing import both, tangential
 from slipgym.config.base import Frozen, NonNegative, Positive
 
 
@@ -53,16 +52,6 @@ class ContinuousLinearSlipPolicy(GainPolicy[ContinuousLinearSlipGains]):
 
     task = "LinearSlip"
     Gains = ContinuousLinearSlipGains
-
-    def __init__(
-        self,
-        gains: ContinuousLinearSlipGains | None = None,
-        prior: ConservativePrior | None = None,
-        config: Overrides | None = None,
-        **parameters: float,
-    ) -> None:
-        super().__init__(gains, prior, config, **parameters)
-        self._dt = 1.0 / self.config.physics.control_rate
 
     def initial_state(self, n: int) -> np.ndarray:
         """Integral e [m] and f_slip [N]; a negative f_slip has no sample yet. Shape (n, 2)."""

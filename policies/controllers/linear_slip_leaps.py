@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from pydantic import Field
 
@@ -11,7 +9,7 @@ from policies.controllers import leaps
 from policies.controllers.base import Columns, State
 from policies.controllers.gains import GainPolicy
 from policies.controllers.leaps import BEGUN, LeapGains, LeapState, Slip
-from policies.controllers.sensing import ConservativePrior, scaled_speed, tangential
+from policies.controllers.sensing import scaled_speed, tangential
 from slipgym.config import Overrides
 from slipgym.config.base import Positive
 
@@ -46,14 +44,7 @@ class LinearSlipLeapPolicy(GainPolicy[LinearSlipLeapGains]):
     task = "LinearSlip"
     Gains = LinearSlipLeapGains
 
-    def __init__(
-        self,
-        gains: LinearSlipLeapGains | None = None,
-        prior: ConservativePrior | None = None,
-        config: Overrides | None = None,
-        **parameters: Any,
-    ) -> None:
-        super().__init__(gains, prior, config, **parameters)
+    def _prepare(self, config: Overrides | None) -> None:
         self._leaps = leaps.at_rate(self.gains, self.config.physics.control_rate)
 
     def initial_state(self, n: int) -> np.ndarray:

@@ -113,14 +113,7 @@ class PivotToPolicy(GainPolicy[PivotToGains]):
     without_friction: ClassVar[Mapping[str, Any]] = {"prior": ConservativePrior(mu_c=0.55, r=0.003)}
     Gains = PivotToGains
 
-    def __init__(
-        self,
-        gains: PivotToGains | None = None,
-        prior: ConservativePrior | None = None,
-        config: Overrides | None = None,
-        **parameters: Any,
-    ) -> None:
-        super().__init__(gains, prior, config, **parameters)
+    def _prepare(self, config: Overrides | None) -> None:
         settings: Any = configure(find("PivotTo"), config)[1]
         box = settings.object or self.config.object
         self._depth = max(math.dist(box.grasp_offset, box.com_offset), 1e-3)
@@ -129,7 +122,6 @@ class PivotToPolicy(GainPolicy[PivotToGains]):
             self.gains.speed * settings.wrist_speed,
             settings.wrist_acceleration,
         )
-        self._dt = 1.0 / self.config.physics.control_rate
 
     def initial_state(self, n: int) -> np.ndarray:
         """Columns of `PivotState`, (n, 5)."""

@@ -11,7 +11,6 @@ from pydantic import BeforeValidator, Field
 from policies.controllers.base import Columns, State
 from policies.controllers.gains import GainPolicy
 from policies.controllers.sensing import ConservativePrior, both, tangential
-from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive, as_tuple
 
 APPROACH, TURN, FINISH, TRIM, DONE = range(5)
@@ -114,16 +113,6 @@ class PlanarPlanPolicy(GainPolicy[P], Generic[P]):
     prior_default = ConservativePrior(r=0.004)
     Slips: ClassVar[type]
     """Named tuple of the subclass's own memory."""
-
-    def __init__(
-        self,
-        gains: P | None = None,
-        prior: ConservativePrior | None = None,
-        config: Overrides | None = None,
-        **parameters: Any,
-    ) -> None:
-        super().__init__(gains, prior, config, **parameters)
-        self._dt = 1.0 / self.config.physics.control_rate
 
     @abstractmethod
     def slip(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -20,7 +20,7 @@ from policies.controllers.planar_plan import (
     turned,
 )
 from policies.controllers.planar_slip_continuous import ContinuousPlanarSlipPolicy, SlipState
-from policies.controllers.sensing import ConservativePrior, scaled_load, scaled_speed
+from policies.controllers.sensing import scaled_load, scaled_speed
 from slipgym.config import Overrides
 from slipgym.config.base import NonNegative, Positive
 
@@ -91,14 +91,7 @@ class PlanarSlipPolicy(PlanarPlanPolicy[PlanarSlipGains]):
     Gains = PlanarSlipGains
     Slips = LeapState
 
-    def __init__(
-        self,
-        gains: PlanarSlipGains | None = None,
-        prior: ConservativePrior | None = None,
-        config: Overrides | None = None,
-        **parameters: Any,
-    ) -> None:
-        super().__init__(gains, prior, config, **parameters)
+    def _prepare(self, config: Overrides | None) -> None:
         self._leaps = leaps.at_rate(self.gains, self.config.physics.control_rate)
         self._continuous = ContinuousPlanarSlipPolicy(prior=self.prior, config=config)
 

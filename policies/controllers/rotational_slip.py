@@ -73,17 +73,9 @@ class RotationalSlipPolicy(GainPolicy[RotationalSlipGains]):
     task = "RotationalSlip"
     Gains = RotationalSlipGains
 
-    def __init__(
-        self,
-        gains: RotationalSlipGains | None = None,
-        prior: ConservativePrior | None = None,
-        config: Overrides | None = None,
-        **parameters: float,
-    ) -> None:
-        super().__init__(gains, prior, config, **parameters)
+    def _prepare(self, config: Overrides | None) -> None:
         if self.gains.shown > 0.0 and self.prior is self.prior_default:
             self.prior = ConservativePrior(confidence=_FIRST)
-        self._dt = 1.0 / self.config.physics.control_rate
 
     def initial_state(self, n: int) -> np.ndarray:
         """Integral e [rad], filtered torque [N m] (negative: no sample yet), 1 if turning, then `SlipState`.

@@ -1,7 +1,6 @@
 """Shows policies at work: in a window, as a video, as a screenshot."""
 
-from policies.play.screenshot import own_policy, take_screenshot
 from policies.play.video import VIDEO_TYPES, Video
 from policies.play.watch import Outcome, watch
 
-__all__ = ["VIDEO_TYPES", "Outcome", "Video", "own_policy", "take_screenshot", "watch"]
+__all__ = ["VIDEO_TYPES", "Outcome", "Video", "watch"]

@@ -16,10 +16,10 @@ from tqdm import tqdm
 
 import policies
 from policies.learned import LearnedPolicy
-from policies.play.screenshot import own_policy
 from policies.play.video import Video
 from policies.registry import Policy
 from policies.stepping import steps
+from policies.task_names import own_policy
 from slipgym.atomic_io import check_file
 from slipgym.config import Config
 from slipgym.config.errors import unknown

@@ -10,10 +10,10 @@ from typing import Any
 
 from policies.evaluation.experiment import Experiment, PolicyChoice
 from policies.evaluation.rate import common_frame_skip
-from policies.play.screenshot import own_policy
 from policies.study.changes import UNCHANGED, Change, changes
 from policies.study.config import BLOCKS_MAX, Study, World
 from policies.study.learned import TRAINED_WITH, Shelf
+from policies.task_names import own_policy
 from slipgym.config.yaml_model import validate
 from slipgym.tasks import find
 

@@ -1,4 +1,4 @@
-"""Measures the environments on this machine: steps per second, starts of episodes, memory."""
+"""Measures the environments on this machine: steps per second and memory."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ import numpy as np
 from slipgym.benchmarking import report
 from slipgym.benchmarking.memory import bytes_per_environment
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.resets import resets
 from slipgym.benchmarking.vector_player import SLIP_LIMIT, VectorPlayer, action_bounds
 
 SIZES = 1, 16, 256, 4096
@@ -34,8 +33,7 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
     """
     print(report.line(report.machine()))
     repeats = max(3, pairs // 10)
-    figures = [*single(env_id, repeats), *batches(env_id, repeats), *resets(env_id, repeats)]
-    report.publish(figures, json)
+    report.publish([*single(env_id, repeats), *batches(env_id, repeats)], json)
 
 
 def engines() -> tuple[str, ...]:

@@ -54,14 +54,6 @@ class VectorPlayer:
             self.env.step(action)
         return perf_counter() - start, turns * self.n
 
-    def slipping(self, turns: int = 120) -> float:
-        """Fraction of environments whose pads slip at the end of a step, mean over some steps [-]."""
-        count = 0
-        for _ in range(turns):
-            self.env.step(self._rng.uniform(*self.actions, (self.n, 1)).astype(np.float32))
-            count += np.count_nonzero(self.env.simulation.plant.pads["slip_rate"][:, 0])
-        return count / (turns * self.n)
-
     def _scatter(self) -> None:
         """Spread the episodes' ends evenly over time, as they are after a while: their steps differ."""
         episode = self.env.simulation.episode

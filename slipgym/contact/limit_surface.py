@@ -3,7 +3,7 @@
 In steady slip the friction of a cell opposes its velocity v_i = v + omega x x_i with mu_c w_i f_n
 (Waltersson & Karayiannidis, arXiv 2308.01123; Goyal, Ruina & Papadopoulos, Planar sliding with dry
 friction, Wear 143, 1991). The sum depends on the direction of the twist alone, two angles; the table
-holds it on a grid of both. `slipgym.contact.limit_surface_exact` has the named pressures without cells.
+holds it on a grid of both.
 """
 
 from __future__ import annotations

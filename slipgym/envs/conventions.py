@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from copy import copy, deepcopy
 from enum import Enum
 from typing import Any
@@ -52,6 +53,24 @@ class Conventions:
         kept = {name: deepcopy(mine[name]) for name in (*_SPACES, "metadata", "_spec") if name in mine}
         users = mine.keys() - self._own - {*_RESTORED, "_spec"}
         return kept | {name: mine[name] for name in sorted(users)}
+
+
+def rebuilt(base: Any, kind: Any, arguments: Mapping[str, Any], state: Any) -> Any:
+    """Return a copy of an environment.
+
+    Args:
+        base: The class whose constructor takes the arguments; a subclass of the user's may take others.
+        kind: Class of the copy.
+        arguments: Keyword arguments.
+        state: From `get_state`; None: the copy is closed.
+    """
+    env = kind.__new__(kind)
+    base.__init__(env, **arguments)
+    if state is None:
+        env.close()
+    else:
+        env.set_state(state)
+    return env
 
 
 def horizon(task: Task, settings: TaskConfig, blank: np.ndarray, frame_skip: int) -> int | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Unpack
 
 import gymnasium as gym
@@ -10,7 +9,7 @@ import numpy as np
 
 from slipgym.config.plain import plain
 from slipgym.envs.arguments import ScalarArguments, complete, documented
-from slipgym.envs.conventions import Conventions, horizon
+from slipgym.envs.conventions import Conventions, horizon, rebuilt
 from slipgym.envs.engines import resolved, simulation_of
 from slipgym.envs.infos import info_reader
 from slipgym.envs.setup import Setup
@@ -227,7 +226,7 @@ class SlipEnv(Conventions, gym.Env[Any, np.ndarray]):
         """Pickling and copying make an independent environment in the same state, see `Conventions`."""
         state = None if self.simulation.closed else self.get_state()
         arguments = {**self._arguments, "render_mode": self.render_mode}
-        return _rebuild, (type(self), arguments, state), self._kept()
+        return rebuilt, (SlipEnv, type(self), arguments, state), self._kept()
 
     def close(self) -> None:
         """Release the physics client; closing twice is harmless."""
@@ -235,16 +234,6 @@ class SlipEnv(Conventions, gym.Env[Any, np.ndarray]):
         if self._renderer is not None:
             self._renderer.close()
         self._ready = False
-
-
-def _rebuild(kind: type[SlipEnv], arguments: Mapping[str, Any], state: EnvState | None) -> SlipEnv:
-    env = kind.__new__(kind)
-    SlipEnv.__init__(env, **arguments)  # a subclass of the user's may take other arguments
-    if state is None:
-        env.close()
-    else:
-        env.set_state(state)
-    return env
 
 
 _ONE = np.ones(1, dtype=bool)

@@ -15,7 +15,7 @@ from gymnasium.vector.utils import batch_space
 
 from slipgym.config.plain import plain
 from slipgym.envs.arguments import VectorArguments, complete, documented, one_of
-from slipgym.envs.conventions import Conventions, horizon
+from slipgym.envs.conventions import Conventions, horizon, rebuilt
 from slipgym.envs.infos import final
 from slipgym.envs.planar_simulation import PlanarSimulation
 from slipgym.envs.reset_options import Generators, RowOptions
@@ -214,7 +214,7 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make an independent environment in the same state, see `Conventions`."""
         state = None if self.simulation.closed else self.get_state()
-        return _rebuild, (type(self), {**self._made_of, **self._shown}, state), self._kept()
+        return rebuilt, (SlipVectorEnv, type(self), {**self._made_of, **self._shown}, state), self._kept()
 
     def close_extras(self, **_: Any) -> None:
         """End the threads."""
@@ -258,18 +258,6 @@ def _without_scalar(arguments: Mapping[str, Any]) -> dict[str, Any]:
     if given.get("max_episode_steps") == -1:
         del given["max_episode_steps"]
     return given
-
-
-def _rebuild(
-    kind: type[SlipVectorEnv], arguments: Mapping[str, Any], state: VectorState | None
-) -> SlipVectorEnv:
-    env = kind.__new__(kind)
-    SlipVectorEnv.__init__(env, **arguments)  # a subclass of the user's may take other arguments
-    if state is None:
-        env.close()
-    else:
-        env.set_state(state)
-    return env
 
 
 def __getattr__(name: str) -> partial[SlipVectorEnv]:

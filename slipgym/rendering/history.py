@@ -20,9 +20,11 @@ COLUMNS = (
     "true_mu_s",
     "data_mu_c",
     "data_mu_s",
+    "sd_mu_c",
+    "sd_mu_s",
 )
 """Quantities of a row [N, N, mm or degrees, mm or degrees, -, ...]; estimates without data are NaN. `data_*`
-counts the samples and events behind an estimate, of both fingers."""
+counts the samples and events behind an estimate, of both fingers; `sd_*` is its deviation."""
 
 
 class History:
@@ -76,6 +78,7 @@ class History:
         row[4] = mu_c if confidence_c > 0.0 else math.nan
         row[5] = mu_s if confidence_s > 0.0 else math.nan
         row[7], row[6] = simulation.ground_truth[i, :2]
+        row[11], row[10] = simulation.estimated[i, 6:8]
         first, second = self._estimates
         row[8] = first["updates_mu_c"] + second["updates_mu_c"]
         row[9] = first["events_mu_s"] + second["events_mu_s"]

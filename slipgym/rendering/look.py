@@ -9,6 +9,13 @@ import numpy as np
 from slipgym.rendering.source import Source
 from slipgym.rendering.stage import View
 
+_SLIPPING = 5e-4, 0.05  # slip speed [m/s] and rate [rad/s] from which the object counts as slipping
+
+
+def slips(twist: np.ndarray) -> bool:
+    """Whether an object with a slip twist (3,) [m/s, m/s, rad/s] counts as slipping in a picture."""
+    return bool(np.hypot(twist[0], twist[1]) > _SLIPPING[0] or abs(twist[2]) > _SLIPPING[1])
+
 
 def look(simulation: Source, row: int) -> View:
     """Return the poses of object and gripper.

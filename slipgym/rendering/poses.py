@@ -21,13 +21,7 @@ _CORNER, _LENGTH = (0.86, 0.62), 0.2
 
 def held_at(view: View, pose: Pose, camera: Camera, colour: Colour) -> Marks:
     """Outline of the object's front at a pose in the grip."""
-    x, y, angle = pose
-    half, grasp = np.array(view.box.size) / 2, np.array(view.box.grasp_offset)
-    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half[[0, 2]] - grasp
-    cos, sin = np.cos(angle), np.sin(angle)
-    turned = corners @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
-    points = np.column_stack([turned[:, 0], np.full(4, -half[1]), turned[:, 1]])
-    return outline(camera, view.place(points), colour, 1.5, 5.0)
+    return outline(camera, view.place(view.front(pose)), colour, 1.5, 5.0)
 
 
 def gravity(camera: Camera) -> Marks:

@@ -9,7 +9,7 @@ from slipgym.rendering.caption import caption
 from slipgym.rendering.discrepancy import Discrepancy, discrepancies
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.history import History
-from slipgym.rendering.look import look
+from slipgym.rendering.look import look, slips
 from slipgym.rendering.scene import draw_scene, measure_depth
 from slipgym.rendering.source import Source
 from slipgym.rendering.stage import View, footprint
@@ -19,7 +19,6 @@ WIDTH, HEIGHT = camera.WIDTH + strip.WIDTH, camera.HEIGHT
 """Size of a picture [pixels]."""
 WINDOW_RATE = 30
 """Pictures per second in a window."""
-_SLIPPING = 5e-4, 0.05  # slip speed [m/s] and rate [rad/s] from which the object counts as slipping
 
 
 class Renderer:
@@ -105,6 +104,4 @@ class Renderer:
             return "dropped"
         if simulation.episode["success"][row]:
             return "success"
-        x, y, rate = simulation.plant.world["slip_twist"][row]
-        slips = np.hypot(x, y) > _SLIPPING[0] or abs(rate) > _SLIPPING[1]
-        return "slips" if slips else "sticks"
+        return "slips" if slips(simulation.plant.world["slip_twist"][row]) else "sticks"

@@ -51,6 +51,14 @@ class View:
         x, z = self.box.com_offset
         return (points - (x, 0.0, z)) @ self.rotation.T + self.position
 
+    def front(self, pose: tuple[float, float, float]) -> np.ndarray:
+        """Corners of the object's front in the pad frame at a slip displacement (x, y, theta), (4, 3) [m]."""
+        half, grasp = np.array(self.box.size) / 2, np.array(self.box.grasp_offset)
+        corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half[[0, 2]] - grasp
+        cos, sin = np.cos(pose[2]), np.sin(pose[2])
+        turned = corners @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
+        return np.column_stack([turned[:, 0], np.full(4, -half[1]), turned[:, 1]])
+
     @property
     def side(self) -> float:
         """Side from which the gripper reaches in, opposite to the object: -1 the left, 1 the right."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Self
@@ -42,37 +41,6 @@ def uniform_box(config: Config, **changes: Any) -> Box:
     return Box(size=size, mass=mass, inertia=inertia, **values)
 
 
-class _WatchedWorld(BulletWorld):
-    """Notes how far the engine's pose is from the planar one after every engine step."""
-
-    mismatch = 0.0
-
-    def move(self) -> tuple[Any, ...]:
-        """See `BulletWorld.move`."""
-        rows = self.rows
-        if not getattr(rows.loads, "watched", False):
-            rows.loads = self._watched(rows.loads)
-        reading = super().move()
-        self._note(reading[0])
-        return reading
-
-    def _watched(self, loads: Callable[..., Any]) -> Callable[..., Any]:
-        """`BulletRows.loads`, called before every engine step, with a look at the pose after the last."""
-
-        def look(pose: tuple[Any, ...], *others: Any) -> Any:
-            self._note(pose)
-            return loads(pose, *others)
-
-        look.watched = True  # type: ignore[attr-defined]
-        return look
-
-    def _note(self, pose: tuple[Any, ...]) -> None:
-        world = self._plant.world[0]
-        if world["tick"] > 0:
-            (x, _, z), _ = pose
-            self.mismatch = max(self.mismatch, math.hypot(x - world["com"][0], z - world["com"][1]))
-
-
 class Bench:
     """One gripper and one box, driven open loop; a context manager.
 
@@ -86,6 +54,9 @@ class Bench:
         roll: Of the wrist at the start, with `physics.tilt` [rad].
         **box: Fields of `Box` that differ from the configured object.
     """
+
+    bullet: type[BulletWorld] = BulletWorld
+    """The world of the engine "bullet"."""
 
     def __init__(
         self,
@@ -107,8 +78,8 @@ class Bench:
             factors = own.finger_radius if field == "r" else own.finger_friction
             self.plant.pads[field] = getattr(self.friction, field) * np.array(factors)
         self._alone = engine == "planar"
-        make = PlanarWorld if self._alone else _WatchedWorld
-        self.world: PlanarWorld | _WatchedWorld = make(self.config, self.plant)
+        make = PlanarWorld if self._alone else self.bullet
+        self.world: PlanarWorld | BulletWorld = make(self.config, self.plant)
         self.world.reset(self.box, force, wrist, **({"roll": roll} if roll else {}))
         self.time = 0.0
         self._force: float = force
@@ -134,11 +105,6 @@ class Bench:
     def velocity_age(self) -> float:
         """How long before a row of the trace its velocity holds: PyBullet's is the mean over a step [s]."""
         return 0.0 if self._alone else 0.5 * self.engine_time
-
-    @property
-    def mismatch(self) -> float:
-        """Largest distance between the engine's and the planar object after an engine step [m]."""
-        return self.world.mismatch
 
     def limit(self) -> float:
         """Static friction limit mu_s sum f_n of both pads at the engine's normal forces [N]."""

@@ -25,9 +25,6 @@ class PlanarWorld:
         plant: Arrays of one world.
     """
 
-    mismatch = 0.0
-    """Difference between the poses of world and engine: there is no engine [m]."""
-
     def __init__(self, config: Config, plant: Plant) -> None:
         self._gripper, self._plant, self._force = config.gripper, plant, 0.0
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
@@ -38,8 +38,3 @@ class Trace:
     def of(cls, rows: Sequence[tuple[Any, ...]]) -> Self:
         """Stack rows that hold the fields in order."""
         return cls(*(np.array(column) for column in zip(*rows, strict=True)))
-
-    def from_time(self, time: float) -> Self:
-        """The rows from a time on [s]."""
-        keep = self.time >= time - 1e-9
-        return type(self)(*(getattr(self, field.name)[keep] for field in fields(self)))

@@ -1,21 +1,9 @@
-"""Clocks and tables of the benchmark, and that it measures what it says."""
+"""Tables of the benchmark, and that it measures what it says."""
 
 import json
 
-import pytest
-
 from slipgym.benchmarking import report, run
 from slipgym.benchmarking.report import Figure, table, write
-from slipgym.benchmarking.timing import compare
-
-
-def test_compare_takes_medians_of_ratios_of_neighbours():
-    first = iter([(1.0, 10), (2.0, 10), (9.0, 10)])
-    second = iter([(3.0, 10), (8.0, 10), (9.0, 10)])
-    result = compare(lambda: next(first), lambda: next(second), 3)
-    assert result[:2] == pytest.approx((0.2, 0.8))
-    assert result.quartiles == pytest.approx((2.0, 3.0, 3.5))
-
 
 FIGURES = [Figure("fast", 1.2, "-", "<= 1.4"), Figure("slow", 30.0, "x", ">= 40"), Figure("free", 3.0, "us")]
 

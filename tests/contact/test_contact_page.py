@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from slipgym.validation import EXPERIMENTS
+from lab.validation import EXPERIMENTS
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "contact.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from estimator.limit_surface import DISC_RADIUS, disc_friction
+from lab.limit_surface_exact import exact_friction
 from slipgym.contact import DiscContact
 from slipgym.contact.coupled import assemble, norm, set_friction_level, solve_motion
 from slipgym.contact.disc_surface import INNER, project, support
-from slipgym.contact.limit_surface_exact import exact_friction
 from slipgym.contact.records import DISC, pads
 from slipgym.contact.soft_pad import load_pad
 

@@ -5,9 +5,9 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from lab.limit_surface_exact import exact_friction
 from slipgym.contact import DistributedContact
 from slipgym.contact.limit_surface import LimitSurface
-from slipgym.contact.limit_surface_exact import exact_friction
 from slipgym.contact.pressure import PRESSURES, PressureName
 
 

@@ -8,7 +8,7 @@ from estimator.augmented.model_error import doubt_of
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.slip_law import R
 from estimator.augmented.static_friction import _of_radius
-from slipgym.validation.records import RATE
+from tests.estimator.exact_records import RATE
 
 
 def slid(length, ratio=0.25, f_n=6.0, slips=1, **parameters):

@@ -9,7 +9,7 @@ from estimator.augmented.exponents import exponents, group_weights
 from estimator.augmented.load import limit
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.slip_law import COP, FALLS, GROWS, SHAPE, STATES, ZERO
-from slipgym.validation.records import RATE
+from tests.estimator.exact_records import RATE
 
 P = AdaptiveParameters()
 NOISE = 0.02, 0.02, 0.04, 5e-4

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import estimator
 from policies.leaderboard.imperfections import Imperfections, impaired
-from slipgym.validation.records import RATE, ellipsoid, planar, run
+from tests.estimator.exact_records import RATE, ellipsoid, planar, run
 
 LAB = {"velocity_delay": 2, "jitter": 0.2, "drop_outs": 0.01, "velocity_scale": 0.05, "force_delay": 0.004}
 LAB |= {"zero_normal": 0.1, "cross_talk": 0.02, "zero": 0.1, "tilt": np.deg2rad(1.5), "cop": 0.001}

@@ -7,7 +7,7 @@ import estimator
 from policies.leaderboard.rubber import LOAD, swinging
 from policies.leaderboard.scenarios import patch
 from slipgym.synthetic import sense
-from slipgym.validation.records import RATE
+from tests.estimator.exact_records import RATE
 
 FALLS, GROWS = 10, 11
 CONSTANT = {"load_exponent0": 0.0, "sd_load_exponent": 1e-6}

@@ -6,7 +6,7 @@ import pytest
 import estimator
 from estimator.augmented.slip_law import TILT
 from policies.leaderboard.imperfections import Imperfections, impaired
-from slipgym.validation.records import RATE
+from tests.estimator.exact_records import RATE
 
 NOISE = 0.02, 0.02, 0.04, 5e-4
 """Of f_x, f_y, f_n, tau [N, N, N, N m]."""

@@ -5,7 +5,7 @@ import pytest
 
 import estimator
 from policies.leaderboard.imperfections import Imperfections, impaired
-from slipgym.validation.records import RATE
+from tests.estimator.exact_records import RATE
 
 RIGID = {"load_exponent0": 0.0, "sd_load_exponent": 1e-3}
 """Friction of these blocks does not depend on the load; what else is stated: `test_adaptive_load.py`."""

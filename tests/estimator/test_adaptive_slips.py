@@ -5,7 +5,7 @@ import pytest
 
 import estimator
 from estimator.augmented.parameters import AdaptiveParameters
-from slipgym.validation.records import RATE
+from tests.estimator.exact_records import RATE
 
 NOISE = 0.02, 0.02, 0.04, 5e-4
 EXACT = {"sd_zero": 1e-3, "sd_tilt": 1e-3}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import estimator
-from slipgym.validation.records import RATE, disc, ellipsoid, planar
+from tests.estimator.exact_records import RATE, disc, ellipsoid, planar
 
 MU_C, R, FINGERS = 0.4, 0.01, 400
 SD_WRENCH = np.array([0.02, 0.02, 0.04, 5e-4])  # [N, N, N, N m]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import estimator
-from slipgym.validation.records import RATE, disc, planar, run
+from tests.estimator.exact_records import RATE, disc, planar, run
 
 SAMPLES = int(3 * RATE)
 TOLERANCE = 1e-3

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import estimator
-from slipgym.validation.records import ellipsoid, run
+from tests.estimator.exact_records import ellipsoid, run
 
 GOOD = (0.1, (1.0, 0.0, 5.0, 0.01), (0.01, 0.0, 0.1))
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import estimator
-from slipgym.validation.records import ellipsoid, planar, run
+from tests.estimator.exact_records import ellipsoid, planar, run
 
 MU_C, R = 0.4, 0.01
 SHAPES = {"residual": (2,), "gain": (2, 2), "covariance": (2, 2), "innovation_covariance": (2, 2)}

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import estimator
-from slipgym.validation.records import ellipsoid
+from tests.estimator.exact_records import ellipsoid
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "estimator.md").read_text(encoding="utf-8")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import estimator
-from slipgym.validation.records import RATE, ellipsoid, planar
+from tests.estimator.exact_records import RATE, ellipsoid, planar
 
 MU_C, R, FINGERS = 0.4, 0.01, 400
 

@@ -9,7 +9,7 @@ import pytest
 
 import estimator
 from estimator.network import weights
-from slipgym.validation.records import RATE, ellipsoid, planar, run
+from tests.estimator.exact_records import RATE, ellipsoid, planar, run
 
 SLIP = ellipsoid(120, *planar(0.7, 0.008), mu_c=0.4, r=0.008)
 

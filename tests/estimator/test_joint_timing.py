@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import estimator
-from slipgym.validation.records import RATE
+from tests.estimator.exact_records import RATE
 
 MU_C, MU_S = 0.4, 0.6
 

@@ -8,7 +8,7 @@ from estimator.augmented.likelihood_ratio import respond_to_ratio
 from estimator.augmented.parameters import AdaptiveParameters
 from estimator.augmented.short_slips import _take
 from estimator.augmented.slip_law import COP, FALLS, GROWS, MU, SIGMA, STATES, R, predict
-from slipgym.validation.records import RATE
+from tests.estimator.exact_records import RATE
 
 NEVER = 1e9
 NOISE = np.array([0.02, 0.02, 0.04, 5e-4])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import estimator
-from slipgym.validation.records import RATE, ellipsoid, planar, run
+from tests.estimator.exact_records import RATE, ellipsoid, planar, run
 
 SAMPLES = int(3 * RATE)
 TOLERANCE = 5e-3

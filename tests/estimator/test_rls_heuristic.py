@@ -3,7 +3,7 @@
 import pytest
 
 import estimator
-from slipgym.validation.records import RATE, ellipsoid, run
+from tests.estimator.exact_records import RATE, ellipsoid, run
 
 MU_C, R = 0.4, 0.01
 FAST, SLOW = 1.3, 1.2

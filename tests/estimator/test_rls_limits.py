@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import estimator
-from slipgym.validation.records import RATE, ellipsoid, planar, run
+from tests.estimator.exact_records import RATE, ellipsoid, planar, run
 
 MU_C, R = 0.4, 0.01
 DEFAULTS = estimator.RlsParameters()

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import estimator
-from slipgym.validation.records import RATE
+from tests.estimator.exact_records import RATE
 
 
 def steps(low, high, per_unit):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import estimator
-from slipgym.validation.records import COUNT, RATE, Phase, counted, ellipsoid, run
+from tests.estimator.exact_records import COUNT, RATE, Phase, counted, ellipsoid, run
 
 F_N, MU_S, MU_C = 5.0, 0.6, 0.4
 STICK = Phase(60, 0.0, (0.3 * F_N, MU_S * F_N))

@@ -16,7 +16,8 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import slipgym
-from policies.play import own_policy, take_screenshot
+from lab.montage import take_screenshot
+from policies.task_names import own_policy
 from slipgym.config.task import InitialForce, TaskConfig
 from slipgym.envs import HoldEnv
 from slipgym.registration import ENVIRONMENTS, TASK_MODULES

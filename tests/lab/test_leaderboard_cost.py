@@ -6,7 +6,7 @@ import pytest
 import estimator
 from lab.leaderboard.cost import costs
 from lab.leaderboard.yardsticks import FilterpyUkf, NumpyRls
-from slipgym.validation.records import ellipsoid, planar
+from tests.estimator.exact_records import ellipsoid, planar
 
 SLIP = [
     (t, np.array(wrench), np.array(twist))

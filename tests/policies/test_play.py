@@ -10,9 +10,11 @@ import pytest
 from PIL import Image
 from typer.testing import CliRunner
 
+from lab.montage import take_screenshot
 from policies.commands.play import app
-from policies.play import Video, own_policy, take_screenshot, watch
+from policies.play import Video, watch
 from policies.play.watch import Keyboard
+from policies.task_names import own_policy
 from slipgym.config import load
 from slipgym.registration import ENVIRONMENTS
 from slipgym.rendering import Window

@@ -14,6 +14,7 @@ from policies.play.viewer import Session, open_viewer
 from policies.play.viewer.app import policies_for
 from policies.play.viewer.controls import Controls
 from policies.play.viewer.interventions import POKE_TIME, poke, set_friction, set_mass
+from policies.play.viewer.plots import curves
 from policies.play.viewer.recording import Recording
 from slipgym.tasks import find
 from slipgym.tasks.episode import EPISODE
@@ -112,7 +113,7 @@ def test_an_episode_ends_and_the_next_one_has_the_next_seed(session):
     assert session.finished == [session.outcome]
     assert session.outcome.time == pytest.approx(0.6)
     assert session.advance(0.1) == 0
-    times, true = session.history.columns("time", "true_mu_c")
+    times, true = curves(session.history, "true_mu_c")
     assert times == pytest.approx(np.arange(len(times)) / 30.0)
     assert true == pytest.approx(0.3623)
     session.restart()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import policies
-from policies.play import own_policy
+from policies.task_names import own_policy
 from slipgym.tasks import TASKS
 
 

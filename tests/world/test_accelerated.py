@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from slipgym.validation.accelerated import BOUND, DIRECTIONS, DRIFT_BOUND, break_away, shake
+from lab.validation.accelerated import BOUND, DIRECTIONS, DRIFT_BOUND, break_away, shake
 from slipgym.validation.bench import Bench, Friction
 from slipgym.world.substep import advance_object
 

@@ -4,18 +4,7 @@ import pytest
 
 from slipgym.validation import EXPERIMENTS, Figure
 
-SLOW = {
-    "accelerated",
-    "creep",
-    "disc",
-    "distributed",
-    "patch_rate",
-    "patch_steps",
-    "patch_stick",
-    "patch_surface",
-    "slides",
-    "soft",
-}
+SLOW = {"creep", "disc", "distributed", "soft"}
 """Those of several seconds; `make validate` and `make test-all` run all."""
 CASES = [
     pytest.param(experiment, id=experiment.__name__, marks=[pytest.mark.slow] * (experiment.__name__ in SLOW))

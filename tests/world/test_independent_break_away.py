@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from lab.validation.halving import SIZE, smooth_grip, stick_slip_grip
 from slipgym.validation.bench import Bench, Friction
-from slipgym.validation.halving import SIZE, smooth_grip, stick_slip_grip
 
 MASS, GRAVITY, V_S, SIGMA_2 = 0.2, 9.81, 1e-3, 0.2
 LAG, DEAD, STEP = 0.012, 0.004, 1 / 120

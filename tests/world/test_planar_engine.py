@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import policies
+from lab.validation.slides import slides
 from slipgym.config import load
 from slipgym.sensors.measure import measure
 from slipgym.validation.bench import Bench, Friction
-from slipgym.validation.planar import slides
 from slipgym.world.placing import place
 from slipgym.world.planar_engine import step_world
 from slipgym.world.plant import build

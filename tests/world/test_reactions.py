@@ -6,7 +6,7 @@ import numpy as np
 import pybullet
 import pytest
 
-from slipgym.validation.agreement import shake
+from lab.validation.agreement import shake
 from slipgym.validation.bench import Bench
 from slipgym.world.bullet_engine import BulletWorld
 from slipgym.world.scene import FINGER_LINKS, WRIST_JOINTS

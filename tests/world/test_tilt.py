@@ -1,6 +1,6 @@
 """With physics.tilt the pads' pressure, the jaws and the free body move the object out of the contact plane.
 
-Static balance, oscillation, free fall and free rotation are figures of `slipgym.validation.tilt`.
+Static balance, oscillation, free fall and free rotation are figures of `lab.validation.tilt`.
 """
 
 import math
@@ -10,10 +10,10 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.spatial.transform import Rotation
 
+from lab.validation.tilt import SPIN, roll_over, thrown, tilting
+from lab.validation.tilt_oracle import free_attitude, pressed
 from slipgym.config import load
 from slipgym.contact.foundation import compressed_part, press
-from slipgym.validation.tilt import SPIN, roll_over, thrown, tilting
-from slipgym.validation.tilt_oracle import free_attitude, pressed
 from slipgym.world.plant import build
 from slipgym.world.wrist import ramp_tilt
 

@@ -12,6 +12,7 @@ from policies.play.viewer.offers import Offer, number, one_of, switch
 from policies.play.viewer.scene import PUSH
 from policies.play.viewer.session import Session
 from slipgym.rendering import palette
+from slipgym.rendering.look import slips
 
 SPEEDS = ("0.1x", "0.25x", "0.5x", "1x", "2x")
 """Seconds of simulation per second of watching."""
@@ -20,7 +21,6 @@ LATEST = 12
 FRICTIONS, MASSES = (0.05, 1.5), (10.0, 1000.0)
 """Ranges of the sliders for mu_c [-] and the mass [g]."""
 BY_HAND = "grip by hand"
-_SLIPPING = 5e-4, 0.05  # slip speed [m/s] and rate [rad/s] from which the object counts as slipping
 _COLOURS = {
     "sticks": "#0072B2",
     "slips": "#D55E00",
@@ -158,7 +158,7 @@ def _within(value: float, low: float, high: float) -> float:
 def status(session: Session) -> str:
     """How the episode goes, as HTML: state, time, object, slip, friction and what waits for the next one."""
     simulation, info = session.env.simulation, session.info
-    state = session.outcome.ending if session.outcome else _state(info)
+    state = session.outcome.ending if session.outcome else "slips" if slips(info["slip_twist"]) else "sticks"
     about = f"{simulation.materials[0]}, {1e3 * float(simulation.plant.world['mass'][0]):.0f} g"
     slip, true, estimated = info["slip"], info["true"], info["estimated"]
     estimate = f"{estimated[1]:.3f} ± {simulation.estimated[0, 7]:.3f}"
@@ -187,8 +187,3 @@ def status(session: Session) -> str:
         f'<div style="color:#767676">seed {session.seed}; {solved} of {len(session.finished)} solved</div>'
         f'<table style="border-spacing:0">{cells}</table></div>'
     )
-
-
-def _state(info: Any) -> str:
-    x, y, rate = info["slip_twist"].tolist()
-    return "slips" if math.hypot(x, y) > _SLIPPING[0] or abs(rate) > _SLIPPING[1] else "sticks"

@@ -8,25 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from policies.play.viewer.history import History
 from policies.play.viewer.session import Session
 from policies.play.viewer.surface import SurfacePlot
 from slipgym.rendering.discrepancy import Discrepancy
+from slipgym.rendering.history import History
 
 ORANGE, GREEN, BLUE, LIGHT, GREY = "#D55E00", "#009E73", "#0072B2", "#56B4E9", "#767676"
-_FRICTION = (
-    "time",
-    "mu_c_low",
-    "mu_c_high",
-    "mu_s_low",
-    "mu_s_high",
-    "mu_c",
-    "mu_s",
-    "true_mu_c",
-    "true_mu_s",
-)
-_GRIP = ("time", "grip_1", "grip_2")
-_PATH = ("time", "path", "reference")
+RATE = 30
+"""Points of a curve per second of simulation."""
+_KNOWN = 10.0  # deviations from here on mean that nothing is known
+_GRIP = ("grip_1", "grip_2")
+_PATH = ("path", "reference")
 _KEY = (
     '<div style="font-size:12px;line-height:1.35;padding:0 4px 2px">'
     f'<b style="color:{ORANGE}">estimated</b> mu_c &plusmn; one deviation; '
@@ -69,7 +61,7 @@ class Plots:
             self._dome = gui.add_html("")
             gui.add_html(_KEY)
         self._grip = gui.add_uplot(
-            history.columns(*_GRIP),
+            curves(history, *_GRIP),
             ({"label": "t"}, _line("finger 1", GREY, 2), _line("finger 2", LIGHT, 1.5)),
             title="grip force [N]",
             scales=_SCALES,
@@ -79,7 +71,7 @@ class Plots:
             height=100,
         )
         self._path = gui.add_uplot(
-            history.columns(*_PATH),
+            curves(history, *_PATH),
             ({"label": "t"}, _line(motion.title, BLUE, 2), _line("reference", BLUE, 1.2, [6, 4])),
             title=motion.title,
             scales=_SCALES,
@@ -99,17 +91,36 @@ class Plots:
         """Send the present rows."""
         history: History = self._session.history
         self._friction.data = _friction(history)
-        self._grip.data = history.columns(*_GRIP)
-        self._path.data = history.columns(*_PATH)
+        self._grip.data = curves(history, *_GRIP)
+        self._path.data = curves(history, *_PATH)
         self._off.content = _notes(self._session.env.discrepancies())
         self._dome.content = self._surface.draw(self._session.env.simulation, self._session.info)
 
 
+def curves(history: History, *names: str) -> tuple[np.ndarray, ...]:
+    """Time [s] and some quantities of an episode, thinned to `RATE`, each (n,).
+
+    Args:
+        history: The episode so far.
+        *names: Of `slipgym.rendering.history.COLUMNS`.
+    """
+    kept = np.flatnonzero(np.isfinite(history.column("grip_1")))  # frame_skip leaves rows out
+    every = max(1, round(1.0 / (RATE * history.step_time)))
+    kept = kept[np.unique(kept // every, return_index=True)[1]]
+    return history.times[kept], *(history.column(name)[kept] for name in names)
+
+
 def _friction(history: History) -> tuple[np.ndarray, ...]:
-    """Columns of the plot of friction, and two that set the limits of its axis, without NaN."""
-    columns = history.columns(*_FRICTION)
-    zero = np.zeros_like(columns[0])
-    return *columns, zero, zero + 1.2 * columns[-1].max()
+    """Curves of the plot of friction, and two that set the limits of its axis, without NaN."""
+    time, *values, true_c, true_s = curves(
+        history, "mu_c", "mu_s", "sd_mu_c", "sd_mu_s", "true_mu_c", "true_mu_s"
+    )
+    bands = []
+    for value, deviation in zip(values[:2], values[2:], strict=True):
+        reach = np.where(deviation < _KNOWN, deviation, np.nan)
+        bands += [np.maximum(value - reach, 0.0), value + reach]
+    zero = np.zeros_like(time)
+    return time, *bands, *values[:2], true_c, true_s, zero, zero + 1.2 * true_s.max()
 
 
 def _notes(off: Sequence[Discrepancy]) -> str:

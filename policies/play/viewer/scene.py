@@ -134,27 +134,13 @@ class Scene:
 
     def _outline(self, name: str, view: View, pose: tuple[float, float, float], colour: Any) -> None:
         """Dashed outline of the object's front at a pose in the grip."""
-        ends = dashes(outline(view, pose))
+        ends = dashes(view.front(pose) - (0.0, 0.001, 0.0))
         self._scene.add_line_segments(name, ends.astype(np.float32), colour, thickness=0.0011)
 
 
 def turned(pitch: float) -> tuple[float, float, float, float]:
     """Quaternion (w, x, y, z) of a rotation from x towards z [rad]."""
     return math.cos(0.5 * pitch), 0.0, -math.sin(0.5 * pitch), 0.0
-
-
-def outline(view: View, pose: tuple[float, float, float]) -> np.ndarray:
-    """Corners of the object's front in the gripper's frame at a slip displacement, (4, 3) [m].
-
-    Args:
-        view: The object.
-        pose: Slip displacement (x, y, theta) [m, m, rad].
-    """
-    half, grasp = np.array(view.box.size) / 2, np.array(view.box.grasp_offset)
-    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * half[[0, 2]] - grasp
-    cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    moved = corners @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
-    return np.column_stack([moved[:, 0], np.full(4, -half[1] - 0.001), moved[:, 1]])
 
 
 def dashes(corners: np.ndarray, length: float = 0.006) -> np.ndarray:

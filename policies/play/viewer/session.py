@@ -12,13 +12,13 @@ import numpy as np
 
 import policies
 from policies.learned import LearnedPolicy
-from policies.play.screenshot import own_policy
 from policies.play.viewer import interventions
-from policies.play.viewer.history import History
 from policies.play.watch import Outcome
 from policies.registry import Policy
+from policies.task_names import own_policy
 from slipgym.config.errors import unknown
 from slipgym.config.load import merge, read_overrides
+from slipgym.rendering.history import History
 from slipgym.tasks import find
 
 LIVE = ("grip_force", "mu_c", "mass")
@@ -154,7 +154,7 @@ class Session:
         self._observation, self.info = self.env.reset(seed=self.seed, options=options)
         self._memory, self.outcome, self._reward, self._left = None, None, 0.0, 0.0
         self._ratio = float(self._episode["mu_s"] / self._episode["mu_c"])
-        self.history = History(self.env)
+        self.history = History(self.env.simulation, 0, self.task.motion)
         self.failed = False
 
     def give_up(self) -> None:

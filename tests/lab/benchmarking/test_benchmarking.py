@@ -12,6 +12,7 @@ import pytest
 from lab.benchmarking import batch, measure, optimisations
 from lab.benchmarking.bare import BareLoop
 from lab.benchmarking.layers import Layers
+from lab.benchmarking.timing import compare
 from slipgym._numba.switches import OPTIMISATIONS, VARIABLE
 from slipgym.config import load
 
@@ -124,7 +125,7 @@ def test_a_third_of_the_headlines_rows_slips_and_none_of_a_firm_hold():
     for name, forces in batch.WORKLOADS.items():
         player = batch.VectorPlayer("slipgym/LinearSlip-v0", 64, forces)
         player.block(64 * 200)
-        slipping[name] = player.slipping(60)
+        slipping[name] = batch.slipping(player, 60)
         player.env.close()
     assert 0.25 < slipping["about the slip limit"] < 0.42
     assert slipping["all forces, mostly a firm hold"] < 0.01
@@ -135,3 +136,11 @@ def test_every_variant_has_its_own_compiler_cache():
     assert [variant[VARIABLE] for variant in variants] == ["", *OPTIMISATIONS]
     folders = [variant["NUMBA_CACHE_DIR"] for variant in variants[1:]]
     assert len(set(folders)) == len(OPTIMISATIONS)
+
+
+def test_compare_takes_medians_of_ratios_of_neighbours():
+    first = iter([(1.0, 10), (2.0, 10), (9.0, 10)])
+    second = iter([(3.0, 10), (8.0, 10), (9.0, 10)])
+    result = compare(lambda: next(first), lambda: next(second), 3)
+    assert result[:2] == pytest.approx((0.2, 0.8))
+    assert result.quartiles == pytest.approx((2.0, 3.0, 3.5))

@@ -123,13 +123,14 @@ def shake(
         return 1e3 * float(np.linalg.norm(moved - moved[0], axis=1).max()), wrong
 
 
-def accelerated(**options: Any) -> Iterator[Figure]:
+def accelerated() -> Iterator[Figure]:
     """Break-away and friction under an accelerating wrist, for several numbers of engine steps."""
-    for name, direction in DIRECTIONS.items():
-        loads = [break_away(direction, steps, **options) for steps in ENGINE_STEPS]
-        worst = max(abs(load - 1.0) for load in loads)
-        yield Figure(f"break-away, wrist accelerating, {name}", BOUND, 100.0 * worst, "%")
-    for name in ("+x", "oblique", "pitch"):
-        moved, wrong = shake(DIRECTIONS[name], SHAKE_TIME, **options)
-        yield Figure(f"wrist shaken at 90 %, {name}, creep", DRIFT_BOUND, moved, "mm")
-        yield Figure(f"wrist shaken at 90 %, {name}, friction", BOUND, 100.0 * wrong, "%")
+    for engine, wrist in (("bullet", "wrist"), ("planar", "planar: wrist")):
+        for name, direction in DIRECTIONS.items():
+            loads = [break_away(direction, steps, engine=engine) for steps in ENGINE_STEPS]
+            worst = max(abs(load - 1.0) for load in loads)
+            yield Figure(f"{wrist} accelerating, {name}, break-away", BOUND, 100.0 * worst, "%")
+        for name in ("+x", "oblique", "pitch"):
+            moved, wrong = shake(DIRECTIONS[name], SHAKE_TIME, engine=engine)
+            yield Figure(f"{wrist} shaken at 90 %, {name}, creep", DRIFT_BOUND, moved, "mm")
+            yield Figure(f"{wrist} shaken at 90 %, {name}, friction", BOUND, 100.0 * wrong, "%")

@@ -10,8 +10,8 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
+from lab.benchmarking.timing import compare
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.timing import compare
 
 PRESET = "train"
 TOGETHER = 1024

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from slipgym.contact.limit_surface_exact import (
+from lab.limit_surface_exact import (
     FRICTION,
     exact_friction,
     hertz_friction,
@@ -68,7 +68,7 @@ def test_hertz_is_the_integral_of_its_pressure(ratio):
 def test_hertz_has_converged(monkeypatch):
     coarse = [hertz_friction(ratio) for ratio in RATIOS]
     finer = np.polynomial.legendre.leggauss(200)
-    monkeypatch.setattr("slipgym.contact.limit_surface_exact.GAUSS", finer)
+    monkeypatch.setattr("lab.limit_surface_exact.GAUSS", finer)
     np.testing.assert_allclose(coarse, [hertz_friction(ratio) for ratio in RATIOS], atol=1e-8)
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from lab.limit_surface_exact import exact_friction
 from slipgym.contact import DistributedContact
-from slipgym.contact.limit_surface_exact import exact_friction
 from slipgym.contact.pressure import OUTER_RADII
 from slipgym.validation.figure import Figure
 

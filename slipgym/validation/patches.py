@@ -1,4 +1,4 @@
-"""Checks the distributed contact in the full world against the exact limit surface of a uniform disc."""
+"""Checks both contacts of a uniform disc, a table and cells, against its exact limit surface."""
 
 from __future__ import annotations
 
@@ -14,10 +14,8 @@ from slipgym.validation.energy import slide, throw
 from slipgym.validation.fall import BOUND as FALL_BOUND
 from slipgym.validation.fall import drop
 from slipgym.validation.figure import Figure
-from slipgym.validation.halving import compare, stick_slip_grip
 from slipgym.validation.steady import deviation, summary
 
-MODEL = "distributed"
 DIRECTIONS = 7  # gamma_t from 1 to 0
 THROWS = 3
 LOADS = {
@@ -29,7 +27,7 @@ LOADS = {
 }
 
 
-def disc(twist: np.ndarray) -> np.ndarray:
+def exact(twist: np.ndarray) -> np.ndarray:
     """Scaled friction over mu_c f_n of a uniform disc, opposing scaled twists, both (n, 3)."""
     v_t, spin = np.hypot(twist[:, 0], twist[:, 1]), np.abs(twist[:, 2])
     tiny = np.finfo(float).tiny
@@ -49,26 +47,32 @@ def limit(direction: tuple[float, float, float]) -> float:
     return float(np.interp(angle, np.arctan2(scaled, force), np.hypot(force, scaled)))
 
 
-def distributed() -> Iterator[Figure]:
-    """Creep, break-away, steady slip, energy, halved steps and free fall."""
-    distance, angle = drift(0.01, sway, contact=MODEL)
-    yield Figure(f"{MODEL}: creep, both, wrist swaying", DISTANCE_BOUND, distance, "mm")
-    yield Figure(f"{MODEL}: creep, both, wrist swaying", ANGLE_BOUND, angle, "deg")
+def figures(model: str) -> Iterator[Figure]:
+    """Creep, break-away, steady slip, energy and free fall of a contact model."""
+    distance, angle = drift(0.01, sway, contact=model)
+    yield Figure(f"{model}: creep, both, wrist swaying", DISTANCE_BOUND, distance, "mm")
+    yield Figure(f"{model}: creep, both, wrist swaying", ANGLE_BOUND, angle, "deg")
     # A ramp is slow enough for mu_s in every cell. At break-away the cells nearest to the centre of
     # rotation have not come to their limit; they carry little
     for name, direction in LOADS.items():
-        away = ramp(direction, contact=MODEL) / limit(direction) - 1.0
-        yield Figure(f"{MODEL}: break-away, {name}", BOUND, 100.0 * abs(away), "%")
+        away = ramp(direction, contact=model) / limit(direction) - 1.0
+        yield Figure(f"{model}: break-away, {name}", BOUND, 100.0 * abs(away), "%")
     angles = np.linspace(0.0, 0.5 * math.pi, DIRECTIONS)
-    found = [deviation(angle, 0.0, disc, contact=MODEL) for angle in angles]
-    yield summary(f"{MODEL}: steady slip", "disc", found)
-    rises = [
-        throw(seed, vary_grip, contact=MODEL)[0] for seed in range(THROWS) for vary_grip in (False, True)
-    ]
-    yield Figure(f"{MODEL}: energy gained, random throws", 1.0, max(rises), "store")
-    rises = [slide(seed, contact=MODEL) for seed in range(THROWS)]
-    yield Figure(f"{MODEL}: energy gained, slipping and sticking", 1.0, max(rises), "store")
-    yield from compare(f"{MODEL}: halved step, stick-slip", stick_slip_grip, (0.0, 0.0), contact=MODEL)
-    name = f"{MODEL}: halved step, stick-slip and turning"
-    yield from compare(name, stick_slip_grip, (0.003, -0.01), contact=MODEL)
-    yield Figure(f"{MODEL}: free fall without grip", FALL_BOUND, drop(contact=MODEL), "%")
+    yield summary(
+        f"{model}: steady slip", "disc", [deviation(angle, 0.0, exact, contact=model) for angle in angles]
+    )
+    rises = [throw(seed, vary, contact=model)[0] for seed in range(THROWS) for vary in (False, True)]
+    yield Figure(f"{model}: energy gained, random throws", 1.0, max(rises), "store")
+    rises = [slide(seed, contact=model) for seed in range(THROWS)]
+    yield Figure(f"{model}: energy gained, slipping and sticking", 1.0, max(rises), "store")
+    yield Figure(f"{model}: free fall without grip", FALL_BOUND, drop(contact=model), "%")
+
+
+def disc() -> Iterator[Figure]:
+    """The contact whose limit surface is a table."""
+    yield from figures("disc")
+
+
+def distributed() -> Iterator[Figure]:
+    """The contact of cells."""
+    yield from figures("distributed")

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
+from lab.validation.halving import stick_slip_grip
 from slipgym.validation.bench import Bench
 from slipgym.validation.figure import Figure
-from slipgym.validation.halving import stick_slip_grip
+from slipgym.world.bullet_engine import BulletWorld
 
 # Over one engine step of 1/480 s this reads as 5e-7 m/s, a three-hundredth of the slip sensor's noise
 MISMATCH_BOUND = 1e-9  # [m]
@@ -21,6 +23,49 @@ SHAKE = np.array([0.01, 0.01, 0.3])  # amplitudes (x, z, pitch) [m, m, rad]
 SHAKE_RATES = 2.0 * math.pi * np.array([1.5, 2.0, 1.0])  # [rad/s]
 
 
+class WatchedWorld(BulletWorld):
+    """Notes how far the engine's pose is from the planar one after every engine step."""
+
+    mismatch = 0.0
+
+    def move(self) -> tuple[Any, ...]:
+        """See `BulletWorld.move`."""
+        rows = self.rows
+        if not getattr(rows.loads, "watched", False):
+            rows.loads = self._watched(rows.loads)
+        reading = super().move()
+        self._note(reading[0])
+        return reading
+
+    def _watched(self, loads: Callable[..., Any]) -> Callable[..., Any]:
+        """`BulletRows.loads`, called before every engine step, with a look at the pose after the last."""
+
+        def look(pose: tuple[Any, ...], *others: Any) -> Any:
+            self._note(pose)
+            return loads(pose, *others)
+
+        look.watched = True  # type: ignore[attr-defined]
+        return look
+
+    def _note(self, pose: tuple[Any, ...]) -> None:
+        world = self._plant.world[0]
+        if world["tick"] > 0:
+            (x, _, z), _ = pose
+            self.mismatch = max(self.mismatch, math.hypot(x - world["com"][0], z - world["com"][1]))
+
+
+class WatchedBench(Bench):
+    """A bench on PyBullet that knows how far the engine's object was from the planar one."""
+
+    bullet = WatchedWorld
+
+    @property
+    def mismatch(self) -> float:
+        """Largest distance between both after an engine step [m]."""
+        assert isinstance(self.world, WatchedWorld)
+        return self.world.mismatch
+
+
 def shake(t: float) -> np.ndarray:
     """Wrist velocity of a smooth motion that starts from rest."""
     return SHAKE * SHAKE_RATES * np.sin(SHAKE_RATES * t)
@@ -28,11 +73,11 @@ def shake(t: float) -> np.ndarray:
 
 def agreement() -> Iterator[Figure]:
     """Engine against planar world while slipping; object against pads while shaken."""
-    with Bench(force=5.0, com_offset=(0.006, -0.01)) as bench:
+    with WatchedBench(force=5.0, com_offset=(0.006, -0.01)) as bench:
         bench.settle()
         bench.run(3.0, force=stick_slip_grip, wrist=shake)
         yield Figure("engine against planar pose, slipping", MISMATCH_BOUND, bench.mismatch, "m")
-    with Bench(force=20.0, com_offset=(0.006, -0.01)) as bench:
+    with WatchedBench(force=20.0, com_offset=(0.006, -0.01)) as bench:
         start = bench.settle()
         trace = bench.run(10.0, wrist=shake)
         moved = np.abs(trace.slip - start.slip[-1])

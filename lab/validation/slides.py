@@ -1,38 +1,23 @@
-"""Computes the physics figures with the planar engine, and compares its slides with PyBullet's."""
+"""Compares slides of the planar engine with PyBullet's."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
-from slipgym.validation.accelerated import accelerated
+from lab.validation.halving import ANGLE_BOUND, BOUND, DURATION
 from slipgym.validation.bench import Bench, Friction
-from slipgym.validation.breakaway import breakaway
-from slipgym.validation.creep import creep
-from slipgym.validation.energy import energy
-from slipgym.validation.fall import fall
 from slipgym.validation.figure import Figure
-from slipgym.validation.halving import ANGLE_BOUND, BOUND, DURATION, halving
-from slipgym.validation.steady import steady
 
 ENGINE = "planar"
-PHYSICS = creep, breakaway, accelerated, steady, energy, halving, fall
 SLIDES = 40
 # Halving the steps may move a slide by 0.1 mm. An error of first order is twice that, on either engine, so
 # that they may be 0.4 mm apart in the worst case; errors of equal sign cancel, hence half in the median.
 DISTANCE_MEDIAN, DISTANCE = 2.0 * BOUND, 4.0 * BOUND  # [mm]
 ANGLE_MEDIAN, ANGLE = 2.0 * ANGLE_BOUND, 4.0 * ANGLE_BOUND  # [deg]
 SIZE = 0.08, 0.03, 0.4  # [m]
-
-
-def planar() -> Iterator[Figure]:
-    """The figures of the PyBullet world, in the planar world alone."""
-    for experiment in PHYSICS:
-        for figure in experiment(engine=ENGINE):
-            yield replace(figure, name=f"{ENGINE}: {figure.name}")
 
 
 def slide(seed: int, engine: str) -> np.ndarray:

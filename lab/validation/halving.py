@@ -64,8 +64,16 @@ def compare(
     yield Figure(name, ANGLE_BOUND, math.degrees(away[:, 2].max()), "deg")
 
 
-def halving(**options: Any) -> Iterator[Figure]:
-    """Slides that are steady, stick and slip, and turn as well."""
-    yield from compare("halved step, steady", smooth_grip, (0.0, 0.0), **options)
-    yield from compare("halved step, stick-slip", stick_slip_grip, (0.0, 0.0), **options)
-    yield from compare("halved step, stick-slip and turning", stick_slip_grip, (0.003, -0.01), **options)
+def halving() -> Iterator[Figure]:
+    """Slides that are steady, stick and slip, and turn as well, with both engines and contacts of a disc."""
+    for name, options in {
+        "halved step": {},
+        "planar: halved step": {"engine": "planar"},
+        "disc: halved step": {"contact": "disc"},
+        "distributed: halved step": {"contact": "distributed"},
+    }.items():
+        if "contact" not in options:
+            yield from compare(f"{name}, steady", smooth_grip, (0.0, 0.0), **options)
+        if options.get("contact") != "disc":
+            yield from compare(f"{name}, stick-slip", stick_slip_grip, (0.0, 0.0), **options)
+        yield from compare(f"{name}, stick-slip and turning", stick_slip_grip, (0.003, -0.01), **options)

@@ -19,10 +19,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.sparse import csr_array
 
+from lab.validation.patch_steps import friction
 from slipgym.contact import DistributedContact
 from slipgym.synthetic import Course
 from slipgym.validation.figure import Figure
-from slipgym.validation.patch_steps import friction
 
 STEP = 1e-4  # [s]
 RADIUS = 0.015  # [m]

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lab.limit_surface_exact import exact_friction
+from lab.validation.patch_rate import rate_form
+from lab.validation.patch_steps import profile, step_difference
+from lab.validation.patch_stick import CREEP_BOUND, energy_gain, hold
+from lab.validation.patch_surface import MU_C, MU_S, RADIUS, steady_friction
 from slipgym.contact import DistributedContact
 from slipgym.contact.limit_surface import LimitSurface
-from slipgym.contact.limit_surface_exact import exact_friction
 from slipgym.synthetic import Course
-from slipgym.validation.patch_rate import rate_form
-from slipgym.validation.patch_steps import profile, step_difference
-from slipgym.validation.patch_stick import CREEP_BOUND, energy_gain, hold
-from slipgym.validation.patch_surface import MU_C, MU_S, RADIUS, steady_friction
 
 DISC = 1.5  # radius of a uniform disc over r
 
