@@ -26,6 +26,7 @@ _ARGUMENT_FLAGS = 0x2F
 """Flags of a code object that say how it takes arguments and whether it is a generator."""
 
 
+@cache
 def digest(function: Any) -> str:
     """Hash of a compiled function and of all compiled functions, constants and types that it uses.
 

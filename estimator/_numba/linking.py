@@ -95,6 +95,11 @@ class _ProgramLibrary(_Library):
         self._final_module.verify()
         self._finalize_final_module()
 
+    def _optimize_final_module(self) -> None:
+        """Optimises once: numba first inlines with a pass of its own, for which nothing is left here."""
+        passes, builder = self._codegen._module_pass_manager(opt=2)
+        passes.run(self._final_module, builder)
+
     def _get_module_for_linking(self) -> Any:
         """A module that names the entry points: callers link the part, so a program's file needs no more."""
         stubs = "\n".join(f'define void @"{name}"() {{ ret void }}' for name in self.entries)
