@@ -22,6 +22,8 @@ from numba.core.dispatcher import Dispatcher
 
 _VERSIONED = {*sys.stdlib_module_names, "numpy", "numba", "llvmlite"}
 """Packages that change with their version only, which the cache compares."""
+_LINKER = Path(__file__).with_name("linking.py")
+"""The file that decides what becomes of compiled functions: an edit of it makes other programs."""
 _ARGUMENT_FLAGS = 0x2F
 """Flags of a code object that say how it takes arguments and whether it is a generator."""
 
@@ -33,7 +35,7 @@ def digest(function: Any) -> str:
     Args:
         function: A dispatcher of numba.
     """
-    hashed = hashlib.sha256()
+    hashed = hashlib.sha256(_LINKER.read_bytes())
     places: dict[int, int] = {}
     waiting: list[Any] = [function]
     while waiting:

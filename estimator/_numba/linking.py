@@ -153,7 +153,9 @@ class _NamedCompiler(Compiler):
     def compile_extra(self, func: Any) -> Any:
         """Compile a function; as numba's own, but for the name."""
         state = self.state
-        content = "\0".join([digest(self.kernel), str(state.flags), *map(str, state.args)])
+        content = "\0".join(
+            [digest(self.kernel), str(state.flags), *map(str, (*state.args, state.return_type))]
+        )
         identity: Any = FunctionIdentity.from_function(func)
         identity.unique_id = hashlib.sha256(content.encode()).hexdigest()[:32]
         identity.unique_name = f"{identity.func_qualname}${identity.unique_id}"
