@@ -9,6 +9,7 @@ COMMANDS = {
     "compare-simulators": "Compare the contact with other simulators.",
     "delays": 'Print "adaptive" in stick-slip with late velocities.',
     "estimator-costs": "Print what an update of each estimator costs.",
+    "fuzz": "Print errors of estimators in independent worlds.",
     "imperfections": "Print what each imperfection of the sensors costs.",
     "jumps": "Print how soon mu_c is right after friction jumps.",
     "loop-ablation": 'Print what "adaptive" loses in the loop.',
