@@ -23,7 +23,6 @@ from estimator.registry import DEFAULT, FilterMatrices, Specification, names
 if TYPE_CHECKING:
     from estimator.augmented.parameters import AdaptiveParameters
     from estimator.disc import DiscParameters
-    from estimator.gru import GruParameters
     from estimator.joint import JointParameters
     from estimator.rls import RlsParameters
     from estimator.ukf import UkfParameters
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
 _PARAMETERS = {
     "AdaptiveParameters": "estimator.augmented.parameters",
     "DiscParameters": "estimator.disc",
-    "GruParameters": "estimator.gru",
     "JointParameters": "estimator.joint",
     "RlsParameters": "estimator.rls",
     "UkfParameters": "estimator.ukf",
@@ -46,7 +44,6 @@ __all__ = [
     "DiscParameters",
     "Estimate",
     "FilterMatrices",
-    "GruParameters",
     "JointParameters",
     "OnlineEstimator",
     "RlsParameters",

@@ -14,8 +14,10 @@ from estimator.suggestions import asking
 DEFAULT = "adaptive"
 """Name of the default estimator, also of the environments (docs/leaderboard.md compares them)."""
 
-_MODULES = {name: f"estimator.{name}" for name in ("adaptive", "disc", "gru", "joint", "rls", "ukf")}
+_MODULES = {name: f"estimator.{name}" for name in ("adaptive", "disc", "joint", "rls", "ukf")}
 """Name -> module that holds its SPECIFICATION; imported on first use, because numba is slow to import."""
+_LABORATORY = {"gru": "lab.learned_estimator.gru:SPECIFICATION"}
+"""Name -> reference of an estimator that only a clone of the repository has."""
 
 
 class FilterMatrices(NamedTuple):
@@ -71,13 +73,15 @@ def specification(name: str) -> Specification:
         name: One of `names()`, or "module:attribute" for your own Specification, which must have this name.
 
     Raises:
-        ValueError: No estimator has this name.
+        ValueError: No estimator has this name, or it is part of the laboratory.
     """
     if is_reference(name):
         found = referenced(name)
         if not isinstance(found, Specification) or found.name != name:
             raise ValueError(f"{name!r} is no Specification of this name")
         return found
+    if isinstance(name, str) and name in _LABORATORY:
+        raise ValueError(f'"{name}" is part of the laboratory: use "{_LABORATORY[name]}" in a clone')
     if name not in names():
         raise ValueError(asking(f"unknown estimator {name!r}; valid: {', '.join(names())}", name, names()))
     return referenced(f"{_MODULES[name]}:SPECIFICATION")

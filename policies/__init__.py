@@ -9,12 +9,22 @@ action, state = policy.predict(observation, state=None)
 from typing import TYPE_CHECKING, Any
 
 from policies.controllers.table import is_controller
-from policies.registry import Policy, find, load, make, modes, names
+from policies.registry import Policy, check_estimates, find, load, make, modes, names
 
 if TYPE_CHECKING:
     from policies.training.adapter import make_vec_env
 
-__all__ = ["Policy", "find", "is_controller", "load", "make", "make_vec_env", "modes", "names"]
+__all__ = [
+    "Policy",
+    "check_estimates",
+    "find",
+    "is_controller",
+    "load",
+    "make",
+    "make_vec_env",
+    "modes",
+    "names",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -1,6 +1,7 @@
 """The table of policies, and how to make one by name."""
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -48,6 +49,26 @@ def modes(policy: Any) -> dict[str, Any]:
     if own is None and hasattr(policy, "action_mode"):
         own = {"action_mode": policy.action_mode}
     return dict(own or {})
+
+
+def check_estimates(name: object, policy: Any, arguments: Mapping[str, Any]) -> None:
+    """Refuse a controller that acts on estimates in an environment that has none.
+
+    Args:
+        name: What the policy was made by.
+        policy: The policy.
+        arguments: Keyword arguments of the environment.
+
+    Raises:
+        ValueError: It is such a controller, and the environment has `estimator=None`.
+    """
+    source, estimator = arguments.get("friction_source", "estimated"), arguments.get("estimator", "")
+    if source == "estimated" and estimator is None and getattr(policy, "acts_on_friction", False):
+        called = repr(name) if isinstance(name, str) else type(policy).__name__
+        raise ValueError(
+            f"controller {called} acts on estimates: this environment has estimator=None; choose an "
+            "estimator, or friction_source 'true' or 'nominal'"
+        )
 
 
 def find(name: str) -> type[Policy]:

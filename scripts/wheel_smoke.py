@@ -99,7 +99,7 @@ def build(folder: Path) -> Path:
 
 
 def check_contents(wheel: Path) -> None:
-    """Exactly three packages at top level; every default file, policy, network and py.typed inside."""
+    """Exactly three packages at top level; every default file, policy and py.typed inside."""
     with zipfile.ZipFile(wheel) as archive:
         files = set(archive.namelist())
     top = {name.split("/")[0] for name in files if ".dist-info/" not in name}
@@ -109,7 +109,6 @@ def check_contents(wheel: Path) -> None:
     if not wanted:
         sys.exit("there is no configuration to look for")
     wanted |= {f"{package}/py.typed" for package in PACKAGES}
-    wanted |= {path.relative_to(ROOT).as_posix() for path in (ROOT / "estimator").rglob("*.npz")}
     wanted |= {path.relative_to(ROOT).as_posix() for path in SHIPPED.rglob("*") if path.is_file()}
     if wanted - files:
         sys.exit(f"missing from the wheel: {sorted(wanted - files)}")

@@ -14,7 +14,8 @@ Examples:\n
   slipgym train-estimator --seed 1 --output runs
 \n
 The training needs torch (the extra train) and about ten minutes of one processor. An environment uses what
-it wrote with estimator={"name": "gru", "weights": "…/gru.npz"}. See docs/learned_estimator.md.
+it wrote with estimator={"name": "lab.learned_estimator.gru:SPECIFICATION", "weights": "…/gru.npz"}.
+See docs/learned_estimator.md.
 """
 app = application()
 
@@ -22,8 +23,9 @@ app = application()
 @app.command(epilog=EPILOG)
 def main(
     configuration: Annotated[
-        str, typer.Argument(help="Name of a file in configs/estimators, or path of a YAML file.")
-    ] = "gru",
+        Path | None,
+        typer.Argument(help="YAML file of the training.", show_default="lab/learned_estimator/gru.yaml"),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, max=400, help="Of episodes, first weights and order.")] = 0,
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
 ) -> None:
@@ -32,5 +34,5 @@ def main(
         from lab.learned_estimator import config
         from lab.learned_estimator.run import WEIGHTS, train
 
-        folder = train(config.read(configuration), output, seed)
+        folder = train(config.read(configuration or config.OWN), output, seed)
     typer.echo(f"Look at:\n  {folder / WEIGHTS}\n  {folder / 'curve.csv'}")

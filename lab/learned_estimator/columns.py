@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from estimator._numba.caching import njit
-from estimator.gru import GruParameters, initial_states
-from estimator.network.features import COLUMNS, sense
 from lab.learned_estimator.episodes import READINGS, Recording
+from lab.learned_estimator.features import COLUMNS, sense
+from lab.learned_estimator.gru import GruParameters, initial_states
 
 RATE = 120.0
 """Samples per second."""

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from itertools import product
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, field_validator
 
-from slipgym.config import load_randomization
+from slipgym.config import files, load_randomization
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.pad_ranges import PadRanges
-from slipgym.config.yaml_model import Choice, read_model
+from slipgym.config.yaml_model import Choice, validate
 from slipgym.tasks import find
+
+OWN = Path(__file__).with_name("gru.yaml")
+"""The training of the weights that come with the clone."""
 
 Texts = Annotated[tuple[str, ...], Field(min_length=1), BeforeValidator(as_tuple)]
 Sources = Annotated[
@@ -23,7 +28,7 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
 class Training(Frozen):
-    """Training of the network of "gru"; the sizes of the network are those of `estimator.network`."""
+    """Training of the network of "gru"; `lab.learned_estimator.cell` has the sizes of the network."""
 
     tasks: Texts = Field(description="Tasks whose episodes are recorded")
     friction_sources: Sources = Field(description="Friction that the tasks' controllers act on")
@@ -71,14 +76,16 @@ class Training(Frozen):
         ]
 
 
-def read(choice: Choice = "gru") -> Training:
+def read(choice: Choice = OWN) -> Training:
     """Reads a training.
 
     Args:
-        choice: Name of a file in configs/estimators, the path of a YAML file, or a mapping of the same shape.
+        choice: The path of a YAML file, or a mapping of the same shape.
 
     Raises:
         FileNotFoundError: There is no such file.
         ValueError: A key is unknown or a value is not allowed.
     """
-    return read_model(choice, Training, "estimators", "training of an estimator")
+    if isinstance(choice, Mapping):
+        return validate(choice, Training, "training of an estimator")
+    return validate(files.read(Path(choice)), Training, os.fspath(choice))

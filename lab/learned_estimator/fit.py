@@ -10,11 +10,11 @@ import torch
 from torch import nn
 from tqdm import tqdm
 
-from estimator.network.cell import HIDDEN, TARGETS
-from estimator.network.weights import SHAPES, Tensors
+from lab.learned_estimator.cell import HIDDEN, TARGETS
 from lab.learned_estimator.columns import Sequence
 from lab.learned_estimator.config import Training
 from lab.learned_estimator.network import FIXED, Network
+from lab.learned_estimator.weights import SHAPES, Tensors
 
 EVERY = 100
 """Updates between two rows of the curve."""

@@ -1,4 +1,4 @@
-"""The network of "gru" in torch, and its loss; `estimator.network.cell` is the same step, compiled.
+"""The network of "gru" in torch, and its loss; `lab.learned_estimator.cell` is the same step, compiled.
 
 The loss of a sample is the mean, over mu_s, mu_c, r and mu_c r, of the negative log-likelihood of the
 logarithm's error under a normal distribution with the stated deviation, less a constant.
@@ -13,10 +13,10 @@ import torch
 from torch import Tensor, nn
 from torch.nn.utils.rnn import pad_sequence
 
-from estimator.network.cell import HIDDEN, HIGH, LOW, MU_C, TARGETS, R
-from estimator.network.features import COLUMNS
-from estimator.network.weights import SHAPES, Tensors
+from lab.learned_estimator.cell import HIDDEN, HIGH, LOW, MU_C, TARGETS, R
 from lab.learned_estimator.columns import Sequence
+from lab.learned_estimator.features import COLUMNS
+from lab.learned_estimator.weights import SHAPES, Tensors
 
 GATES = {
     "input_weight": "weight_ih_l0",
@@ -33,7 +33,7 @@ class Network(nn.Module):
     """Averages of measurements whose weights a gated recurrent unit chooses.
 
     Args:
-        tensors: Those of `estimator.network.weights.SHAPES`.
+        tensors: Those of `lab.learned_estimator.weights.SHAPES`.
     """
 
     centre: Tensor

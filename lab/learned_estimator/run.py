@@ -10,11 +10,11 @@ import pandas as pd
 import yaml
 from tqdm import tqdm
 
-from estimator.network.weights import Tensors, save
 from lab.learned_estimator.columns import Sequence, sequences
 from lab.learned_estimator.config import Training
 from lab.learned_estimator.episodes import record
 from lab.learned_estimator.fit import Curve, fit
+from lab.learned_estimator.weights import Tensors, save
 from policies.evaluation.folder import stamped
 from policies.versions import write_versions
 from slipgym.atomic_io import new_file

@@ -76,7 +76,7 @@ def main(
 
 
 def _variants(engines: list[str]) -> Iterator[dict[str, Any]]:
-    """Keyword arguments of environments that need programs of their own."""
+    """Keyword arguments of environments that need programs of their own, also of one without estimator."""
     import estimator
     from slipgym.config.load import names
     from slipgym.config.physics import ContactModel
@@ -84,7 +84,7 @@ def _variants(engines: list[str]) -> Iterator[dict[str, Any]]:
     for kind in engines:
         for contact, preset in itertools.product(get_args(ContactModel), names("sensors")):
             yield {"engine": kind, "contact": contact, "sensors": preset, "randomization": "lab"}
-        for name in estimator.names():
+        for name in (*estimator.names(), None):
             yield {"engine": kind, "estimator": name}
 
 

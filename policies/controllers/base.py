@@ -97,7 +97,7 @@ class Columns:
         if at >= self._observations.shape[1]:
             raise ValueError(
                 f"the policy needs the column {name!r}, which friction_source='none' and "
-                "observation_mode='sensor' leave out; "
+                "observation_mode='sensor' leave out, as estimator=None does with 'estimated'; "
                 "choose friction_source 'estimated', 'true' or 'nominal' and observation_mode 'flat'"
             )
         return self._observations[:, at].astype(np.float64)
@@ -125,6 +125,8 @@ class ForcePolicy(ABC):
     """Task whose observations it reads; None for one that runs in every task."""
     action_mode: ClassVar[str] = "grip_force"
     """Action mode of the environments it acts in, one of `slipgym.envs.actions.ACTION_MODES`."""
+    acts_on_friction: ClassVar[bool] = False
+    """Whether it cannot act without the friction part of the observation."""
     without_friction: ClassVar[Mapping[str, Any]] = {}
     """Arguments of the controller without friction information (`policies.controllers.no_friction_info`)."""
 

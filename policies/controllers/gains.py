@@ -38,6 +38,7 @@ class GainPolicy(ForcePolicy, Generic[G]):
     """Model of the gains: names, units, ranges and defaults."""
     prior_default: ClassVar[ConservativePrior] = ConservativePrior()
     """The class's own prior."""
+    acts_on_friction = True
     remembers_slips: ClassVar[bool] = False
     """Whether it acts on its own memory of slips as long as no friction is observed."""
 

@@ -52,23 +52,30 @@ class FrictionChoice(Frozen):
     """Friction information of a policy."""
 
     source: str = Field(description="friction_source of the environment [-]")
-    estimator: Mapping[str, Any] = Field(
-        default={"name": DEFAULT_ESTIMATOR}, description="Name and parameters of the estimator [-]"
+    estimator: Mapping[str, Any] | None = Field(
+        default={"name": DEFAULT_ESTIMATOR},
+        description="Name and parameters of the estimator; null: none [-]",
     )
+
     label: str = Field(default="", description="How tables and figures call it; empty: by its source [-]")
 
     @model_validator(mode="after")
     def _exists(self) -> Self:
         if self.source not in FRICTION_SOURCES:
             raise ValueError(unknown("friction source", self.source, FRICTION_SOURCES))
-        parameters = dict(self.estimator)
-        estimators.make(parameters.pop("name", ""), **parameters)
+        if parameters := self.argument:
+            estimators.make(parameters.pop("name", ""), **parameters)
         return self
 
     @property
     def title(self) -> str:
         """How tables and figures call it."""
         return self.label or self.source
+
+    @property
+    def argument(self) -> dict[str, Any] | None:
+        """The environment's argument `estimator`."""
+        return None if self.estimator is None else dict(self.estimator)
 
 
 class Experiment(Frozen):

@@ -88,7 +88,9 @@ def episodes(
     env_id, arguments = environment_of(os.fspath(which), policy, task)
     if "estimator" not in (changes or {}):
         _check_estimator(arguments.get("estimator"))
-    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **{**arguments, **(changes or {})})
+    arguments = {**arguments, **(changes or {})}
+    policies.check_estimates(os.fspath(which), policy, arguments)
+    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **arguments)
     try:
         if isinstance(policy, LearnedPolicy):
             policy.check(env)

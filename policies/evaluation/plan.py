@@ -37,7 +37,7 @@ class Trial:
             "policy": self.policy.title,
             "friction": self.friction.title,
             "friction_source": self.friction.source,
-            "estimator": json.dumps(dict(self.friction.estimator)),
+            "estimator": json.dumps(self.friction.argument),
             "material": self.material,
             "options": json.dumps(dict(self.options), sort_keys=True),
             "trial": self.number,

@@ -33,7 +33,7 @@ class Recording:
     needed_force: np.ndarray
     """Least grip force per finger that can carry the load, (T,) [N]."""
     estimated: np.ndarray
-    """Estimated mu_s, mu_c, r of each finger, (T, 2, 3) [-, -, m]."""
+    """Estimated mu_s, mu_c, r of each finger, (T, 2, 3) [-, -, m]; NaN where nothing estimates."""
     true: np.ndarray
     """True mu_s, mu_c, r at the end, (3,) [-, -, m]."""
     reward: np.ndarray
@@ -86,7 +86,8 @@ class Recorder:
             running: Whether each environment's episode was still running before the step, (n,) bool.
         """
         goals = np.zeros(len(rewards)) if self._goal is None else observations[:, self._goal]
-        self._steps.append({"reward": rewards, "goal": goals, **{name: infos[name] for name in INFOS}})
+        kept = {"estimated_per_finger": np.full((len(rewards), 2, 3), np.nan), **infos}
+        self._steps.append({"reward": rewards, "goal": goals, **{name: kept[name] for name in INFOS}})
         self._lengths[running] = len(self._steps)
 
     def finish(self) -> list[Recording]:

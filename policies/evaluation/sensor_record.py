@@ -57,6 +57,7 @@ def record_sensors(
     if resolved(keywords.get("engine", "auto")) == "planar":
         raise ValueError("engine = 'planar' takes only the samples that are read: record with 'bullet'")
     actor = policies.load(policy)
+    policies.check_estimates(policy, actor, keywords)
     env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **{**policies.modes(actor), **keywords})
     try:
         if isinstance(actor, LearnedPolicy):

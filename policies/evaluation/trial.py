@@ -142,7 +142,7 @@ def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None 
         recorder, running = Recorder(index, [info.get("drawn", {})]), np.ones(1, dtype=bool)
         for step in steps(env, policy, observation):
             newest = _present(env, step.observation)[np.newaxis]
-            infos = {name: np.asarray(step.info[name])[np.newaxis] for name in INFOS}
+            infos = {name: np.asarray(step.info[name])[np.newaxis] for name in INFOS if name in step.info}
             recorder.add(newest, np.array([step.reward]), infos, running)
     finally:
         env.close()
@@ -153,7 +153,7 @@ def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:
     """Keyword arguments of a trial's environment, but for those that the policy decides."""
     return {
         "friction_source": trial.friction.source,
-        "estimator": dict(trial.friction.estimator),
+        "estimator": trial.friction.argument,
         "sensors": experiment.sensors,
         "engine": experiment.engine,
         "material": trial.material,
@@ -173,7 +173,9 @@ def make_policy(experiment: Experiment, trial: Trial) -> policies.Policy:
             config = at_rate(experiment.environment_config().physics.control_rate / skip, config)
         if config and "config" in takes:
             parameters.setdefault("config", config)
-    return policies.load(trial.policy.name, **parameters)
+    policy = policies.load(trial.policy.name, **parameters)
+    policies.check_estimates(trial.policy.name, policy, environment(experiment, trial))
+    return policy
 
 
 def _present(env: Any, observation: Any) -> np.ndarray:

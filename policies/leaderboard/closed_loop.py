@@ -84,6 +84,7 @@ def played(
         published mu_c above mu_s [%].
     """
     policy = policies.make(controller or find(task).key)
+    policies.check_estimates(controller or find(task).key, policy, arguments)
     env: Any = gym.make_vec(task, num_envs=episodes, **policies.modes(policy), **arguments).unwrapped
     observations, _ = env.reset(seed=seed)
     tally = _Tally(episodes)

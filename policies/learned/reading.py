@@ -7,6 +7,7 @@ import numpy as np
 from policies.learned.description import Environment
 from slipgym.config import load
 from slipgym.envs.actions import ACTION_MODES
+from slipgym.envs.arguments import DEFAULT_ESTIMATOR, friction_part
 from slipgym.envs.observation import columns
 from slipgym.tasks import find
 
@@ -29,6 +30,7 @@ def layout(trained: Environment) -> tuple[str, ...]:
             ("observation_mode", "flat"),
         )
     )
+    source = friction_part(source, given.get("estimator", DEFAULT_ESTIMATOR))
     if action_mode not in ACTION_MODES:
         return read
     present = tuple(column.name for column in columns(load(), task, source, action_mode, mode))

@@ -15,6 +15,7 @@ from policies.controllers import table as controllers
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.controllers.rate import at_rate
 from policies.learned.description import Residual
+from slipgym.envs.arguments import DEFAULT_ESTIMATOR, friction_part
 
 
 class Underlying:
@@ -33,7 +34,8 @@ class Underlying:
     def __init__(self, residual: Residual, arguments: Mapping[str, Any], columns: int, rate: float) -> None:
         name, config = residual.controller, at_rate(rate, arguments.get("config"))
         self._columns, self._reach = columns, np.float32(residual.reach)
-        if arguments.get("friction_source") == "none":
+        source = arguments.get("friction_source", "estimated")
+        if friction_part(source, arguments.get("estimator", DEFAULT_ESTIMATOR)) == "none":
             self._controller: Any = NoFrictionInfo(name, config, **residual.parameters)
         else:
             self._controller = controllers.make(name, {**residual.parameters, "config": config})

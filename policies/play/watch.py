@@ -140,6 +140,7 @@ def watch(
     with ExitStack() as stack:
         player: Policy | None = None if policy == KEYBOARD else _policy(policy or own_policy(task))
         keywords = {**policies.modes(player or Keyboard), **keywords}
+        policies.check_estimates(policy or own_policy(task), player, keywords)
         env: Any = gym.make(
             f"slipgym:{env_id}", render_mode="rgb_array", disable_env_checker=True, **keywords
         ).unwrapped

@@ -72,9 +72,11 @@ class CommonArguments(TypedDict, total=False):
         FrictionSource, Argument("estimated", "source of the friction part of the observation")
     ]
     estimator: Annotated[
-        str | Mapping[str, Any],
+        str | Mapping[str, Any] | None,
         Argument(
-            DEFAULT_ESTIMATOR, "a name of `estimator.names()`, or a mapping with its `name` and parameters"
+            DEFAULT_ESTIMATOR,
+            "a name of `estimator.names()`, or a mapping with its `name` and parameters; `None`: none "
+            "(see docs/modes.md)",
         ),
     ]
     contact: Annotated[
@@ -212,16 +214,14 @@ def fields(kind: type) -> dict[str, Field]:
     """Name -> keyword argument, of `ScalarArguments`, `VectorArguments` or `CommonArguments`."""
     found = {}
     for name, hint in get_type_hints(kind, include_extras=True).items():
-        annotation, argument = get_args(hint)
+        annotation, given = get_args(hint)
         members = get_args(annotation) if get_origin(annotation) is not Literal else (annotation,)
         choices = [
             choice for member in members if get_origin(member) is Literal for choice in get_args(member)
         ]
         optional = NoneType in members
-        limits = argument.least, argument.most
-        found[name] = Field(
-            name, annotation, argument.default, argument.doc, tuple(choices), optional, *limits
-        )
+        limits = given.least, given.most
+        found[name] = Field(name, annotation, given.default, given.doc, tuple(choices), optional, *limits)
     return found
 
 
@@ -270,6 +270,11 @@ def documented(kind: type, *first: inspect.Parameter) -> Callable[[Class], Class
 def _paragraph(field: Field) -> str:
     text = f"{field.name}: {field.text[0].upper()}{field.text[1:]}. Default: {field.default!r}."
     return textwrap.fill(text, 110, initial_indent=" " * 8, subsequent_indent=" " * 12)
+
+
+def friction_part(friction_source: str, estimator: object) -> str:
+    """Source of the friction part: "none" where it would be estimates, and there is no estimator."""
+    return "none" if friction_source == "estimated" and estimator is None else friction_source
 
 
 def one_of(name: str, value: object, valid: Iterable[str]) -> str:

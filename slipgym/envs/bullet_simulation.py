@@ -144,7 +144,7 @@ class BulletSimulation(Simulation):
         config: Configuration.
         settings: The task's settings.
         task: The task.
-        estimator: Name of an estimator, or a mapping with its `name` and parameters.
+        estimator: Name of an estimator, or a mapping with its `name` and parameters; None: nothing estimates.
         randomization: Distributions that an episode is sampled from; None: no randomization.
 
     Attributes:
@@ -156,7 +156,7 @@ class BulletSimulation(Simulation):
         config: Config,
         settings: TaskConfig,
         task: Task,
-        estimator: str | Mapping[str, Any],
+        estimator: str | Mapping[str, Any] | None,
         randomization: Randomization | None = None,
     ) -> None:
         super().__init__(config, settings, task, estimator, randomization)

@@ -60,9 +60,9 @@ is low. With "true" and "nominal" every confidence is 1.
 
 With an `action_mode` that moves the wrist, the commanded wrist velocities and the wrist's pitch precede
 the friction part, unless the table has them already. `observation_mode="deviations"` appends the standard
-deviations of the estimates; "sensor" leaves the friction part out; "dict" returns the groups "policy" (the
-observation above) and "privileged" (the ground truth); `history=k` prepends the last k observations (see
-docs/modes.md)."""
+deviations of the estimates; "sensor" leaves the friction part out, as `estimator=None` does where it would be
+estimates; "dict" returns the groups "policy" (the observation above) and "privileged" (the ground truth);
+`history=k` prepends the last k observations (see docs/modes.md)."""
 
 _END = """\
 - Terminated: the object is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
@@ -88,6 +88,8 @@ _REWARD_TERMS = (
     "what each reward term pays in this step, by name; they add up to the reward",
 )
 _DRAWN = """\
+With `estimator=None` an info has no `estimated` and no `estimated_per_finger`.
+
 With a randomization, the info of a reset also holds `drawn`: the values sampled for the episode, by name (see
 docs/randomization.md)."""
 

@@ -10,21 +10,24 @@ import estimator as estimators
 from estimator.registry import specification
 from slipgym._numba.compiled import compiled
 from slipgym.config import Config
+from slipgym.envs import no_estimator
 
 LATENCY = "velocity_delay"
 """Parameter of an estimator: the latency of the slip velocity."""
 
 
-def chosen_estimator(choice: str | Mapping[str, Any]) -> dict[str, Any]:
-    """Return the estimator's name and parameters.
+def chosen_estimator(choice: str | Mapping[str, Any] | None) -> dict[str, Any] | None:
+    """Return the estimator's name and parameters; None for none.
 
     `velocity_delay` is left out unless the user gave it.
     """
+    if choice is None:
+        return None
     if isinstance(choice, str):
         choice = {"name": choice}
     if not isinstance(choice, Mapping) or not isinstance(choice.get("name"), str):
         raise ValueError(
-            f"estimator = {choice!r} must be a name or a mapping with a name; "
+            f"estimator = {choice!r} must be a name, a mapping with a name, or None; "
             f"valid: {', '.join(estimators.names())}"
         )
     given = dict(choice)
@@ -42,6 +45,21 @@ def informed(choice: dict[str, Any], config: Config) -> dict[str, Any]:
     """
     known = {field.name for field in fields(specification(choice["name"]).parameters)}
     return {LATENCY: config.sensors.slip.latency_samples, **choice} if LATENCY in known else choice
+
+
+def make_estimators(choice: dict[str, Any] | None, config: Config, n: int) -> estimators.BatchEstimator:
+    """The estimators of n fingers; without a choice they state the default's start values all the time.
+
+    Args:
+        choice: From `chosen_estimator`.
+        config: Configuration.
+        n: Number of fingers.
+    """
+    if choice is not None:
+        return estimators.make_batch(n=n, **informed(choice, config))
+    start = estimators.make_batch(estimators.DEFAULT, 1).estimates[0]
+    stated = {f"{name}0": start[name] for name in ("mu_s", "mu_c", "r")}
+    return estimators.make_batch(no_estimator.NAME, n, **stated)
 
 
 @compiled

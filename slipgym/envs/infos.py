@@ -117,6 +117,13 @@ PARTS = {
 _FLAG_NAMES = [info.name for info in FLAGS]
 INFO_NAMES = (*(info.name for info in NUMBERS), *_FLAG_NAMES, "reward_terms")
 """Keys of an info, in order."""
+_ESTIMATES = "estimated", "estimated_per_finger"
+"""Entries that an environment without estimators does not have."""
+
+
+def _numbers(estimating: bool) -> tuple[Info, ...]:
+    """Those of `NUMBERS` that an environment has."""
+    return tuple(info for info in NUMBERS if estimating or info.name not in _ESTIMATES)
 
 
 class InfoBuffer(NamedTuple):
@@ -139,16 +146,17 @@ class InfoBuffer(NamedTuple):
         """Return another buffer of the same shapes, with undefined contents."""
         return InfoBuffer(*map(np.empty_like, self))
 
-    def every(self, terms: Sequence[str], mask: np.ndarray | None = None) -> dict[str, Any]:
+    def every(self, terms: Sequence[str], estimating: bool, mask: np.ndarray | None = None) -> dict[str, Any]:
         """Infos of all environments as `gymnasium.vector.VectorEnv` returns them: views, with masks beside.
 
         Args:
             terms: Names of the reward terms.
+            estimating: Whether there are estimates.
             mask: Environments whose infos are valid, (n,) bool; None: all.
         """
         numbers, flags, values = self
         infos: dict[str, Any] = {
-            info.name: numbers[:, PARTS[info.name]].reshape(-1, *info.shape) for info in NUMBERS
+            info.name: numbers[:, PARTS[info.name]].reshape(-1, *info.shape) for info in _numbers(estimating)
         }
         infos |= {name: flags[:, k] for k, name in enumerate(_FLAG_NAMES)}
         scaled = {name: values[:, k] for k, name in enumerate(terms)}
@@ -158,12 +166,13 @@ class InfoBuffer(NamedTuple):
         left = iter(masks)
         return _with_masks({**infos, "reward_terms": _with_masks(scaled, left)}, left)
 
-    def some(self, rows: np.ndarray, terms: Sequence[str]) -> dict[str, Any]:
+    def some(self, rows: np.ndarray, terms: Sequence[str], estimating: bool) -> dict[str, Any]:
         """Copies of the infos of some environments (m,), zero elsewhere, with masks; empty for no rows.
 
         Args:
             rows: Indices of the environments.
             terms: Names of the reward terms.
+            estimating: Whether there are estimates.
         """
         if not rows.size:
             return {}
@@ -172,33 +181,12 @@ class InfoBuffer(NamedTuple):
         mask[rows] = True
         for mine, other in zip(copy, self, strict=True):
             mine[rows] = other[rows]
-        return copy.every(terms, mask)
+        return copy.every(terms, estimating, mask)
 
 
 def _with_masks(infos: dict[str, Any], left: Iterator[np.ndarray]) -> dict[str, Any]:
     """Add a mask to each info that says which environments have it, as Gymnasium requires."""
     return {**infos, **{f"_{name}": next(left) for name in infos}}
-
-
-def final(observations: Any, infos: dict[str, Any], rows: np.ndarray, n: int) -> dict[str, Any]:
-    """Infos that hold the last observations and infos of finished episodes.
-
-    Args:
-        observations: Observations of all environments: (n, k), or a dictionary of such arrays.
-        infos: Infos of the environments whose episodes have finished.
-        rows: Indices of these environments, (m,).
-        n: Number of environments.
-    """
-    if not rows.size:
-        return {}
-    last, over = np.full(n, None, dtype=object), np.zeros((2, n), dtype=bool)
-    for i in rows.tolist():
-        if isinstance(observations, dict):
-            last[i] = {group: values[i].copy() for group, values in observations.items()}
-        else:
-            last[i] = observations[i].copy()
-    over[:, rows] = True
-    return {"final_obs": last, "_final_obs": over[0], "final_info": infos, "_final_info": over[1]}
 
 
 _ARRAYS = "worlds", "pads", "fingers", "episodes", "ground_truth", "estimated", "per_finger"
@@ -247,7 +235,7 @@ Returns:
 """
 
 
-def info_reader(buffer: InfoBuffer, terms: Sequence[str]) -> InfoReader:
+def info_reader(buffer: InfoBuffer, terms: Sequence[str], estimating: bool) -> InfoReader:
     """Return the `InfoReader` of a buffer. The arrays of an info share memory that only they use.
 
     PyBullet's step leaves nothing in the processor's cache: few calls matter more here than short ones. The
@@ -256,25 +244,26 @@ def info_reader(buffer: InfoBuffer, terms: Sequence[str]) -> InfoReader:
     Args:
         buffer: The buffer; its arrays must stay the same.
         terms: Names of the reward terms.
+        estimating: Whether there are estimates.
     """
     numbers, (flags, *_), (values, *_) = buffer.numbers, buffer.flags, buffer.terms
-    return partial(
-        _reader(tuple(terms)), numbers.reshape(-1, 3).copy, numbers.item, flags.tolist, values.tolist
-    )
+    made = _reader(tuple(terms), estimating)
+    return partial(made, numbers.reshape(-1, 3).copy, numbers.item, flags.tolist, values.tolist)
 
 
 @cache
-def _reader(terms: tuple[str, ...]) -> Callable[..., Any]:
+def _reader(terms: tuple[str, ...], estimating: bool) -> Callable[..., Any]:
     """A function (rows, number, flags, terms) that makes an info of what these four functions return."""
     flags, values = [f"flag_{k}" for k in range(len(FLAGS))], [f"term_{k}" for k in range(len(terms))]
-    reads = {info.name: _read(info) for info in NUMBERS}
+    reads = {info.name: _read(info) for info in _numbers(estimating)}
     reads |= {info.name: flag for info, flag in zip(FLAGS, flags, strict=True)}
     reads["reward_terms"] = _display(dict(zip(terms, values, strict=True)))
+    order = [name for name in INFO_NAMES if name in reads]
     body = [
         "table, values = rows(), terms()",
         f"[{', '.join(values)}] = values",
         f"{', '.join(flags)}, early, full = flags()",
-        f"return {_display({name: reads[name] for name in INFO_NAMES})}, sum(values), early, full",
+        f"return {_display({name: reads[name] for name in order})}, sum(values), early, full",
     ]
     arguments = "rows", "number", "flags", "terms"
     return generate("_take", arguments, body, {}, lambda made: made, __file__, "See `InfoReader`.")

@@ -207,7 +207,7 @@ class PlanarSimulation(Simulation):
         config: Configuration.
         settings: The task's settings.
         task: The task.
-        estimator: Name of an estimator, or a mapping with its `name` and parameters.
+        estimator: Name of an estimator, or a mapping with its `name` and parameters; None: nothing estimates.
         randomization: Distributions that an episode is sampled from; None: no randomization.
         n: Number of environments.
         threads: Number of threads; None: one per processor, each with at least 32 environments.
@@ -226,7 +226,7 @@ class PlanarSimulation(Simulation):
         config: Config,
         settings: TaskConfig,
         task: Task,
-        estimator: str | Mapping[str, Any],
+        estimator: str | Mapping[str, Any] | None,
         randomization: Randomization | None = None,
         n: int = 1,
         threads: int | None = None,

@@ -9,8 +9,8 @@ from typing import Any
 
 from slipgym.config import Config, Randomization, TaskConfig, load, load_randomization
 from slipgym.config.level import load_level
-from slipgym.envs.actions import Actions
-from slipgym.envs.arguments import CommonArguments, fields, one_of
+from slipgym.envs.actions import ACTION_MODES, GUESS, Actions
+from slipgym.envs.arguments import CommonArguments, fields, friction_part, one_of
 from slipgym.envs.observer import Observer
 from slipgym.envs.simulation import Simulation
 from slipgym.tasks import TASKS, Task, configure
@@ -52,12 +52,15 @@ class Setup:
         self.randomization = level.level.applied_to(randomization, task.key)
         self.material = one_of("material", values["material"], ("random", *self.config.materials))
         values["action_mode"] = values["action_mode"] or task.action_mode
+        if values["estimator"] is None:
+            _check_guess(task, values["action_mode"])
         self.actions = Actions(values["action_mode"], self.config, self.settings.wrist_speed)
         self.simulation = make_simulation(
             self.config, self.settings, task, values["estimator"], self.randomization
         )
         layout = values["action_mode"], values["observation_mode"], values["history"]
-        self.observer = Observer(self.simulation, values["friction_source"], *layout)
+        source = friction_part(values["friction_source"], values["estimator"])
+        self.observer = Observer(self.simulation, source, *layout)
         self.arguments: dict[str, Any] = {
             **values,
             "estimator": self.simulation.estimator_choice,
@@ -65,6 +68,20 @@ class Setup:
             "randomization": randomization.model_dump(mode="json", exclude_unset=True),
             "config": recorded(self.config, self.settings, task.key),
         }
+
+
+def _check_guess(task: Task, action_mode: str) -> None:
+    """Refuse an action mode in which the estimate would have to take the place of the agent's guess.
+
+    Raises:
+        ValueError: The task scores a guess of friction that no action states.
+    """
+    guessed = ACTION_MODES[task.action_mode][-1]
+    if guessed in GUESS and guessed not in ACTION_MODES[action_mode]:
+        raise ValueError(
+            f"action_mode = {action_mode!r}: {task.name} then scores the estimate, and this environment has "
+            f"estimator=None; valid: {task.action_mode}"
+        )
 
 
 SLOW = 100.0

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-import estimator as estimators
+from estimator.batch import BatchEstimator
 from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
 from slipgym.envs.control_step import BatchState
-from slipgym.envs.estimates import chosen_estimator, informed
+from slipgym.envs.estimates import chosen_estimator, make_estimators
 from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
@@ -37,7 +37,7 @@ class Simulation(ABC):
         config: Configuration.
         settings: The task's settings.
         task: The task.
-        estimator: Name of an estimator, or a mapping with its `name` and parameters.
+        estimator: Name of an estimator, or a mapping with its `name` and parameters; None: nothing estimates.
         randomization: Distributions that an episode is sampled from; None: no randomization.
         n: Number of environments.
 
@@ -56,7 +56,8 @@ class Simulation(ABC):
         per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
         estimated: Estimates of both fingers merged, with their confidence and deviations, (n, 11).
         infos: Infos of all environments, including the last step's reward terms.
-        estimator_choice: Name and parameters of the estimators; `velocity_delay` only if the user gave it.
+        estimator_choice: Name and parameters of the estimators, None for none; `velocity_delay` only if the
+            user gave it.
         step_time: Length of a control step [s].
         state: Views of these arrays, for compiled functions.
         stages: Compiled stages of a control step.
@@ -67,7 +68,7 @@ class Simulation(ABC):
         config: Config,
         settings: TaskConfig,
         task: Task,
-        estimator: str | Mapping[str, Any],
+        estimator: str | Mapping[str, Any] | None,
         randomization: Randomization | None = None,
         n: int = 1,
     ) -> None:
@@ -76,7 +77,7 @@ class Simulation(ABC):
         randomizer = Randomizer(config, settings, task.key, randomization or Randomization())
         hardware = prepare_hardware(config, self.plant, randomizer)
         self.estimator_choice = chosen_estimator(estimator)
-        self.estimator = estimators.make_batch(n=2 * n, **informed(self.estimator_choice, config))
+        self._estimators = make_estimators(self.estimator_choice, config, 2 * n)
         self.episode = np.zeros(n, EPISODE)
         self.commands = np.zeros((n, len(COMMANDS)))
         self.wrenches, self.twists = np.zeros((n, 2, 4)), np.zeros((n, 2, 3))
@@ -89,7 +90,7 @@ class Simulation(ABC):
         self._sampler = EpisodeSampler(config, settings, task, randomizer, self.episode)
         self.materials, self.boxes = self._sampler.materials, self._sampler.boxes
         self.drawn, self.blank = self._sampler.drawn, self._sampler.blank
-        plant, learned = self.plant, self.estimator
+        plant, learned = self.plant, self._estimators
         self.state = BatchState(
             worlds=plant.world,
             pads=plant.pads,
@@ -118,9 +119,25 @@ class Simulation(ABC):
         """Find the compiled programs for the kinds of arrays that the plant has."""
         plant = self.plant
         cells = 0 if plant.cells is None else plant.cells.ndim
-        update = specification(self.estimator_choice["name"]).update_batch
+        update = specification(self._estimators.name).update_batch
         self._kinds = self.task, update, plant.force_torque.dtype, cells
         self.stages = compiled_stages(*self._kinds)
+
+    @property
+    def estimating(self) -> bool:
+        """Whether there are estimators."""
+        return self.estimator_choice is not None
+
+    @property
+    def estimator(self) -> BatchEstimator:
+        """Estimators of both fingers of each environment, (2n,).
+
+        Raises:
+            AttributeError: There are none.
+        """
+        if not self.estimating:
+            raise AttributeError("there are no estimates: this environment has estimator=None")
+        return self._estimators
 
     @property
     def true_friction(self) -> np.ndarray:
@@ -259,9 +276,9 @@ class Simulation(ABC):
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that persist from one control step to the next."""
         return {
-            "estimator_parameters": self.estimator.parameters_array,
-            "estimator_states": self.estimator.states,
-            "estimates": self.estimator.estimates,
+            "estimator_parameters": self._estimators.parameters_array,
+            "estimator_states": self._estimators.states,
+            "estimates": self._estimators.estimates,
             "episode": self.episode,
             "commands": self.commands,
             "wrenches": self.wrenches,

@@ -62,7 +62,7 @@ class SlipEnv(Conventions, gym.Env[Any, np.ndarray]):
         self.action_columns = self._actions.columns
         self.action_space, self.observation_space = self._actions.space, self._observer.space
         self._arguments = {**setup.arguments, "engine": self.engine}
-        self._report = info_reader(self.simulation.infos, self.task.term_names)
+        self._report = info_reader(self.simulation.infos, self.task.term_names, self.simulation.estimating)
         self._renderer: Any = None
         if render_mode is not None:
             from slipgym.rendering import Renderer

@@ -16,7 +16,6 @@ from gymnasium.vector.utils import batch_space
 from slipgym.config.plain import plain
 from slipgym.envs.arguments import VectorArguments, complete, documented, one_of
 from slipgym.envs.conventions import Conventions, horizon, rebuilt
-from slipgym.envs.infos import final
 from slipgym.envs.planar_simulation import PlanarSimulation
 from slipgym.envs.reset_options import Generators, RowOptions
 from slipgym.envs.setup import Setup
@@ -53,6 +52,7 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
         self.num_envs = num_envs
         setup = Setup(self.task, values, partial(PlanarSimulation, n=num_envs, threads=threads))
         assert isinstance(setup.simulation, PlanarSimulation)
+        self._told = self.task.term_names, setup.simulation.estimating
         self.config, self.settings = setup.config, setup.settings
         self._frame_skip, self._material = frame_skip, setup.material
         self.simulation, self._actions, self._observer = setup.simulation, setup.actions, setup.observer
@@ -107,7 +107,7 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
         self._ready[rows] = self._over[rows] = False
         self._begin(rows, asked)
         self._observer.again()
-        infos = self.simulation.infos.some(rows, self.task.term_names)
+        infos = self.simulation.infos.some(rows, *self._told)
         return self._observer.read(), {**infos, **self.simulation.drawn.some(rows)}
 
     def step(self, actions: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
@@ -158,12 +158,12 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
         ended: dict[str, Any] = {}
         if self.autoreset_mode is AutoresetMode.SAME_STEP:
             rows = np.flatnonzero(over)
-            last = simulation.infos.some(rows, self.task.term_names)
-            ended = final(self._observer.present(), last, rows, self.num_envs)
+            last = simulation.infos.some(rows, *self._told)
+            ended = _final(self._observer.present(), last, rows, self.num_envs)
             self._begin(rows)
         else:
             self._over = over
-        infos = simulation.hand_over_infos().every(self.task.term_names)
+        infos = simulation.hand_over_infos().every(*self._told)
         infos |= {**ended, **simulation.drawn.some(rows)}
         return self._observer.read(), rewards, terminated, truncated, infos
 
@@ -234,6 +234,27 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
         self._observer.begin(rows)
         self._pictures.begin(rows)
         self._ready[rows] = True
+
+
+def _final(observations: Any, infos: dict[str, Any], rows: np.ndarray, n: int) -> dict[str, Any]:
+    """Infos that hold the last observations and infos of finished episodes.
+
+    Args:
+        observations: Observations of all environments: (n, k), or a dictionary of such arrays.
+        infos: Infos of the environments whose episodes have finished.
+        rows: Indices of these environments, (m,).
+        n: Number of environments.
+    """
+    if not rows.size:
+        return {}
+    last, over = np.full(n, None, dtype=object), np.zeros((2, n), dtype=bool)
+    for i in rows.tolist():
+        if isinstance(observations, dict):
+            last[i] = {group: values[i].copy() for group, values in observations.items()}
+        else:
+            last[i] = observations[i].copy()
+    over[:, rows] = True
+    return {"final_obs": last, "_final_obs": over[0], "final_info": infos, "_final_info": over[1]}
 
 
 def _without_scalar(arguments: Mapping[str, Any]) -> dict[str, Any]:

@@ -31,7 +31,7 @@ class Discrepancy(NamedTuple):
 
 
 def discrepancies(simulation: Source, row: int, history: History) -> list[Discrepancy]:
-    """Estimates of an environment that are off, or have no data.
+    """Estimates of an environment that are off, or have no data; none if there are no estimators.
 
     An estimate is off if it differs from the truth by more than its stated standard deviation, or by
     more than `LARGE`.
@@ -44,7 +44,9 @@ def discrepancies(simulation: Source, row: int, history: History) -> list[Discre
         row: Index of the environment.
         history: The episode so far.
     """
-    found = []
+    found: list[Discrepancy] = []
+    if not hasattr(simulation, "estimator"):
+        return found
     for k, name in ((1, "mu_c"), (0, "mu_s")):
         value, confidence, deviation = simulation.estimated[row, [k, 3 + k, 6 + k]].tolist()
         true = float(simulation.ground_truth[row, k])

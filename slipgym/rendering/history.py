@@ -38,7 +38,9 @@ class History:
 
     def __init__(self, simulation: Source, row: int, motion: Motion) -> None:
         self._simulation, self._row, self._motion = simulation, row, motion
-        self._estimates = simulation.estimator.estimates[2 * row], simulation.estimator.estimates[2 * row + 1]
+        pair = slice(2 * row, 2 * row + 2)
+        batch = getattr(simulation, "estimator", None)
+        self._estimates = None if batch is None else batch.estimates[pair]
         self.rows = np.full((int(simulation.episode["steps"][row]) + 1, len(COLUMNS)), math.nan)
         self.step_time = float(simulation.episode["step_time"][row])
         self.keep()
@@ -78,7 +80,6 @@ class History:
         row[4] = mu_c if confidence_c > 0.0 else math.nan
         row[5] = mu_s if confidence_s > 0.0 else math.nan
         row[7], row[6] = simulation.ground_truth[i, :2]
-        row[11], row[10] = simulation.estimated[i, 6:8]
-        first, second = self._estimates
-        row[8] = first["updates_mu_c"] + second["updates_mu_c"]
-        row[9] = first["events_mu_s"] + second["events_mu_s"]
+        if self._estimates is not None:
+            row[11], row[10] = simulation.estimated[i, 6:8]
+            row[8], row[9] = self._estimates["updates_mu_c"].sum(), self._estimates["events_mu_s"].sum()

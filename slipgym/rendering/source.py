@@ -22,8 +22,6 @@ class Source(Protocol):
     """The task."""
     plant: Plant
     """Worlds, pads, fingers and sensors."""
-    estimator: BatchEstimator
-    """Estimators of both fingers of each environment, (2n,)."""
     episode: np.ndarray
     """EPISODE (n,)."""
     task_part: np.ndarray
@@ -36,3 +34,8 @@ class Source(Protocol):
     """Name of every episode's material."""
     boxes: list[Box]
     """Its object."""
+
+    @property
+    def estimator(self) -> BatchEstimator:
+        """Estimators of both fingers of each environment, (2n,); missing where nothing is estimated."""
+        ...

@@ -40,6 +40,16 @@ def test_an_unknown_name_lists_the_valid_ones(name):
         estimator.make_batch(name, 2)
 
 
+@pytest.mark.parametrize("make", [estimator.make, lambda name: estimator.make_batch(name, 2)])
+def test_an_estimator_of_the_laboratory_says_where_it_is(make):
+    with pytest.raises(
+        ValueError, match=r'^"gru" is part of the laboratory: use "lab.*in a clone$'
+    ) as refused:
+        make("gru")
+    assert estimator.make(str(refused.value).split('"')[3]).name == "lab.learned_estimator.gru:SPECIFICATION"
+    assert "gru" not in estimator.names()
+
+
 def test_an_unknown_parameter_lists_the_valid_ones():
     with pytest.raises(ValueError, match=r"unknown parameter lambda_.*forgetting"):
         estimator.make("rls", lambda_=0.98)

@@ -14,7 +14,6 @@ HAS = {
     "ukf": set(SHAPES),
     "joint": {"covariance"},
     "disc": {"covariance"},
-    "gru": set(),
 }
 
 

@@ -16,7 +16,6 @@ FIELDS = [
     for kind in (
         estimator.AdaptiveParameters,
         estimator.RlsParameters,
-        estimator.GruParameters,
         estimator.JointParameters,
         estimator.DiscParameters,
         estimator.UkfParameters,
@@ -69,7 +68,7 @@ def test_the_files_that_the_pages_name_exist():
             "records.md",
         )
         for path in re.findall(
-            r"`((?:estimator|scripts|tests|examples)/[\w./]+\.\w+)`", (docs / page).read_text()
+            r"`((?:estimator|lab|scripts|tests|examples)/[\w./]+\.\w+)`", (docs / page).read_text()
         )
     }
     assert len(named) > 5

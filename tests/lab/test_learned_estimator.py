@@ -7,13 +7,14 @@ from typer.testing import CliRunner
 
 import estimator
 import policies
-from estimator.network.features import COLUMNS
-from estimator.network.weights import SHAPES, load
 from lab.learned_estimator import config
 from lab.learned_estimator.columns import Sequence, sequences
 from lab.learned_estimator.compare import compare, conditions, wide
 from lab.learned_estimator.episodes import READINGS, record
+from lab.learned_estimator.features import COLUMNS
+from lab.learned_estimator.gru import NAME as GRU
 from lab.learned_estimator.recorder import NAME
+from lab.learned_estimator.weights import SHAPES, load
 
 pytest.importorskip("torch")
 import torch
@@ -27,7 +28,7 @@ from lab.learned_estimator.run import WEIGHTS, train
 
 LINEAR = "slipgym:slipgym/LinearSlip-v0"
 TINY = {
-    **config.read("gru").model_dump(mode="json"),
+    **config.read().model_dump(mode="json"),
     "tasks": ["linear_slip"],
     "friction_sources": ["true"],
     "contacts": ["ellipsoid"],
@@ -80,7 +81,7 @@ def test_torch_and_the_compiled_estimator_agree(recordings):
     with torch.no_grad():
         found = Network(load())(torch.from_numpy(sequence.columns)[:, None])
     means, deviations = (np.asarray(each)[:, 0] for each in found)
-    est, kept = estimator.make("gru"), []
+    est, kept = estimator.make(GRU), []
     for k, row in enumerate(one.readings.tolist()):
         est.update((k + 1) / 120, row[:4], row[4:])
         state = est.batch.states[0]
@@ -156,9 +157,9 @@ def test_what_was_learned_until_an_interrupt_is_kept(tmp_path, monkeypatch):
 
 
 def test_environments_run_it_and_rows_equal_single_environments():
-    many = gym.make_vec(LINEAR, num_envs=3, sensors="lab", estimator="gru").unwrapped
+    many = gym.make_vec(LINEAR, num_envs=3, sensors="lab", estimator=GRU).unwrapped
     many.reset(seed=5)
-    one = gym.make(LINEAR, engine="planar", sensors="lab", estimator="gru").unwrapped
+    one = gym.make(LINEAR, engine="planar", sensors="lab", estimator=GRU).unwrapped
     one.reset(seed=7)
     for _ in range(14):
         action = np.full((3, 1), -1.0, np.float32)
@@ -205,7 +206,7 @@ def test_training_is_deterministic_and_its_weights_are_used(tmp_path):
     path = str(folders[0] / WEIGHTS)
     assert set(load(path)) == set(SHAPES)
     assert (folders[0] / "curve.csv").read_text().startswith("update,training,held_out\n6,")
-    entrants = {"gru": ("gru", {"weights": path}), "disc": ("disc", {})}
+    entrants = {"gru": (GRU, {"weights": path}), "disc": ("disc", {})}
     table = compare(training, entrants, rows=2, steps=60, progress=False)
     assert list(table["condition"].unique()) == list(conditions(training))
     assert len(table) == 3 * len(entrants) * len(conditions(training))

@@ -49,7 +49,8 @@ def test_help_teaches(invoke, script, words):
     ("arguments", "message"),
     [
         (["nowhere.csv"], "no such file"),
-        ([SHIPPED, "--estimator", "rlss"], "unknown estimator 'rlss'; valid: adaptive, disc, gru, joint"),
+        ([SHIPPED, "--estimator", "rlss"], "unknown estimator 'rlss'; valid: adaptive, disc, joint, rls"),
+        ([SHIPPED, "--estimator", "gru"], '"gru" is part of the laboratory'),
         ([SHIPPED, "--set", "lambda=0.9"], "unknown parameter lambda"),
         ([SHIPPED, "--set", "n_a"], "must be name=value"),
         ([SHIPPED, "--columns", "nowhere.yaml"], "nowhere.yaml"),

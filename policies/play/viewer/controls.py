@@ -160,14 +160,14 @@ def status(session: Session) -> str:
     simulation, info = session.env.simulation, session.info
     state = session.outcome.ending if session.outcome else "slips" if slips(info["slip_twist"]) else "sticks"
     about = f"{simulation.materials[0]}, {1e3 * float(simulation.plant.world['mass'][0]):.0f} g"
-    slip, true, estimated = info["slip"], info["true"], info["estimated"]
-    estimate = f"{estimated[1]:.3f} ± {simulation.estimated[0, 7]:.3f}"
+    slip, true, estimated = info["slip"], info["true"], simulation.estimated[0]
+    estimate = f"{estimated[1]:.3f} ± {estimated[7]:.3f}" if estimated[4] > 0.0 else "no data yet"
     rows = (
         ("policy", session.policy),
         ("object", about),
         ("slip", f"{1e3 * math.hypot(slip[0], slip[1]):.1f} mm, {math.degrees(slip[2]) + 0.0:.1f}&deg;"),
         ("mu_c true", f"{true[1]:.3f}"),
-        ("mu_c estimated", estimate if simulation.estimated[0, 4] > 0.0 else "no data yet"),
+        ("mu_c estimated", estimate if simulation.estimating else "no estimator"),
         ("set by hand", ", ".join(sorted(set(session.values) - session.pending)) or "nothing"),
         ("next episode", ", ".join(sorted(session.pending)) or "as this one"),
     )

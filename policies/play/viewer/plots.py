@@ -93,7 +93,7 @@ class Plots:
         self._friction.data = _friction(history)
         self._grip.data = curves(history, *_GRIP)
         self._path.data = curves(history, *_PATH)
-        self._off.content = _notes(self._session.env.discrepancies())
+        self._off.content = _notes(self._session.env.discrepancies(), self._session.env.simulation.estimating)
         self._dome.content = self._surface.draw(self._session.env.simulation, self._session.info)
 
 
@@ -123,14 +123,15 @@ def _friction(history: History) -> tuple[np.ndarray, ...]:
     return time, *bands, *values[:2], true_c, true_s, zero, zero + 1.2 * true_s.max()
 
 
-def _notes(off: Sequence[Discrepancy]) -> str:
+def _notes(off: Sequence[Discrepancy], estimating: bool) -> str:
     """Estimates that are off, and why, as HTML, of a height that keeps the plots in place."""
     lines = [
         f'<div data-name="off {name}"><b style="color:{GREEN if name == "mu_s" else ORANGE}">{name}</b> '
         f"{html.escape(error)}: {html.escape(reason)}</div>"
         for name, error, reason in off
     ]
-    lines = lines or [f'<div style="color:{GREY}">no estimate is off</div>']
+    none = "no estimate is off" if estimating else "nothing is estimated"
+    lines = lines or [f'<div style="color:{GREY}">{none}</div>']
     style = "font-size:11px;line-height:1.25;min-height:5em;padding:0 10px"
     return f'<div style="{style}">{"".join(lines)}</div>'
 

@@ -234,6 +234,7 @@ class Session:
         name = self.values.get("policy", self.policy)
         policy = policies.load(name)
         keywords = {**policies.modes(policy), **self._keywords}
+        policies.check_estimates(name, policy, keywords)
         if "latency" in self.values:
             given = keywords.get("config")
             overrides = {"sensors": {"slip": {"latency_samples": self.values["latency"]}}}

@@ -66,6 +66,8 @@ class Imitation(Frozen):
             raise ValueError("environment.history must be 0: the LSTM layer is the network's memory")
         if self.teacher != "truth" and self.environment.friction_source not in ("none", "estimated"):
             raise ValueError(f"teacher {self.teacher!r} needs environment.friction_source none or estimated")
+        if self.teacher != "truth" and self.environment.estimator is None:
+            raise ValueError(f"teacher {self.teacher!r} acts on estimates: environment.estimator is null")
         if self.environment.observation_mode == "sensor":
             raise ValueError(
                 "environment.observation_mode must be 'flat'; friction_source 'none' shows sensors"

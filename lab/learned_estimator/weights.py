@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.network.cell import HIDDEN, OUTPUTS, TARGETS
-from estimator.network.features import COLUMNS, REACH
 from estimator.plain_files import check_regular
+from lab.learned_estimator.cell import HIDDEN, OUTPUTS, TARGETS
+from lab.learned_estimator.features import COLUMNS, REACH
 
 OWN = Path(__file__).with_name("gru.npz")
-"""The weights that come with the package; docs/learned_estimator.md says how they were made."""
+"""The weights that come with the clone; docs/learned_estimator.md says how they were made."""
 LIMIT = 2**20
 """Largest file, packed and unpacked [bytes]."""
 LARGEST_SUM = 1e30
@@ -45,7 +45,7 @@ def load(path: str | os.PathLike[str] = "") -> Tensors:
     """Reads the weights of a network.
 
     Args:
-        path: An npz file; empty for the weights that come with the package.
+        path: An npz file; empty for the weights that come with the clone.
 
     Raises:
         FileNotFoundError: There is no such file.

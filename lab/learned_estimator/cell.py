@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from estimator._numba.caching import njit
-from estimator.network.features import COLUMNS
+from lab.learned_estimator.features import COLUMNS
 
 HIDDEN = 40
 """Size of the hidden state."""
@@ -61,7 +61,7 @@ def advance(p, scratch, hidden, mean):
     """Takes the columns of a sample into the hidden state and the averages.
 
     Args:
-        p: Record with the tensors of `estimator.network.weights.SHAPES`.
+        p: Record with the tensors of `lab.learned_estimator.weights.SHAPES`.
         scratch: From `working_arrays`. The first holds the columns, which are normalised in place. The others
             are written: the gates reset, update and new (3 HIDDEN,); what the hidden state adds to their
             arguments (3 HIDDEN,); weights, measurements and logarithms of relative standard deviations,

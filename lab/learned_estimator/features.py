@@ -95,7 +95,7 @@ def sense(state, p, wrench, twist, elapsed, x):
     """Takes a readable sample.
 
     Args:
-        state: Record with the fields of `estimator.gru.STATE`; changed in place.
+        state: Record with the fields of `lab.learned_estimator.gru.STATE`; changed in place.
         p: Parameters.
         wrench: f_x, f_y, f_n, tau as read [N, N, N, N m].
         twist: v_x, v_y, omega [m/s, m/s, rad/s].

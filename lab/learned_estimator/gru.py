@@ -1,8 +1,8 @@
 """The "gru" estimator: a recurrent network that was trained on simulated slips.
 
-The network (`estimator.network`) reads the samples of a finger one by one and states mu_s, mu_c and r with
-standard deviations, which it learned by their likelihood. Its weights are a file of plain numbers, which
-travel in the record of parameters, so that other weights need no other program.
+The network (`lab.learned_estimator.cell`) reads the samples of a finger one by one and states mu_s, mu_c and
+r with standard deviations, which it learned by their likelihood. Its weights are a file of plain numbers,
+which travel in the record of parameters, so that other weights need no other program.
 """
 
 import dataclasses
@@ -15,13 +15,16 @@ from numpy.typing import NDArray
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
 from estimator.estimate import confidence_of
-from estimator.network.cell import HIDDEN, LEVER, MU_C, MU_S, TARGETS, R, advance, working_arrays
-from estimator.network.features import TAPS, sense
-from estimator.network.weights import SHAPES, load
 from estimator.parameters import parameter
 from estimator.registry import Specification
 from estimator.sample import clamped, publish, readable
 from estimator.stick_slip import STICK_SLIP_STATE, StickSlipParameters, start
+from lab.learned_estimator.cell import HIDDEN, LEVER, MU_C, MU_S, TARGETS, R, advance, working_arrays
+from lab.learned_estimator.features import TAPS, sense
+from lab.learned_estimator.weights import SHAPES, load
+
+NAME = "lab.learned_estimator.gru:SPECIFICATION"
+"""Its name for `estimator.make` and the environments."""
 
 _confidence = njit(confidence_of, error_model="numpy")
 
@@ -160,4 +163,4 @@ def update_batch(states, parameters, t, wrenches, twists, estimates):
         _update(states[i], scratch, p, t, wrench, twist, estimates[i])
 
 
-SPECIFICATION = Specification("gru", GruParameters, initial_states, update_batch)
+SPECIFICATION = Specification(NAME, GruParameters, initial_states, update_batch)

@@ -8,21 +8,22 @@ import numpy as np
 import pytest
 
 import estimator
-from estimator.network import weights
+from lab.learned_estimator import weights
+from lab.learned_estimator.gru import NAME
 from tests.estimator.exact_records import RATE, ellipsoid, planar, run
 
 SLIP = ellipsoid(120, *planar(0.7, 0.008), mu_c=0.4, r=0.008)
 
 
 def stored(**changes):
-    """The bytes of an npz of the package's weights with some entries replaced; None leaves one out."""
+    """The bytes of an npz of the clone's weights with some entries replaced; None leaves one out."""
     entries = {"about": np.array("a note"), **weights.load(), **changes}
     stream = io.BytesIO()
     np.savez(stream, **{name: value for name, value in entries.items() if value is not None})
     return stream.getvalue()
 
 
-def test_the_weights_of_the_package_are_small_and_say_where_they_come_from():
+def test_the_weights_of_the_clone_are_small_and_say_where_they_come_from():
     assert weights.OWN.stat().st_size < 300_000
     assert "slipgym train-estimator --seed" in weights.note()
     assert "Licence" in weights.note()
@@ -54,7 +55,7 @@ def test_a_damaged_file_is_refused_and_named(tmp_path, data, message):
     path = tmp_path / "mine.npz"
     path.write_bytes(data)
     with pytest.raises(ValueError, match=message) as caught:
-        estimator.make("gru", weights=str(path))
+        estimator.make(NAME, weights=str(path))
     assert str(path) in str(caught.value)
 
 
@@ -63,20 +64,20 @@ def test_a_file_that_unpacks_to_too_much_is_refused(tmp_path):
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("start.npy", b"\x00" * (2 * weights.LIMIT))
     with pytest.raises(ValueError, match="unpacks to more than"):
-        estimator.make("gru", weights=str(path))
+        estimator.make(NAME, weights=str(path))
 
 
 @pytest.mark.parametrize("value", [3, None, True])
 def test_the_file_is_a_text(value):
     with pytest.raises(ValueError, match=f"weights = {value}: expected a text"):
-        estimator.make("gru", weights=value)
+        estimator.make(NAME, weights=value)
 
 
 def test_a_file_that_is_not_there_or_a_folder_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"none\.npz"):
-        estimator.make("gru", weights=str(tmp_path / "a folder of a long name" / ("b" * 150) / "none.npz"))
+        estimator.make(NAME, weights=str(tmp_path / "a folder of a long name" / ("b" * 150) / "none.npz"))
     with pytest.raises(ValueError, match="no regular file"):
-        estimator.make("gru", weights=str(tmp_path))
+        estimator.make(NAME, weights=str(tmp_path))
 
 
 def test_weights_are_saved_and_used(tmp_path):
@@ -88,7 +89,7 @@ def test_weights_are_saved_and_used(tmp_path):
         weights.save(path, tensors, "a note")
     assert paths[0].read_bytes() == paths[1].read_bytes()
     assert weights.note(paths[0]) == "a note"
-    e = run(estimator.make("gru", weights=str(paths[0])), SLIP)[-1]
+    e = run(estimator.make(NAME, weights=str(paths[0])), SLIP)[-1]
     assert (e.mu_s, e.mu_c, e.r) == pytest.approx((0.6, 0.45, 0.007), rel=1e-5)
     assert (e.sd_mu_s / e.mu_s, e.sd_mu_c / e.mu_c, e.sd_r / e.r) == pytest.approx((0.1, 0.1, 0.1), rel=1e-5)
     assert (e.confidence_mu_c, e.confidence_r) == pytest.approx((0.5, 0.5), rel=1e-5)
@@ -98,7 +99,7 @@ def test_weights_are_saved_and_used(tmp_path):
 
 
 def test_values_are_start_values_until_a_slip_shows_them():
-    est = estimator.make("gru")
+    est = estimator.make(NAME)
     for k in range(60):
         e = est.update(k / RATE, (1.0, 0.0, 5.0, 0.01), (0.0, 0.0, 0.0))
     assert (e.mu_s, e.mu_c, e.r) == (0.9, 0.7, 0.01)
@@ -113,7 +114,7 @@ def test_values_are_start_values_until_a_slip_shows_them():
 def test_frame_mirroring_and_sign_do_not_matter():
     angle = 0.7
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    first, second = estimator.make("gru"), estimator.make("gru")
+    first, second = estimator.make(NAME), estimator.make(NAME)
     for t, wrench, twist in SLIP:
         a = first.update(t, wrench, twist)
         f, v = turn @ np.asarray(wrench[:2]), turn @ np.asarray(twist[:2])
@@ -123,7 +124,7 @@ def test_frame_mirroring_and_sign_do_not_matter():
 
 def test_readings_of_the_open_gripper_are_subtracted():
     zero = np.array([0.1, -0.15, 0.2, 1e-3])
-    clean, biased = estimator.make("gru"), estimator.make("gru")
+    clean, biased = estimator.make(NAME), estimator.make(NAME)
     for k in range(24):
         clean.update(k / RATE, np.zeros(4), np.zeros(3))
         biased.update(k / RATE, zero, np.zeros(3))

@@ -1,1 +1,0 @@
-"""Parts of the "gru" estimator: its columns, the recurrent network, the file of its weights."""
