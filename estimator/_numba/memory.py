@@ -1,4 +1,4 @@
-"""Memory for compiled functions: matrices on the stack, and lines that are prefetched."""
+"""Memory for compiled functions: matrices on the stack, lines that are prefetched, arrays that are lent."""
 
 from typing import Any
 
@@ -48,6 +48,36 @@ def _making(_: Any, rows: Any, columns: Any) -> Any:
     return kind(rows, columns), generate
 
 
+def without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """An array, or a tuple, of which nothing owns the arrays: numba counts no references to them.
+
+    Args:
+        context: Numba's.
+        builder: LLVM's.
+        kind: Numba type.
+        value: LLVM value of this type.
+    """
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        for name in ("meminfo", "parent"):
+            setattr(array, name, cgutils.get_null_value(getattr(array, name).type))
+        value = array._getvalue()
+    elif isinstance(kind, types.BaseTuple):
+        for k, each in enumerate(kind):
+            part = without_owner(context, builder, each, builder.extract_value(value, k))
+            value = builder.insert_value(value, part, k)
+    return value
+
+
+def _lending(_: Any, value: Any) -> Any:
+    """Type and code of a function that returns its argument, of which nothing owns the arrays."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return without_owner(context, builder, value, *arguments)
+
+    return value(value), generate
+
+
 ask: Any = intrinsic(_asking)
 """Prefetches the line that lies some bytes after the start of an array: `ask(array, offset)`.
 
@@ -57,4 +87,10 @@ matrix: Any = intrinsic(prefer_literal=True)(_making)
 """A matrix of float64, not initialised, for the duration of a call: `matrix(rows, columns)`, both constants.
 
 It costs no allocation, and the compiler knows that nothing else lies in its memory.
+"""
+lent: Any = intrinsic(_lending)
+"""The same array, or tuple with arrays, for the duration of a call: `lent(value)`.
+
+Numba counts a reference wherever a view of an array begins or ends, with an atomic operation. To what is lent
+it counts none: the caller keeps the array alive, and a function must not return it.
 """

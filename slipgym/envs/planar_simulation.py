@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numba import types
 
+from estimator._numba.memory import lent
 from slipgym._numba.calls import entry_point
 from slipgym._numba.compiled import patience, pointed, unlocked
 from slipgym._numba.fixed import Fixed, FixedType, opened
@@ -54,6 +55,7 @@ def _move(state, cells, force_torque, lo, hi):
         lo: First row.
         hi: Row after the last.
     """
+    state, cells, force_torque = lent((state, cells, force_torque))
     for i in range(lo, hi):
         ahead = i + hi - lo  # the same row of the next block
         fetch(state.worlds, ahead, ahead + 1)
@@ -89,6 +91,7 @@ def _drive(fixed, buffers, action, results, skip, lo, hi):
         The first row with a number that is not finite; -1 if there is none.
     """
     stages, move, state, cells, force_torque = opened(fixed)
+    buffers, action, results = lent((buffers, action, results))
     active = action[2]
     numbers, flags, terms, rewards, terminated, truncated = results
     episodes = state.episodes
