@@ -1,4 +1,4 @@
-"""Memory for compiled functions: matrices on the stack, and lines that are prefetched."""
+"""Memory for compiled functions: matrices on the stack, lines that are prefetched, arrays that are lent."""
 
 from typing import Any
 
@@ -34,18 +34,64 @@ def _making(_: Any, rows: Any, columns: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, _: Any) -> Any:
         memory = cgutils.alloca_once(builder, ir.ArrayType(ir.DoubleType(), m * n))
         memory.align = LINE
-        array, whole = context.make_array(kind)(context, builder), context.get_value_type(types.intp)
-        context.populate_array(
-            array,
-            data=builder.bitcast(memory, array.data.type),
-            shape=cgutils.pack_array(builder, [whole(m), whole(n)]),
-            strides=cgutils.pack_array(builder, [whole(8 * n), whole(8)]),
-            itemsize=whole(8),
-            meminfo=None,
-        )
-        return array._getvalue()
+        return _array(context, builder, kind, memory, (m, n), (8 * n, 8))
 
     return kind(rows, columns), generate
+
+
+def _array(context: Any, builder: Any, kind: Any, memory: Any, shape: Any, strides: Any) -> Any:
+    """An array of 8-byte numbers at an address."""
+    array, whole = context.make_array(kind)(context, builder), context.get_value_type(types.intp)
+    context.populate_array(
+        array,
+        data=builder.bitcast(memory, array.data.type),
+        shape=cgutils.pack_array(builder, [whole(length) for length in shape]),
+        strides=cgutils.pack_array(builder, [whole(step) for step in strides]),
+        itemsize=whole(8),
+        meminfo=None,
+    )
+    return array._getvalue()
+
+
+def _reading(_: Any, record: Any, count: Any) -> Any:
+    """Type and code of a function that returns the first numbers of a record; how many is a literal."""
+    kind = types.Array(types.int64, 1, "C")
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _array(context, builder, kind, arguments[0], (count.literal_value,), (8,))
+
+    return kind(record, count), generate
+
+
+def without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """An array, or a tuple, of which nothing owns the arrays: numba counts no references to them.
+
+    Args:
+        context: Numba's.
+        builder: LLVM's.
+        kind: Numba type.
+        value: LLVM value of this type.
+    """
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        for name in ("meminfo", "parent"):
+            setattr(array, name, cgutils.get_null_value(getattr(array, name).type))
+        value = array._getvalue()
+    elif isinstance(kind, types.BaseTuple):
+        members: Any = kind
+        for k, each in enumerate(members):
+            part = without_owner(context, builder, each, builder.extract_value(value, k))
+            value = builder.insert_value(value, part, k)
+    return value
+
+
+def _lending(_: Any, value: Any) -> Any:
+    """Type and code of a function that returns its argument, of which nothing owns the arrays."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return without_owner(context, builder, value, *arguments)
+
+    return value(value), generate
 
 
 ask: Any = intrinsic(_asking)
@@ -57,4 +103,15 @@ matrix: Any = intrinsic(prefer_literal=True)(_making)
 """A matrix of float64, not initialised, for the duration of a call: `matrix(rows, columns)`, both constants.
 
 It costs no allocation, and the compiler knows that nothing else lies in its memory.
+"""
+words: Any = intrinsic(prefer_literal=True)(_reading)
+"""The first 8-byte numbers of a record, whatever their types, as int64: `words(record, 3)`.
+
+The compiler goes over an array several numbers at a time, and over fields one by one.
+"""
+lent: Any = intrinsic(_lending)
+"""The same array, or tuple with arrays, for the duration of a call: `lent(value)`.
+
+Numba counts a reference wherever a view of an array begins or ends, with an atomic operation. To what is lent
+it counts none: the caller keeps the array alive, and a function must not return it.
 """

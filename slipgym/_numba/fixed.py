@@ -15,6 +15,7 @@ from numba import typeof, types
 from numba.core.registry import cpu_target
 from numba.extending import NativeValue, intrinsic, models, register_model, typeof_impl, unbox
 
+from estimator._numba.memory import without_owner
 from slipgym._numba.pointers import Pointer
 
 
@@ -85,7 +86,8 @@ def _opening(_: Any, fixed: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         kind = signature.return_type
-        return builder.load(builder.bitcast(arguments[0], context.get_value_type(kind).as_pointer()))
+        value = builder.load(builder.bitcast(arguments[0], context.get_value_type(kind).as_pointer()))
+        return without_owner(context, builder, kind, value)
 
     return fixed.kind(fixed), generate
 

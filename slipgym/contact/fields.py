@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from estimator._numba.memory import words
 from slipgym._numba.compiled import compiled
 from slipgym._numba.generate import generate
 
@@ -30,16 +31,22 @@ def elements(*parts: np.dtype) -> list[str]:
 
 
 def comparison(name: str, parts: tuple[np.dtype, ...], file: str, doc: str) -> Any:
-    """Generate a compiled function (first, second) -> bool: whether two records agree in all fields of parts.
+    """Generate a compiled function (first, second) -> bool: whether two records agree in all bits of parts.
 
     Args:
         name: Name of the function.
-        parts: Parts of the records.
+        parts: Parts of 8-byte numbers that the records begin with.
         file: `__file__` of the module that declares them.
         doc: Docstring.
     """
-    body = [f"if first.{each} != second.{each}:\n    return False" for each in elements(*parts)]
-    return generate(name, ("first", "second"), [*body, "return True"], {}, compiled, file, doc)
+    count = len(elements(*parts))
+    body = [
+        f"one, two, differ = words(first, {count}), words(second, {count}), 0",
+        f"for k in range({count}):",
+        "    differ += one[k] != two[k]",
+        "return differ == 0",
+    ]
+    return generate(name, ("first", "second"), body, {"words": words}, compiled, file, doc)
 
 
 def transfer(name: str, parts: tuple[np.dtype, ...], file: str, doc: str) -> Any:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from estimator._numba.memory import lent
 from slipgym._numba.compiled import pointed, unlocked
 from slipgym._numba.fixed import opened
 from slipgym.envs.actions import interpret
@@ -88,7 +89,7 @@ def measure_rows(state, force_torque, lo, hi):
         lo: First row.
         hi: Row after the last.
     """
-    rows = slice(lo, hi)
+    rows, (state, force_torque) = slice(lo, hi), lent((state, force_torque))
     measure(
         state.worlds[rows], force_torque[rows], state.slip_sensors[rows], state.wrenches[rows],
         state.twists[rows],
@@ -107,6 +108,7 @@ def estimate(update, state, lo, hi):
         lo: First row.
         hi: Row after the last.
     """
+    state = lent(state)
     for i in range(lo, hi):
         state.episodes[i].step += 1
         pair = slice(2 * i, 2 * i + 2)
@@ -130,7 +132,7 @@ def evaluate(evaluate_step, state, lo, hi):
         lo: First row.
         hi: Row after the last.
     """
-    rows = slice(lo, hi)
+    rows, state = slice(lo, hi), lent(state)
     combine(state.estimates[2 * lo : 2 * hi], state.per_finger[rows], state.estimated[rows])
     guess(state.estimated[rows], state.episodes[rows])
     evaluate_step(state.episodes[rows], state.worlds[rows], state.fingers[rows], state.task_part[rows])

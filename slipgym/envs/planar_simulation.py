@@ -9,7 +9,10 @@ from typing import Any
 import numpy as np
 from numba import types
 
+from estimator._numba.memory import lent
+from slipgym._numba.calls import entry_point
 from slipgym._numba.compiled import patience, pointed, unlocked
+from slipgym._numba.fixed import Fixed, FixedType, opened
 from slipgym._numba.prefetch import fetch
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.nan_guard import Guard, sound
@@ -52,6 +55,7 @@ def _move(state, cells, force_torque, lo, hi):
         lo: First row.
         hi: Row after the last.
     """
+    state, cells, force_torque = lent((state, cells, force_torque))
     for i in range(lo, hi):
         ahead = i + hi - lo  # the same row of the next block
         fetch(state.worlds, ahead, ahead + 1)
@@ -66,17 +70,15 @@ def _move(state, cells, force_torque, lo, hi):
 
 
 @unlocked
-def _drive(stages, move, state, contact, buffers, action, results, skip, lo, hi):
+def _drive(fixed, buffers, action, results, skip, lo, hi):
     """Make `skip` control steps in the active rows among lo to hi; a row stops when its episode ends.
 
     Rewards, ends of episodes and infos are gathered here, while the rows are in the cache: gathering them
     later from thousands of records would cost a cache miss each.
 
     Args:
-        stages: `Linked`.
-        move: `_move`.
-        state: `BatchState`.
-        contact: Patches and force/torque sensors, as in `_move`.
+        fixed: `Fixed` pointers to the stages and to `_move`, and the arguments of `_move`. References to its
+            arrays are not counted, which would take longer than a sub-step.
         buffers: `ObservationBuffers`.
         action: Actions (n, m), their meaning COMPONENT (m,), and which rows are active (n,).
         results: Output: infos as in `InfoBuffer`, the sums of the reward terms (n,), and whether each episode
@@ -88,7 +90,8 @@ def _drive(stages, move, state, contact, buffers, action, results, skip, lo, hi)
     Returns:
         The first row with a number that is not finite; -1 if there is none.
     """
-    cells, force_torque = contact
+    stages, move, state, cells, force_torque = opened(fixed)
+    buffers, action, results = lent((buffers, action, results))
     active = action[2]
     numbers, flags, terms, rewards, terminated, truncated = results
     episodes = state.episodes
@@ -138,21 +141,18 @@ def _drive(stages, move, state, contact, buffers, action, results, skip, lo, hi)
 
 
 @unlocked
-def _start(stages, move, starts, values, state, contact, begun, infos):
+def _start(fixed, starts, values, begun, infos):
     """Begin episodes.
 
     Args:
-        stages: `Linked`.
-        move: `_move`.
+        fixed: As in `_drive`.
         starts: START (m,).
         values: VALUES (m,).
-        state: `BatchState` of all rows.
-        contact: Patches and force/torque sensors, as in `_move`.
         begun: Hardware and patches of `equip`, and of both fingers the initial states of the estimators, as
             bytes, and estimates.
         infos: Output, see `InfoBuffer`.
     """
-    cells, force_torque = contact
+    stages, move, state, cells, force_torque = opened(fixed)
     hardware, patches, fresh = begun
     stages.equip(starts, values, hardware, patches, state, cells, force_torque)
     grip(starts, state.episodes, state.worlds, state.pads, cells, state.fingers)
@@ -170,34 +170,23 @@ def _start(stages, move, starts, values, state, contact, begun, infos):
 
 
 @cache
-def compiled_batch(task: Any, update: Any, force_torque: np.dtype, cells: int) -> tuple[Any, Any]:
-    """Return the compiled functions that step and reset environments of the planar engine.
-
-    The first call on a machine compiles them, see docs/numba.md.
-
-    Args:
-        task: The task.
-        update: The estimator's compiled `update_batch`.
-        force_torque: Dtype of the force/torque sensors.
-        cells: Dimensions of `slipgym.world.plant.Plant.cells`, 0 for None.
-
-    Returns:
-        Functions of the arguments of `_drive` and `_start` but the first two.
-    """
+def _compiled_batch(
+    task: Any, update: Any, force_torque: np.dtype, cells: int
+) -> tuple[tuple[Any, ...], Any, Callable[..., Any], Callable[..., Any]]:
+    """Pointers to the stages and `_move`, the type of what is fixed, and programs of the other two."""
     stages = compiled_stages(task, update, force_torque, cells)
-    contact = types.Tuple([cells_type(cells), array(force_torque, 2)])
+    plant = STATE, cells_type(cells), array(force_torque, 2)
+    rows = WHOLE, WHOLE
     with patience(f"the batch of {task.name}", 3) as one_more:
-        rows = WHOLE, WHOLE
-        move = Program(_move, types.void(STATE, *contact.types, *rows))
+        move = Program(_move, types.void(*plant, *rows))
         one_more()
+        kind = types.Tuple([stages.kind, move.known, *plant])
         results = types.Tuple([*INFOS.types, F1, FLAGS, FLAGS])
-        arguments = STATE, contact, BUFFERS, ACTION, results, WHOLE
-        drive = stages.program(_drive, WHOLE, move.known, *arguments, *rows)
+        drive = entry_point(_drive, (FixedType(kind), BUFFERS, ACTION, results, WHOLE, *rows))
         one_more()
         begun = types.Tuple([array(HARDWARE), F3, FRESH])
-        arguments = array(START), VALUES_TYPE, STATE, contact, begun, INFOS
-        start = stages.program(_start, types.void, move.known, *arguments)
-    return partial(drive, move.pointer), partial(start, move.pointer)
+        start = entry_point(_start, (FixedType(kind), array(START), VALUES_TYPE, begun, INFOS))
+    return (stages.linked, move.pointer), kind, drive, start
 
 
 class PlanarSimulation(Simulation):
@@ -237,8 +226,9 @@ class PlanarSimulation(Simulation):
         self._threads = Threads(n, threads)
         self._closed = False
         self._blank()
-        self._drive, self._start = compiled_batch(*self._kinds)
-        self._contact = self.plant.cells, self.plant.force_torque
+        pointers, kind, drive, start = _compiled_batch(*self._kinds)
+        fixed = Fixed((*pointers, self.state, self.plant.cells, self.plant.force_torque), kind)
+        self._drive, self._start = partial(drive, fixed), partial(start, fixed)
         self._begun = *self._hardware, self._fresh
 
     def step(
@@ -266,7 +256,7 @@ class PlanarSimulation(Simulation):
         results = *self.infos, self.rewards, self.terminated, self.truncated
 
         def part(lo: int, hi: int) -> int:
-            return self._drive(self.state, self._contact, buffers, action, results, skip, lo, hi)
+            return self._drive(buffers, action, results, skip, lo, hi)
 
         for bad in self._threads.run(part, meanwhile):
             if bad >= 0:
@@ -283,7 +273,7 @@ class PlanarSimulation(Simulation):
         self._closed = True
 
     def _begin(self, starts: np.ndarray, values: np.ndarray) -> None:
-        self._start(starts, values, self.state, self._contact, self._begun, self.infos)
+        self._start(starts, values, self._begun, self.infos)
 
     def _blank(self) -> None:
         """Make new arrays for the results of a step: the caller owns those of the last step."""

@@ -191,17 +191,6 @@ class Stages:
         self.look_at = partial(look_at, self.linked.look)
         self.report, self.note = self.calls["report"], self.calls["note"]
 
-    def program(self, function: Any, returned: Any, *arguments: Any) -> Callable[..., Any]:
-        """Compile a function that takes `Linked` first; returns a function of its other arguments.
-
-        Args:
-            function: The function.
-            returned: Type of its result.
-            *arguments: Types of its other arguments.
-        """
-        function.compile(returned(self.kind, *arguments))
-        return partial(entry_point(function, (self.kind, *arguments)), self.linked)
-
 
 @cache
 def compiled_stages(task: Any, update: Any, force_torque: np.dtype, cells: int) -> Stages:
