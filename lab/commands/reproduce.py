@@ -44,10 +44,7 @@ def profile(
     """The simulation figure: a uniform disc under a velocity profile, exact and with realistic sensors."""
     from lab.reproduction import reproduce_profile
 
-    folder = _made(reproduce_profile, output, seeds, seed)
-    for name in ("phases.md", "events.md"):
-        typer.echo(f"\n{name}\n{(folder / name).read_text(encoding='utf-8').rstrip()}")
-    typer.echo(f"\nLook at:\n  {folder / 'ideal.png'}\n  {folder / 'realistic.png'}")
+    _report(reproduce_profile, output, seeds, seed)
 
 
 @app.command()
