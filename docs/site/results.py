@@ -18,6 +18,8 @@ def shown(text: str) -> str:
     _, head, content = text.split("\n\n", 2)
     printed = next(line for line in head.splitlines() if line.startswith("printed: "))
     content = re.sub(r"^#+ (.+)$", r"**\1**", content.strip("\n"), flags=re.MULTILINE)
+    if not content:
+        return f"*{printed.capitalize()}*"
     if not re.search(r"^\| ", content, re.MULTILINE):
         content = f"```text\n{content}\n```"
     return f"*{printed.capitalize()}*\n\n{content}"

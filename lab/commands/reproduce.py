@@ -12,6 +12,7 @@ Examples:\n
   slipgym reproduce coupling
   slipgym reproduce linear --trials 2
   slipgym reproduce planar --contact ellipsoid
+  slipgym reproduce planar --pads --trials 3
 """
 app = typer.Typer(epilog=EPILOG, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 Output = Annotated[Path, typer.Option(help="Folder for the run's own folder.")]
@@ -31,10 +32,7 @@ def coupling(output: Output = Path("runs")) -> None:
     """The coupling of mu_c and r: fixed-point map, explicit iteration, lock-out from start values."""
     from lab.reproduction import reproduce_coupling
 
-    folder = _made(reproduce_coupling, output)
-    for name in ("slopes.csv", "lock_out.csv"):
-        typer.echo(f"\n{name}\n{(folder / name).read_text().rstrip()}")
-    typer.echo(f"\nLook at:\n  {folder / 'map.png'}\n  {folder / 'lock_out.png'}")
+    _report(reproduce_coupling, output)
 
 
 @app.command()
@@ -46,10 +44,7 @@ def profile(
     """The simulation figure: a uniform disc under a velocity profile, exact and with realistic sensors."""
     from lab.reproduction import reproduce_profile
 
-    folder = _made(reproduce_profile, output, seeds, seed)
-    for name in ("phases.md", "events.md"):
-        typer.echo(f"\n{name}\n{(folder / name).read_text(encoding='utf-8').rstrip()}")
-    typer.echo(f"\nLook at:\n  {folder / 'ideal.png'}\n  {folder / 'realistic.png'}")
+    _report(reproduce_profile, output, seeds, seed)
 
 
 @app.command()
@@ -86,19 +81,27 @@ def planar(
     jobs: Jobs = -1,
     seed: Seed = 0,
     contact: Contact = "distributed",
+    pads: Annotated[
+        bool, typer.Option("--pads", help="On rigid, Hertz, rim, soft and shifted pads; errors alone.")
+    ] = False,
     output: Output = Path("runs"),
 ) -> None:
     """Planar motion, 40 trials: the gripper turns round a hanging object; beside the paper's table."""
-    from lab.reproduction import reproduce_planar
+    from lab.reproduction import reproduce_planar, reproduce_planar_pads
 
-    _report(reproduce_planar, output, trials, jobs, seed, contact)
+    if pads and contact != "distributed":
+        raise typer.BadParameter(f"--contact {contact}: --pads has contacts of its own")
+    if pads:
+        _report(reproduce_planar_pads, output, trials, jobs, seed)
+    else:
+        _report(reproduce_planar, output, trials, jobs, seed, contact)
 
 
 def _report(reproduce: Callable[..., Path], output: Path, *arguments: object) -> None:
     """Runs an experiment, prints its tables and where its figures are."""
     folder = _made(reproduce, output, *arguments)
     typer.echo("\n" + (folder / "table.md").read_text(encoding="utf-8") + "\nLook at:")
-    for path in sorted(folder.glob("*.png")):
+    for path in sorted(folder.glob("*.png")) or [folder / "trials.csv"]:
         typer.echo(f"  {path}")
 
 

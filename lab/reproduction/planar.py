@@ -15,6 +15,7 @@ from lab.reproduction.hanging import TASK
 from lab.reproduction.published import TABLES
 from lab.reproduction.records import Record, RecordKeeper
 from policies.evaluation.plan import seed as seed_of
+from slipgym.config import Overrides
 from slipgym.envs.bullet_simulation import BulletSimulation
 from slipgym.tasks import configure
 
@@ -47,16 +48,30 @@ def reproduce_planar(
     Raises:
         ValueError: An argument is not allowed.
     """
-    scenarios = [
+    campaign = Campaign("planar", record_planar, {"contact": contact}, seed)
+    return reproduce(campaign, scenarios(trials, seed), {"material": "plastic"}, output, jobs, progress)
+
+
+def scenarios(trials: int, seed: int) -> list[dict[str, Any]]:
+    """Material, number and seed of every trial.
+
+    Args:
+        trials: Per material.
+        seed: Of the experiment.
+
+    Raises:
+        ValueError: There are none.
+    """
+    if trials < 1:
+        raise ValueError(f"trials = {trials} must be at least 1")
+    return [
         {"material": material, "trial": trial, "seed": seed_of(seed, material, {"task": "planar"}, trial)}
         for material in TABLES["planar"]
         for trial in range(trials)
     ]
-    campaign = Campaign("planar", record_planar, {"contact": contact}, seed)
-    return reproduce(campaign, scenarios, {"material": "plastic"}, output, jobs, progress)
 
 
-def record_planar(scenario: Mapping[str, Any], contact: str) -> Record:
+def record_planar(scenario: Mapping[str, Any], contact: str, config: Overrides | None = None) -> Record:
     """Runs one trial with realistic sensors and keeps what they say.
 
     Mass, grasp point (above the centre of mass, a little aside) and duration are drawn.
@@ -64,21 +79,19 @@ def record_planar(scenario: Mapping[str, Any], contact: str) -> Record:
     Args:
         scenario: material and seed.
         contact: Friction model of the pads.
+        config: Overrides of the environment's configuration.
     """
     rng = np.random.default_rng(scenario["seed"])
     mass, lever, aside, duration = (rng.uniform(*limits) for limits in (MASS, LEVER, ASIDE, DURATION))
     drawn = {"mass": mass, "lever": lever, "aside": aside, "duration": duration}
     fixed = {"object_mass": mass, "com_offset": (aside, -lever), "duration": duration}
     options = TASK.options.parse({**fixed, "initial_force": INITIAL_FORCE})
-    simulation = BulletSimulation(*configure(TASK, contact=contact), TASK, "rls")
+    simulation = BulletSimulation(*configure(TASK, config, contact=contact), TASK, "rls")
     try:
         simulation.reset(options, scenario["material"], rng)
-        recorder, mu_c, episode = (
-            RecordKeeper(simulation),
-            simulation.true_friction[0, 1],
-            simulation.episode[0],
-        )
+        recorder, episode = RecordKeeper(simulation), simulation.episode[0]
         while episode["step"] < episode["steps"] and not episode["dropped"]:
+            mu_c = simulation.true_friction[0, 1]
             simulation.sample(hinge_force(simulation.wrenches[0], simulation.twists[0], mu_c))
             recorder.take()
         return recorder.finish({**scenario, **drawn})

@@ -11,12 +11,12 @@ from tqdm import tqdm
 
 import estimator
 from lab.reproduction.fixed_point import disc_bias
+from lab.reproduction.profile_page import page
 from lab.reproduction.profile_plot import plot_profile
 from policies.evaluation.folder import stamped
 from policies.evaluation.plots.style import STYLE, styled
 from policies.leaderboard.profile_course import STEADY, STOP, profile
 from policies.leaderboard.replay import replay
-from policies.leaderboard.tables import markdown
 from policies.versions import write_versions
 from slipgym.atomic_io import new_folder
 from slipgym.contact import DistributedContact
@@ -39,7 +39,7 @@ def reproduce_profile(
         progress: Whether to show progress bars.
 
     Returns:
-        The run's folder: series.csv (of the first record), phases.csv and events.csv with their Markdown,
+        The run's folder: series.csv (of the first record), phases.csv, events.csv, table.md with both,
         ideal.png, realistic.png.
     """
     trace = integrate(profile(), DistributedContact(cells=CELLS, sigma_2=SIGMA_2))
@@ -60,7 +60,7 @@ def reproduce_profile(
         series(records, found).to_csv(folder / "series.csv", index=False)
         for name, table in tables.items():
             table.to_csv(folder / f"{name}.csv", index=False)
-            (folder / f"{name}.md").write_text(markdown(table), encoding="utf-8")
+        (folder / "table.md").write_text(page(**tables), encoding="utf-8")
         with styled():
             for sensors in records:
                 shown = {name: found[sensors, name][0] for name in estimator.names()}

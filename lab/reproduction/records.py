@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ class Record:
     keys: Mapping[str, Any]
     """What distinguishes the trial from the others, for tables; with "material"."""
     truth: np.ndarray
-    """True mu_s, mu_c, r, (3,) [-, -, m]."""
+    """True mu_s, mu_c, r at the end, (3,) [-, -, m]."""
     time: np.ndarray
     """(T,) [s]."""
     wrenches: np.ndarray
@@ -31,6 +31,10 @@ class Record:
     """True slip velocity at the pad centre at the sample's instant, (T, 3) [m/s, m/s, rad/s]."""
     dropped: bool
     """Whether the object was lost."""
+    friction: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    """True mu_s, mu_c, r at the sample's instant, (T, 3) [-, -, m]."""
+    centres: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 2)))
+    """True centres of pressure then, from the pad's centre, (T, 2, 2) [m]."""
 
 
 class RecordKeeper:
@@ -48,7 +52,8 @@ class RecordKeeper:
         """Keeps the newest sample."""
         simulation, world = self.simulation, self.simulation.plant.world[0]
         arrays = simulation.wrenches[0], simulation.twists[0], world["slip"], world["slip_twist"]
-        self._samples.append((simulation.time, *(array.copy() for array in arrays)))
+        truth = simulation.true_friction[0], simulation.plant.pads["pressure_centre"][0]
+        self._samples.append((simulation.time, *(array.copy() for array in (*arrays, *truth))))
 
     def finish(self, keys: Mapping[str, Any]) -> Record:
         """The whole record.
@@ -56,6 +61,7 @@ class RecordKeeper:
         Args:
             keys: What distinguishes the trial from the others.
         """
-        columns = (np.array(column) for column in zip(*self._samples, strict=True))
+        *columns, friction, centres = map(np.array, zip(*self._samples, strict=True))
         dropped = bool(self.simulation.episode["dropped"][0])
-        return Record(keys, self.simulation.true_friction[0].copy(), *columns, dropped=dropped)
+        truth = self.simulation.true_friction[0].copy()
+        return Record(keys, truth, *columns, dropped=dropped, friction=friction, centres=centres)

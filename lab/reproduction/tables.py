@@ -91,9 +91,9 @@ def markdown(table: pd.DataFrame, experiment: str) -> str:
     error_headings = [f"{q}, {when} [%]" for q in QUANTITIES for when in ("mean", "last")]
     return "\n\n".join(
         [
-            _grid(["material", "estimator", *_HEADINGS], lines),
+            grid(["material", "estimator", *_HEADINGS], lines),
             "## Errors against the truth",
-            _grid(["material", "estimator", *error_headings], errors),
+            grid(["material", "estimator", *error_headings], errors),
         ]
     )
 
@@ -108,7 +108,7 @@ def mechanism_markdown(samples: pd.DataFrame) -> str:
     for column, (heading, form, scale) in _SAMPLES.items():
         numbers = (form.format(scale * value) for value in values(samples, column))
         lines.append([heading, *("–" if number == "nan" else number for number in numbers)])
-    return _grid(["", *distinct(samples, "material")], lines)
+    return grid(["", *distinct(samples, "material")], lines)
 
 
 def _mean(series: np.ndarray) -> float:
@@ -121,6 +121,7 @@ def _cells(numbers: Sequence[float]) -> list[str]:
     return ["–" if text == "nan" else text for text in texts]
 
 
-def _grid(headings: list[str], lines: list[list[str]]) -> str:
+def grid(headings: list[str], lines: list[list[str]]) -> str:
+    """A Markdown table whose columns but the first are aligned to the right."""
     rule = [":---" if k < 1 else "---:" for k in range(len(headings))]
     return "\n".join("| " + " | ".join(cells) + " |" for cells in (headings, rule, *lines))

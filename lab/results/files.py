@@ -55,9 +55,23 @@ def head(result: Result, at: str, day: str, libraries: str) -> str:
         day: Date at which it was printed.
         libraries: Versions of the libraries.
     """
+    return _head(result, f"printed: {day}, commit {at}", f"with:    {libraries}")
+
+
+def awaited(result: Result) -> str:
+    """The file of a result that was declared after the last `make results`: a head and no figures."""
+    return _head(result, "printed: not yet") + "\n"
+
+
+def _head(result: Result, *printed: str) -> str:
+    """The first lines of a file.
+
+    Args:
+        result: Its declaration.
+        printed: Lines that say when and with what it was printed.
+    """
     commands = [f"command: slipgym {command}" for command in result.commands]
-    rest = [f"printed: {day}, commit {at}", f"with:    {libraries}", f"page:    docs/{result.page}"]
-    return "\n".join([result.question, "", *commands, *rest]) + "\n"
+    return "\n".join([result.question, "", *commands, *printed, f"page:    docs/{result.page}"]) + "\n"
 
 
 def body(result: Result, printed: str) -> str:
@@ -148,7 +162,8 @@ def index() -> str:
         "# Results",
         "",
         "Each file holds what its command printed, with commit and date. `make results` prints all of them",
-        "again, `python -m lab.results NAME ...` some. No figure is edited by hand.",
+        "again, `python -m lab.results NAME ...` some. No figure is edited by hand. A file that says",
+        "`printed: not yet` waits for the next `make results`.",
         "",
         "| result | page | minutes |",
         "| --- | --- | ---: |",

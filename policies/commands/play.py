@@ -41,7 +41,7 @@ def main(
     speed: Annotated[float, typer.Option(help="Seconds of simulation per second of watching.")] = 1.0,
     material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
     friction_source: Annotated[str, typer.Option(help="estimated, true, nominal or none.")] = "estimated",
-    estimator: Annotated[str, typer.Option(help="A name of estimator.names().")] = DEFAULT,
+    estimator: Annotated[str, typer.Option(help="A name of estimator.names(), or none.")] = DEFAULT,
     sensors: Annotated[str, typer.Option(help="realistic, ideal or lab.")] = "realistic",
     engine: Annotated[str, typer.Option(help="auto, bullet or planar.")] = "auto",
     viewer: Annotated[
@@ -59,7 +59,7 @@ def main(
     keywords: dict[str, Any] = {
         "material": material,
         "friction_source": friction_source,
-        "estimator": estimator,
+        "estimator": None if estimator == "none" else estimator,
         "sensors": sensors,
         "engine": engine,
     }

@@ -20,8 +20,9 @@ class PadConfig(Frozen):
     reference_force: Annotated[float, Field(ge=0.01, le=1000.0)] = Field(
         description="Normal force at which the friction coefficients and the radius r hold [N]"
     )
-    load_exponent: Annotated[float, Field(ge=0.0, le=0.5)] = Field(
-        description="Friction falls with the normal force to the power of this; silicone on PLA 0.31 [-]"
+    load_exponent: Annotated[float, Field(ge=-0.4, le=0.5)] = Field(
+        description="Friction falls with the normal force to the power of this, and rises where it is "
+        "negative; two silicones on PLA -0.23 to 0.38 [-]"
     )
     radius_exponent: Annotated[float, Field(ge=0.0, le=1.0 / 3.0)] = Field(
         description="Contact radius r grows with the normal force to the power of this; Hertz 1/3 [-]"

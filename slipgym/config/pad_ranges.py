@@ -11,8 +11,8 @@ from slipgym.config.distribution import Distribution, within
 class PadRanges(Frozen):
     """Distributions of fields of `slipgym.config.pad.PadConfig`; both pads have the same values."""
 
-    load_exponent: Annotated[Distribution | None, within(0.0, 0.5)] = Field(
-        default=None, description="Exponent with which friction falls with the normal force"
+    load_exponent: Annotated[Distribution | None, within(-0.4, 0.5)] = Field(
+        default=None, description="Exponent with which friction falls with the normal force; it may rise"
     )
     radius_exponent: Annotated[Distribution | None, within(0.0, 1.0 / 3.0)] = Field(
         default=None, description="Exponent with which the contact radius grows with the normal force"

@@ -35,7 +35,7 @@ PAD_EPISODE = np.dtype(
         ("cop", "f8", 2),  # centre of pressure in the pad frame, without tangential load [m]
         ("axes", "f8", 2),  # friction along the pad's x and y over its mean [-]
         # of `slipgym.contact.soft_pad`; 0 switches an effect off
-        ("load_exponent", "f8"),  # friction falls with the normal force to the power of this [-]
+        ("load_exponent", "f8"),  # friction falls with the normal force to the power of this, or rises [-]
         ("radius_exponent", "f8"),  # r grows with it [-]
         ("cop_lever", "f8"),  # shift of the centre of pressure over tangential by normal force [m]
         ("compliance", "f8"),  # tangential compliance of the rubber [m/N]

@@ -2,7 +2,8 @@
 
 With f_n the normal force, f_0 `reference_force`, and all displacements scaled, (x, y, r theta):
 
-    mu(f_n) = mu (f_n / f_0)^-load_exponent         friction of rubber falls with the load
+    mu(f_n) = mu (f_n / f_0)^-load_exponent         friction of rubber falls with the load, of some
+                                                    silicones it rises: then the exponent is negative
     r(f_n)  = r (f_n / f_0)^radius_exponent         at most `radius_max`; Xydas & Kao, Modeling of contact
                                                     mechanics and friction limit surfaces for soft fingers,
                                                     IJRR 18(9), 1999: 0 to 1/3, Hertz 1/3
@@ -65,7 +66,7 @@ def expand_load(pad: Pad, normal: float) -> None:
 
 @compiled
 def power(x: float, exponent: float) -> float:
-    """(1 + x)^exponent for |x| < EXPANDED and an exponent of -1/2 to 1/3; to 2e-6."""
+    """(1 + x)^exponent for |x| < EXPANDED and an exponent of -1/2 to 2/5; to 2e-6."""
     second = 0.5 * (exponent - 1.0)
     third = (exponent - 2.0) / 3.0
     return 1.0 + exponent * x * (1.0 + second * x * (1.0 + third * x))

@@ -17,6 +17,12 @@ KEYS = [task.key for task in TASKS.values()]
 WRONG = [
     ({"mu": {}}, "mu: unknown key 'mu'; did you mean 'mu_s'", "radius_scale"),
     ({"mu_c": {"uniform": [0.0, 9.0]}}, "mu_c: must lie within 0.01 to 5", "got 0 to 9"),
+    (
+        {"load_exponent": {"uniform": [-0.5, 0.2]}},
+        "load_exponent: must lie within -0.4 to 0.5",
+        "got -0.5 to 0.2",
+    ),
+    ({"load_exponent": {"choices": [0.6]}}, "load_exponent: must lie within -0.4 to 0.5", "got 0.6 to 0.6"),
     ({"mu_c": {"unform": [0.1, 0.2]}}, "mu_c.unform: unknown key", "log_uniform"),
     ({"mu_c": {"uniform": [0.2, 0.3], "choices": [0.2]}}, "mu_c: needs exactly one", "uniform, choices"),
     ({"mu_c": {}}, "mu_c: needs exactly one", "got none"),

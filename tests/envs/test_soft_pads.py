@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from slipgym.config import load_randomization
+from slipgym.config import load, load_randomization
 from slipgym.config.pad import EFFECTS
 
 LINEAR = "slipgym/LinearSlip-v0"
@@ -18,6 +18,51 @@ def test_presets_draw_what_the_rubber_does(preset):
         assert high > low
     train = load_randomization("train")
     assert all(getattr(train, name) is None for name in EFFECTS)
+
+
+@pytest.mark.parametrize("exponent", [-0.41, 0.51, float("nan")])
+def test_an_exponent_out_of_range_is_refused_with_the_range(exponent):
+    with pytest.raises(ValueError, match=r"contact\.pad\.load_exponent = .* >= -0\.4 and <= 0\.5"):
+        load({"contact": {"pad": {"load_exponent": exponent}}})
+    for allowed in (-0.4, 0.5):
+        assert load({"contact": {"pad": {"load_exponent": allowed}}}).contact.pad.load_exponent == allowed
+
+
+@pytest.mark.parametrize("preset", ["lab", "eval_ood"])
+def test_friction_may_fall_or_rise_with_the_load(preset):
+    """Both silicones of the data set lie within the range: -0.23 and 0.38 (docs/physics.md)."""
+    low, high = load_randomization(preset).load_exponent.ends
+    assert -0.4 <= low < -0.23
+    assert 0.38 <= high <= 0.5
+    env = gym.make(f"slipgym:{LINEAR}", randomization=preset, engine="planar", disable_env_checker=True)
+    drawn = [env.reset(seed=seed)[1]["drawn"]["load_exponent"] for seed in range(60)]
+    env.close()
+    assert low <= min(drawn) < low + 0.1 * (high - low)
+    assert high - 0.1 * (high - low) < max(drawn) <= high
+
+
+def test_the_range_of_the_exponent_changes_no_other_value():
+    ranges = load_randomization("lab").model_dump(exclude_none=True)
+    found = []
+    for ends in ([-0.25, 0.38], [0.1, 0.35]):
+        choice = {**ranges, "load_exponent": {"uniform": ends}}
+        env = gym.make(f"slipgym:{LINEAR}", randomization=choice, engine="planar", disable_env_checker=True)
+        found.append(env.reset(seed=5)[1]["drawn"])
+        env.close()
+    assert found[0].pop("load_exponent") != found[1].pop("load_exponent")
+    assert found[0] == found[1]
+
+
+def test_true_friction_of_pads_that_hold_better_under_load():
+    config = {"contact": {"pad": {"load_exponent": -0.2, "reference_force": 5.0}}}
+    env = gym.make(f"slipgym:{LINEAR}", config=config, engine="planar", disable_env_checker=True)
+    env.reset(seed=0, options={"mu_c": 0.4, "mu_s": 0.5, "initial_force": 10.0})
+    for _ in range(120):
+        *_, info = env.step(np.array([0.0], dtype=np.float32))
+    ratio = float(env.unwrapped.simulation.plant.pads["normal"][0, 0]) / 5.0
+    assert ratio > 2.0
+    assert info["true"][:2] == pytest.approx([0.5 * ratio**0.2, 0.4 * ratio**0.2], rel=1e-4)
+    env.close()
 
 
 def test_an_episode_has_the_pads_that_it_drew():

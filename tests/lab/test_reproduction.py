@@ -68,9 +68,16 @@ def test_the_command_writes_what_it_names(tmp_path, monkeypatch):
         "versions.json",
         "slopes.csv",
         "lock_out.csv",
+        "table.md",
         "map.png",
         "lock_out.png",
     }
     table = pd.read_csv(folder / "lock_out.csv")
     assert set(table["starts"]) == {4}
     assert table["still_off"].between(0.0, 1.0).all()
+    printed = (folder / "table.md").read_text(encoding="utf-8")
+    assert "| 0.5 | −0.60000000 | −0.60000000 |" in printed
+    assert all(f'"{name}" still off' in printed for name in estimator.names())
+    rls = 100 * table[(table["estimator"] == "rls") & (table["f_n_N"] == 20)]["still_off"].iloc[0]
+    (row,) = (line for line in printed.splitlines() if line.startswith("| 20 |"))
+    assert row.split(" | ")[1 + estimator.names().index("rls")] == f"{rls:.0f} %"

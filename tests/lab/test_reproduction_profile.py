@@ -76,11 +76,18 @@ def folder(tmp_path_factory):
 
 
 def test_the_command_writes_what_it_names(folder):
-    names = {"series.csv", "phases.csv", "phases.md", "events.csv", "events.md", "versions.json"}
+    names = {"series.csv", "phases.csv", "events.csv", "table.md", "versions.json"}
     assert {path.name for path in folder.iterdir()} == names | {"ideal.png", "realistic.png"}
     series = pd.read_csv(folder / "series.csv")
     assert series.groupby(["sensors", "estimator"]).size().nunique() == 1
-    assert (folder / "events.md").read_text().count("start of linear |") == 2 * len(estimator.names())
+    page = (folder / "table.md").read_text(encoding="utf-8")
+    heading = " | ".join((*estimator.names(), "disc, exact"))
+    assert page.count(f" | {heading} |") == 3
+    table = pd.read_csv(folder / "phases.csv").set_index(["sensors", "estimator", "phase"])
+    row = page[page.index("## Error of r") :].partition("| more spin |")[2].split("\n")[0].split(" | ")
+    for cell, place in ((row[1 + estimator.names().index("joint") + 1], "realistic"), (row[-1], "ideal")):
+        error = table.loc[(place, "joint" if place == "realistic" else "disc", "more spin"), "r_%"]
+        assert cell.strip(" |").replace("−", "-") == f"{error:+.1f}"
 
 
 def test_rls_finds_the_truth_where_the_model_holds_and_its_bias_where_not(folder):

@@ -1,5 +1,6 @@
 """The results: what is kept of an output, how a file is written, and what happens when a command fails."""
 
+import importlib.util
 import subprocess
 
 import pytest
@@ -9,6 +10,7 @@ from lab.results.declarations import RESULTS, Result, read
 
 TABLE = "| a | long name |\n| ---: | --- |\n| 1 | x |\n| 22.5 | yy |\n"
 PADDED = "|    a | long name |\n| ---: | --------- |\n|    1 | x         |\n| 22.5 | yy        |"
+ROOT = files.ROOT
 RESULT = Result("speed", "Speed of a thing", ("first", "second --fast"), "page.md", 1)
 
 
@@ -48,6 +50,19 @@ def test_commands_are_run_and_written_with_the_commit(folder, capfd):
     assert text.endswith("\n\n## first\n\nfirst\n\n## second --fast\n\nsecond --fast\n")
     assert "[1 of 1] speed: about 1 min" in capfd.readouterr().err
     assert (folder / "docs/results/README.md").read_text() == files.index()
+
+
+def test_a_result_that_is_not_printed_yet_has_a_head_and_is_replaced(folder):
+    text = files.awaited(RESULT)
+    assert text.endswith("command: slipgym second --fast\nprinted: not yet\npage:    docs/page.md\n\n")
+    hook = importlib.util.spec_from_file_location("hook", ROOT / "docs" / "site" / "results.py")
+    page = importlib.util.module_from_spec(hook)
+    hook.loader.exec_module(page)
+    assert page.shown(text) == "*Printed: not yet*"
+    (folder / "docs/results").mkdir(parents=True)
+    (folder / "docs/results/speed.txt").write_text(text)
+    assert run([RESULT]) == []
+    assert "not yet" not in (folder / "docs/results/speed.txt").read_text()
 
 
 def test_the_pictures_of_a_run_are_taken(folder, monkeypatch):

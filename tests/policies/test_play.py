@@ -157,6 +157,16 @@ def test_without_a_screen_the_command_line_names_the_option_of_a_video(monkeypat
     assert "--video" in done.stderr
 
 
+def test_an_episode_without_an_estimator_is_shown(tmp_path):
+    options = [word for name, value in SHORT.items() for word in ("--option", f"{name}={value}")]
+    words = ["LinearSlip", "--estimator", "none", "--video", str(tmp_path / "film.gif"), *options]
+    done = CliRunner().invoke(app, [*words, "--policy", "constant_force"])
+    assert done.exit_code == 0, done.output
+    refused = CliRunner().invoke(app, words)  # the task's own controller acts on estimates
+    assert refused.exit_code == 2
+    assert "estimator=None" in refused.output.replace("\n", " ")
+
+
 @pytest.mark.parametrize("env_id", ENVIRONMENTS)
 def test_every_environment_has_its_picture_in_the_docs(env_id):
     key = TASKS[env_id.removeprefix("slipgym/").rpartition("-")[0]].key

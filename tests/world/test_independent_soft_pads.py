@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from lab.benchmarking.measure import SOFT_PADS
+from slipgym.contact import DiscContact, DistributedContact, EllipsoidContact
 from slipgym.validation.bench import Bench, Friction
 
 MU_S, MU_C, R, MASS = 0.6, 0.4, 0.008, 0.2
@@ -30,15 +31,29 @@ def drag(held: Bench, load: tuple[float, float, float], duration: float = 0.1) -
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("contact", ["ellipsoid", "distributed"])
+@pytest.mark.parametrize("contact", ["ellipsoid", "disc", "distributed"])
 @pytest.mark.parametrize("force", [1.0, 3.0, 12.0])
-def test_friction_falls_with_the_load(force, contact, engine):
-    exponent = 0.31
+@pytest.mark.parametrize("exponent", [0.31, -0.4])
+def test_friction_falls_or_rises_with_the_load(exponent, force, contact, engine):
     with bench({"load_exponent": exponent}, engine, contact, force=force) as held:
         held.settle()
         scale = (force / 5.0) ** -exponent
-        friction = drag(held, (1.3 * MU_S * scale * 2.0 * force, 0.0, 0.0))
+        # in 0.1 s the heaviest load would push the box out of the grip
+        friction = drag(held, (1.3 * MU_S * scale * 2.0 * force, 0.0, 0.0), 0.05)
     assert -friction[0] == pytest.approx(2.0 * MU_C * scale * force, rel=0.01)
+
+
+@pytest.mark.parametrize("kind", [EllipsoidContact, DiscContact, DistributedContact])
+@pytest.mark.parametrize("exponent", [0.5, -0.4])
+def test_friction_follows_a_load_that_changes(exponent, kind):
+    """Up and down over four decades in steps within the kernel's expansion, then in one beyond it."""
+    contact = kind(mu_s=MU_S, mu_c=MU_C, sigma_1=0.0, sigma_2=0.0)
+    contact._pads["load_exponent"], contact._pads["reference_force"] = exponent, 5.0
+    rising = np.geomspace(1e-2, 100.0, 2000)
+    contact.step((0.05, 0.0, 0.0), rising[0], 0.1)  # from rest into slip
+    for force in (*rising, *rising[::-1], 40.0):
+        friction = contact.step((0.05, 0.0, 0.0), force, 1e-3)
+        assert -friction[0] == pytest.approx(MU_C * force * (force / 5.0) ** -exponent, rel=1e-5)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
