@@ -21,14 +21,14 @@ from estimator.reasons import reasons
 from estimator.registry import DEFAULT, FilterMatrices, Specification, names
 
 if TYPE_CHECKING:
-    from estimator.augmented.parameters import AdaptiveParameters
     from estimator.disc import DiscParameters
     from estimator.joint import JointParameters
     from estimator.rls import RlsParameters
     from estimator.ukf import UkfParameters
+    from estimator.window.parameters import AdaptiveParameters
 
 _PARAMETERS = {
-    "AdaptiveParameters": "estimator.augmented.parameters",
+    "AdaptiveParameters": "estimator.window.parameters",
     "DiscParameters": "estimator.disc",
     "JointParameters": "estimator.joint",
     "RlsParameters": "estimator.rls",

@@ -13,9 +13,7 @@ DOUBT = 0.1
 MISFIT = 2.0
 """Mean squared normalised residual from which the law does not explain the data; noise makes it 1 ± 0.13."""
 AT_BOUND = 0.5
-"""Memory of r at a bound from which that is named."""
-LAW_ERROR = 0.1
-"""Relative error of the law in a sample from which it is named."""
+"""Share of r at a bound from which that is named."""
 
 COUNTS = {"mu_s": "events_mu_s", "mu_c": "updates_mu_c", "r": "updates_r"}
 """Value -> field of an estimate that counts the data behind it."""
@@ -32,30 +30,22 @@ class Doubts(NamedTuple):
 
     misfit: float = 1.0
     """Mean squared normalised residual."""
-    law_error: float = 0.0
-    """Relative error of the friction law in a sample."""
     at_bound: float = 0.0
-    """1 while r is at one of its bounds, fading afterwards."""
+    """1 while r is at its upper bound."""
 
 
 def doubts(state: np.void) -> Doubts:
     """By the state of any estimator."""
     kept = state.dtype.names or ()
-    values = {name: float(state[name]) for name in ("misfit", "at_bound") if name in kept}
-    if "law_square" in kept:
-        values["law_error"] = float(state["law_square"]) ** 0.5
-    return Doubts(**values)
+    return Doubts(**{name: float(state[name]) for name in Doubts._fields if name in kept})
 
 
-def reasons(
-    estimate: Estimate, misfit: float = 1.0, law_error: float = 0.0, at_bound: float = 0.0
-) -> dict[str, str]:
+def reasons(estimate: Estimate, misfit: float = 1.0, at_bound: float = 0.0) -> dict[str, str]:
     """Why values have little confidence.
 
     Args:
         estimate: What an estimator published.
         misfit: Mean squared normalised residual, if the estimator keeps it: the state `misfit` of "adaptive".
-        law_error: Relative error of the friction law in a sample, if the estimator finds it.
         at_bound: See `Doubts`.
 
     Returns:
@@ -63,7 +53,7 @@ def reasons(
         motion that it needs.
     """
     found = {}
-    for name, whys in causes(estimate, misfit, law_error, at_bound).items():
+    for name, whys in causes(estimate, misfit, at_bound).items():
         if getattr(estimate, f"confidence_{name}") >= CONFIDENT:
             continue
         data = int(getattr(estimate, COUNTS[name]))
@@ -74,15 +64,12 @@ def reasons(
     return found
 
 
-def causes(
-    estimate: Estimate, misfit: float = 1.0, law_error: float = 0.0, at_bound: float = 0.0
-) -> dict[str, tuple[str, ...]]:
+def causes(estimate: Estimate, misfit: float = 1.0, at_bound: float = 0.0) -> dict[str, tuple[str, ...]]:
     """What speaks against each of "mu_s", "mu_c" and "r", whatever its confidence; the most important first.
 
     Args:
         estimate: What an estimator published.
         misfit: As for `reasons`.
-        law_error: As for `reasons`.
         at_bound: As for `reasons`.
     """
     found = {}
@@ -100,7 +87,5 @@ def causes(
             why.append("the slips ask for an r beyond its bounds: r_max is the pad's radius")
         if misfit > MISFIT and name != "mu_s":
             why.append(f"residuals are {misfit**0.5:.1f} times what noise explains")
-        if law_error > LAW_ERROR and name != "mu_s":
-            why.append(f"single samples are {100.0 * law_error:.0f} % off the friction law")
         found[name] = tuple(why)
     return found

@@ -1,1 +1,1 @@
-"""Serves this project alone: the reproduction, ablations, campaigns, comparisons; no wheel has it."""
+"""Serves this project alone: the reproduction, campaigns, comparisons; no wheel has it."""

@@ -1,7 +1,6 @@
 """Lists what "adaptive" found about the sensors: delay, zero errors, tilt, centre of pressure, viscosity.
 
-Each value is what the filter holds, with its deviation from the spread that a careful user would assume:
-the filter assumes a narrower one (`caution`), so what it has not seen is widened back to that spread.
+Each value is what the fit holds, with its deviation, beside the spread that it had before the record.
 """
 
 from __future__ import annotations
@@ -51,11 +50,11 @@ class Calibration:
     correlation: float
     """Largest correlation of the changes of force and velocity at it [-]."""
     delay_seen: bool
-    """Whether that exceeded `timing_gate`; otherwise the delay is the nominal one."""
+    """Whether that exceeded the gate; otherwise the delay is the nominal one."""
     errors: tuple[Found, ...]
     """Errors of the sensors, and the viscosity."""
     doubts: Doubts
-    """What the last slips say against the law; `law_error` is 0 without a slip."""
+    """What the last slips say against the law."""
 
     @property
     def misfit(self) -> float:
@@ -72,26 +71,21 @@ def calibration(state: np.void, parameters: Any, correlation: float, f_n: Array)
         correlation: Largest `timing` of the state so far [-].
         f_n: Normal forces, (k,) [N].
     """
-    from estimator.augmented.slip_law import COP, SHAPE, SIGMA, STATES, TILT, ZERO
+    from estimator.window.layout import COP, SIGMA, STATES, TILT, TORQUE, ZERO
+    from estimator.window.timing import GATE
 
     p, errors = parameters, []
     loaded = f_n[f_n >= p.eps_fn]
     load = float(np.median(loaded)) if len(loaded) else 0.0
-    x, covariance = state["x"], max(float(state["misfit"]), 1.0) * state["covariance"]
-    spreads = np.ones(STATES)
-    spreads[SIGMA], spreads[ZERO:TILT], spreads[TILT:COP] = p.sd_viscosity, p.sd_zero, p.sd_tilt
-    spreads[COP:SHAPE], spreads[SHAPE] = p.sd_cop, p.sd_shape
-    hidden = slice(ZERO, SHAPE + 1)
-    assumed = p.caution * spreads[hidden]
-    beyond = np.sqrt(1.0 - p.caution**2) * spreads[hidden] / assumed**2
+    x, variance = state["x"], state["variance"]
+    covariance, spreads = state["covariance"] if state["fits"] else np.diag(variance), np.sqrt(variance)
+    spreads[ZERO : TORQUE + 1] = p.sd_zero, p.sd_zero, p.sd_zero_torque
 
-    def add(name: str, unit: str, weights: dict[int, float]) -> None:
+    def add(name: str, unit: str, weights: dict[int, float], scale: float = 1.0) -> None:
         a = np.zeros(STATES)
-        a[list(weights)] = list(weights.values())
-        along = covariance @ a  # over a prior variance: what an error of that prior's mean does
-        variance = a @ along + np.square(beyond * along[hidden]).sum()
+        a[list(weights)] = np.array(list(weights.values())) * scale
         spread = math.sqrt(np.square(a * spreads).sum())
-        errors.append(Found(name, unit, float(a @ x), math.sqrt(variance), spread))
+        errors.append(Found(name, unit, float(a @ x), math.sqrt(max(a @ covariance @ a, 0.0)), spread))
 
     for k, axis in enumerate("xy"):
         add(f"zero of f_{axis}", "N", {ZERO + k: 1.0})
@@ -100,16 +94,12 @@ def calibration(state: np.void, parameters: Any, correlation: float, f_n: Array)
     for k, axis in enumerate("xy"):
         add(f"both at {load:.1f} N: f_{axis}", "N", {ZERO + k: 1.0, TILT + k: load})
     for k, axis in enumerate("xy"):
-        add(f"CoP, {axis}", "mm", {COP + k: 1.0})
-    for name, unit, spread in (("normal", "N", p.sd_zero), ("torque", "N m", p.sd_zero_torque)):
-        sd = math.sqrt(float(state[f"variance_{name}"]))
-        what = "zero of f_n" if name == "normal" else "zero of tau"
-        errors.append(Found(what, unit, float(state[f"zero_{name}"]), sd, spread))
+        add(f"CoP, {axis}", "mm", {COP + k: 1.0}, 1e3)
+    sd = math.sqrt(float(state["variance_normal"]))
+    errors.append(Found("zero of f_n", "N", float(state["zeros"][2]), sd, p.sd_zero))
+    add("zero of tau", "N m", {TORQUE: 1.0})
     add("sigma_2", "s/m", {SIGMA: 1.0})
-    seen = correlation > p.timing_gate
-    found = doubts(state)
-    found = found if state["slides"] > 0 else found._replace(law_error=0.0)
-    return Calibration(int(state["delay"]), correlation, seen, tuple(errors), found)
+    return Calibration(int(state["delay"]), correlation, correlation > GATE, tuple(errors), doubts(state))
 
 
 def calibration_rows(found: Calibration, step: float) -> list[list[str]]:
@@ -128,8 +118,6 @@ def calibration_rows(found: Calibration, step: float) -> list[list[str]]:
         ["sensors", "found", "sd", "sd before"],
         ["delay", f"{samples}, {1e3 * step * found.delay:.1f} ms".replace("-", "−"), seen, ""],
     ]
-    law = f"{100.0 * found.doubts.law_error:.0f}" if found.doubts.law_error else "–"
-    rows.append(["error of the law [%]", law, "", ""])
     for error in found.errors:
         digits = max(0, 2 - math.floor(math.log10(error.spread)))
         sd, spread = f"{error.sd:.{digits}f}", f"{error.spread:.{digits}f}"

@@ -1,7 +1,6 @@
 """The laboratory's sub-commands of `slipgym`, a file each; `slipgym --help` shows them in a clone."""
 
 COMMANDS = {
-    "ablation": 'Print what each state and test of "adaptive" is worth.',
     "benchmark-parts": "Measure what the parts of a step and a first use cost.",
     "compare-engines": "Compare the planar engine with PyBullet.",
     "compare-estimators": "Compare the estimators on recorded episodes.",
@@ -12,12 +11,10 @@ COMMANDS = {
     "fuzz": "Print errors of estimators in independent worlds.",
     "imperfections": "Print what each imperfection of the sensors costs.",
     "jumps": "Print how soon mu_c is right after friction jumps.",
-    "loop-ablation": 'Print what "adaptive" loses in the loop.',
     "pushes": "Compare the estimators on real pushes of a block.",
     "rank": "Compare the order of returns with that of success.",
     "reproduce": "Reproduce the paper's analyses.",
     "ship": "Add trained policies to the pretrained ones.",
-    "smoother": "Print a fit that knows all but the unknowns.",
     "torture": "Attack the public interface for some hours.",
     "train-estimator": 'Train the network of the estimator "gru".',
     "validate-parts": "Check steps, engines, patches and tilt.",

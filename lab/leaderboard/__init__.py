@@ -1,1 +1,1 @@
-"""Argues for the estimators' constants: ablation, jumps, delays, a smoother, the cost of an update."""
+"""Measures the estimators: jumps of friction, late velocities, the cost of an update."""

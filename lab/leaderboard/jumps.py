@@ -2,9 +2,8 @@
 
 Time alone shows nothing: an object that is held does not show the new friction. So the time of slip counts,
 of each finger whose estimate was right before the jump. An estimate that passes the truth on its way to
-another error was right for a moment. So it also counts whether it is right after 0.5 s of slip. There are two
-references of what the sensors and motions allow: the same episodes without a jump, and "adaptive" if it knows
-when friction jumps: at that moment its variance of ln mu_c grows by that of a jump.
+another error was right for a moment. So it also counts whether it is right after 0.5 s of slip. The reference
+for what the sensors and motions allow are the same episodes without a jump.
 """
 
 from __future__ import annotations
@@ -19,8 +18,6 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import policies
-from estimator import BatchEstimator
-from estimator.augmented.slip_law import MU
 from policies.leaderboard.closed_loop import present
 from policies.stepping import batch_steps
 from slipgym.tasks import find
@@ -72,22 +69,12 @@ def jumps(
             chosen = {"estimator": estimator, "sensors": preset, **arguments}
             without = watched(task, episodes, seed, 1.0, **chosen)
             for factor in tqdm(FACTORS, desc=f"{find(task).name}, {preset}"):
-                found, informed = (
-                    summary(watched(task, episodes, seed, factor, knows, **chosen), without)
-                    for knows in (False, True)
-                )
-                row = {"task": find(task).name, "sensors": preset, "factor": factor}
-                for name, value in found.items():
-                    row[name] = value
-                    if name in ("within 0.5 s", "right at 0.5 s"):
-                        row[f"{name} (knows when)"] = informed[name]
-                rows.append(row)
+                found = summary(watched(task, episodes, seed, factor, **chosen), without)
+                rows.append({"task": find(task).name, "sensors": preset, "factor": factor, **found})
     return pd.DataFrame(rows)
 
 
-def watched(
-    task: str, episodes: int, seed: int, factor: float, knows: bool = False, **arguments: Any
-) -> Course:
+def watched(task: str, episodes: int, seed: int, factor: float, **arguments: Any) -> Course:
     """Plays one episode in each row of a batch.
 
     Args:
@@ -95,7 +82,6 @@ def watched(
         episodes: Rows.
         seed: Of the first row.
         factor: mu_c after over before; the time of the jump does not depend on it.
-        knows: Whether "adaptive" knows when friction jumps.
         **arguments: Of the environments.
     """
     when = {"uniform": list(TIME)}
@@ -114,19 +100,10 @@ def watched(
         pads, estimates = env.simulation.plant.pads, env.simulation.estimator.estimates.reshape(-1, 2)
         truth = present(pads)["mu_c"]
         running = np.broadcast_to(step.running[:, None], truth.shape)
-        if knows and steps:
-            _announce(env.simulation.estimator, np.abs(truth / steps[-1][1] - 1.0) > RIGHT)
         steps.append((estimates["mu_c"] / truth - 1.0, truth, pads["slip_speed"] > SLIPS, running))
     env.close()
     errors, truths, slips, alive = (np.array(values) for values in zip(*steps, strict=True))
     return Course(errors, truths, slips, alive, 1.0 / env.config.physics.control_rate)
-
-
-def _announce(estimators: BatchEstimator, jumped: NDArray[np.bool_]) -> None:
-    """Adds the variance of a jump to ln mu_c of fingers (episodes, 2), and to its covariance with mu_s."""
-    rows, square = np.flatnonzero(jumped), estimators.parameters_array["sd_jump"][0] ** 2
-    estimators.states["covariance"][rows, MU, MU] += square
-    estimators.states["shared"][rows] += square
 
 
 def summary(course: Course, without: Course) -> dict[str, float]:

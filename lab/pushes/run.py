@@ -24,10 +24,9 @@ QUANTITIES = ("mu_c", "r")
 
 
 def entrants() -> dict[str, tuple[str, dict[str, object]]]:
-    """Label -> name and parameters: every estimator; "rls" with r0 in the block, "adaptive" without jumps."""
+    """Label -> name and parameters: every estimator, and "rls" with r0 in the block."""
     rows: dict[str, tuple[str, dict[str, object]]] = {name: (name, {}) for name in estimator.names()}
     rows["rls, r0 6 mm"] = "rls", {"r0": 0.006}
-    rows["adaptive, no jumps"] = "adaptive", {"jump_limit": 1e9, "jump_odds": 1e9}
     return rows
 
 

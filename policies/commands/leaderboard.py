@@ -23,10 +23,8 @@ MOVED = {
     "--randomization": "closed-loop --randomization",
     "--contact": "closed-loop --contact",
     "--imperfections": "imperfections",
-    "--smoother": "smoother",
     "--jumps": "jumps",
     "--delays": "delays",
-    "--ablation": "ablation or loop-ablation",
     "--costs": "estimator-costs",
 }
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)

@@ -4,14 +4,12 @@ import numpy as np
 import pytest
 
 import estimator
+from estimator.window.layout import FALLS, GROWS
 from policies.leaderboard.rubber import LOAD, swinging
 from policies.leaderboard.scenarios import patch
 from slipgym.synthetic import sense
 from tests.estimator.exact_records import RATE
 
-FALLS, GROWS = 10, 11
-CONSTANT = {"load_exponent0": 0.0, "sd_load_exponent": 1e-6}
-CONSTANT |= {"radius_exponent0": 0.0, "sd_radius_exponent": 1e-6}
 NOISE = 0.02, 0.02, 0.04, 5e-4
 
 
@@ -29,21 +27,17 @@ def test_it_follows_a_load_that_swings(friction, radius):
     """A factor of 3 in the load; 1.5 % of mu_c and r (rms) in the last swing, and the exponents."""
     record = sense(patch(swinging(friction, radius), 21), 8, 0)
     batch = estimator.make_batch("adaptive", 8)
-    plain = estimator.make_batch("adaptive", 8, **CONSTANT)
-    errors = {(which, field): [] for which in (batch, plain) for field in ("mu_c", "r")}
+    errors = {field: [] for field in ("mu_c", "r")}
     for k, t in enumerate(record.t.tolist()):
         sample = np.ascontiguousarray(record.wrenches[:, k]), np.ascontiguousarray(record.twists[:, k])
-        for which in (batch, plain):
-            which.update(t, *sample)
-            for field in ("mu_c", "r"):
-                if t > record.t[-1] - 1.5:
-                    errors[which, field].append(which.estimates[field] / getattr(record, field)[k] - 1.0)
-    for field in ("mu_c", "r"):
-        assert np.sqrt(np.square(errors[batch, field]).mean()) < 0.015, field
+        batch.update(t, *sample)
+        if t > record.t[-1] - 1.5:
+            for field, found in errors.items():
+                found.append(batch.estimates[field] / getattr(record, field)[k] - 1.0)
+    for field, found in errors.items():
+        assert np.sqrt(np.square(found).mean()) < 0.015, field
     np.testing.assert_allclose(batch.states["x"][:, FALLS], friction, atol=0.04)
     np.testing.assert_allclose(batch.states["x"][:, GROWS], radius, atol=0.06)
-    if friction > 0.2:
-        assert np.sqrt(np.square(errors[plain, "mu_c"]).mean()) > 0.03
 
 
 def test_the_deviation_grows_with_another_load_and_holds_both_kinds_of_pads():
@@ -109,34 +103,12 @@ def stick(est, k, samples, f_t, f_n):
     return k + samples, estimates
 
 
-def broken_away(**parameters):
+def broken_away():
     """A break-away at 3 N with mu_s = 0.5 and a slip with mu_c = 0.4; the next sample's number."""
-    est = estimator.make("adaptive", **parameters)
+    est = estimator.make("adaptive")
     k, _ = stick(est, 0, 30, 1.5, 3.0)
     slide(est, k, 90, 3.0, 0.4)
     return est, k + 90
-
-
-def test_a_held_load_narrows_the_exponent():
-    """At 12 N the contact holds 0.45: then mu_s has not fallen far, and its deviation says so."""
-    sd = {}
-    for ratio in (0.1, 0.45):
-        est, k = broken_away(sd_slip=1e-3, hard=0.0)  # the error of a slip is none of the exponent
-        _, held = stick(est, k, 120, ratio * 12.0, 12.0)
-        sd[ratio] = held.sd_mu_s / held.mu_s
-        assert np.linalg.eigvalsh(est.batch.states["covariance"][0]).min() > 0.0
-        assert abs(held.mu_s - 0.5) < held.sd_mu_s
-    assert sd[0.45] < 0.75 * sd[0.1]
-
-
-def test_a_stick_that_carries_more_raises_mu_s():
-    """What errors of the sensors explain changes nothing."""
-    for ratio, expected in ((0.502, 0.5), (0.56, 0.56)):
-        est, k = broken_away()
-        before = est.estimate.mu_s
-        _, held = stick(est, k, 24, ratio * 3.0, 3.0)
-        assert before == pytest.approx(0.5, rel=0.02)
-        assert held.mu_s == pytest.approx(expected, rel=0.02)
 
 
 @pytest.mark.parametrize("factor", [0.7, 1.35])
@@ -160,29 +132,7 @@ def test_a_pad_that_springs_in_torsion_does_not_slip():
     assert (e.updates_mu_c, e.events_mu_s) == (0, 0)
 
 
-def _error_in_scatter(**parameters):
-    """RMS of ln mu_c while friction of 0.4 scatters by 20 % from one pair of samples to the next."""
-    squares = []
-    for seed in range(6):
-        rng = np.random.default_rng(seed)
-        est = estimator.make("adaptive", compliance=0.0, compliance_max=0.0, **parameters)
-        for pair in range(300):
-            slide(est, 2 * pair, 2, 5.0, 0.4 * (1.0 + 0.2 * rng.standard_normal()), seed=pair)
-            if pair >= 50:
-                squares.append(np.log(est.estimate.mu_c / 0.4) ** 2)
-    return np.sqrt(np.mean(squares))
-
-
-def test_scatter_is_no_jump():
-    """The evidence that a jump needs and the error of the law that is found each keep the estimate steady."""
-    found, fixed = _error_in_scatter(), {"law_error": 0.02, "law_gain": 0.0}
-    assert found < 0.8 * _error_in_scatter(jump_evidence=0.0)
-    assert found < 0.8 * _error_in_scatter(**fixed)
-    assert found < 0.5 * _error_in_scatter(jump_evidence=0.0, **fixed)
-
-
-@pytest.mark.parametrize("forgets", [True, False])
-def test_a_change_of_friction_is_no_exponent(forgets):
+def test_a_change_of_friction_is_no_exponent():
     """A hard pad slips at 1.5 N; friction rises by 1.35, and the slips that follow are at 1 N.
 
     ln 1.35 over ln 1.5 would be an exponent of 0.74. Taken for one, even the largest, 0.5, leaves mu_c
@@ -190,7 +140,7 @@ def test_a_change_of_friction_is_no_exponent(forgets):
     """
     errors = []
     for seed in range(6):
-        est = estimator.make("adaptive", jump_forgets_exponent=forgets, compliance=0.0, compliance_max=0.0)
+        est = estimator.make("adaptive")
         for slip in range(22):
             f_n, mu_c = (1.5, 0.42) if slip < 10 else (1.0, 1.35 * 0.42)
             slide(est, 6 * slip, 6, f_n, mu_c, seed=100 * seed + slip)
@@ -200,35 +150,8 @@ def test_a_change_of_friction_is_no_exponent(forgets):
                 (k + 1) / RATE, np.array([0.0, 0.6, 10.0, 0.0]) + rng.normal(size=4) * NOISE, (0, 0, 0)
             )
         errors.append(est.estimate.mu_c / (1.35 * 0.42) - 1.0)
-    if forgets:
-        assert np.abs(errors).max() < 0.26
-        assert np.median(np.abs(errors)) < 0.05
-    else:
-        assert max(errors) < -0.5
-
-
-@pytest.mark.parametrize("certain", [True, False])
-def test_a_spring_that_shows_itself_late_forgets_only_what_may_have_been_one(certain):
-    """A slip and turn, then the pad springs in torsion under a firm grip; r of a certain slip is kept."""
-    rng, est = np.random.default_rng(2), estimator.make("adaptive")
-    share, r, mu_c, f_n = 2.0**-0.5, 0.005, 0.4, 4.0
-    slip = (0.0, mu_c * f_n * share, f_n, mu_c * f_n * r * share)
-    for k in range(180):
-        slips = 60 <= k < 120
-        wrench = np.array(slip if slips else (0.0, 1.0, f_n, 0.0)) + rng.normal(size=4) * NOISE
-        speed = 0.01 * slips
-        est.update((k + 1) / RATE, wrench, (0.0, share * speed, share * speed / r))
-    learned, states = est.estimate, est.batch.states
-    assert states["certain"][0]
-    assert learned.r == pytest.approx(r, rel=0.15)
-    states["certain"] = certain
-    for k in range(180, 420):
-        phase = 2.0 * np.pi * k / RATE
-        wrench = np.array([0.0, 1.0, 20.0, 0.03 * np.sin(phase)]) + rng.normal(size=4) * NOISE
-        est.update((k + 1) / RATE, wrench, (0.0, 0.0, 0.06 * 2.0 * np.pi * np.cos(phase)))
-    assert states["torsion"][0] > 0.0
-    assert est.estimate.updates_r == (learned.updates_r if certain else 0)
-    assert est.estimate.r == pytest.approx(learned.r if certain else 0.01, rel=0.15)
+    assert np.abs(errors).max() < 0.26
+    assert np.median(np.abs(errors)) < 0.05
 
 
 def leaps(rng, mu_c=0.4, r=0.005, hold=0.9):

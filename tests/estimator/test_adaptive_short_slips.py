@@ -7,12 +7,9 @@ import estimator
 from policies.leaderboard.imperfections import Imperfections, impaired
 from tests.estimator.exact_records import RATE
 
-RIGID = {"load_exponent0": 0.0, "sd_load_exponent": 1e-3}
-"""Friction of these blocks does not depend on the load; what else is stated: `test_adaptive_load.py`."""
 
-
-def last(record, **parameters):
-    batch = estimator.make_batch("adaptive", len(record.wrenches), **parameters)
+def last(record):
+    batch = estimator.make_batch("adaptive", len(record.wrenches))
     for k, t in enumerate(record.t.tolist()):
         batch.update(t, *(np.ascontiguousarray(a[:, k]) for a in (record.wrenches, record.twists)))
     return batch
@@ -32,10 +29,10 @@ def test_short_slips_teach_mu_c_whatever_the_delay(short_slips, mu_c, delay, jit
     plain = short_slips(mu_c=mu_c, mu_s=1.35 * mu_c)
     assert len(lengths(plain)) > 5
     assert lengths(plain).max() <= 3
-    batch = last(impaired(plain, Imperfections(velocity_delay=delay, jitter=jitter), seed=delay), **RIGID)
+    batch = last(impaired(plain, Imperfections(velocity_delay=delay, jitter=jitter), seed=delay))
     e = batch.estimates
     assert (e["updates_mu_c"] > 0).all()
-    assert np.median(e["updates_mu_c"] - batch.states["slides"]) >= 5
+    assert np.median(e["updates_mu_c"]) >= 5
     np.testing.assert_allclose(e["mu_c"], mu_c, rtol=0.08)
     assert np.mean(e["mu_c"]) == pytest.approx(mu_c, rel=0.03)
     assert np.median(np.abs(e["mu_c"] / mu_c - 1.0) * mu_c / e["sd_mu_c"]) < 1.0

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import estimator
-from estimator.augmented.parameters import AdaptiveParameters
 from tests.estimator.exact_records import RATE
 
 NOISE = 0.02, 0.02, 0.04, 5e-4
@@ -43,12 +42,6 @@ def test_slips_that_disagree_do_not():
     assert abs(uneven[1][-1].mu_c - 0.4) < 2.0 * uneven[1][-1].sd_mu_c
 
 
-def test_a_long_slip_counts_as_several():
-    (short, _), (long, _) = course([0.4]), course([0.4], samples=240)
-    n_short, n_long = (float(est.batch.states["separate"][0]) for est in (short, long))
-    assert 1.0 < n_short < 4.0 < n_long < 20.0
-
-
 def held_at(est, f_n):
     """The estimate after half a second at rest under a normal force [N]."""
     k = est.batch.states["samples"][0]
@@ -60,16 +53,13 @@ def held_at(est, f_n):
 def test_a_load_at_which_nothing_slipped_is_not_known():
     """Slips at 4 N do not show the friction at 12 N; only the noise of the normal force seems to."""
     est, after = course([0.4] * 8)
-    p = AdaptiveParameters()
-    spread = (1.0 - p.hard) ** 0.5 * p.sd_load_exponent * np.log(3.0)
-    more = relative(held_at(est, 12.0)) ** 2 - relative(after[-1]) ** 2
-    assert 0.5 * spread**2 < more < 1.05 * spread**2
+    assert relative(held_at(est, 12.0)) > 1.2 * relative(after[-1])
 
 
 def test_what_all_slips_share_remains():
-    """Anisotropy is not seen by slips of one direction, however many."""
-    _, after = course([0.4] * 20)
-    assert relative(after[-1]) > 0.05  # sd_surface
+    """A gain or anisotropy is not seen by slips of one direction, however many."""
+    est, after = course([0.4] * 20)
+    assert relative(after[-1]) > est.parameters.sd_gain
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -35,6 +35,15 @@ def test_every_result_is_documented(name):
     assert f"| `{name}` |" in PAGE
 
 
+def test_the_spreads_on_the_page_of_adaptive_are_those_of_its_parameters():
+    rows = re.findall(
+        r"\| (\S+) `(\w+)` \|$", (ROOT / "docs" / "adaptive.md").read_text(), flags=re.MULTILINE
+    )
+    defaults = dataclasses.asdict(estimator.AdaptiveParameters())
+    assert {name for _, name in rows} > {"sd_log_mu_c0", "sd_log_ratio", "sd_log_r0", "sd_zero", "sd_cop"}
+    assert {name: float(value) for value, name in rows} == {name: defaults[name] for _, name in rows}
+
+
 def code_blocks() -> list[str]:
     return re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL)
 

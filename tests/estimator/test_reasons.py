@@ -65,13 +65,3 @@ def test_an_r_beyond_the_pad_is_a_reason():
     finger = estimator.make("adaptive")
     finger.batch.states["at_bound"], finger.batch.estimates["updates_r"] = 0.9, 5
     assert "beyond its bounds" in finger.reasons()["r"]
-
-
-def test_samples_that_are_off_the_law_are_a_reason():
-    words = "one standard deviation is 20 %, single samples are 16 % off the friction law: be cautious"
-    found = estimator.reasons(estimated(confidence_r=0.2, sd_r=2e-3), law_error=0.16)
-    assert found == {"r": f"{words}; it needs slip with rotation in it"}
-    finger = estimator.make("adaptive")
-    states, estimates = finger.batch.states, finger.batch.estimates
-    states["law_square"], estimates["updates_r"], estimates["sd_r"] = 0.16**2, 5, 0.2 * estimates["r"]
-    assert finger.reasons()["r"] == found["r"]

@@ -44,7 +44,7 @@ def test_zero_errors_and_the_cop_are_found_with_their_deviations(calibrated):
 
 def test_the_report_and_the_page_show_them(calibrated):
     report, page = records.report(calibrated), markdown(calibrated)
-    assert "sensors" in report.splitlines()[-15]
+    assert "sensors" in report.splitlines()[-14]
     assert "zero of f_n [N]" in report
     assert "## What it found about the sensors\n\n| sensors | found | sd | sd before |\n" in page
     other = records.estimate(calibrated.record, "disc")

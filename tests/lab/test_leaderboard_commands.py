@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from lab.commands.imperfections import one_imperfection
-from lab.leaderboard.ablation import WITHOUT
 from policies.leaderboard.one_imperfection import IMPERFECTIONS
 from slipgym.config import load
 
@@ -27,14 +26,6 @@ def test_the_command_prints_its_tables_and_where_to_look(command, words, picture
     assert words in printed
     assert Path(printed.split()[-1]).name == picture
     assert Path(printed.split()[-1]).is_file()
-
-
-@pytest.mark.slow
-def test_the_ablation_has_a_row_for_each_thing():
-    printed = call("ablation", "--quick").strip()
-    assert printed.startswith("| without |")
-    assert len(printed.splitlines()) == 2 + len(WITHOUT)
-    assert all(f"\n| {label} |" in printed for label in WITHOUT)
 
 
 def test_each_imperfection_of_the_laboratory_stands_alone():

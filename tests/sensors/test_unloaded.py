@@ -4,6 +4,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
+from estimator.window.layout import ZERO
 from slipgym.config import load
 from slipgym.sensors.starting import draw_sensors, start_sensors
 from slipgym.sensors.unloaded import READINGS, read_unloaded
@@ -68,10 +69,10 @@ def test_an_episode_is_the_same_but_for_what_the_estimator_knows(engine):
         found = alone.estimator.states.copy()
         biases, known = alone.plant.force_torque["bias"][0], alone.estimator.states
         # mean of 24 readings: noise and lost ones 2 / 24^0.5 of the noise at most; four standard errors
+        np.testing.assert_allclose(known["x"][:, ZERO : ZERO + 2], biases[:, :2], atol=4 * 2 * 0.02 / 24**0.5)
         for f in range(2):
-            np.testing.assert_allclose(known["x"][f, 3:5], biases[f, :2], atol=4 * 2 * 0.02 / 24**0.5)
-            assert known["zero_normal"][f] == pytest.approx(biases[f, 2], abs=4 * 2 * 0.04 / 24**0.5)
-        assert (known["covariance"][:, 3, 3] ** 0.5 < 0.1 * 0.013 * 1.5).all()
+            assert known["zeros"][f, 2] == pytest.approx(biases[f, 2], abs=4 * 2 * 0.04 / 24**0.5)
+        assert (known["variance"][:, ZERO] ** 0.5 < 0.2 * alone.estimator.parameters.sd_zero).all()
     many = gym.make_vec(LINEAR, num_envs=5, sensors="lab", estimator="adaptive").unwrapped
     many.reset(seed=1)
     np.testing.assert_array_equal(many.simulation.estimator.states[4:6], found)

@@ -1,0 +1,1 @@
+"""The parts of "adaptive": a robust fit over a moving window of slips."""

@@ -1,0 +1,137 @@
+"""Fits the states to the window: Gauss-Newton with robust weights and probabilities of a slip."""
+
+import math
+
+from estimator._numba.caching import njit
+from estimator._numba.memory import matrix
+from estimator.window import layout as at
+from estimator.window.cholesky import factor, invert, substitute
+from estimator.window.layout import STATES
+from estimator.window.priors import add_priors
+from estimator.window.slide import slide
+from estimator.window.stick import stick
+
+TAILS = 2.0
+"""Squared normalised residual at which an entry counts half: Cauchy, as in the Student distribution with few
+degrees of freedom."""
+OFTEN, STARTS = 8, 3
+"""First fits that are tried from several radii, and their number: later ones start from the last fit."""
+
+
+@njit(error_model="numpy")
+def _spread(state, h):
+    """Variance of an expected force by the states that are least known: ln mu_c, ln r and the exponent."""
+    c, m, f, r = state.covariance, h[0, at.MU], h[0, at.FALLS], h[0, at.R]
+    own = m * m * c[at.MU, at.MU] + f * f * c[at.FALLS, at.FALLS] + r * r * c[at.R, at.R]
+    return own + 2.0 * (m * f * c[at.MU, at.FALLS] + m * r * c[at.MU, at.R] + f * r * c[at.FALLS, at.R])
+
+
+@njit(error_model="numpy")
+def _gather(state, p, x, a, g):
+    """Writes the normal equations of all entries at x; their cost, and the slides' mean squared residual."""
+    e, h, var = matrix(1, 3)[0], matrix(3, STATES), matrix(1, 3)[0]
+    g[:] = 0.0
+    a[:] = 0.0
+    cost, total, count = 0.0, 0.0, 1e-9
+    for i in range(at.ENTRIES):
+        s = state.entries[i]
+        kind, rows = s.kind, 1
+        if kind == at.EMPTY:
+            continue
+        old = s.end < state.split
+        if kind == at.SLIDE:
+            rows = 3
+            slide(x, s, state.sign, old, p.law_error * p.law_error, e, h, var)
+        else:
+            stick(x, s, old, state.covariance[at.R, at.R], e, h, var)
+        q = 0.0
+        for k in range(rows):
+            q += e[k] * e[k] / (rows * var[k])
+        weight, loss = math.exp((s.end - state.slip_time) / p.memory), TAILS * rows * math.log1p(q / TAILS)
+        if kind == at.SLIDE:
+            total += weight * s.slides * min(q, TAILS * TAILS)
+            count += weight * s.slides
+        # a pad springs under any load up to the limit, and under none beyond it
+        if kind == at.BREAK or e[0] * (state.sign if kind == at.SLIDE else 1.0) > 0.0:
+            cost += weight * loss
+        else:
+            spread = var[0] + _spread(state, h)
+            odds = s.slides / max(1.0 - s.slides, 1e-9)
+            odds *= (abs(h[0, at.MU]) + 1e-3) / math.sqrt(2.0 * math.pi * spread)
+            cost -= 2.0 * weight * math.log((odds * math.exp(-0.5 * loss) + 1.0) / (odds + 1.0))
+            likely = odds * math.exp(-0.5 * e[0] * e[0] / spread)
+            weight *= likely / (likely + 1.0)
+        weight /= 1.0 + q / TAILS
+        for k in range(rows):
+            for j in range(at.STATES):
+                by = weight / var[k] * h[k, j]
+                if by != 0.0:  # most derivatives are
+                    g[j] += by * e[k]
+                    for m in range(at.STATES):
+                        a[j, m] += by * h[k, m]
+    return cost, total / count
+
+
+@njit(error_model="numpy")
+def _limit(p, x):
+    """Keeps the states where the law is meant for."""
+    x[at.MU] = min(max(x[at.MU], math.log(p.mu_min)), math.log(p.mu_max))
+    x[at.RATIO] = min(max(x[at.RATIO], 0.0), 0.7)
+    x[at.R] = min(max(x[at.R], math.log(p.r_min)), math.log(1.25 * p.r_max))
+    x[at.SHAPE] = min(max(x[at.SHAPE], -0.2), 1.6)
+    x[at.FALLS] = min(max(x[at.FALLS], -0.5), 0.5)
+    x[at.STRIBECK] = min(max(x[at.STRIBECK], -1.0), 1.0)
+
+
+@njit(error_model="numpy")
+def descend(state, p, x, changed, steps, a, g):
+    """Takes Gauss-Newton steps from x (16,), in place; no logarithm moves by more than 0.5 in one.
+
+    Returns:
+        Cost and mean squared residual at the last but one x, whose information is factored in `a` (16, 16).
+
+    """
+    cost, misfit = 0.0, 1.0
+    for _ in range(steps):
+        cost, misfit = _gather(state, p, x, a, g)
+        cost += add_priors(state, x, changed, a, g)
+        if not factor(a):
+            return math.inf, 1.0
+        substitute(a, g)
+        largest = max(abs(g[at.MU]), abs(g[at.R]), abs(g[at.SHAPE]), abs(g[at.RATIO]), 0.5)
+        for j in range(at.STATES):
+            x[j] += 0.5 / largest * g[j]
+        _limit(p, x)
+    return cost, misfit
+
+
+@njit(error_model="numpy")
+def refit(state, p, x, changed, a, g):
+    """Improves x, from other radii as well as long as there is little data; returns as `descend`.
+
+    A first slip is explained by a small friction at a large radius as well as by the opposite, with two
+    minima.
+    """
+    few = state.fits < OFTEN
+    cost, misfit = descend(state, p, x, changed, 4 if few else 1, a, g)
+    if not few:
+        return cost, misfit
+    other = matrix(1, STATES)[0]
+    for start in range(STARTS):
+        other[:] = state.x
+        other[at.R] = state.mean[at.R] - 0.9 + 0.7 * start
+        found, _ = descend(state, p, other, changed, 6, a, g)
+        if found < cost - 0.5:
+            cost = found
+            x[:] = other
+    return descend(state, p, x, changed, 1, a, g)
+
+
+@njit(error_model="numpy")
+def conclude(state, x, misfit, a):
+    """Stores the states, and their covariance times the reduced chi square."""
+    state.x[:] = x
+    invert(a, state.covariance, max(misfit, 1.0))
+    state.misfit = misfit
+    state.fits += 1
+    state.fitted = True

@@ -1,0 +1,119 @@
+"""Names the states of the fit, and declares the records: interval, stretch, entry, and finger."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimator.stick_slip import STICK_SLIP_STATE, start
+from estimator.window.timing import CANDIDATES
+
+MU, RATIO, R, SHAPE, SIGMA, ZERO, TORQUE, TILT, COP = 0, 1, 2, 3, 4, 5, 7, 8, 10
+FALLS, GROWS, OLD, STRIBECK, STATES = 12, 13, 14, 15, 16
+"""States: ln mu_c, ln (mu_s / mu_c), ln r, shape of the limit surface, sigma_2 [s/m]; zero errors of f_x, f_y
+[N] and tau [N m]; tilt about both axes [rad]; offset of the centre of pressure, each way [m]; exponents with
+which mu_c falls and r grows with the normal force; how much ln mu_c was larger before the newest slips; ln
+v_s over its start value."""
+
+
+def _numbers(names: str, kind: Any = np.float64) -> list[tuple[Any, ...]]:
+    """Fields of the names, one number each."""
+    return [(name, kind) for name in names.split()]
+
+
+_MEAN = [("motion", np.float64, (3,)), ("wrench", np.float64, (4,)), *_numbers("time count slow unknown")]
+INTERVAL = np.dtype(_MEAN, align=True)
+"""Displacement [m, m, rad]; wrench at its end [N, N, N, N m]; duration [s]; number of samples; in a slip
+exp(-(v / v_s)^2) and its derivative by ln v_s [-]."""
+STRETCH = np.dtype([*_MEAN, *_numbers("work instants scatter")], align=True)
+"""The stretch of slip that grows: an `INTERVAL` whose wrench, `slow` and `unknown` are multiplied by the
+duration; work of the load [J], number of instants, sum of the squared changes of the velocity [m^2/s^2]."""
+ENTRY = np.dtype(
+    [*_MEAN, ("kind", np.int64), *_numbers("end load slides var_speed var_spin var_force var_torque")],
+    align=True,
+)
+"""Entry of the window: an `INTERVAL` with a twist in place of a displacement; slip time at its end [s]; ln of
+its normal force over the reference; probability that it is no spring of the pad; variances."""
+EMPTY, SLIDE, BREAK, FALL = 0, 1, 2, 3
+"""Kinds: a stretch of slip, the load before a slip, the load after its fall."""
+SAMPLES, INTERVALS, ENTRIES = 32, 16, 24
+"""Lengths of the rings."""
+
+STATE = np.dtype(
+    [
+        *STICK_SLIP_STATE,
+        *_numbers("in_a_row delay interval run repeated quiet first entry fits", np.int64),
+        *_numbers("touched learned stored fitted", np.bool_),
+        *_numbers("elapsed timing sign power unloaded variance_normal noise spring slip_time changed split"),
+        *_numbers("reference misfit at_bound load look_time fit_time sd_lever"),
+        ("products", np.float64, (CANDIDATES,)),
+        ("energies", np.float64, (2,)),
+        ("zeros", np.float64, (4,)),
+        ("peak", np.float64, (4,)),
+        ("rest", np.float64, (4,)),
+        ("wrenches", np.float64, (SAMPLES, 4)),
+        ("twists", np.float64, (SAMPLES, 3)),
+        ("growing", INTERVAL),
+        ("intervals", INTERVAL, (INTERVALS,)),
+        ("stretch", STRETCH),
+        ("entries", ENTRY, (ENTRIES,)),
+        ("x", np.float64, (STATES,)),
+        ("mean", np.float64, (STATES,)),
+        ("variance", np.float64, (STATES,)),
+        ("covariance", np.float64, (STATES, STATES)),
+    ],
+    align=True,
+)
+"""`in_a_row`: samples in contact; `delay` of the velocity [samples], `timing`: its correlation, from
+`products` and `energies`; `sign`: 1 if the wrench is that on the finger, by the sum `power`; `unloaded`:
+samples without load, which gave the `zeros` of the wrench; `wrenches`, `twists`: rings of samples; `growing`:
+the interval that grows; `interval`: number of the next one; `noise`: of the speed [m/s]; `spring`: largest
+compliance of the pad that is possible [m/N]; `run`: intervals in a row that moved, `repeated`: 1 if two of
+them were the same, `first`: number of the first one, `quiet`: those at rest since then, `learned`: whether
+the slip has an entry; `peak`: wrench of the largest load before it; `rest`: wrench at the last look at a
+stick; `stored`: whether the stretch has an entry already; `slip_time`: time of slip so far [s]; `changed`:
+slip time of the newest change of friction, 0 for none; `split`: slip time before which an entry is an old
+one; `entry`: number of the next one; `fitted`: whether there was a fit since the last look; `reference`: ln
+of the normal force at which ln mu_c and ln r are; `mean`, `variance`: of the states without any slip;
+`misfit`: mean squared normalised residual; `at_bound`: 1 if r is at its bound; `load`: normal force of the
+published values [N], found at `look_time`; `fit_time`: time of the last fit [s]."""
+
+START_SHAPE = 0.65
+"""Mean shape: pads of hardware are between a Hertzian pressure (0.9) and the ellipsoid of simulators (0)."""
+_SPREADS: dict[int, float | str] = {
+    MU: "sd_log_mu_c0",
+    RATIO: "sd_log_ratio",
+    R: "sd_log_r0",
+    SHAPE: 0.6,
+    SIGMA: "sd_viscosity",
+    ZERO: "sd_zero",
+    ZERO + 1: "sd_zero",
+    TORQUE: "sd_zero_torque",
+    TILT: "sd_tilt",
+    TILT + 1: "sd_tilt",
+    COP: "sd_cop",
+    COP + 1: "sd_cop",
+    FALLS: 0.15,
+    GROWS: 0.1,
+    STRIBECK: 0.5,
+}
+
+
+def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
+    """States (m,) before the first sample, for parameters (m,)."""
+    states = start(parameters, STATE)
+    mean = states["mean"]
+    mean[:, MU], mean[:, R] = np.log(parameters["mu_c0"]), np.log(parameters["r0"])
+    mean[:, RATIO] = np.log(np.maximum(parameters["mu_s0"] / parameters["mu_c0"], 1.0))
+    mean[:, SHAPE], mean[:, SIGMA] = START_SHAPE, parameters["viscosity0"]
+    states["x"] = mean
+    for at, name in _SPREADS.items():
+        spread: Any = parameters[name] if isinstance(name, str) else name
+        states["variance"][:, at] = (spread * (1e-3 if name == "sd_cop" else 1.0)) ** 2
+        states["covariance"][:, at, at] = states["variance"][:, at]
+    states["variance_normal"] = parameters["sd_zero"] ** 2
+    states["delay"], states["spring"] = parameters["nominal_delay"], parameters["compliance_max"]
+    states["noise"] = 2e-4
+    states["sign"] = states["misfit"] = 1.0
+    states["sd_lever"] = 2**0.5 * states["mu_c"] * states["r"]
+    return states
