@@ -1,6 +1,6 @@
 """The "adaptive" estimator: a robust fit over a moving window of slips, on a family of limit surfaces.
 
-docs/estimator.md describes the model; `estimator.window` is the code, in the order of a sample's way:
+docs/adaptive.md describes the model; `estimator.window` is the code, in the order of a sample's way:
 `unloaded` (zero errors), `timing` (delay), `intervals` (motion and rest), `sticks` and `window` (entries),
 `slide` and `stick` (residuals), `fit`, `change`, `published`.
 """

@@ -8,6 +8,7 @@ f_n.
 import math
 
 from estimator._numba.caching import njit
+from estimator.estimate import confidence_of
 from estimator.sample import clamped
 from estimator.window.layout import MU, RATIO, R
 from estimator.window.window import refer
@@ -18,10 +19,7 @@ LATER, AGEING = 1.0, 1e-3
 EVENTS = 0.05  # Relative error that all break-aways share: the time in stick, the place
 
 
-@njit(error_model="numpy")
-def confidence(square):
-    """See `estimator.estimate.confidence_of`."""
-    return 1.0 / (1.0 + 100.0 * square)
+confidence = njit(confidence_of, error_model="numpy")
 
 
 @njit(error_model="numpy")

@@ -31,7 +31,6 @@ def _size(state, w):
 @njit(error_model="numpy")
 def find_peak(state):
     """Stores the wrench of the largest load over f_n shortly before the velocity begins to show a slip."""
-    state.peak[2] = 0.0
     k, largest = state.samples - state.delay, 0.0
     count = min(int(BEFORE / state.elapsed) + 3, min(state.in_a_row, SAMPLES) - state.delay - 2)
     for i in range(k - count, min(k + 2, state.samples + 1)):
