@@ -41,9 +41,14 @@ def substitute(a, g):
 def invert(a, inverse, factor_of_all):
     """Writes factor_of_all (L L')^-1 into a matrix (16, 16)."""
     column = matrix(1, STATES)[0]
-    for j in range(STATES):
-        for k in range(STATES):
-            column[k] = factor_of_all if k == j else 0.0
-        substitute(a, column)
-        for k in range(j, STATES):
-            inverse[k, j] = inverse[j, k] = column[k]
+    for j in range(STATES):  # a column is zero above j, and the result is symmetric
+        for i in range(j, STATES):
+            rest = factor_of_all if i == j else 0.0
+            for k in range(j, i):
+                rest -= a[i, k] * column[k]
+            column[i] = rest / a[i, i]
+        for i in range(STATES - 1, j - 1, -1):
+            for k in range(i + 1, STATES):
+                column[i] -= a[k, i] * column[k]
+            column[i] /= a[i, i]
+            inverse[i, j] = inverse[j, i] = column[i]

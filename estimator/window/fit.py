@@ -28,11 +28,16 @@ def _spread(state, h):
 
 @njit(error_model="numpy")
 def _gather(state, p, x, a, g):
-    """Writes the normal equations of all entries at x; their cost, and the slides' mean squared residual."""
+    """Writes the normal equations of all entries at x, `a` below its diagonal, and the share of springs.
+
+    Returns:
+        Cost of the entries, and mean squared normalised residual of the slides.
+
+    """
     e, h, var = matrix(1, 3)[0], matrix(3, STATES), matrix(1, 3)[0]
     g[:] = 0.0
     a[:] = 0.0
-    cost, total, count = 0.0, 0.0, 1e-9
+    cost, total, count, springs, weights = 0.0, 0.0, 1e-9, 0.0, 1e-9
     for i in range(at.ENTRIES):
         s = state.entries[i]
         kind, rows = s.kind, 1
@@ -51,6 +56,7 @@ def _gather(state, p, x, a, g):
         if kind == at.SLIDE:
             total += weight * s.slides * min(q, TAILS * TAILS)
             count += weight * s.slides
+        weights += weight
         # a pad springs under any load up to the limit, and under none beyond it
         if kind == at.BREAK or e[0] * (state.sign if kind == at.SLIDE else 1.0) > 0.0:
             cost += weight * loss
@@ -60,15 +66,18 @@ def _gather(state, p, x, a, g):
             odds *= (abs(h[0, at.MU]) + 1e-3) / math.sqrt(2.0 * math.pi * spread)
             cost -= 2.0 * weight * math.log((odds * math.exp(-0.5 * loss) + 1.0) / (odds + 1.0))
             likely = odds * math.exp(-0.5 * e[0] * e[0] / spread)
+            springs += weight / (likely + 1.0)
             weight *= likely / (likely + 1.0)
         weight /= 1.0 + q / TAILS
         for k in range(rows):
+            information, off = weight / var[k], e[k]
             for j in range(at.STATES):
-                by = weight / var[k] * h[k, j]
+                by = information * h[k, j]
                 if by != 0.0:  # most derivatives are
-                    g[j] += by * e[k]
-                    for m in range(at.STATES):
+                    g[j] += by * off
+                    for m in range(j + 1):
                         a[j, m] += by * h[k, m]
+    state.springs = springs / weights
     return cost, total / count
 
 
@@ -94,7 +103,7 @@ def descend(state, p, x, changed, steps, a, g):
     cost, misfit = 0.0, 1.0
     for _ in range(steps):
         cost, misfit = _gather(state, p, x, a, g)
-        cost += add_priors(state, x, changed, a, g)
+        cost += add_priors(state, p, x, changed, a, g)
         if not factor(a):
             return math.inf, 1.0
         substitute(a, g)

@@ -43,9 +43,9 @@ STATE = np.dtype(
     [
         *STICK_SLIP_STATE,
         *_numbers("in_a_row delay interval run repeated quiet first entry fits", np.int64),
-        *_numbers("touched learned stored fitted", np.bool_),
-        *_numbers("elapsed timing sign power unloaded variance_normal noise spring slip_time changed split"),
-        *_numbers("reference misfit at_bound load look_time fit_time sd_lever"),
+        *_numbers("touched learned fitted", np.bool_),
+        *_numbers("elapsed timing sign power stored unloaded variance_normal noise spring slip_time changed"),
+        *_numbers("split reference misfit at_bound load look_time fit_time springs sd_lever"),
         ("products", np.float64, (CANDIDATES,)),
         ("energies", np.float64, (2,)),
         ("zeros", np.float64, (4,)),
@@ -71,12 +71,13 @@ the interval that grows; `interval`: number of the next one; `noise`: of the spe
 compliance of the pad that is possible [m/N]; `run`: intervals in a row that moved, `repeated`: 1 if two of
 them were the same, `first`: number of the first one, `quiet`: those at rest since then, `learned`: whether
 the slip has an entry; `peak`: wrench of the largest load before it; `rest`: wrench at the last look at a
-stick; `stored`: whether the stretch has an entry already; `slip_time`: time of slip so far [s]; `changed`:
+stick; `stored`: instants of the stretch that its entry has; `slip_time`: time of slip so far [s]; `changed`:
 slip time of the newest change of friction, 0 for none; `split`: slip time before which an entry is an old
 one; `entry`: number of the next one; `fitted`: whether there was a fit since the last look; `reference`: ln
 of the normal force at which ln mu_c and ln r are; `mean`, `variance`: of the states without any slip;
 `misfit`: mean squared normalised residual; `at_bound`: 1 if r is at its bound; `load`: normal force of the
-published values [N], found at `look_time`; `fit_time`: time of the last fit [s]."""
+published values [N], found at `look_time`; `fit_time`: time of the last fit [s]; `springs`: share of
+the entries that may be springs of the pad."""
 
 START_SHAPE = 0.65
 """Mean shape: pads of hardware are between a Hertzian pressure (0.9) and the ellipsoid of simulators (0)."""

@@ -1,8 +1,8 @@
 """Publishes what the fit says: values at the present normal force, deviations, confidence.
 
 The covariance of the fit, times its reduced chi square, contains every state that the motion does not show.
-Added are the errors that no motion shows: gain, cross-talk and anisotropy (`sd_gain`), and the zero error of
-f_n.
+Added are the errors that no motion shows: gain, cross-talk and anisotropy (`sd_gain`), the zero error of f_n,
+and slips that were none.
 """
 
 import math
@@ -17,6 +17,9 @@ NEARLY = 0.02  # Relative change of the normal force for which the values are co
 LATER, AGEING = 1.0, 1e-3
 """Time after which they are computed again [s]; variance of ln mu_c that a second without slips adds."""
 EVENTS = 0.05  # Relative error that all break-aways share: the time in stick, the place
+
+
+SPRUNG = 0.6  # Relative error of a slip that was a spring of the pad: its load is anywhere up to the limit
 
 
 confidence = njit(confidence_of, error_model="numpy")
@@ -34,6 +37,8 @@ def publish_fit(state, p, f_n):
     state.fitted, state.load, state.look_time = False, f_n, state.t
     x, c = state.x, state.covariance
     hidden = p.sd_gain * p.sd_gain + state.variance_normal / (f_n * f_n) + AGEING * (state.t - state.fit_time)
+    sprung = SPRUNG * SPRUNG * state.springs
+    hidden += sprung
     square = c[MU, MU] + hidden
     state.mu_c = clamped(math.exp(x[MU]), p.mu_min, p.mu_max)
     state.sd_mu_c, state.confidence_mu_c = state.mu_c * math.sqrt(square), confidence(square)
@@ -41,7 +46,7 @@ def publish_fit(state, p, f_n):
         state.at_bound = 1.0 if math.exp(x[R]) > p.r_max else 0.0
         state.r = clamped(math.exp(x[R]), p.r_min, p.r_max)
         # an r beyond the pad follows a torque that is not that of a slip
-        square = c[R, R] + p.sd_gain * p.sd_gain + state.at_bound * p.sd_log_r0 * p.sd_log_r0
+        square = c[R, R] + p.sd_gain * p.sd_gain + sprung + state.at_bound * p.sd_log_r0 * p.sd_log_r0
         state.sd_r, state.confidence_r = state.r * math.sqrt(square), confidence(square)
     square = max(c[MU, MU] + c[R, R] + 2.0 * c[MU, R], 0.0) + hidden
     state.sd_lever = state.mu_c * state.r * math.sqrt(square)

@@ -82,7 +82,7 @@ def _store(state, p):
     slides = min(is_no_spring(state, p, length(p, c.motion)), 1.0 - SINGLE / (c.instants * c.instants))
     if not (wrench[2] > p.eps_fn and c.work * state.sign > 0.0 and slides > 0.1):
         return
-    if state.stored:
+    if state.stored > 0.0:
         state.entry -= 1
     else:
         store_break(state, p)
@@ -96,7 +96,7 @@ def _store(state, p):
     s.var_spin = 1.5 * s.var_speed / (p.r_max * p.r_max)
     s.var_force *= 1.5 / c.count + 0.16
     s.var_torque *= 1.5 / c.count
-    state.stored = state.learned = True
+    state.stored, state.learned = c.instants, True
     fit(state, p)
     state.updates_mu_c += 1
     spin = abs(s.motion[2])
@@ -109,12 +109,13 @@ def end_stretch(state, p):
     """Stores the stretch that grows, and begins another one."""
     c = state.stretch
     if c.time > 0.0:
-        _store(state, p)
+        if c.instants > state.stored:
+            _store(state, p)
         c.motion[:] = 0.0
         c.wrench[:] = 0.0
         c.time, c.count, c.instants, c.work = 0.0, 0.0, 0.0, 0.0
         c.slow, c.unknown, c.scatter = 0.0, 0.0, 0.0
-        state.stored = False
+        state.stored = 0.0
 
 
 @njit(error_model="numpy")

@@ -15,6 +15,8 @@ WEAK = {
     "test_stick_slip_with_a_delay_that_nobody_tells[4-0.3]": "stick-slip four samples late",
     "test_short_slips_teach_mu_c_whatever_the_delay[0.25-0-0.0]": "the start value pulls by 4 %",
     "test_short_slips_teach_mu_c_whatever_the_delay[0.25-0-0.3]": "the start value pulls by 4 %",
+    "test_short_slips_teach_mu_c_whatever_the_delay[0.25-1-0.3]": "one late sample is taken for an exponent",
+    "test_short_slips_teach_mu_c_whatever_the_delay[0.25-3-0.3]": "one late sample is taken for an exponent",
     "test_short_slips_teach_mu_c_whatever_the_delay[0.5-3-0.3]": "short slips late and with jitter",
     "test_slips_that_disagree_do_not": "slips that disagree widen the deviation by 1.1, not by 2",
     "test_mu_s_does_not_follow_a_mu_c_that_a_spring_misleads[0.00025-1.0]": "the softest pad",
@@ -25,7 +27,6 @@ WEAK = {
     "test_it_follows_a_load_that_swings[0.15-0.0]": "3 to 5 % rms instead of 1.5 %",
     "test_it_follows_a_load_that_swings[0.31-0.3333333333333333]": "3 to 5 % rms instead of 1.5 %",
     "test_the_deviation_grows_with_another_load_and_holds_both_kinds_of_pads": "it grows too little",
-    "test_two_loads_show_the_exponent": "the exponent of one pair of loads",
     "test_a_pad_that_springs_in_torsion_does_not_slip": "a spring in torsion is taken for slip",
 }
 """What "adaptive" is known not to reach: test -> how far off it is. One that passes again fails the suite."""
