@@ -19,7 +19,7 @@ app = application()
 
 @app.command(epilog=EPILOG, cls=taking_several("--only"))
 def main(only: Only = None) -> None:
-    """Print the figures of steps, engines, patches and tilt; exit code 1 if one is not met."""
+    """Print the figures of steps, engines, patches, tilt and soft pads; exit code 1 if one is not met."""
     from lab.validation import EXPERIMENTS
 
     if accept(EXPERIMENTS, only):

@@ -1,4 +1,4 @@
-"""Computes what supports the acceptance figures: other steps, the other engine, published and exact laws."""
+"""Computes what supports the acceptance figures: other steps, contacts, pads and engines, exact laws."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from lab.validation.patch_rate import patch_rate
 from lab.validation.patch_steps import patch_steps
 from lab.validation.patch_stick import patch_stick
 from lab.validation.patch_surface import patch_surface
+from lab.validation.patches import disc, distributed
 from lab.validation.slides import slides
+from lab.validation.soft import soft
 from lab.validation.tilt import tilt
 from slipgym.validation import Figure
 
@@ -25,6 +27,9 @@ EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     patch_steps,
     patch_rate,
     tilt,
+    disc,
+    distributed,
+    soft,
 )
 """Each yields its figures."""
 

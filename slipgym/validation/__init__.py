@@ -10,8 +10,6 @@ from slipgym.validation.creep import creep
 from slipgym.validation.energy import energy
 from slipgym.validation.fall import fall
 from slipgym.validation.figure import Figure
-from slipgym.validation.patches import disc, distributed
-from slipgym.validation.soft import soft
 from slipgym.validation.steady import steady
 
 
@@ -29,9 +27,6 @@ EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
     energy,
     fall,
     planar,
-    disc,
-    soft,
-    distributed,
 )
 """Each yields its figures."""
 

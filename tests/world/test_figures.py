@@ -4,7 +4,7 @@ import pytest
 
 from slipgym.validation import EXPERIMENTS, Figure
 
-SLOW = {"creep", "disc", "distributed", "soft"}
+SLOW = {"creep"}
 """Those of several seconds; `make validate` and `make test-all` run all."""
 CASES = [
     pytest.param(experiment, id=experiment.__name__, marks=[pytest.mark.slow] * (experiment.__name__ in SLOW))
