@@ -15,8 +15,9 @@ COMMANDS = {
     "rank": "Compare the order of returns with that of success.",
     "reproduce": "Reproduce the paper's analyses.",
     "ship": "Add trained policies to the pretrained ones.",
+    "study-report": "Write the report of a study as one page.",
     "torture": "Attack the public interface for some hours.",
     "train-estimator": 'Train the network of the estimator "gru".',
-    "validate-parts": "Check steps, engines, patches and tilt.",
+    "validate-parts": "Check steps, engines, patches, tilt and soft pads.",
 }
 """Name of each sub-command and its line of help."""

@@ -1,7 +1,5 @@
 """Studies the benefit of friction information: controllers and learned policies with and without it."""
 
-import shlex
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -41,11 +39,11 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the study's own folder.")] = Path("runs"),
     seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the study's.")] = None,
 ) -> None:
-    """Run a study and write its tables and one self-contained report, report.html."""
+    """Run a study and write its tables."""
     try:
         from policies import study as studies
     except ModuleNotFoundError as error:
-        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[study]'") from error
+        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
     try:
         chosen = studies.narrowed(
             studies.load_study(study),
@@ -58,5 +56,5 @@ def main(
         )
     except (ValueError, FileNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
-    folder = studies.run_study(chosen, output, jobs, shlex.join(["python", *sys.argv]))
+    folder = studies.run_study(chosen, output, jobs)
     typer.echo("\n" + studies.words(chosen, folder))

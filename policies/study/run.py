@@ -15,7 +15,6 @@ from policies.study.config import Study
 from policies.study.constant_grip import constant_grips
 from policies.study.episodes import episodes
 from policies.study.learned import missing, policies_of
-from policies.study.page import write_page
 from policies.study.store import Store
 from policies.versions import write_versions
 from slipgym import atomic_io
@@ -25,16 +24,14 @@ def run_study(
     study: Study,
     output: str | os.PathLike[str] = "runs",
     jobs: int = 1,
-    command: str = "",
     progress: bool = True,
 ) -> Path:
-    """Runs what a study has not run yet, and writes its tables and its report.
+    """Runs what a study has not run yet, and writes its tables.
 
     Args:
         study: From `load_study`.
         output: Folder that the study's own folder goes to; finished conditions are not run again.
         jobs: Processes; -1 for one per core. The results do not depend on it.
-        command: What the report says it was made by.
         progress: Whether to show progress bars.
 
     Returns:
@@ -63,7 +60,6 @@ def run_study(
     atomic_io.write(folder / "episodes.parquet", done.to_parquet(index=False))
     for name, table in made.items():
         atomic_io.write(folder / f"{name}.csv", _csv(table))
-    write_page(study, chosen, done, made, missing(study, learned), command, folder, progress)
     return folder
 
 

@@ -50,7 +50,7 @@ def words(study: Study, folder: Path) -> str:
         figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
         rows.append([row["task"], f"{row['force_N']:.2f}", *figures])
     parts += ["The best constant grip, without any sensor, planar engine:", aligned(rows)]
-    return "\n\n".join([*parts, f"Look at:\n  {folder / 'report.html'}"])
+    return "\n\n".join([*parts, f"Look at:\n  {folder / 'outcomes.csv'}"])
 
 
 def training_seeds(outcomes: pd.DataFrame) -> list[str]:

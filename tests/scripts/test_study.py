@@ -40,10 +40,10 @@ def test_a_missing_package_names_the_extra_before_anything_runs(tmp_path, invoke
     for name in [name for name in sys.modules if name.startswith("policies.study")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.delattr(policies, "study", raising=False)
-    monkeypatch.setitem(sys.modules, "jinja2", None)
+    monkeypatch.setitem(sys.modules, "joblib", None)
     done = invoke("study", "quick")
     assert done.exit_code == 2
-    assert "slipgym[study]" in done.stderr
+    assert "slipgym[eval]" in done.stderr
     assert list(tmp_path.iterdir()) == []
 
 

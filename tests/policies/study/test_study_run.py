@@ -15,7 +15,6 @@ FILES = {
     "episodes.parquet",
     "benefits.csv",
     "outcomes.csv",
-    "report.html",
     "shares.csv",
     "study.yaml",
     "transfer.csv",
@@ -38,7 +37,7 @@ def output(tmp_path_factory):
 @pytest.fixture
 def run(small, output):
     """Run once; from then on the conditions are there."""
-    return run_study(small(), output, 1, "the command", progress=False)
+    return run_study(small(), output, 1, progress=False)
 
 
 def test_the_folder_holds_everything(run, small):
@@ -118,7 +117,7 @@ def test_what_the_terminal_says(run, small):
     said = words(small(), run)
     assert "LinearSlip  train   classic  estimated disc" in said
     assert "not significant" in said
-    assert str(run / "report.html") in said
+    assert str(run / "outcomes.csv") in said
 
 
 def test_a_study_without_all_sources_has_no_shares(run, small, output):
@@ -130,7 +129,6 @@ def test_a_study_without_all_sources_has_no_shares(run, small, output):
     folder = run_study(study, output, 1, progress=False)
     assert len(pd.read_csv(folder / "shares.csv")) == 0
     assert "LinearSlip  train   classic  true" in words(study, folder)
-    assert 'id="shares"' not in (folder / "report.html").read_text()
 
 
 def test_nothing_to_run_is_an_error(small, tmp_path):

@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from lab.study_report.marks import dot, panels, stripes
 from policies.evaluation.frames import distinct, records, where
 from policies.evaluation.plots.style import STYLE, note
-from policies.study.figures.marks import dot, panels, stripes
 from policies.study.tables import ENOUGH
 
 TRANSFER_MOST = 3.0

@@ -12,18 +12,22 @@ import pandas as pd
 import yaml
 from tqdm import tqdm
 
+from lab.study_report.degradation import plot_degradation
+from lab.study_report.differences import TRANSFER_MOST, plot_shares, plot_transfer
+from lab.study_report.formats import FILTERS
+from lab.study_report.inline import inline
+from lab.study_report.sentences import answers
+from lab.study_report.success import plot_estimators, plot_success
+from lab.study_report.videos import Scene, scene
 from policies.evaluation.frames import distinct, records, where, without
 from policies.evaluation.plots.style import styled
-from policies.study import figures
-from policies.study.conditions import Condition
+from policies.study import load_study, tables
+from policies.study.benefit import benefits
+from policies.study.conditions import conditions
 from policies.study.config import Study
-from policies.study.figures.differences import TRANSFER_MOST
-from policies.study.figures.inline import inline
-from policies.study.formats import FILTERS
-from policies.study.sentences import answers
+from policies.study.learned import missing, policies_of
 from policies.study.store import sources
 from policies.study.tables import ALL, by
-from policies.study.videos import Scene, scene
 from policies.versions import versions
 from slipgym import atomic_io
 
@@ -37,44 +41,57 @@ TITLES = {
 _TEMPLATE = Path(__file__).parent / "report.html.j2"
 
 
-def write_page(
-    study: Study,
-    conditions: Sequence[Condition],
-    episodes: pd.DataFrame,
-    tables: Mapping[str, pd.DataFrame],
-    missing: Sequence[str],
-    command: str,
-    folder: Path,
-    progress: bool = True,
-) -> None:
-    """Writes report.html, whole.
+def write_report(folder: Path, command: str = "", progress: bool = True) -> Path:
+    """Writes report.html into the folder of a finished study, whole.
 
     Args:
-        study: The study.
-        conditions: All its conditions.
-        episodes: Their episodes.
-        tables: "outcomes", "shares", "benefits", "transfer" and "constant_grip".
-        missing: What was left out, in words.
-        command: What it was made by.
-        folder: The study's folder; videos are kept in its "videos".
+        folder: From `policies.study.run_study`; videos are kept in its "videos".
+        command: What the report says it was made by.
         progress: Whether to show a progress bar.
+
+    Returns:
+        The report.
+
+    Raises:
+        FileNotFoundError: The folder holds no finished study.
+        ValueError: Its study.yaml is wrong.
     """
+    study = load_study(folder / "study.yaml")
+    learned = policies_of(study)
+    chosen, episodes = conditions(study, learned), pd.read_parquet(folder / "episodes.parquet")
+    made = {
+        "outcomes": tables.outcomes(episodes),
+        "shares": tables.shares(episodes, study.estimators[0]),
+        "benefits": benefits(episodes),
+        "transfer": tables.transfer(episodes, study),
+        "constant_grip": pd.read_csv(folder / "constant_grip.csv"),
+    }
     bar = tqdm(study.videos, desc="videos", unit="task", disable=not progress)
-    scenes = [scene(study, task, conditions, episodes, folder / "videos") for task in bar]
-    page = render(study, episodes, tables, [each for each in scenes if each], missing, command)
+    scenes = [scene(study, task, chosen, episodes, folder / "videos") for task in bar]
+    page = render(study, episodes, made, [each for each in scenes if each], missing(study, learned), command)
     atomic_io.write(folder / "report.html", page.encode())
+    return folder / "report.html"
 
 
 def render(
     study: Study,
     episodes: pd.DataFrame,
-    tables: Mapping[str, pd.DataFrame],
+    made: Mapping[str, pd.DataFrame],
     scenes: Sequence[Scene],
-    missing: Sequence[str],
+    missing_policies: Sequence[str],
     command: str,
 ) -> str:
-    """The report as text; arguments as of `write_page`."""
-    outcomes, shares, transfer = (tables[name] for name in ("outcomes", "shares", "transfer"))
+    """The report as text.
+
+    Args:
+        study: The study.
+        episodes: Its episodes.
+        made: Its tables: "outcomes", "shares", "benefits", "transfer" and "constant_grip".
+        scenes: Videos.
+        missing_policies: What was left out, in words.
+        command: What it was made by.
+    """
+    outcomes, shares, transfer = (made[name] for name in ("outcomes", "shares", "transfer"))
     plain, changed = where(outcomes, change=""), without(outcomes, "change", "")
     fractions = where(shares, world=study.worlds[0].label)
     main = where(plain, world=study.worlds[0].label, preset=study.presets[0])
@@ -93,16 +110,16 @@ def render(
         answers=answers(study, outcomes, shares),
         titles=TITLES,
         tiles=_tiles(main),
-        benefits=records(where(tables["benefits"], world=study.worlds[0].label)),
+        benefits=records(where(made["benefits"], world=study.worlds[0].label)),
         pictures=_pictures(study, plain, changed, fractions, transfer),
         places=places,
         shares=records(fractions),
         transfer=records(transfer),
-        constant=records(tables["constant_grip"]),
+        constant=records(made["constant_grip"]),
         transfer_most=TRANSFER_MOST,
         scenes=scenes,
         embedded=_embedded,
-        missing=missing,
+        missing=missing_policies,
         command=command,
         digest=sources(),
         episodes=len(episodes),
@@ -137,22 +154,18 @@ def _pictures(
     estimator, *others = study.estimators
     with styled():
         for (preset,), group in by(first, ["preset"]):
-            success = figures.plot_success(group, estimator)
+            success = plot_success(group, estimator)
             pictures["success"][preset] = inline(success, f"Episodes solved, {preset}")
             if others:
-                compared = figures.plot_estimators(group, study.estimators)
+                compared = plot_estimators(group, study.estimators)
                 pictures["estimators"][preset] = inline(compared, f"Episodes solved by estimator, {preset}")
             if len(part := where(fractions, preset=preset)):
-                pictures["shares"][preset] = inline(
-                    figures.plot_shares(part), f"Share of the truth, {preset}"
-                )
+                pictures["shares"][preset] = inline(plot_shares(part), f"Share of the truth, {preset}")
         for (kind,), group in by(changed, ["kind"]):
-            worse = figures.plot_degradation(group)
+            worse = plot_degradation(group)
             pictures["degradation"][kind] = inline(worse, f"Episodes solved as things get worse, {kind}")
         if len(transfer):
-            pictures["transfer"] = inline(
-                figures.plot_transfer(transfer), "From the planar engine to PyBullet"
-            )
+            pictures["transfer"] = inline(plot_transfer(transfer), "From the planar engine to PyBullet")
     return pictures
 
 

@@ -10,11 +10,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from lab.study_report.page import render, write_report
+from lab.study_report.videos import Clip, Scene
 from policies.play.video import Video
+from policies.study import run as runner
 from policies.study.benefit import benefits
-from policies.study.page import render
 from policies.study.tables import outcomes, shares, transfer
-from policies.study.videos import Clip, Scene
 from slipgym.rendering import HEIGHT, WIDTH
 
 CLEAR = {"none": 0, "nominal": 5, "estimated": 9, "true": 10}
@@ -71,7 +72,7 @@ def page(small, invented, clip):
     )
     films = tuple(Clip(source, clip, source != "none", False) for source in ("none", "estimated", "true"))
     scene = Scene("Hold", "learned", 7, "the first", films)
-    return render(study, episodes, made, [scene], ["Hold: <nothing> & all"], "python scripts/study.py small")
+    return render(study, episodes, made, [scene], ["Hold: <nothing> & all"], "slipgym study-report small")
 
 
 class Reader(html.parser.HTMLParser):
@@ -124,7 +125,7 @@ def test_the_page_says_what_is_known(page):
     assert re.search(
         r"Hold train (classic|learned) classic estimated disc 30 90\.0 80\.0 to 100\.0 90 ", text
     )
-    assert "python scripts/study.py small" in text
+    assert "slipgym study-report small" in text
     assert text.count("✓ reached") == 10
     assert "nan" not in text.lower().replace("nominal", "")
 
@@ -142,6 +143,18 @@ def test_kinds_with_a_single_friction_source_are_compared_in_the_table_alone(sma
     assert "The controllers: episodes solved" in page
     assert "with a memory of slips" not in page
     assert page.count("<td>memory</td><td>classic</td>") == 3  # the opponent of all sources but none
+
+
+def test_the_report_of_a_finished_study(small, tmp_path, monkeypatch, invoke):
+    original = runner.constant_grips
+    monkeypatch.setattr(runner, "constant_grips", lambda *a, **k: original(*a, candidates=3, **k))
+    world = {"label": "core", "engine": "planar", "contact": "ellipsoid", "sources": ["true"]}
+    folder = runner.run_study(small(worlds=[world]), tmp_path, 1, progress=False)
+    page = write_report(folder, progress=False).read_text(encoding="utf-8")
+    assert "<td>LinearSlip</td>" in page
+    assert 'id="shares"' not in page  # there is one source alone
+    assert invoke("study-report", str(tmp_path / "nothing")).exit_code == 2
+    assert invoke("study-report", str(folder)).stdout.rstrip().endswith("report.html")
 
 
 def test_there_is_no_clock_on_the_page(page):

@@ -8,11 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from lab.study_report.marks import COLOURS
 from policies.evaluation.frames import distinct, values, where
 from policies.evaluation.plots.style import STYLE
 from policies.study.changes import TITLES
 from policies.study.config import SOURCES
-from policies.study.figures.marks import COLOURS
 
 _LABELS = {
     "noise_scale": "sensor noise [times]",

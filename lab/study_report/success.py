@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from lab.study_report.marks import COLOURS, dot, panels, stripes
 from policies.evaluation.frames import among, distinct, records, where
 from policies.evaluation.plots.style import STYLE, note
 from policies.study.config import SOURCES
-from policies.study.figures.marks import COLOURS, dot, panels, stripes
 
 _DROPPED = 0.005  # share from which drops are written beside the dot
 

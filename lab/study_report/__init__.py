@@ -1,0 +1,1 @@
+"""Reports of `slipgym study`: one page with figures and videos."""
