@@ -2,6 +2,7 @@
 
 COMMANDS = {
     "benchmark-parts": "Measure what the parts of a step and a first use cost.",
+    "closed-loop": "Rank the estimators in the loop of a controller.",
     "compare-engines": "Compare the planar engine with PyBullet.",
     "compare-estimators": "Compare the estimators on recorded episodes.",
     "compare-learned": "Compare pretrained policies with controllers.",

@@ -5,8 +5,8 @@ from typing import Any
 
 import typer
 
+from lab.commands.closed_loop import Contact, Estimators, LoopTasks, Parameters, Randomization, report
 from lab.commands.options import Episodes, Seed, application
-from policies.commands.closed_loop import Contact, Estimators, LoopTasks, Parameters, Randomization, report
 
 EPILOG = """
 Examples:\n

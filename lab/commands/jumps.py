@@ -2,8 +2,8 @@
 
 import typer
 
+from lab.commands.closed_loop import Contact, LoopTasks, Parameters, ids
 from lab.commands.options import Episodes, Seed, application, wrong_arguments
-from policies.commands.closed_loop import Contact, LoopTasks, Parameters, ids
 
 EPILOG = """
 Examples:\n

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import policies
-from policies.leaderboard.closed_loop import present
+from lab.leaderboard.closed_loop import present
 from policies.stepping import batch_steps
 from slipgym.tasks import find
 

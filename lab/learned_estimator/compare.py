@@ -12,11 +12,11 @@ from tqdm import tqdm
 
 import estimator
 from estimator.registry import specification
+from lab.leaderboard.closed_loop import VALUES
 from lab.learned_estimator.columns import RATE
 from lab.learned_estimator.config import Training
 from lab.learned_estimator.episodes import Recording, record
 from policies.evaluation.frames import groups, values, where
-from policies.leaderboard.closed_loop import VALUES
 from slipgym.config import load
 
 LATENCY = "velocity_delay"

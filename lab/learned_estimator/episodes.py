@@ -10,8 +10,8 @@ import gymnasium as gym
 import numpy as np
 
 import policies
+from lab.leaderboard.closed_loop import VALUES, present
 from lab.learned_estimator.recorder import NAME, ROOM
-from policies.leaderboard.closed_loop import VALUES, present
 from slipgym.sensors.unloaded import READINGS
 from slipgym.tasks import find
 

@@ -5,8 +5,6 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import renamed
-
 EPILOG = """
 Examples:\n
 \b
@@ -15,14 +13,10 @@ Examples:\n
 \n
 docs/performance.md explains the figures.
 """
-MOVED = {
-    f"--{part}": f"benchmark-parts {part}"
-    for part in ("bullet", "split", "first-use", "optimisations", "workloads", "learning")
-} | {"--estimator": "benchmark-parts split --estimator"}
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command(epilog=EPILOG, cls=renamed(MOVED))
+@app.command(epilog=EPILOG)
 def main(
     env: Annotated[str, typer.Option(help="Task, also LinearSlip or an id.")] = "linear_slip",
     pairs: Annotated[int, typer.Option(min=1, help="Ten times the timed blocks of each figure.")] = 300,

@@ -23,7 +23,6 @@ COMMANDS = {
     "study": "Study what friction information is worth.",
     "imitate": "Train a network that imitates a controller.",
     "leaderboard": "Rank the estimators on the same records.",
-    "closed-loop": "Rank the estimators in the loop of a controller.",
     "policy-leaderboard": "Rank policies on the same episodes.",
     "estimate": "Run an estimator on a record of your gripper.",
     "record": "Write what a finger's sensors read in an episode.",

@@ -5,32 +5,18 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import renamed
-
 EPILOG = """
 Examples:\n
 \b
   slipgym leaderboard --quick
   slipgym leaderboard --estimator my_package.friction:SPECIFICATION
 \n
-docs/leaderboard.md explains the tables; slipgym closed-loop plays episodes with the estimators in the loop.
+docs/leaderboard.md explains the tables; slipgym policy-leaderboard --estimator NAME plays episodes with one.
 """
-MOVED = {
-    "--closed-loop": "closed-loop --episodes",
-    "--estimators": "closed-loop --estimators",
-    "--task": "closed-loop --task",
-    "--parameter": "closed-loop --parameter",
-    "--randomization": "closed-loop --randomization",
-    "--contact": "closed-loop --contact",
-    "--imperfections": "imperfections",
-    "--jumps": "jumps",
-    "--delays": "delays",
-    "--costs": "estimator-costs",
-}
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command(epilog=EPILOG, cls=renamed(MOVED))
+@app.command(epilog=EPILOG)
 def main(
     estimator: Annotated[
         list[str] | None,

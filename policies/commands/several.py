@@ -1,8 +1,8 @@
-"""Shared parts of command lines: several values of an option, renamed options, the help of a task's name."""
+"""Shared parts of command lines: several values of an option, the help of a task's name."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Annotated, Any, TypeAlias
 
 import typer
@@ -65,23 +65,3 @@ def environment_arguments(texts: Sequence[str]) -> dict[str, Any]:
     if values.get("friction_source") is True:
         values["friction_source"] = "true"
     return values
-
-
-def renamed(options: Mapping[str, str]) -> type[TyperCommand]:
-    """A class of commands in which an option that is a command of its own by now is an error that names it.
-
-    Args:
-        options: Old option -> the words after `slipgym` that do the same.
-    """
-
-    class Command(TyperCommand):
-        def parse_args(self, ctx: typer.Context, args: list[str]) -> list[str]:  # type: ignore[override]
-            from policies.commands.front import COMMANDS
-
-            for argument in args:
-                if now := options.get(argument.partition("=")[0]):
-                    where = "" if now.split()[0] in COMMANDS else " (in a clone of the repository)"
-                    raise typer.BadParameter(f"{argument} is a command of its own: slipgym {now}{where}", ctx)
-            return super().parse_args(ctx, args)
-
-    return Command

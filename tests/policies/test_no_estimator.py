@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import policies
+from lab.leaderboard.closed_loop import played
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.evaluation import load_experiment
 from policies.evaluation.one_policy import episodes
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import run_trials
-from policies.leaderboard.closed_loop import played
 from policies.learned.description import Environment as Trained
 from policies.learned.description import Residual
 from policies.learned.fitting import check_environment, column_of

@@ -37,23 +37,7 @@ def test_every_command_explains_itself(name):
 
 def test_every_command_is_a_script_of_the_same_name():
     commands = {path.stem.replace("_", "-") for path in (ROOT / "scripts").glob("*.py")}
-    assert {*front.COMMANDS} - commands == {"demo", "warmup", "closed-loop"}
-
-
-@pytest.mark.parametrize(
-    ("line", "now"),
-    [
-        ("benchmark --split --estimator disc", "benchmark-parts split"),
-        ("benchmark --first-use", "benchmark-parts first-use"),
-        ("leaderboard --closed-loop 4 --task hold", "closed-loop --episodes"),
-        ("leaderboard --closed-loop=4", "closed-loop --episodes"),
-        ("leaderboard --costs", "estimator-costs"),
-    ],
-)
-def test_an_option_that_became_a_command_names_it(line, now):
-    done = slip(*line.split())
-    assert done.exit_code == 2
-    assert f"slipgym {now}" in " ".join(done.output.replace("│", " ").split())
+    assert {*front.COMMANDS} - commands == {"demo", "warmup"}
 
 
 def test_misspelt_names_get_suggestions():

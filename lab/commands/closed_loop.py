@@ -55,7 +55,7 @@ def report(
     sensors: Sequence[str] | Mapping[str, Mapping[str, Any]],
     environments: Mapping[str, str],
 ) -> str:
-    """The table of `policies.leaderboard.closed_loop.closed_loop`, and its means over several tasks.
+    """The table of `lab.leaderboard.closed_loop.closed_loop`, and its means over several tasks.
 
     Args:
         episodes: Of each combination.
@@ -71,7 +71,7 @@ def report(
     """
     import estimator
     from estimator.records import parse_settings
-    from policies.leaderboard.closed_loop import closed_loop, pooled
+    from lab.leaderboard.closed_loop import closed_loop, pooled
     from policies.leaderboard.tables import markdown
 
     try:

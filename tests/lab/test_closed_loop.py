@@ -3,8 +3,10 @@
 import numpy as np
 import pandas as pd
 import pytest
+from typer.testing import CliRunner
 
-from policies.leaderboard.closed_loop import played, pooled, present
+from lab.leaderboard.closed_loop import played, pooled, present
+from policies.commands.front import application
 from slipgym.contact.records import pads
 
 
@@ -15,6 +17,15 @@ def test_the_truth_is_that_of_the_present_load_and_age():
     assert truth["mu_c"] == pytest.approx(0.36)
     assert truth["mu_s"] == pytest.approx(0.36 + 0.9 * 2.0 * 0.1)
     assert truth["r"] == pytest.approx(0.011)
+
+
+def test_the_leaderboard_of_policies_takes_an_estimator_of_ones_own(tmp_path):
+    """Without the laboratory it says what the controllers solve with it."""
+    words = ["hold", "--level", "easy", "--episodes", "2", "--output", str(tmp_path)]
+    own = "lab.learned_estimator.gru:SPECIFICATION"
+    done = CliRunner().invoke(application("policy-leaderboard"), [*words, "--estimator", own])
+    assert done.exit_code == 0, done.output
+    assert "| Hold | easy | controller, estimated |" in done.output
 
 
 @pytest.mark.slow
