@@ -14,13 +14,14 @@ import pandas as pd
 import yaml
 from tqdm import tqdm
 
+from lab.frames import among
 from lab.reproduction.mechanism import truly_sliding
 from lab.reproduction.planar import record_planar, scenarios
 from lab.reproduction.records import Record
 from lab.reproduction.rerun import QUANTITIES, estimates, variants
 from lab.reproduction.tables import grid
 from policies.evaluation.folder import stamped
-from policies.evaluation.frames import among, distinct, values, where
+from policies.evaluation.frames import distinct, values, where
 from policies.versions import write_versions
 from slipgym.atomic_io import new_folder
 from slipgym.config import load_randomization

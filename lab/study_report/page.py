@@ -12,6 +12,7 @@ import pandas as pd
 import yaml
 from tqdm import tqdm
 
+from lab.frames import without
 from lab.study_report.degradation import plot_degradation
 from lab.study_report.differences import TRANSFER_MOST, plot_shares, plot_transfer
 from lab.study_report.formats import FILTERS
@@ -19,7 +20,7 @@ from lab.study_report.inline import inline
 from lab.study_report.sentences import answers
 from lab.study_report.success import plot_estimators, plot_success
 from lab.study_report.videos import Scene, scene
-from policies.evaluation.frames import distinct, records, where, without
+from policies.evaluation.frames import distinct, records, where
 from policies.evaluation.plots.style import styled
 from policies.study import load_study, tables
 from policies.study.benefit import benefits

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pandas as pd
 
+from lab.frames import among, without
 from lab.study_report.formats import figure, interval
-from policies.evaluation.frames import among, distinct, records, where, without
+from policies.evaluation.frames import distinct, records, where
 from policies.study.config import Study
 from policies.study.tables import ALL, ENOUGH
 

@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from lab.frames import among
 from lab.study_report.marks import COLOURS, dot, panels, stripes
-from policies.evaluation.frames import among, distinct, records, where
+from policies.evaluation.frames import distinct, records, where
 from policies.evaluation.plots.style import STYLE, note
 from policies.study.config import SOURCES
 

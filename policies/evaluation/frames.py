@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,16 +25,6 @@ def where(frame: pd.DataFrame, **equals: object) -> pd.DataFrame:
     for column, value in equals.items():
         keep &= values(frame, column) == value
     return frame.loc[keep]
-
-
-def among(frame: pd.DataFrame, column: str, wanted: Collection[object]) -> pd.DataFrame:
-    """The rows whose column has one of the given values."""
-    return frame.loc[np.array([value in wanted for value in frame[column]], dtype=bool)]
-
-
-def without(frame: pd.DataFrame, column: str, value: object) -> pd.DataFrame:
-    """The rows whose column has another value."""
-    return frame.loc[values(frame, column) != value]
 
 
 def records(frame: pd.DataFrame) -> list[dict[str, Any]]:

@@ -9,9 +9,8 @@ import pandas as pd
 import yaml
 
 from policies.evaluation.folder import INCOMPLETE
-from policies.evaluation.frames import by_metric, groups, records, where
+from policies.evaluation.frames import by_metric, groups, where
 from policies.evaluation.metrics import measures
-from policies.evaluation.sentences import solved
 from policies.evaluation.tables import KEYS, text
 
 
@@ -36,19 +35,9 @@ def report(folder: Path) -> str:
         found = by_metric(group)
         rows.append([*keys, *(text(found[m.column], m.heading) for m in metrics)])
     table = aligned([[*KEYS, *(m.heading for m in metrics)], *rows])
-    words = [text for text in _words(summary) if text]
     pictures = sorted(folder.glob("*.png"))
     paths = [f"  {path}" for path in [*pictures, folder / "summary.md", folder / "trials.csv"]]
-    return "\n".join([table, "(95 % confidence intervals in brackets)", "", *words, "", "Look at:", *paths])
-
-
-def _words(summary: pd.DataFrame) -> list[str]:
-    """A sentence for each policy."""
-    rows = where(summary, material="all", metric="success")
-    return [
-        solved(str(policy), {str(row["friction"]): float(row["value"]) for row in records(group)})
-        for (policy,), group in groups(rows, ["policy"])
-    ]
+    return "\n".join([table, "(95 % confidence intervals in brackets)", "", "Look at:", *paths])
 
 
 def aligned(rows: list[list[str]]) -> str:

@@ -48,23 +48,6 @@ def plot_tracking(task: str, trials: pd.DataFrame, series: pd.DataFrame) -> Figu
     return figure
 
 
-def _linear_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
-    _follow(axes, steps, -1e3 * values(steps, "slip_y"), 1e3, first)
-    error = f"final error {trial['final_error_mm']:+.2f} mm".replace("-", "−")
-    note(axes, 0.98, 0.05, "dropped" if trial["dropped"] else error, _SLIP, **_CORNER)
-    if first:
-        axes.set_ylabel("slip along gravity [mm]")
-
-
-def _rotational_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
-    _follow(axes, steps, -np.degrees(values(steps, "slip_theta")), np.degrees(1.0), first)
-    error = f"final error {trial['final_error_deg']:+.2f}°,\nslid {trial['largest_slip_mm']:.2f} mm"
-    words = "dropped" if trial["dropped"] else error.replace("-", "−")
-    note(axes, 0.02, 0.98, words, _SLIP, xycoords="axes fraction", va="top")
-    if first:
-        axes.set_ylabel("turned by gravity [°]")
-
-
 def _follow(axes: Axes, steps: pd.DataFrame, path: np.ndarray, scale: float, first: bool) -> None:
     """A path over its reference, which is to be scaled like the path."""
     time, reference = values(steps, "time"), scale * values(steps, "reference")
@@ -81,6 +64,10 @@ def _path(motion: Motion, axes: Axes, steps: pd.DataFrame, trial: Any, first: bo
         axes.plot(values(steps, "time"), motion.path(slip), color=_SLIP)
     else:
         _follow(axes, steps, motion.path(slip), motion.target(1.0), first)
+    for column, unit in (("final_error_mm", " mm"), ("final_error_deg", "°")):
+        if motion.axis is not None and column in trial:
+            error = f"final error {trial[column]:+.2f}{unit}".replace("-", "−")
+            note(axes, 0.98, 0.05, "dropped" if trial["dropped"] else error, _SLIP, **_CORNER)
     if first:
         axes.set_ylabel(motion.title)
 
@@ -156,8 +143,6 @@ def _friction(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
 
 
 _MOTION = {
-    "LinearSlip": _linear_slip,
-    "RotationalSlip": _rotational_slip,
     "Hinge": _tilt,
     "PlanarSlip": _away,
     "Hold": _largest_slip,
