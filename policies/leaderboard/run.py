@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,17 +14,46 @@ import estimator
 from policies.evaluation.folder import stamped
 from policies.evaluation.frames import values
 from policies.evaluation.plots.style import STYLE, styled
-from policies.leaderboard.groups import GROUPS
+from policies.leaderboard.imperfect import jumps, sensor_errors, unknown_delay
 from policies.leaderboard.picture import plot_leaderboard
 from policies.leaderboard.ranking import ranked, winners
 from policies.leaderboard.replay import replay
+from policies.leaderboard.rubber import anisotropic, drifts, load_dependent
 from policies.leaderboard.scenario import FIELDS, Scenario
-from policies.leaderboard.scenarios import effort_of
+from policies.leaderboard.scenarios import (
+    Effort,
+    effort_of,
+    latency,
+    noise,
+    planar,
+    pressure,
+    profiles,
+    spin_first,
+    start_values,
+    stick_slip,
+)
 from policies.leaderboard.score import FIGURES, score
 from policies.leaderboard.tables import markdown
 from policies.versions import write_versions
 from slipgym.atomic_io import new_folder
 
+GROUPS: tuple[Callable[[Effort], Iterator[Scenario]], ...] = (
+    profiles,
+    stick_slip,
+    planar,
+    start_values,
+    spin_first,
+    noise,
+    pressure,
+    latency,
+    unknown_delay,
+    sensor_errors,
+    jumps,
+    drifts,
+    load_dependent,
+    anisotropic,
+)
+"""The groups of scenarios; another one is one more function."""
 Entrants = dict[str, tuple[str, dict[str, object]]]
 """Label -> name and parameters of an estimator."""
 

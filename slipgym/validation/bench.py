@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from slipgym.config import Config, load
 from slipgym.validation.planar_world import PlanarWorld
-from slipgym.validation.trace import Trace
 from slipgym.world.bullet_engine import BulletWorld
 from slipgym.world.plant import build
 from slipgym.world.scene import Box
@@ -39,6 +38,37 @@ def uniform_box(config: Config, **changes: Any) -> Box:
     inertia = changes.pop("inertia", mass * (size[0] ** 2 + size[2] ** 2) / 12.0)
     values = {"com_offset": default.com_offset, "grasp_offset": default.grasp_offset, **changes}
     return Box(size=size, mass=mass, inertia=inertia, **values)
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Signals of a run in world coordinates (x, z, angle) unless they say otherwise."""
+
+    time: np.ndarray
+    """Since the reset (n,) [s]."""
+    position: np.ndarray
+    """Engine's pose of the object's centre of mass (n, 3) [m, m, rad]."""
+    velocity: np.ndarray
+    """Engine's velocity of it, mean over the last engine step (n, 3) [m/s, m/s, rad/s]."""
+    slip: np.ndarray
+    """Slip displacement at the pad centre, pad frame (n, 3) [m, m, rad]."""
+    twist: np.ndarray
+    """Slip twist at the pad centre over the last sub-step, pad frame (n, 3) [m/s, m/s, rad/s]."""
+    wrist: np.ndarray
+    """Engine's wrist joints (n, 3) [m, m, rad]."""
+    wrist_plan: np.ndarray
+    """Wrist as commanded (n, 3) [m, m, rad]."""
+    normal: np.ndarray
+    """Engine's normal force of either finger (n, 2) [N]."""
+    force: np.ndarray
+    """Actuator force of either finger (n, 2) [N]."""
+    load: np.ndarray
+    """Load on the centre of mass during the step (n, 3) [N, N, N m]."""
+
+    @classmethod
+    def of(cls, rows: Sequence[tuple[Any, ...]]) -> Self:
+        """Stack rows that hold the fields in order."""
+        return cls(*(np.array(column) for column in zip(*rows, strict=True)))
 
 
 class Bench:

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.validation.bench import Bench, Signal
+from slipgym.validation.bench import Bench, Signal, Trace
 from slipgym.validation.figure import Figure
-from slipgym.validation.trace import Trace
 
 THROWS = 8
 SIZE = 0.3, 0.03, 0.3  # [m]; the pads stay on it

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.validation.bench import Bench
+from slipgym.validation.bench import Bench, Trace
 from slipgym.validation.figure import Figure
-from slipgym.validation.trace import Trace
 
 BOUND = 1.0  # [%]
 MASS = 0.5  # [kg]

@@ -8,8 +8,7 @@ from typer.testing import CliRunner
 from policies.commands.policy_leaderboard import app
 from policies.evaluation.plots.style import styled
 from policies.policy_leaderboard.entries import best_constant, constant, entered, further, opponents
-from policies.policy_leaderboard.folder import write
-from policies.policy_leaderboard.picture import plot_policies
+from policies.policy_leaderboard.folder import plot_policies, write
 from policies.policy_leaderboard.run import COLUMNS, ROWS, by_level, episodes_of, outcomes
 
 SHORT = {"config": {"tasks": {"hold": {"duration": 0.5}}}}
