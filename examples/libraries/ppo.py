@@ -66,8 +66,8 @@ for update in range(1, updates + 1):
             rows["log"].append(log_probability(seen, action))
             rows["value"].append(critic(seen)[:, 0])
             rows["reward"].append(tensor(reward))
-            # the observation after an end is the last of its episode: a cut one goes on in the critic's eyes
-            rows["next"].append(critic(tensor(observations, gains))[:, 0] * ~torch.as_tensor(terminated))
+            follows = ~(terminated | infos["finished"])  # only a limit of yours cuts an episode
+            rows["next"].append(critic(tensor(observations, gains))[:, 0] * torch.as_tensor(follows))
             rows["counts"].append(torch.as_tensor(~over))
             over = terminated | truncated
             rows["ended"].append(torch.as_tensor(over))

@@ -17,8 +17,16 @@ shaping = {"tasks": {"linear_slip": {"reward": {"solved": 0.0, "drop": 0.2, "sid
 modes = {"frame_skip": 4, "history": 1, "randomization": "train"}
 
 
+class TaskEnd(gym.vector.VectorWrapper):
+    """Terminates at the task's own end, where nothing follows."""
+
+    def step(self, actions):
+        seen, reward, terminated, truncated, infos = self.env.step(actions)
+        return seen, reward, terminated | infos["finished"], truncated & ~infos["finished"], infos
+
+
 def vector(settings):
-    envs = gym.make_vec(f"slipgym:slipgym/{task}-v0", config=shaping, **settings)
+    envs = TaskEnd(gym.make_vec(f"slipgym:slipgym/{task}-v0", config=shaping, **settings))
     pair = [column.name in ("measured_slip_y", "reference_position") for column in envs.unwrapped.columns]
     tracking = np.kron(np.eye(2), pair).T  # reference less distance slid, in both observations
     space = gym.spaces.Box(-np.inf, np.inf, (len(tracking) + 2,))

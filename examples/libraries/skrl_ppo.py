@@ -75,7 +75,6 @@ config = PPO_CFG(
     grad_norm_clip=0.5,
     value_clip=0.0,
     value_loss_scale=0.5,
-    time_limit_bootstrap=True,
 )
 config.experiment.write_interval = config.experiment.checkpoint_interval = 0
 agent = PPO(

@@ -77,6 +77,7 @@ collector = Collector(
     total_frames=max(steps // (n * length), 1) * n * length,
 )
 for update, data in enumerate(collector, 1):
+    data["next", "terminated"] = data["next", "done"]  # the task's own end: nothing follows
     with torch.no_grad():
         advantage(data)
     flat = data.reshape(-1)

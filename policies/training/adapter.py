@@ -20,11 +20,25 @@ _GOLDEN = (5.0**0.5 - 1.0) / 2.0
 _OF_ONE = {"action_space": "single_action_space", "observation_space": "single_observation_space"}
 
 
+class TaskEnd(gym.Wrapper):
+    """An environment that terminates at its task's own end, where no reward follows.
+
+    Environments report that end as a truncation, and learners take a truncation for a cut in an episode that
+    goes on: they would add the value of a state that they never learn.
+    """
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        """See `gymnasium.Env.step`; a limit of the caller's still truncates."""
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        finished = info["finished"]
+        return observation, reward, terminated or finished, truncated and not finished, info
+
+
 class SlipVecEnv(VecEnv):
     """A `SlipVectorEnv` as Stable-Baselines3 wants it.
 
     What it returns equals, bit for bit, what a `DummyVecEnv` of scalar environments with `engine="planar"`
-    returns, but that infos are empty where no episode ended.
+    in `TaskEnd` returns, but that infos are empty where no episode ended.
 
     Args:
         env: The batch, with autoreset mode "SameStep".
@@ -82,14 +96,15 @@ class SlipVecEnv(VecEnv):
         Returns:
             Observations (n, k), or such an array per group; rewards (n,) float32; whether an episode ended,
             (n,) bool; n infos. Where one ended, its info is the scalar environment's, with
-            "terminal_observation" and "TimeLimit.truncated".
+            "terminal_observation" and "TimeLimit.truncated": learners add the value of the last state where
+            it is true, after a limit of the caller's, not at the task's own end.
 
         Raises:
             ValueError: The actions have the wrong shape or are not finite.
             RuntimeError: There was no reset yet, or it is closed.
         """
         observations, rewards, terminated, truncated, infos = self.env.step(self._actions)
-        dones = terminated | truncated
+        dones, cut = terminated | truncated, truncated & ~terminated
         returned: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         ended = np.flatnonzero(dones)
         if len(ended):
@@ -101,7 +116,7 @@ class SlipVecEnv(VecEnv):
             splits = _split(final, ended), _split(infos, ended)
             for i, info, start in zip(ended.tolist(), *splits, strict=True):
                 info["terminal_observation"] = last[i]
-                info["TimeLimit.truncated"] = truncated.item(i)
+                info["TimeLimit.truncated"] = cut.item(i) and not info["finished"]
                 returned[i], self.reset_infos[i] = info, start
         return observations, rewards.astype(np.float32), dones, returned
 

@@ -10,7 +10,7 @@ import gymnasium as gym
 from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv, VecMonitor
 
 from policies.learned.residual import Underlying
-from policies.training.adapter import SlipVecEnv, make_vec_env
+from policies.training.adapter import SlipVecEnv, TaskEnd, make_vec_env
 from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv
 from policies.training.residual import ResidualVecEnv
@@ -18,8 +18,8 @@ from policies.training.state_checks import check_like
 from slipgym.tasks import find
 
 
-class Scenario(gym.Wrapper):
-    """An environment whose episodes all have some options.
+class Scenario(TaskEnd):
+    """An environment whose episodes all have some options, and terminate at their full length.
 
     Args:
         env: The environment.

@@ -66,12 +66,13 @@ estimates; "dict" returns the groups "policy" (the observation above) and "privi
 
 _END = """\
 - Terminated: the object is dropped, that is, neither pad touches it or a pad reaches beyond its edge.
-- Truncated: the episode has reached its time limit. The environment truncates by itself; no `TimeLimit` is
-  needed."""
+- Truncated: the episode has its full length, `finished` in the info. The environment truncates by itself; no
+  `TimeLimit` is needed. Nothing follows: the value of the last state is 0."""
 
 _DROPPED = """\
 An object is dropped when neither pad touches it or a pad reaches beyond its edge. The environment truncates
-by itself; no `TimeLimit` is needed."""
+by itself; no `TimeLimit` is needed. At the full length, `finished` in the info, nothing follows: the value of
+the last state is 0."""
 
 _REWARDS = """\
 The reward of a control step is the sum of these terms. A dense term pays its value, limited to [-1, 1], times

@@ -99,11 +99,13 @@ FLAGS = (
     Info("is_success", (), "", "whether the task is solved; see Episode End", "episodes[i].success"),
     Info("dropped", (), "", "whether the box was dropped", "episodes[i].dropped"),
     Info("violated", (), "", "whether success has become impossible", "episodes[i].violated"),
-)
+    Info("finished", (), "", "whether the episode has its full length, the task's own",
+         "episodes[i].step >= episodes[i].steps"),
+)  # fmt: skip
 """Entries that are true or false, in the order of a row."""
 
-_ENDS = "episodes[i].dropped or episodes[i].ended", "episodes[i].step >= episodes[i].steps"
-"""Whether the episode has ended early, and whether it has its full length: they follow the flags in a row."""
+_EARLY = "episodes[i].dropped or episodes[i].ended"
+"""Whether the episode has ended early: it follows the flags in a row."""
 
 _LAYOUT = sorted(NUMBERS, key=lambda info: info.shape[-1:] != (3,))
 """`NUMBERS` in the order of a row."""
@@ -132,14 +134,14 @@ class InfoBuffer(NamedTuple):
     numbers: np.ndarray
     """See `NUMBERS`, (n, m)."""
     flags: np.ndarray
-    """See `FLAGS`; then whether the episode ended early, and whether it has its full length, (n, 5) bool."""
+    """See `FLAGS`; then whether the episode ended early, (n, 5) bool."""
     terms: np.ndarray
     """Reward terms of the last step, summed over its control steps, (n, k)."""
 
     @classmethod
     def zeros(cls, n: int, terms: int) -> InfoBuffer:
         """Make a buffer for n environments and a number of reward terms."""
-        flags = np.zeros((n, len(FLAGS) + len(_ENDS)), dtype=bool)
+        flags = np.zeros((n, len(FLAGS) + 1), dtype=bool)
         return cls(np.zeros((n, _WIDTH)), flags, np.zeros((n, terms)))
 
     def empty_like(self) -> InfoBuffer:
@@ -199,7 +201,7 @@ _write_numbers = row_writer(
 )
 _write_flags = row_writer(
     "_write_flags",
-    [*(info.read for info in FLAGS), *_ENDS],
+    [*(info.read for info in FLAGS), _EARLY],
     _ARRAYS,
     __file__,
     "Write `FLAGS` of environment i, and whether its episode has ended.",
@@ -262,8 +264,8 @@ def _reader(terms: tuple[str, ...], estimating: bool) -> Callable[..., Any]:
     body = [
         "table, values = rows(), terms()",
         f"[{', '.join(values)}] = values",
-        f"{', '.join(flags)}, early, full = flags()",
-        f"return {_display({name: reads[name] for name in order})}, sum(values), early, full",
+        f"{', '.join(flags)}, early = flags()",
+        f"return {_display({name: reads[name] for name in order})}, sum(values), early, {reads['finished']}",
     ]
     arguments = "rows", "number", "flags", "terms"
     return generate("_take", arguments, body, {}, lambda made: made, __file__, "See `InfoReader`.")

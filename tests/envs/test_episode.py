@@ -102,7 +102,7 @@ def test_info_keeps_its_contract(make, env_id):
     env = make(env_id)
     for info in (env.reset(seed=0)[1], env.step(HARDEST)[4]):
         assert {name: value.shape for name, value in info.items() if name in SHAPES} == SHAPES
-        assert set(info) == {*SHAPES, "reward_terms", "time", "is_success", "violated", "dropped"}
+        assert set(info) == {*SHAPES, "reward_terms", "time", "is_success", "violated", "dropped", "finished"}
         assert tuple(info["reward_terms"]) == env.task.term_names
         assert type(info["is_success"]) is type(info["dropped"]) is bool
         assert type(info["time"]) is float

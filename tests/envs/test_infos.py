@@ -24,6 +24,7 @@ def records(simulation):
         "is_success": episode["success"] != 0,
         "dropped": episode["dropped"] != 0,
         "violated": episode["violated"] != 0,
+        "finished": episode["step"] >= episode["steps"],
     }
 
 
