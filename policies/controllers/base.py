@@ -48,25 +48,26 @@ class ObservationIndex:
         """Where a column is; None if there is none."""
         return self._at.get(name)
 
-    def check(self, width: int) -> None:
-        """Refuse observations of another task or mode.
-
-        Args:
-            width: Length of one observation.
+    def checked(self, observations: np.ndarray) -> np.ndarray:
+        """Observations (n, m) without the load part; those of another task or mode are refused.
 
         Raises:
             ValueError: No observation of the task has this length.
         """
+        width, loaded = observations.shape[1], observations.shape[1] - len(layout.LOAD)
         longest = len(self._at)
         if self.task_name is None and width < longest:
             raise ValueError(f"observation has {width} columns; every task has at least {longest}")
         full = longest - len(layout.DEVIATION_COLUMNS)
         bare = full - len(layout.FRICTION_COLUMNS)
-        if self.task_name is not None and width not in (longest, full, bare):
+        if self.task_name is None or width in (longest, full, bare):
+            return observations
+        if loaded not in (longest, full, bare):
             raise ValueError(
                 f"observation has {width} columns; {self.task_name} has {full}, {bare} without friction, or "
                 f"{longest} with deviations, with action_mode={self.action_mode!r} and history=0"
             )
+        return observations[:, :loaded]
 
 
 class Columns:
@@ -81,8 +82,7 @@ class Columns:
     """
 
     def __init__(self, observations: np.ndarray, index: ObservationIndex) -> None:
-        index.check(observations.shape[1])
-        self._observations, self._index = observations, index
+        self._observations, self._index = index.checked(observations), index
 
     def __len__(self) -> int:
         return len(self._observations)
@@ -222,6 +222,7 @@ class ForcePolicy(ABC):
         wanted[:, : min(given.shape[1], own)] = given[:, :own]
         wanted[:, own + 1 :][:, : max(given.shape[1] - own, 0)] = given[:, own:]
         wanted[:, own] = given[:, 0] - columns["commanded_force"]
+        wanted[:, -1] = np.log(np.maximum(given[:, 0], 1e-6))  # ln_grip_force
         low, high = table["low"], table["high"]
         scaled = 2.0 * (wanted[:, table["command"]] - low) / (high - low) - 1.0
         return np.clip(scaled, -1.0, 1.0).astype(np.float32)

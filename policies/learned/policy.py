@@ -14,7 +14,7 @@ from policies.learned.forward import Memory, Network
 from policies.learned.reading import layout, selection
 from policies.learned.residual import Underlying
 
-MODES = ("action_mode", "observation_mode", "history", "frame_skip")
+MODES = ("action_mode", "observation_mode", "load_columns", "history", "frame_skip")
 """Arguments of an environment that decide what a policy reads, gives and how often."""
 
 

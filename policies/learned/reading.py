@@ -33,7 +33,10 @@ def layout(trained: Environment) -> tuple[str, ...]:
     source = friction_part(source, given.get("estimator", DEFAULT_ESTIMATOR))
     if action_mode not in ACTION_MODES:
         return read
-    present = tuple(column.name for column in columns(load(), task, source, action_mode, mode))
+    present = tuple(
+        column.name
+        for column in columns(load(), task, source, action_mode, mode, bool(given.get("load_columns", False)))
+    )
     return present if set(read) <= set(present) else read
 
 

@@ -22,6 +22,7 @@ ACTION_MODES = {
         *("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate"),
         *("ln_mu_s", "ln_mu_c", "ln_r", "ln_sd_mu_s", "ln_sd_mu_c", "ln_sd_r"),
     ),
+    "log_grip_force": ("ln_grip_force",),
 }
 """Mode -> names of an action's components, in order."""
 
@@ -30,8 +31,9 @@ COMMANDS = ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_r
 _INCREMENT = len(COMMANDS)
 GUESS = ("ln_mu_s", "ln_mu_c", "ln_r", "ln_sd_mu_s", "ln_sd_mu_c", "ln_sd_r")
 """What an agent states about friction: logarithms of `mu_s`, `mu_c`, `r` and of their relative deviations."""
-PLACES = (*COMMANDS, "force_increment", *GUESS)
+PLACES = (*COMMANDS, "force_increment", *GUESS, "ln_grip_force")
 """Components by their place in `COMPONENT.command`."""
+_LOGARITHM = len(PLACES) - 1
 GUESSED_FRICTION, GUESSED_DEVIATION = (0.05, 2.0), (0.01, 1.0)
 """Ranges of a guess: friction coefficients and relative standard deviations."""
 GUESSED_RADIUS = 0.1
@@ -58,12 +60,14 @@ def components(mode: str, config: Config, wrist_speed: float | None = None) -> t
     gripper = config.gripper
     speed = gripper.wrist_speed_max if wrist_speed is None else wrist_speed
     rate, step = gripper.wrist_pitch_rate_max, gripper.force_step
+    least, most = math.log(gripper.force_min), math.log(gripper.force_max)
     table = (
         Column("grip_force", gripper.force_min, gripper.force_max, "N", "grip force of either finger"),
         Column("wrist_velocity_x", -speed, speed, "m/s", "wrist velocity along world x"),
         Column("wrist_velocity_z", -speed, speed, "m/s", "wrist velocity along world z"),
         Column("wrist_pitch_rate", -rate, rate, "rad/s", "pitch rate of the wrist"),
         Column("force_increment", -step, step, "N", "change of the commanded grip force per control step"),
+        Column("ln_grip_force", least, most, "-", "logarithm of the grip force of either finger in newtons"),
     )
     rows = {column.name: column for column in (*table, *_guess(gripper.pad_radius))}
     return tuple(rows[name] for name in ACTION_MODES[mode])
@@ -202,8 +206,8 @@ def interpret(actions, components, episodes, commands):
             component = components[k]
             fraction = 0.5 * (1.0 + min(max(actions[i, k], -1.0), 1.0))
             value = component.low + fraction * (component.high - component.low)
-            if component.command == _INCREMENT:
-                force = episode.command + value
+            if component.command == _INCREMENT or component.command == _LOGARITHM:
+                force = episode.command + value if component.command == _INCREMENT else math.exp(value)
                 commands[i, 0] = min(max(force, episode.force_min), episode.force_max)
             elif component.command > _INCREMENT:
                 episode.guesses = True

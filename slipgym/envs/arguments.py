@@ -41,6 +41,7 @@ ActionMode: TypeAlias = Literal[
     "grip_force_wrist",
     "force_increment",
     "grip_force_wrist_guess",
+    "log_grip_force",
 ]
 ObservationMode: TypeAlias = Literal["flat", "deviations", "sensor", "dict"]
 Engine: TypeAlias = Literal["auto", "bullet", "planar"]
@@ -92,6 +93,10 @@ class CommonArguments(TypedDict, total=False):
     observation_mode: Annotated[
         ObservationMode, Argument("flat", "layout of an observation (see docs/modes.md)")
     ]
+    load_columns: Annotated[
+        bool,
+        Argument(False, "whether observations end with logarithms of grip and load, and their ratios"),
+    ]
     history: Annotated[
         int, Argument(0, "number of earlier observations in each observation", least=0, most=1000)
     ]
@@ -110,6 +115,9 @@ class CommonArguments(TypedDict, total=False):
             'difficulty: `"easy"`, `"standard"`, `"hard"`, a file or a mapping (see docs/levels.md); '
             "`config` and reset options replace its settings, it replaces parts of `randomization`",
         ),
+    ]
+    end_at_violation: Annotated[
+        bool, Argument(False, "whether an episode terminates when success has become impossible")
     ]
     frame_skip: Annotated[
         int,
@@ -205,6 +213,8 @@ class Field:
             return
         if self.choices and not (isinstance(value, AutoresetMode) and value.value in self.choices):
             one_of(self.name, value, self.choices)
+        if self.annotation is bool and not isinstance(value, bool):
+            raise ValueError(f"{self.name} = {value!r:.80} must be True or False")
         if self.least is not None:
             whole(self.name, value, self.least, self.most)
 

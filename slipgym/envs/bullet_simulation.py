@@ -167,8 +167,8 @@ class BulletSimulation(Simulation):
         self._action = self._no_action = Fixed(_NO_ACTION, ACTION)
         m = len(SENSORS) + len(task.columns)
         low, high = np.full((2, m), [[-np.inf], [np.inf]], dtype=np.float32)
-        out = np.zeros((1, m), dtype=np.float32)
-        self._bind(ObservationBuffers(np.zeros(0, dtype=np.int64), self.estimated, low, high, out))
+        out, none = np.zeros((1, m), dtype=np.float32), np.zeros(0, dtype=np.int64)
+        self._bind(ObservationBuffers(none, self.estimated, low, high, none, out))
 
     def step(
         self,

@@ -149,10 +149,11 @@ def look(state, buffers, lo, hi):
         hi: Row after the last.
     """
     rows = slice(lo, hi)
-    wrist, friction, low, high, out = buffers
+    wrist, friction, low, high, load, out = buffers
     observe(
         state.wrenches[rows], state.twists[rows], state.slip_sensors[rows], state.episodes[rows],
-        state.task_part[rows], state.worlds[rows], wrist, friction[rows], low, high, out[rows],
+        state.task_part[rows], state.worlds[rows], wrist, friction[rows], low, high, load,
+        out[rows],
     )  # fmt: skip
 
 

@@ -44,8 +44,9 @@ The actuator force follows the command with a dead time ({dead:g} ms) and a firs
 
 Other values of `action_mode` add components or change their meaning (see docs/modes.md):
 "grip_force_pitch" adds the wrist's pitch rate, "grip_force_translation" adds its velocity along world x and
-z, "grip_force_wrist" adds both, "grip_force_wrist_guess" adds a guess of friction to that, and
-"force_increment" takes the change of the grip force per control step instead of the force."""
+z, "grip_force_wrist" adds both, "grip_force_wrist_guess" adds a guess of friction to that,
+"force_increment" takes the change of the grip force per control step instead of the force, and
+"log_grip_force" scales the force geometrically."""
 
 _OBSERVATION = """\
 `Box(low, high, ({n},), float32)`. Forces, torques and velocities are sensor readings at the centre of
@@ -62,7 +63,8 @@ With an `action_mode` that moves the wrist, the commanded wrist velocities and t
 the friction part, unless the table has them already. `observation_mode="deviations"` appends the standard
 deviations of the estimates; "sensor" leaves the friction part out, as `estimator=None` does where it would be
 estimates; "dict" returns the groups "policy" (the observation above) and "privileged" (the ground truth);
-`history=k` prepends the last k observations (see docs/modes.md)."""
+`load_columns=True` appends logarithms and ratios of grip and load, and `history=k` prepends the last k
+observations (see docs/modes.md)."""
 
 _END = """\
 - Terminated: the object is dropped, that is, neither pad touches it or a pad reaches beyond its edge.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -157,6 +158,53 @@ DEVIATIONS = (
     ),
 )
 """What follows the friction part with `observation_mode="deviations"`; both fingers are said to err alike."""
+LEAST_LOAD, LEAST_NORMAL = 0.01, 0.1
+"""Smaller forces count as these in the load part [N]."""
+RATIO_MAX = 10.0
+"""Largest ratio in the load part [-]."""
+
+
+def _ln_grip(config: Config) -> tuple[float, float]:
+    return math.log(max(config.gripper.force_min, LEAST_LOAD)), math.log(config.gripper.force_limit)
+
+
+def _ln_load(config: Config) -> tuple[float, float]:
+    return math.log(LEAST_LOAD), math.log(2.0 * config.sensors.force_torque.force_range)
+
+
+def _load(f: int) -> tuple[Reading, ...]:
+    """What follows from the forces of finger 1 or 2."""
+    wrench, ratio = f"wrenches[i, {f - 1}, ", (-RATIO_MAX, RATIO_MAX)
+    load, normal = f"math.hypot({wrench}0], {wrench}1])", f"max({wrench}2], {LEAST_NORMAL})"
+    torque = f"{wrench}3] / ({normal} * max(episodes[i].pad_radius, 1e-9))"
+    return (
+        Reading(
+            f"ln_load_{f}",
+            _ln_load,
+            "-",
+            f"logarithm of the tangential force on finger {f} in newtons",
+            f"math.log(max({load}, {LEAST_LOAD}))",
+        ),
+        Reading(
+            f"load_ratio_{f}",
+            ratio,
+            "-",
+            f"the same force over finger {f}'s normal force",
+            f"{load} / {normal}",
+        ),
+        Reading(f"torque_ratio_{f}", ratio, "-", "torque over normal force and pad radius", torque),
+    )
+
+
+LOAD = (
+    Reading(
+        "ln_grip", _ln_grip, "-", "logarithm of the commanded grip force in newtons",
+        f"math.log(max(episodes[i].command, {LEAST_LOAD}))",
+    ),
+    *_load(1),
+    *_load(2),
+)  # fmt: skip
+"""Load part, at the end with `load_columns=True`: functions of the sensor part in the scales of friction."""
 FRICTION_COLUMNS = tuple(reading.column() for reading in FRICTION)
 DEVIATION_COLUMNS = tuple(reading.column() for reading in DEVIATIONS)
 
@@ -173,6 +221,8 @@ class ObservationBuffers(NamedTuple):
     """Lower bounds, (m,) float32."""
     high: np.ndarray
     """Upper bounds, (m,) float32."""
+    load: np.ndarray
+    """Rows of `LOAD` in the load part, (l,): all or none."""
     out: np.ndarray
     """The observations, (n, m) float32."""
 
@@ -197,6 +247,7 @@ def columns(
     friction_source: str,
     action_mode: str = "grip_force",
     observation_mode: str = "flat",
+    load_columns: bool = False,
 ) -> tuple[Column, ...]:
     """All columns of an observation, or of its group "policy", in order."""
     no_friction = friction_source == "none" or observation_mode == "sensor"
@@ -206,6 +257,7 @@ def columns(
         *(WRIST[k].column(config) for k in wrist_part(task, action_mode)),
         *(() if no_friction else FRICTION_COLUMNS),
         *(DEVIATION_COLUMNS if observation_mode == "deviations" and not no_friction else ()),
+        *((reading.column(config) for reading in LOAD) if load_columns else ()),
     )
 
 
@@ -227,6 +279,14 @@ _write_friction = row_writer(
     "Write `FRICTION` and `DEVIATIONS` of environment i.",
     before=("first, second = estimates[2 * i], estimates[2 * i + 1]",),
     functions={"weighted_mean": weighted_mean, "merged_mu_s": merged_mu_s, "merged_mu_c": merged_mu_c},
+)
+_write_load = row_writer(
+    "_write_load",
+    [reading.read for reading in LOAD],
+    ("wrenches", "episodes"),
+    __file__,
+    "Write `LOAD` of environment i.",
+    functions={"math": math},
 )
 _SENSORS = len(SENSORS)
 
@@ -265,7 +325,9 @@ def guess(friction, episodes):
 
 
 @compiled
-def observe(wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, friction, low, high, out):
+def observe(
+    wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, friction, low, high, load, out
+):  # fmt: skip
     """Write the observation, clipped to its bounds.
 
     Args:
@@ -280,6 +342,7 @@ def observe(wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, 
             out.
         low: Lower bounds (m,).
         high: Upper bounds (m,).
+        load: Rows of `LOAD` in the load part, (l,).
         out: Output (n, m), float32.
     """
     for i in range(out.shape[0]):
@@ -291,7 +354,10 @@ def observe(wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, 
         for k in range(wrist.shape[0]):
             out[i, at + k] = _read_wrist(wrist[k], i, worlds)
         at += wrist.shape[0]
-        for k in range(out.shape[1] - at):
+        end = out.shape[1] - load.shape[0]
+        for k in range(end - at):
             out[i, at + k] = friction[i, k]
+        if load.shape[0] > 0:
+            _write_load(out[i, end:], i, wrenches, episodes)
         for k in range(out.shape[1]):
             out[i, k] = min(max(out[i, k], low[k]), high[k])

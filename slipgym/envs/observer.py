@@ -14,6 +14,7 @@ from slipgym.envs.observation import (
     DEVIATIONS,
     FRICTION,
     FRICTION_COLUMNS,
+    LOAD,
     ObservationBuffers,
     columns,
     wrist_part,
@@ -126,6 +127,7 @@ class Observer:
         action_mode: One of `ACTION_MODES`; it decides which wrist columns are observed.
         mode: "flat", "deviations", "sensor" or "dict".
         history: Number of earlier observations in each observation.
+        load_columns: Whether an observation has the load part.
 
     Attributes:
         columns: Columns of one observation, or of its group "policy".
@@ -136,14 +138,22 @@ class Observer:
     """
 
     def __init__(
-        self, simulation: Simulation, friction_source: str, action_mode: str, mode: str, history: int
+        self,
+        simulation: Simulation,
+        friction_source: str,
+        action_mode: str,
+        mode: str,
+        history: int,
+        load_columns: bool = False,
     ) -> None:
         self._simulation, self._state = simulation, Fixed(simulation.state, STATE)
         self.history = history
-        self.columns = columns(simulation.config, simulation.task, friction_source, action_mode, mode)
+        named = friction_source, action_mode, mode, load_columns
+        self.columns = columns(simulation.config, simulation.task, *named)
         low, high = _bounds(self.columns)
         wrist = np.array(wrist_part(simulation.task, action_mode), dtype=np.int64)
-        self._settings = wrist, _friction_part(simulation, friction_source), low, high
+        friction = _friction_part(simulation, friction_source)
+        self._settings = wrist, friction, low, high, np.arange(len(LOAD) if load_columns else 0)
         self._write_to(np.zeros((simulation.n, len(self.columns)), dtype=np.float32))
         if history:  # the newest observation comes last
             self._frames = np.zeros((simulation.n, history + 1, len(self.columns)), dtype=np.float32)

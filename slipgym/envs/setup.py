@@ -58,7 +58,9 @@ class Setup:
         self.simulation = make_simulation(
             self.config, self.settings, task, values["estimator"], self.randomization
         )
-        layout = values["action_mode"], values["observation_mode"], values["history"]
+        self.simulation.blank["end_at_violation"] = values["end_at_violation"]
+        names = "action_mode", "observation_mode", "history", "load_columns"
+        layout = [values[name] for name in names]
         source = friction_part(values["friction_source"], values["estimator"])
         self.observer = Observer(self.simulation, source, *layout)
         self.arguments: dict[str, Any] = {

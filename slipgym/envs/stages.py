@@ -58,7 +58,7 @@ STATE = types.NamedTuple([*_TYPES], BatchState)
 """Type of a `BatchState`."""
 ACTION = types.Tuple([F2, array(COMPONENT), FLAGS])
 """Type of actions, their meaning, and which rows are active."""
-_LOOK = [WHOLES, F2, _SINGLE, _SINGLE, array(types.float32, 2)]
+_LOOK = [WHOLES, F2, _SINGLE, _SINGLE, WHOLES, array(types.float32, 2)]
 BUFFERS = types.NamedTuple(_LOOK, ObservationBuffers)
 """Type of `ObservationBuffers`."""
 INFOS = types.NamedTuple([F2, array(types.boolean, 2), F2], InfoBuffer)

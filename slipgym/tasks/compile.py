@@ -97,7 +97,7 @@ def compile_evaluate_step(
     namespace: dict[str, Any] = {"detect_drop": detect_drop, "limited": limited}
     namespace |= {name: inlined(each) for name, each in functions.items() if each is not None}
     violated = " or violated(episode, world, fingers)" if "violated" in namespace else ""
-    ends = "ends(episode, world)" if "ends" in namespace else "False"
+    ends = "ends(episode, world) or " if "ends" in namespace else ""
     success = " and success(episode, world)" if "success" in namespace else ""
     body = [
         "for i in range(episodes.shape[0]):",
@@ -107,7 +107,8 @@ def compile_evaluate_step(
         "    before = episode.violated",
         f"    episode.violated = before{violated}",
         "    episode.just_violated = episode.violated and not before",
-        f"    episode.ended = not episode.dropped and {ends}",
+        "    lost = episode.violated and episode.end_at_violation",
+        f"    episode.ended = not episode.dropped and ({ends}lost)",
         "    over = episode.ended or episode.step >= episode.steps",
         f"    episode.success = over and not episode.dropped and not episode.violated{success}",
         "    share = 1.0 / episode.steps",

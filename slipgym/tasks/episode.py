@@ -67,6 +67,7 @@ EPISODE = np.dtype(
         ("violated", "?"),  # whether success has become impossible; it stays true
         ("just_violated", "?"),  # whether it became impossible in the last step
         ("ended", "?"),  # whether the task ended the episode before its length
+        ("end_at_violation", "?"),  # whether a violation does
         ("guesses", "?"),  # whether the agent states friction
         ("guess", "f8", 6),  # mu_s, mu_c [-], r [m], their relative deviations: the agent's or the estimate
         ("largest_slip", "f8"),  # of the pad centre since reset [m]

@@ -20,6 +20,7 @@ ENDS = {  # what -1 and +1 stand for
     "wrist_velocity_z": (-GRIPPER.wrist_speed_max, GRIPPER.wrist_speed_max),
     "wrist_pitch_rate": (-GRIPPER.wrist_pitch_rate_max, GRIPPER.wrist_pitch_rate_max),
     "force_increment": (-GRIPPER.force_step, GRIPPER.force_step),
+    "ln_grip_force": (math.log(GRIPPER.force_min), math.log(GRIPPER.force_max)),
     **{f"ln_{name}": (math.log(0.05), math.log(2.0)) for name in ("mu_s", "mu_c")},
     "ln_r": (math.log(0.1 * GRIPPER.pad_radius), math.log(GRIPPER.pad_radius)),
     **{f"ln_sd_{name}": (math.log(0.01), 0.0) for name in ("mu_s", "mu_c", "r")},
@@ -49,6 +50,16 @@ def test_force_and_wrist_in_si_units():
     expected = [[0.6, -0.5, -0.5, -3], [12.8, 0, 0, 0], [25, 0.25, 0.5, 3], [25, 0.5, -0.5, 3]]
     np.testing.assert_allclose(rows, expected, rtol=1e-15)
     np.testing.assert_allclose(commanded("grip_force_pitch", [1, 0.5]), [[25, 0, 0, 1.5]], rtol=1e-15)
+
+
+def test_a_logarithmic_grip_is_geometric_and_stays_in_range():
+    rows = commanded("log_grip_force", [-1], [0], [1], [0.1], [7])
+    middle = math.sqrt(0.6 * 25.0)
+    expected = [0.6, middle, 25.0, middle * (25.0 / 0.6) ** 0.05, 25.0]
+    np.testing.assert_allclose(rows[:, 0], expected, rtol=1e-14)
+    assert rows[:, 0].min() >= GRIPPER.force_min
+    assert rows[:, 0].max() <= GRIPPER.force_max
+    np.testing.assert_array_equal(rows[:, 1:], 0.0)
 
 
 def test_increments_start_from_the_last_command_and_stay_in_range():

@@ -29,6 +29,8 @@ KEYWORDS = [
     ({"frame_skip": 0}, "frame_skip = 0", ">= 1"),
     ({"frame_skip": 1.5}, "frame_skip = 1.5", "whole number"),
     ({"frame_skip": True}, "frame_skip = True", "whole number"),
+    ({"end_at_violation": 1}, "end_at_violation = 1", "True or False"),
+    ({"load_columns": "yes"}, "load_columns = 'yes'", "True or False"),
     ({"render_mode": "ascii"}, "unknown render_mode 'ascii'", "rgb_array"),
     ({"config": {"objekt": {}}}, "unknown key 'objekt'", "did you mean 'object'"),
     ({"config": {"object": {"mas": 1.0}}}, "object.mas: unknown key 'mas'", "did you mean 'mass'"),

@@ -135,6 +135,12 @@ class Nudge(ForcePolicy):
         return np.full(len(columns), 10.0), state
 
 
+class Geometric(Nudge):
+    """Ten newtons, commanded by their logarithm."""
+
+    action_mode = "log_grip_force"
+
+
 @pytest.mark.parametrize("mode", ACTION_MODES)
 @pytest.mark.parametrize("task", TASKS)
 def test_index_matches_the_columns_of_every_action_mode(task, mode):
@@ -177,6 +183,33 @@ def test_a_policy_can_command_by_increments():
         commanded.append(obs[Nudge().index["commanded_force"]])
     np.testing.assert_allclose(commanded, [14.0, 13.0, 12.0, 11.0, 10.0, 10.0, 10.0], rtol=1e-6)
     env.close()
+
+
+def test_a_policy_can_command_logarithms():
+    env = gym.make("slipgym/Hold-v0", action_mode="log_grip_force")
+    obs = env.step(Geometric().predict(env.reset(seed=0)[0])[0])[0]
+    assert obs[Geometric().index["commanded_force"]] == pytest.approx(10.0)
+    env.close()
+
+
+@pytest.mark.parametrize("mode", ["flat", "deviations", "sensor"])
+def test_controllers_ignore_the_load_part(mode):
+    arguments = {"observation_mode": mode, "disable_env_checker": True}
+    name = "slipgym/FragileHold-v0"
+    plain, loaded = gym.make(name, **arguments), gym.make(name, load_columns=True, **arguments)
+    policy = policies.make("constant_force", force=3.0) if mode == "sensor" else policies.make("fragile_hold")
+    states = [None, None]
+    seen = [env.reset(seed=0)[0] for env in (plain, loaded)]
+    for _ in range(30):
+        actions = []
+        for k in range(2):
+            action, states[k] = policy.predict(seen[k], states[k])
+            actions.append(action)
+        assert actions[0] == actions[1]
+        seen = [env.step(actions[0])[0] for env in (plain, loaded)]
+    np.testing.assert_array_equal(seen[0], seen[1][: len(seen[0])])
+    plain.close()
+    loaded.close()
 
 
 def test_the_wrong_mode_is_a_clear_error():
