@@ -104,6 +104,19 @@ def set_patches(starts, patches, pads, cells):
                 stretch(patch, pads[starts[k].row, f].axes)
 
 
+@compiled
+def note_pads(episode, pads):
+    """Write the parameters of pads, PAD (2,), that the least grip depends on into an EPISODE record."""
+    first = pads[0]
+    episode.reference_force, episode.radius_max = first.reference_force, first.radius_max
+    episode.load_exponent, episode.radius_exponent = first.load_exponent, first.radius_exponent
+    episode.compliance, episode.shear_time = first.compliance, first.shear_time
+    for f in range(2):
+        episode.axes[f], episode.radii[f] = first.axes[f], pads[f].r
+        for a in range(2):
+            episode.cops[f, a] = pads[f].cop[a]
+
+
 @pointed
 def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
     """Set the parameters of pads, force loops and sensors; reset the sensors. `grip` comes later.
@@ -141,6 +154,7 @@ def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
         ground_truth[i, 0] = 0.5 * (first.mu_s + second.mu_s)
         ground_truth[i, 1] = 0.5 * (first.mu_c + second.mu_c)
         ground_truth[i, 2] = 0.5 * (first.r + second.r)
+        note_pads(state.episodes[i], pads[i])
         start_sensors(force_torque[i], slip_sensors[i], start.keys, start.shares)
     if own.randomized:
         set_patches(starts, patches, pads, cells)

@@ -20,7 +20,8 @@ drawn from 0.15 to 0.8, log-uniformly (`tasks.carry.friction_range`).
 
 The least grip is that with which both pads stick, by the ellipsoidal limit surface: sqrt(f_x^2 + f_y^2 +
 (tau / r)^2) / mu_s for the load per finger, and at least `gripper.force_min`. The load follows from the plan
-of the wrist and from the disturbances, for a box that never slips.
+of the wrist and from the disturbances, for a box that never slips, and the pads are those of the episode, as
+in [FragileHold](fragile_hold.md).
 
 ## Rewards
 
@@ -75,16 +76,15 @@ from slipgym.tasks.carrying import (
     wrist_velocity,
 )
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
+from slipgym.tasks.least_grip import least_grip
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, Value, term
 from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, smoothness
 from slipgym.world.actuator import mean_force
 
-SCRATCH = scratch(economy=1, allowed=1, mean=1, peak=1, spent=1, counted=1)
-"""`economy`: mean grip allowed over the mean least grip [-]; `allowed`, `mean`, `peak`: mean grip allowed,
-mean and largest least grip [N]; `spent`: sum of the grip over the control steps so far [N]; `counted`: the
-step up to which it goes."""
+SCRATCH = scratch(economy=1, mean=1)
+"""`economy`: mean grip allowed over the mean least grip [-]; `mean`: mean least grip [N]."""
 AHEAD = (0.0, 0.05, 0.1, 0.2)
 """Times ahead at which the plan is observed [s]."""
 REST = 0.2
@@ -160,18 +160,19 @@ def track(episode, world, fingers):
     """Compute the least grip at the start, add up the grip, and store the largest slip."""
     own = episode.own
     if episode.step == 0:
-        own[SCRATCH.peak], own[SCRATCH.mean], _ = rehearse(episode, world)
-        own[SCRATCH.allowed] = own[SCRATCH.economy] * own[SCRATCH.mean]
-    episode.reference[0], episode.reference[1] = own[SCRATCH.allowed], own[SCRATCH.mean]
-    episode.reference[2] = own[SCRATCH.peak]
-    spend(episode, fingers, SCRATCH.spent, SCRATCH.counted)
+        episode.least_grip, own[SCRATCH.mean], _ = rehearse(episode, world)
+        episode.grip_limit = own[SCRATCH.economy] * own[SCRATCH.mean]
+        episode.grip_budget = episode.steps * episode.grip_limit
+    episode.least_grip_now = least_grip(episode, world)
+    episode.reference[0], episode.reference[1] = episode.grip_limit, own[SCRATCH.mean]
+    episode.reference[2] = episode.least_grip
+    spend(episode, fingers)
     track_slip(episode, world)
 
 
 def violated(episode, world, fingers):
     """Whether the object slid far, or the grip has used up what the economy allows."""
-    allowed = episode.steps * episode.own[SCRATCH.allowed]
-    return episode.largest_slip > episode.tolerance or episode.own[SCRATCH.spent] > allowed
+    return episode.largest_slip > episode.tolerance or episode.grip_sum > episode.grip_budget
 
 
 @term(scale=0.5)

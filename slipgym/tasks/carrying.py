@@ -11,12 +11,12 @@ import math
 
 import numpy as np
 
-from slipgym._numba.compiled import compiled
+from slipgym._numba.compiled import compiled, compiled_call
 from slipgym.tasks.disturbance import friction_factor, load
 from slipgym.tasks.episode import drive_wrist
+from slipgym.tasks.least_grip import least_under, load_at_rest, swing, torsional_stiffness
 from slipgym.tasks.task import Column
 from slipgym.world.actuator import mean_force
-from slipgym.world.object_motion import wrench_at_rest
 from slipgym.world.records import WORLD
 
 ACCELERATION = 10.0 / math.sqrt(3.0)
@@ -73,18 +73,21 @@ def wrist_velocity(episode, world):
     return planned_velocity(episode, (episode.step + 1) * episode.step_time)
 
 
-@compiled
-def rehearse(episode, world):
-    """Least grip that keeps both pads stuck through the episode, as far as its start determines it.
+_REPETITIONS = 2
+"""Rehearsals with swing, on soft pads."""
+
+
+@compiled_call
+def rehearse_at(episode, world, grip):
+    """Least grip that keeps both pads stuck through the episode, if the object swings as in a given grip.
 
     The object is moved along with the wrist, as if it never slipped, under the scripted motion, oscillations,
-    support, pushes, and changes of mass and friction. The least grip per finger is then
-    sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s, with the load per finger and the ellipsoidal limit surface. Pads
-    are taken as rigid, and friction as it is at the grasp.
+    support, pushes, and changes of mass and friction; see `least_under`.
 
     Args:
         episode: EPISODE record at step 0, with mu_s and r; its step is 0 again afterwards.
         world: WORLD record; it is not changed.
+        grip: Normal force of either pad in which it swings; 0: it does not [N].
 
     Returns:
         Largest and mean least grip [N], where the mean counts each step with at least the gripper's smallest
@@ -94,7 +97,7 @@ def rehearse(episode, world):
     worlds[0] = world
     plan = worlds[0]
     dt, peak, total, fastest = episode.step_time, 0.0, 0.0, 0.0
-    friction = 0.5 * (episode.finger_friction[0] + episode.finger_friction[1]) * episode.mu_s
+    angle, rate, stiffness = 0.0, 0.0, torsional_stiffness(episode, grip) if grip > 0.0 else 0.0
     for step in range(episode.steps):
         episode.step = step
         load(episode, plan)
@@ -107,9 +110,10 @@ def rehearse(episode, world):
         x, z = plan.grasp_point[0], plan.grasp_point[1]
         plan.com[0] = plan.wrist[0] - cos * x + sin * z
         plan.com[1] = plan.wrist[1] - sin * x - cos * z
-        f_x, f_z, tau = wrench_at_rest(plan)
-        need = 0.5 * math.sqrt(f_x**2 + f_z**2 + (tau / episode.r) ** 2)
-        need /= friction * friction_factor(episode, plan)
+        f_x, f_y, torque = load_at_rest(episode, plan)
+        if grip > 0.0:
+            torque, angle, rate = swing(episode, plan, torque, stiffness, angle, rate)
+        need = least_under(episode, (f_x, f_y, torque), friction_factor(episode, plan))
         peak, total = max(peak, need), total + max(need, episode.force_min)
         along = math.hypot(plan.wrist_acceleration[0], plan.wrist_acceleration[1] + plan.gravity)
         fastest = max(fastest, along)
@@ -121,18 +125,37 @@ def rehearse(episode, world):
 
 
 @compiled
-def spend(episode, fingers, spent, counted):
-    """Add the grip of this control step, once, to a sum over the steps so far.
+def rehearse(episode, world):
+    """Least grip that keeps both pads stuck through the episode, as far as its start determines it.
+
+    On soft pads the object swings, by how much depends on the grip: the grip is found by repetition, from
+    that without swing on.
+
+    Args:
+        episode: As in `rehearse_at`.
+        world: Likewise.
+
+    Returns:
+        As `rehearse_at`.
+    """
+    found = rehearse_at(episode, world, 0.0)
+    if episode.compliance > 0.0:
+        for _ in range(_REPETITIONS):
+            found = rehearse_at(episode, world, max(found[0], episode.force_min))
+    return found
+
+
+@compiled
+def spend(episode, fingers):
+    """Add the grip of this control step, once, to the sum over the steps so far.
 
     Args:
         episode: EPISODE record.
         fingers: FINGER (2,).
-        spent: Index in `episode.own` of the sum [N].
-        counted: Index in `episode.own` of the step up to which it goes.
     """
-    if episode.step > episode.own[counted]:
-        episode.own[counted] = episode.step
-        episode.own[spent] += mean_force(fingers)
+    if episode.step > episode.grip_counted:
+        episode.grip_counted = episode.step
+        episode.grip_sum += mean_force(fingers)
 
 
 WRIST_COLUMNS = (

@@ -32,6 +32,16 @@ FIELDS = [
     ("mu_c", "f8"),
     ("r", "f8"),  # at reset, mean of both pads [m]
     ("finger_friction", "f8", 2),  # of either pad over these [-]
+    # as in PAD, `soft_pad.at_load` reads the first three
+    ("reference_force", "f8"),
+    ("load_exponent", "f8"),
+    ("radius_exponent", "f8"),
+    ("radius_max", "f8"),
+    ("compliance", "f8"),
+    ("shear_time", "f8"),
+    ("axes", "f8", 2),
+    ("cops", "f8", (2, 2)),  # of either pad
+    ("radii", "f8", 2),  # r of either pad
     ("drift", "f8"),  # relative rate of both [1/s]
     ("jump_step", "i8"),  # control step at which both change
     ("jump_factor", "f8"),  # after over before [-]

@@ -72,6 +72,13 @@ EPISODE = np.dtype(
         ("guess", "f8", 6),  # mu_s, mu_c [-], r [m], their relative deviations: the agent's or the estimate
         ("largest_slip", "f8"),  # of the pad centre since reset [m]
         ("largest_tilt", "f8"),  # of the object against its start since reset [rad]
+        # tasks that limit the grip
+        ("least_grip", "f8"),  # that holds the object through the episode, 0: the task has none [N]
+        ("least_grip_now", "f8"),  # that holds it under the present load [N]
+        ("grip_limit", "f8"),  # force at which it breaks, or mean grip allowed [N]
+        ("grip_budget", "f8"),  # largest sum of the grip over the control steps that count, 0: any [N]
+        ("grip_sum", "f8"),  # that sum so far [N]
+        ("grip_counted", "i8"),  # control step up to which it goes
         # tasks with a reference
         ("goal", "f8"),  # where it ends [m or rad]
         ("duration", "f8"),  # [s]

@@ -17,7 +17,9 @@ observed, since a grip just below it would always be right.
 
 The least grip is that with which both pads stick, by the ellipsoidal limit surface: sqrt(f_x^2 + f_y^2 +
 (tau / r)^2) / mu_s, at the largest load per finger of the episode. The load follows from the plan of the
-wrist and from the disturbances, for a box that never slips.
+wrist and from the disturbances, for a box that never slips. A randomization that draws pads draws the least
+grip with them: on a soft pad mu_s and r are those at this very grip, the box swings on its torsion, and the
+pad that slips first decides.
 
 ## Starting State
 
@@ -59,15 +61,16 @@ from slipgym.config.base import NonNegative, Positive, PositiveInterval, ends_wi
 from slipgym.config.task import FrictionRange, InitialForce, MassRange, Option, TaskConfig, setting
 from slipgym.tasks.carrying import PAUSE, WRIST_COLUMNS, move_time, rehearse, wrist_velocity
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
+from slipgym.tasks.least_grip import least_grip
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
 from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
 from slipgym.world.actuator import mean_force
 
-SCRATCH = scratch(allowance=1, limit=1, least=1, acceleration=1)
-"""`allowance`: breaking force over the least grip [-]; `limit`: breaking force [N]; `least`: least grip that
-holds the object through the episode [N]; `acceleration`: largest of the plan, less gravity [m/s^2]."""
+SCRATCH = scratch(allowance=1, acceleration=1)
+"""`allowance`: breaking force over the least grip [-]; `acceleration`: largest of the plan, less gravity
+[m/s^2]."""
 _ALLOWANCE = Option(Positive, "Breaking force over the least grip [-]", {"ge": 1.0, "le": 100.0})
 STROKES = 3
 """Strokes of the shaking at the end."""
@@ -142,17 +145,17 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
 
 def track(episode, world, fingers):
     """Compute the breaking force at the start, and store the largest slip."""
-    own = episode.own
     if episode.step == 0:
-        own[SCRATCH.least], _, own[SCRATCH.acceleration] = rehearse(episode, world)
-        own[SCRATCH.limit] = own[SCRATCH.allowance] * own[SCRATCH.least]
-    episode.reference[0], episode.reference[1] = own[SCRATCH.limit], own[SCRATCH.least]
+        episode.least_grip, _, episode.own[SCRATCH.acceleration] = rehearse(episode, world)
+        episode.grip_limit = episode.own[SCRATCH.allowance] * episode.least_grip
+    episode.least_grip_now = least_grip(episode, world)
+    episode.reference[0], episode.reference[1] = episode.grip_limit, episode.least_grip
     track_slip(episode, world)
 
 
 def violated(episode, world, fingers):
     """Whether the object slid far or broke."""
-    return episode.largest_slip > episode.tolerance or mean_force(fingers) > episode.own[SCRATCH.limit]
+    return episode.largest_slip > episode.tolerance or mean_force(fingers) > episode.grip_limit
 
 
 @term(scale=0.5)
@@ -164,7 +167,7 @@ def still(episode, world, fingers):
 @term(scale=0.3)
 def gentle(episode, world, fingers):
     """1 while the grip is within the breaking force, else 0."""
-    return 1.0 if mean_force(fingers) <= episode.own[SCRATCH.limit] else 0.0
+    return 1.0 if mean_force(fingers) <= episode.grip_limit else 0.0
 
 
 TASK = Task(

@@ -8,7 +8,7 @@ friction are unknown. The task follows the holding task of Waltersson and Karayi
 
 By default a firm grip solves every episode. With `grip_limit` success asks for an economical grip, too: the
 mean grip may be at most `grip_limit` times the least grip, the smallest constant one with which both pads
-stick, sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s by the ellipsoidal limit surface.
+stick, sqrt(f_x^2 + f_y^2 + (tau / r)^2) / mu_s by the ellipsoidal limit surface, on the pads of the episode.
 
 The mean counts the whole episode: shaking, pushes, and falls of friction and changes of mass within it;
 friction that varies over the surface is left out. `grip_limit_start` leaves the beginning out of the mean,
@@ -56,16 +56,14 @@ from slipgym.config.task import MassRange, TaskConfig, setting
 from slipgym.tasks.carrying import WRIST_COLUMNS, rehearse, spend
 from slipgym.tasks.disturbance import POKES_MAX
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip, whole_steps
+from slipgym.tasks.least_grip import least_grip
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Task, term
 from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
 
-SCRATCH = scratch(ratio=1, begin=1, least=1, allowed=1, spent=1, counted=1)
-"""`ratio`: mean grip allowed over the least grip, 0: any is allowed [-]; `begin`: control steps before it
-counts; `least`: least grip that holds the object through the episode [N]; `allowed`: mean grip allowed [N];
-`spent`: sum of the grip over the control steps that count, so far [N]; `counted`: the step up to which it
-goes."""
+SCRATCH = scratch(ratio=1)
+"""`ratio`: mean grip allowed over the least grip, 0: any is allowed [-]."""
 
 
 class Settings(TaskConfig):
@@ -126,7 +124,7 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     ranges = settings.shake_frequency, settings.poke_interval, settings.poke_impulse, offsets
     disturb_hold(rng.random(6 + 4 * POKES_MAX), amplitudes, ranges, times, episode)
     begin = round(settings.grip_limit_start / episode["step_time"].item())
-    episode["own"][[SCRATCH.begin, SCRATCH.counted]] = min(begin, episode["steps"].item())
+    episode["grip_counted"] = min(begin, episode["steps"].item())
 
 
 @compiled
@@ -166,21 +164,22 @@ def disturb_hold(shares, amplitudes, ranges, times, episode):
 
 def track(episode, world, fingers):
     """Compute the least grip at the start, add up the grip if it is limited, and store the largest slip."""
-    own = episode.own
-    if own[SCRATCH.ratio] > 0.0:
+    ratio = episode.own[SCRATCH.ratio]
+    if ratio > 0.0:
         if episode.step == 0:
-            own[SCRATCH.least], _, _ = rehearse(episode, world)
-            own[SCRATCH.allowed] = own[SCRATCH.ratio] * own[SCRATCH.least]
-        spend(episode, fingers, SCRATCH.spent, SCRATCH.counted)
-    episode.reference[0], episode.reference[1] = own[SCRATCH.allowed], own[SCRATCH.least]
+            episode.least_grip, _, _ = rehearse(episode, world)
+            episode.grip_limit = ratio * episode.least_grip
+            episode.grip_budget = (episode.steps - episode.grip_counted) * episode.grip_limit
+        episode.least_grip_now = least_grip(episode, world)
+        spend(episode, fingers)
+    episode.reference[0], episode.reference[1] = episode.grip_limit, episode.least_grip
     track_slip(episode, world)
 
 
 def violated(episode, world, fingers):
     """Whether the object slid far, or the grip has used up what `grip_limit` allows."""
-    own = episode.own
-    allowed = (episode.steps - own[SCRATCH.begin]) * own[SCRATCH.allowed]  # both 0 without `grip_limit`
-    return episode.largest_slip > episode.tolerance or own[SCRATCH.spent] > allowed
+    spent = episode.grip_sum > episode.grip_budget  # both 0 without `grip_limit`
+    return episode.largest_slip > episode.tolerance or spent
 
 
 @term(scale=0.5)

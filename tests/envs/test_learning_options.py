@@ -1,4 +1,4 @@
-"""`end_at_violation` and `load_columns`: both engines, one environment and many."""
+"""`end_at_violation`, `load_columns` and the privileged group: both engines, one environment and many."""
 
 import gymnasium as gym
 import numpy as np
@@ -9,6 +9,12 @@ from slipgym.envs.observation import LOAD
 
 ENGINES = pytest.mark.parametrize("engine", ["planar", "bullet"])
 FRAGILE = "slipgym/FragileHold-v0"
+
+
+def privileged(env, observation):
+    """Name -> value of the privileged group."""
+    names = (column.name for column in env.unwrapped.privileged_columns)
+    return dict(zip(names, observation["privileged"].tolist(), strict=True))
 
 
 @ENGINES
@@ -69,4 +75,54 @@ def test_the_load_part_follows_from_the_sensors(engine):
             assert seen[f"load_ratio_{f}"] == pytest.approx(load / normal, rel=1e-4)
             torque = seen[f"tau_{f}"] / (normal * env.unwrapped.config.gripper.pad_radius)
             assert seen[f"torque_ratio_{f}"] == pytest.approx(torque, rel=1e-3, abs=1e-6)
+    env.close()
+
+
+@ENGINES
+def test_the_privileged_group_holds_what_an_episode_drew(engine):
+    arguments = {"observation_mode": "dict", "randomization": "lab", "sensors": "lab", "level": "hard"}
+    env = gym.make("slipgym/Carry-v0", engine=engine, disable_env_checker=True, **arguments)
+    _, info = env.reset(seed=0)
+    drawn, forces, allowed = info["drawn"], [], 0.0
+    for _ in range(60):
+        observation, *_, info = env.step(np.float32([-0.6]))
+        forces.append(info["grip_force"].mean())
+        allowed = info["reference"][0] * env.unwrapped.simulation.episode["steps"][0]
+    truth = privileged(env, observation)
+    shared = "load_exponent", "radius_exponent", "cop_lever", "shear_compliance", "creep", "aging"
+    own = "finger_radius", "force_gain"
+    for name in (*shared, "stribeck_velocity", "sigma_0", "friction_drift"):
+        assert truth[name] == pytest.approx(drawn[name], rel=1e-5, abs=1e-9), name
+    assert truth["friction_axis_x"] == pytest.approx(1.0 + drawn["anisotropy"])
+    assert truth["dead_time"] == pytest.approx(drawn["dead_time"], abs=1e-3)
+    ratio = drawn["finger_radius_1"] / drawn["finger_radius_2"]
+    assert truth["r_1"] / truth["r_2"] == pytest.approx(ratio, rel=1e-5)
+    for f in "12":
+        assert truth[f"force_gain_{f}"] == pytest.approx(drawn[f"{own[1]}_{f}"])
+        assert truth[f"cop_x_{f}"] == pytest.approx(drawn[f"cop_offset_x_{f}"], rel=1e-5)
+        assert truth[f"lag_{f}"] == pytest.approx(drawn["lag"] * drawn[f"finger_lag_{f}"], rel=1e-5)
+    assert truth["grip_limit"] == pytest.approx(info["reference"][0])
+    assert truth["least_grip"] == pytest.approx(info["reference"][2])
+    assert truth["grip_spent"] == pytest.approx(sum(forces) / allowed, rel=1e-5)
+    assert 0.0 < truth["least_grip_now"] <= 1.1 * truth["least_grip"]
+    assert truth["jump_time"] == 0.0
+    env.close()
+
+
+def test_the_privileged_group_names_the_time_of_a_jump_and_the_largest_slip():
+    jump = {"kind": "friction_jump", "time": {"choices": [2.0]}, "factor": {"choices": [0.7]}}
+    jump["probability"] = 1.0
+    arguments = {"randomization": {"disturbances": [jump]}, "observation_mode": "dict"}
+    env = gym.make("slipgym/Hold-v0", engine="planar", disable_env_checker=True, **arguments)
+    observation, _ = env.reset(seed=0)
+    truth = privileged(env, observation)
+    assert truth["jump_time"] == pytest.approx(2.0, abs=0.01)
+    assert truth["jump_factor"] == pytest.approx(0.7)
+    assert truth["least_grip"] == truth["grip_spent"] == 0.0  # without grip_limit
+    largest = 0.0
+    for _ in range(60):
+        observation, *_, info = env.step(np.float32([-1.0]))
+        largest = max(largest, np.hypot(*info["slip"][:2]))
+    assert largest > 0.0
+    assert privileged(env, observation)["largest_slip"] == pytest.approx(min(largest, 1.0))
     env.close()

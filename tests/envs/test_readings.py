@@ -13,7 +13,7 @@ from slipgym.config import load
 from slipgym.envs.infos import NUMBERS
 from slipgym.envs.nan_guard import QUANTITIES
 from slipgym.envs.observation import SENSORS
-from slipgym.envs.observer import PRIVILEGED
+from slipgym.envs.privileged import PRIVILEGED
 from slipgym.envs.readings import row_writer
 from slipgym.tasks.task import Column
 

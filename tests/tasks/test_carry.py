@@ -6,7 +6,7 @@ import pytest
 
 import slipgym  # noqa: F401
 from slipgym.tasks import TASKS
-from slipgym.tasks.carry import AHEAD, SCRATCH
+from slipgym.tasks.carry import AHEAD
 
 ID, N = "slipgym/Carry-v0", 12
 NAMES = [column.name for column in TASKS["Carry"].columns]
@@ -87,11 +87,10 @@ def test_the_speed_of_the_wrist_is_the_tasks_own():
 
 def test_the_grip_is_counted_once_a_control_step(hand):
     state = hand("Carry")
-    own = state.episode["own"]
-    own[SCRATCH.allowed] = 4.0
+    state.episode["grip_budget"] = 2 * 4.0
     state.evaluate(1)
     state.evaluate(1)
-    assert own[SCRATCH.spent] == 5.0
+    assert state.episode["grip_sum"] == 5.0
     state.episode["steps"] = 2
     state.evaluate(2)
     assert state.episode["violated"]  # 10 N of 8 N

@@ -7,7 +7,6 @@ import pytest
 import slipgym  # noqa: F401
 from slipgym.tasks import TASKS
 from slipgym.tasks.carrying import ACCELERATION, VELOCITY, move_time, planned_velocity
-from slipgym.tasks.fragile_hold import SCRATCH
 
 ID = "slipgym/FragileHold-v0"
 FULL = np.float32([1.0])
@@ -72,7 +71,7 @@ def test_a_constant_grip_succeeds_between_least_and_breaking_force(envs, place, 
 
 def test_a_break_stays_a_violation(hand):
     state = hand("FragileHold")
-    state.episode["own"][SCRATCH.limit] = 6.0
+    state.episode["grip_limit"] = 6.0
     state.evaluate(1)
     assert not state.episode["violated"]
     state.fingers["force"] = 6.1

@@ -7,7 +7,6 @@ import pytest
 import slipgym  # noqa: F401
 from slipgym.config.level import load_level
 from slipgym.tasks import TASKS
-from slipgym.tasks.hold import SCRATCH
 
 ID, N, STEPS = "slipgym/Hold-v0", 12, 960
 FALL = {
@@ -82,13 +81,12 @@ def test_without_a_limit_a_firm_grip_succeeds_and_nothing_is_computed():
 
 def test_the_grip_counts_from_its_start_on_and_once_a_control_step(hand):
     state = hand("Hold", grip_limit=2.0, grip_limit_start=0.5)
-    own = state.episode["own"]
-    assert own[SCRATCH.begin] == 60
-    own[SCRATCH.allowed] = 4.0
+    assert state.episode["grip_counted"] == 60
+    state.episode["grip_budget"] = 2 * 4.0
     state.episode["steps"] = 62
     for step, spent in ((1, 0.0), (60, 0.0), (61, 5.0), (61, 5.0)):
         state.evaluate(step)
-        assert own[SCRATCH.spent] == spent
+        assert state.episode["grip_sum"] == spent
     assert not state.episode["violated"]
     assert state.evaluate(62)["violated"] == -1.0  # 10 N of 8 N
     assert not state.episode["success"]
@@ -96,7 +94,7 @@ def test_the_grip_counts_from_its_start_on_and_once_a_control_step(hand):
 
 def test_a_start_after_the_end_leaves_every_grip_out(hand):
     state = hand("Hold", grip_limit=1.0, grip_limit_start=100.0)
-    state.episode["own"][SCRATCH.allowed] = 1e-3
+    state.episode["grip_limit"] = 1e-3
     state.evaluate(STEPS)
     assert state.episode["success"]
 

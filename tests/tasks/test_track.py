@@ -10,7 +10,6 @@ import pytest
 from slipgym.envs import environment
 from slipgym.tasks import TASKS
 from slipgym.tasks.compile import inlined
-from slipgym.tasks.hold import SCRATCH
 
 
 def old(episode, world):
@@ -116,4 +115,4 @@ def test_the_grip_is_added_up_once_in_each_step_that_counts():
     for step in range(1, 31):
         env.step([0.0])
         total += env.simulation.plant.fingers["force"][0].mean() if step > 10 else 0.0
-    assert env.simulation.episode["own"][0, SCRATCH.spent] == pytest.approx(total, rel=1e-12)
+    assert env.simulation.episode["grip_sum"][0] == pytest.approx(total, rel=1e-12)
