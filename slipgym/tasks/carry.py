@@ -73,6 +73,7 @@ from slipgym.tasks.carrying import (
     planned_acceleration,
     rehearse,
     spend,
+    still_wide,
     wrist_velocity,
 )
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
@@ -187,6 +188,13 @@ def thrift(episode, world, fingers):
     return -mean_force(fingers) / max(4.0 * episode.own[SCRATCH.mean], 1e-9)
 
 
+@term(scale=0.0)
+def overgrip(episode, world, fingers):
+    """-(mean actuator force / (economy times the least grip now) - 1), 0 for a smaller force."""
+    least = max(episode.least_grip_now, episode.force_min)
+    return -max(0.0, mean_force(fingers) / (episode.own[SCRATCH.economy] * least) - 1.0)
+
+
 def _ahead(time: float, axis: int) -> Value:
     """Function that reads the planned acceleration along an axis, a time ahead [s]."""
 
@@ -220,7 +228,7 @@ TASK = Task(
     wrist_velocity=wrist_velocity,
     track=track,
     violated=violated,
-    terms=(still, thrift, smoothness, *OUTCOME),
+    terms=(still, thrift, smoothness, *OUTCOME, still_wide, overgrip),
     columns=(*WRIST_COLUMNS, *_plan(), TIME_LEFT, VIOLATED),
     motion=Motion(sign=0.0),
     page=__doc__,

@@ -13,9 +13,9 @@ import numpy as np
 
 from slipgym._numba.compiled import compiled, compiled_call
 from slipgym.tasks.disturbance import friction_factor, load
-from slipgym.tasks.episode import drive_wrist
+from slipgym.tasks.episode import drive_wrist, slip_distance
 from slipgym.tasks.least_grip import least_under, load_at_rest, swing, torsional_stiffness
-from slipgym.tasks.task import Column
+from slipgym.tasks.task import Column, term
 from slipgym.world.actuator import mean_force
 from slipgym.world.records import WORLD
 
@@ -156,6 +156,16 @@ def spend(episode, fingers):
     if episode.step > episode.grip_counted:
         episode.grip_counted = episode.step
         episode.grip_sum += mean_force(fingers)
+
+
+STILL_WIDTH = 0.015
+"""Width of `still_wide` [m]."""
+
+
+@term(scale=0.0)
+def still_wide(episode, world, fingers):
+    """exp(-(s / 15 mm)^2), the same s: it has a slope where `still` is 0."""
+    return math.exp(-((slip_distance(world) / STILL_WIDTH) ** 2))
 
 
 WRIST_COLUMNS = (

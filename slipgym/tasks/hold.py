@@ -53,7 +53,7 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval, ends_within
 from slipgym.config.task import MassRange, TaskConfig, setting
-from slipgym.tasks.carrying import WRIST_COLUMNS, rehearse, spend
+from slipgym.tasks.carrying import WRIST_COLUMNS, rehearse, spend, still_wide
 from slipgym.tasks.disturbance import POKES_MAX
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip, whole_steps
 from slipgym.tasks.least_grip import least_grip
@@ -61,6 +61,7 @@ from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Task, term
 from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
+from slipgym.world.actuator import mean_force
 
 SCRATCH = scratch(ratio=1)
 """`ratio`: mean grip allowed over the least grip, 0: any is allowed [-]."""
@@ -188,13 +189,21 @@ def still(episode, world, fingers):
     return math.exp(-((slip_distance(world) / episode.tolerance) ** 2))
 
 
+@term(scale=0.0)
+def overgrip(episode, world, fingers):
+    """-(mean actuator force / (grip_limit times the least grip) - 1), 0 for a smaller one or without it."""
+    if episode.grip_limit == 0.0:
+        return 0.0
+    return -max(0.0, mean_force(fingers) / episode.grip_limit - 1.0)
+
+
 TASK = Task(
     id="slipgym/Hold-v0",
     settings=Settings,
     start=start,
     track=track,
     violated=violated,
-    terms=(still, effort._replace(scale=0.5), smoothness, *OUTCOME),
+    terms=(still, effort._replace(scale=0.5), smoothness, *OUTCOME, still_wide, overgrip),
     columns=(
         *WRIST_COLUMNS,
         TIME_LEFT,

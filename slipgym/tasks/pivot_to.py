@@ -95,6 +95,8 @@ from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
 SCRATCH = scratch(acceleration=1, rest_speed=1, wrist_rest=1)
 """`acceleration`: largest of the wrist [m/s^2]; `rest_speed`, `wrist_rest`: largest final speed of the slip
 at the pads' rim and of the wrist [m/s]."""
+WIDTH = 0.5
+"""Width of `angle_wide` [rad]."""
 _ANGLE = Option(float, "Angle to turn in the grip, either way [rad]", {"ge": -1.6, "le": 1.6})
 
 
@@ -194,6 +196,12 @@ def angle(episode, world, fingers):
     return math.exp(-((angle_error(episode, world) / episode.tolerance) ** 2))
 
 
+@term(scale=0.0)
+def angle_wide(episode, world, fingers):
+    """exp(-(e / 0.5 rad)^2), the same e: it has a slope where `angle` is 0."""
+    return math.exp(-((angle_error(episode, world) / WIDTH) ** 2))
+
+
 @term(scale=0.5)
 def distance(episode, world, fingers):
     """-e / pi."""
@@ -219,7 +227,7 @@ TASK = Task(
     track=track,
     success=success,
     violated=violated,
-    terms=(angle, distance, sliding, effort, smoothness, *OUTCOME),
+    terms=(angle, distance, sliding, effort, smoothness, *OUTCOME, angle_wide),
     columns=(
         Column("goal", -2.0, 2.0, "rad", "angle to turn in the grip", "episode.goal"),
         TIME_LEFT,

@@ -57,6 +57,9 @@ from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
 from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
 
+WIDTH = 0.2
+"""Width of `tracking_wide` [rad]."""
+
 
 class Settings(TaskConfig):
     """Settings of the rotational slip: the object turns by a given angle in a given time, then stops."""
@@ -107,6 +110,12 @@ def tracking(episode, world, fingers):
     return math.exp(-((error / episode.tolerance) ** 2))
 
 
+@term(scale=0.0)
+def tracking_wide(episode, world, fingers):
+    """exp(-(e / 0.2 rad)^2), the same e: it has a slope where `tracking` is 0."""
+    return math.exp(-(((-world.slip[2] - episode.reference[0]) / WIDTH) ** 2))
+
+
 @term(scale=0.5)
 def sliding(episode, world, fingers):
     """-(slip at the pad centre) / (10 slide_tolerance)."""
@@ -125,7 +134,7 @@ TASK = Task(
     track=track,
     success=success,
     violated=violated,
-    terms=(tracking, sliding, effort, smoothness, *OUTCOME),
+    terms=(tracking, sliding, effort, smoothness, *OUTCOME, tracking_wide),
     columns=(
         Column(
             "reference_position", 0.0, 2.0, "rad", "angle the object should have turned, clockwise",

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import slipgym  # noqa: F401
+from slipgym.tasks import TASKS
 from slipgym.tasks.least_grip import least_grip, least_under
 
 EPISODES = 12
@@ -89,3 +90,29 @@ def test_it_is_that_of_the_object_at_rest(hand):
     made.world["mass"], made.world["gravity"] = 0.4, 9.81
     made.world["axes"] = 1.0, 0.0
     assert least_grip(episode, made.world) == pytest.approx(0.4 * 9.81 / 2.0 / 0.5)
+
+
+def test_wide_terms_have_a_slope_where_the_narrow_ones_are_flat(hand):
+    for name, wide, narrow in (
+        ("Hold", "still_wide", "still"),
+        ("Carry", "still_wide", "still"),
+        ("RotationalSlip", "tracking_wide", "tracking"),
+        ("PivotTo", "angle_wide", "angle"),
+    ):
+        made = hand(name, **({"angle": 0.5} if name == "PivotTo" else {}))
+        seen = [made.evaluate(1, slip=slip, angle=slip[2]) for slip in ((0.008, 0.0, 0.3), (0.010, 0.0, 0.2))]
+        assert seen[0][narrow] < 0.01
+        assert abs(seen[0][wide] - seen[1][wide]) > 0.05
+        assert {term.scale for term in TASKS[name].terms if term.name == wide} == {0.0}
+
+
+def test_too_firm_a_grip_is_paid_for_in_every_step(hand):
+    carry, hold = hand("Carry"), hand("Hold", grip_limit=2.0)
+    carry.episode["least_grip_now"], carry.episode["force_min"] = 2.0, 0.6
+    carry.episode["mu_s"] = 0.5
+    hold.episode["grip_limit"] = 4.0
+    assert hold.evaluate(1)["overgrip"] == pytest.approx(-0.25)  # 5 N of 4 N
+    hold.fingers["force"] = 3.9
+    assert hold.evaluate(2)["overgrip"] == 0.0
+    free = hand("Hold")
+    assert free.evaluate(1)["overgrip"] == 0.0
