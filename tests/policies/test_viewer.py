@@ -62,7 +62,7 @@ def test_a_mass_slider_arrives_in_the_next_step_and_the_next_episode(session):
     assert world["mass"] == pytest.approx(0.4)
 
 
-@pytest.mark.parametrize("mode", ["grip_force", "force_increment"])
+@pytest.mark.parametrize("mode", ["grip_force", "force_increment", "log_grip_force"])
 def test_a_hand_on_the_grip_replaces_the_policys(mode):
     session = Session("linear_slip", "constant_force", engine="planar", options=SHORT, action_mode=mode)
     for force in (9.0, 3.0):

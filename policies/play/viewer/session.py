@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Mapping
 from queue import Empty, SimpleQueue
@@ -25,6 +26,8 @@ LIVE = ("grip_force", "mu_c", "mass")
 """Values that act from the next control step on, and stay set in later episodes."""
 NEXT_EPISODE = ("policy", "latency")
 """Values that begin with the next episode."""
+_GRIPS = "grip_force", "force_increment", "ln_grip_force"
+"""Components of an action that command the grip; each action mode has one."""
 _LONGEST = 0.1  # [s] of simulation that one call makes up for
 
 
@@ -212,6 +215,7 @@ class Session:
         """Component of an action that commands a grip force per finger [N], or goes towards it."""
         column = self.env.action_columns[self._grip]
         value = force - float(self._episode["command"]) if column.name == "force_increment" else force
+        value = math.log(force) if column.name == "ln_grip_force" else value
         return min(max(2.0 * (value - column.low) / (column.high - column.low) - 1.0, -1.0), 1.0)
 
     def _make(self) -> None:
@@ -228,7 +232,7 @@ class Session:
             self.env.close()
         self.env, self.policy, self._player = env, name, policy
         names = [column.name for column in env.action_columns]
-        self._grip = names.index("grip_force" if "grip_force" in names else "force_increment")
+        self._grip = next(names.index(name) for name in _GRIPS if name in names)
 
     def _made(self) -> tuple[str, Policy, Any]:
         name = self.values.get("policy", self.policy)
