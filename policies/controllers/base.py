@@ -12,6 +12,7 @@ from slipgym.config import Config, Overrides, TaskConfig, load
 from slipgym.config.errors import unknown
 from slipgym.envs import observation as layout
 from slipgym.envs.actions import COMMANDS, PLACES, Actions
+from slipgym.envs.load_part import LOAD
 from slipgym.tasks import configure, find
 
 State: TypeAlias = np.ndarray | tuple[np.ndarray, ...]
@@ -54,7 +55,7 @@ class ObservationIndex:
         Raises:
             ValueError: No observation of the task has this length.
         """
-        width, loaded = observations.shape[1], observations.shape[1] - len(layout.LOAD)
+        width, loaded = observations.shape[1], observations.shape[1] - len(LOAD)
         longest = len(self._at)
         if self.task_name is None and width < longest:
             raise ValueError(f"observation has {width} columns; every task has at least {longest}")

@@ -35,14 +35,9 @@ from slipgym.config.plain import plain
 
 FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
 ActionMode: TypeAlias = Literal[
-    "grip_force",
-    "grip_force_pitch",
-    "grip_force_translation",
-    "grip_force_wrist",
-    "force_increment",
-    "grip_force_wrist_guess",
-    "log_grip_force",
-]
+    "grip_force", "grip_force_pitch", "grip_force_translation", "grip_force_wrist", "force_increment",
+    "grip_force_wrist_guess", "log_grip_force",
+]  # fmt: skip
 ObservationMode: TypeAlias = Literal["flat", "deviations", "sensor", "dict"]
 Engine: TypeAlias = Literal["auto", "bullet", "planar"]
 
@@ -93,10 +88,7 @@ class CommonArguments(TypedDict, total=False):
     observation_mode: Annotated[
         ObservationMode, Argument("flat", "layout of an observation (see docs/modes.md)")
     ]
-    load_columns: Annotated[
-        bool,
-        Argument(False, "whether observations end with logarithms of grip and load, and their ratios"),
-    ]
+    load_columns: Annotated[bool, Argument(False, "whether observations have the load part (docs/modes.md)")]
     history: Annotated[
         int, Argument(0, "number of earlier observations in each observation", least=0, most=1000)
     ]
@@ -116,9 +108,7 @@ class CommonArguments(TypedDict, total=False):
             "`config` and reset options replace its settings, it replaces parts of `randomization`",
         ),
     ]
-    end_at_violation: Annotated[
-        bool, Argument(False, "whether an episode terminates when success has become impossible")
-    ]
+    end_at_violation: Annotated[bool, Argument(False, "whether a violation terminates the episode")]
     frame_skip: Annotated[
         int,
         Argument(

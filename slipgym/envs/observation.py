@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.envs.actions import ACTION_MODES
 from slipgym.envs.estimates import merged_mu_c, merged_mu_s, weighted_mean
+from slipgym.envs.load_part import LOAD, write_load
 from slipgym.envs.readings import Reading, choice_reader, row_writer
 from slipgym.tasks.task import Column, Task
 
@@ -134,77 +134,21 @@ FRICTION = (
 """Friction part, computed from the estimates of the first and the second finger."""
 DEVIATIONS = (
     Reading(
-        "sd_mu_s",
-        (0.0, 10.0),
-        "-",
-        "standard deviation of mu_s that the estimator states",
+        "sd_mu_s", (0.0, 10.0), "-", "standard deviation of mu_s that the estimator states",
         _deviation("mu_s"),
     ),
     Reading("sd_mu_c", (0.0, 10.0), "-", "the same of mu_c", _deviation("mu_c")),
     Reading("sd_r", (0.0, 1.0), "m", "the same of r", _deviation("r")),
     Reading(
-        "sd_lever",
-        (0.0, 10.0),
-        "m",
-        "the same of mu_c r, the torque per normal force of a spin",
+        "sd_lever", (0.0, 10.0), "m", "the same of mu_c r, the torque per normal force of a spin",
         "0.5 * (first.sd_lever + second.sd_lever)",
     ),
     Reading(
-        "spread_mu_c",
-        (0.0, 10.0),
-        "-",
-        "half the difference of the fingers' mu_c",
+        "spread_mu_c", (0.0, 10.0), "-", "half the difference of the fingers' mu_c",
         "0.5 * abs(first.mu_c - second.mu_c)",
     ),
-)
-"""What follows the friction part with `observation_mode="deviations"`; both fingers are said to err alike."""
-LEAST_LOAD, LEAST_NORMAL = 0.01, 0.1
-"""Smaller forces count as these in the load part [N]."""
-RATIO_MAX = 10.0
-"""Largest ratio in the load part [-]."""
-
-
-def _ln_grip(config: Config) -> tuple[float, float]:
-    return math.log(max(config.gripper.force_min, LEAST_LOAD)), math.log(config.gripper.force_limit)
-
-
-def _ln_load(config: Config) -> tuple[float, float]:
-    return math.log(LEAST_LOAD), math.log(2.0 * config.sensors.force_torque.force_range)
-
-
-def _load(f: int) -> tuple[Reading, ...]:
-    """What follows from the forces of finger 1 or 2."""
-    wrench, ratio = f"wrenches[i, {f - 1}, ", (-RATIO_MAX, RATIO_MAX)
-    load, normal = f"math.hypot({wrench}0], {wrench}1])", f"max({wrench}2], {LEAST_NORMAL})"
-    torque = f"{wrench}3] / ({normal} * max(episodes[i].pad_radius, 1e-9))"
-    return (
-        Reading(
-            f"ln_load_{f}",
-            _ln_load,
-            "-",
-            f"logarithm of the tangential force on finger {f} in newtons",
-            f"math.log(max({load}, {LEAST_LOAD}))",
-        ),
-        Reading(
-            f"load_ratio_{f}",
-            ratio,
-            "-",
-            f"the same force over finger {f}'s normal force",
-            f"{load} / {normal}",
-        ),
-        Reading(f"torque_ratio_{f}", ratio, "-", "torque over normal force and pad radius", torque),
-    )
-
-
-LOAD = (
-    Reading(
-        "ln_grip", _ln_grip, "-", "logarithm of the commanded grip force in newtons",
-        f"math.log(max(episodes[i].command, {LEAST_LOAD}))",
-    ),
-    *_load(1),
-    *_load(2),
 )  # fmt: skip
-"""Load part, at the end with `load_columns=True`: functions of the sensor part in the scales of friction."""
+"""What follows the friction part with `observation_mode="deviations"`; both fingers are said to err alike."""
 FRICTION_COLUMNS = tuple(reading.column() for reading in FRICTION)
 DEVIATION_COLUMNS = tuple(reading.column() for reading in DEVIATIONS)
 
@@ -280,14 +224,6 @@ _write_friction = row_writer(
     before=("first, second = estimates[2 * i], estimates[2 * i + 1]",),
     functions={"weighted_mean": weighted_mean, "merged_mu_s": merged_mu_s, "merged_mu_c": merged_mu_c},
 )
-_write_load = row_writer(
-    "_write_load",
-    [reading.read for reading in LOAD],
-    ("wrenches", "episodes"),
-    __file__,
-    "Write `LOAD` of environment i.",
-    functions={"math": math},
-)
 _SENSORS = len(SENSORS)
 
 
@@ -358,6 +294,6 @@ def observe(
         for k in range(end - at):
             out[i, at + k] = friction[i, k]
         if load.shape[0] > 0:
-            _write_load(out[i, end:], i, wrenches, episodes)
+            write_load(out[i, end:], i, wrenches, episodes)
         for k in range(out.shape[1]):
             out[i, k] = min(max(out[i, k], low[k]), high[k])

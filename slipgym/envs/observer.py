@@ -8,7 +8,8 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym._numba.fixed import Fixed
-from slipgym.envs.observation import DEVIATIONS, LOAD, ObservationBuffers, columns, wrist_part
+from slipgym.envs.load_part import LOAD
+from slipgym.envs.observation import DEVIATIONS, ObservationBuffers, columns, wrist_part
 from slipgym.envs.privileged import privileged_columns, write_privileged
 from slipgym.envs.simulation import Simulation
 from slipgym.envs.stages import STATE

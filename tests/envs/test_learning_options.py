@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import slipgym  # noqa: F401
-from slipgym.envs.observation import LOAD
+from slipgym.envs.load_part import LOAD
 
 ENGINES = pytest.mark.parametrize("engine", ["planar", "bullet"])
 FRAGILE = "slipgym/FragileHold-v0"
