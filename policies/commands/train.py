@@ -36,7 +36,9 @@ def main(
         str | None,
         typer.Option(help="Task, instead of the configuration's: linear_slip, also LinearSlip or its id."),
     ] = None,
-    algorithm: Annotated[str | None, typer.Option(help="ppo, recurrent_ppo, sac or tqc.")] = None,
+    algorithm: Annotated[
+        str | None, typer.Option(help="ppo, recurrent_ppo, sac, tqc or privileged_ppo.")
+    ] = None,
     friction_source: Annotated[list[str] | None, typer.Option(help="One or several: runs with each.")] = None,
     randomization: Annotated[str | None, typer.Option(help="A preset or a YAML file.")] = None,
     seeds: Annotated[

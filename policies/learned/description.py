@@ -147,7 +147,7 @@ class Critic(Frozen):
 class Origin(Frozen):
     """How a policy came about."""
 
-    algorithm: Literal["PPO", "SAC", "TQC", "RecurrentPPO", "DAgger"] = Field(
+    algorithm: Literal["PPO", "SAC", "TQC", "RecurrentPPO", "PrivilegedPPO", "DAgger"] = Field(
         description="What trained it [-]"
     )
     command: str = Field(max_length=10_000, description="The command that trained it [-]")

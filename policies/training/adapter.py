@@ -12,6 +12,7 @@ from stable_baselines3.common.vec_env import VecEnv, VecMonitor, VecNormalize
 from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
 
 from slipgym.envs.vector_env import SlipVectorEnv
+from slipgym.tasks import find
 
 _AUTORESET = {False: AutoresetMode.SAME_STEP, True: AutoresetMode.DISABLED}
 """Whether there are scenarios -> the mode that a batch needs."""
@@ -215,12 +216,13 @@ def make_vec_env(
     normalise: Mapping[str, Any] | None = None,
     scenarios: Sequence[Mapping[str, Any]] | None = None,
     spread: bool = False,
+    privileged: bool = False,
     **keywords: Any,
 ) -> VecMonitor | VecNormalize:
     """Environments for Stable-Baselines3, stepped by one compiled call, with statistics of their episodes.
 
     Args:
-        env_id: Of the task, "slipgym/LinearSlip-v0" for example.
+        env_id: The task, "Carry" or "carry", or the id of an environment, "slipgym/Carry-v0".
         num_envs: Environments.
         seed: Of the first environment, the others count up from it, as of the first reset; None: drawn by the
             operating system. A learner that is given a seed sets its own.
@@ -228,6 +230,8 @@ def make_vec_env(
         normalise: Keyword arguments of a `VecNormalize` around them, {} for its own; None: there is none.
         scenarios: Options of reset of each environment, for all its episodes; None: there are none.
         spread: Whether a reset leaves the environments at times spread over their episodes, see `SlipVecEnv`.
+        privileged: Whether the learner keeps the group "privileged" from its actor: without, observations may
+            not be a dict, which Stable-Baselines3 shows the actor whole.
         **keywords: Of the environment.
 
     Returns:
@@ -237,8 +241,13 @@ def make_vec_env(
         ValueError: The value of an argument is unknown or not allowed.
         TypeError: An argument is unknown.
     """
+    if keywords.get("observation_mode") == "dict" and not privileged:
+        raise ValueError(
+            "observation_mode = 'dict' would show the true friction to the actor: Stable-Baselines3 joins "
+            "all groups. Use 'flat', or algorithm privileged_ppo of `slipgym train`, whose critic alone reads it"
+        )
     batch = gym.make_vec(
-        env_id,
+        env_id if "/" in env_id else f"slipgym:{find(env_id).id}",
         num_envs,
         "vector_entry_point",
         autoreset_mode=_AUTORESET[scenarios is not None],

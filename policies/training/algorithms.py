@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -49,6 +50,44 @@ class RecurrentPPO(PPO):
     """PPO with an LSTM before the hidden layers, in actor and critic."""
 
     lstm_hidden_size: Count = Field(default=64, description="Units of the LSTM [-]")
+
+
+class Curriculum(Frozen):
+    """Stages that come before the task itself, each until enough episodes are solved."""
+
+    stages: Annotated[tuple[Mapping[str, Any], ...], BeforeValidator(as_tuple)] = Field(
+        default=(), description="Overrides of the environment's config, one mapping a stage"
+    )
+    success: Share = Field(default=0.6, description="Share of episodes solved that ends a stage [-]")
+    episodes: Count = Field(default=500, description="The last episodes of training that are counted [-]")
+
+
+class PrivilegedPPO(Frozen):
+    """PPO of rsl-rl: the critic reads the privileged group, the actor may have a memory."""
+
+    learning_rate: Positive = Field(default=1e-3, description="Step size of Adam [-]")
+    learning_rate_end: Share = Field(
+        default=0.1, description="Share of it left at the end of the budget; linear in between [-]"
+    )
+    n_steps: Count = Field(default=32, description="Steps per environment between updates [-]")
+    n_epochs: Count = Field(default=4, description="Passes over them [-]")
+    n_minibatches: Count = Field(default=8, description="Gradient steps of a pass [-]")
+    gamma: Share = Field(default=0.995, description="Discount per step of the environment [-]")
+    gae_lambda: Share = Field(default=0.95, description="Of the generalised advantage estimate [-]")
+    clip_range: Positive = Field(default=0.2, description="Largest change of the probability ratio [-]")
+    ent_coef: NonNegative = Field(default=0.0, description="Weight of the entropy [-]")
+    vf_coef: NonNegative = Field(default=0.5, description="Weight of the value function's loss [-]")
+    max_grad_norm: Positive = Field(default=0.5, description="Gradients are clipped to this norm [-]")
+    log_std_init: float = Field(default=-1.5, description="Logarithm of the first standard deviation [-]")
+    net_arch: Layers = Field(default=(64, 64), description="Units of the hidden layers [-]")
+    activation: Literal["tanh", "relu", "elu"] = Field(default="tanh", description="Of the hidden layers [-]")
+    memory: int = Field(default=0, ge=0, le=1024, description="Units of the actor's LSTM; 0: none [-]")
+    privileged: bool = Field(default=True, description="Whether the critic reads the privileged group [-]")
+    start: str | None = Field(default=None, description="Folder of a policy that the actor starts as")
+    critic_first: int = Field(
+        default=0, ge=0, description="Updates at first that change the critic alone [-]"
+    )
+    curriculum: Curriculum = Field(default=Curriculum(), description="Easier stages that come first [-]")
 
 
 class SAC(_Shared):

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, create_model, field_validator, mode
 import policies
 from policies.learned.description import Residual
 from policies.training import seeds
-from policies.training.algorithms import PPO, SAC, TQC, RecurrentPPO
+from policies.training.algorithms import PPO, SAC, TQC, PrivilegedPPO, RecurrentPPO
 from slipgym.config import load, load_randomization
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.errors import unknown
@@ -20,7 +20,7 @@ from slipgym.envs.arguments import CommonArguments, fields
 from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import TASKS, configure, find
 
-Algorithm: TypeAlias = Literal["ppo", "recurrent_ppo", "sac", "tqc"]
+Algorithm: TypeAlias = Literal["ppo", "recurrent_ppo", "sac", "tqc", "privileged_ppo"]
 
 
 def trainable() -> list[str]:
@@ -153,6 +153,7 @@ class Training(Frozen):
     checkpoints: Checkpoints = Field(default=Checkpoints(), description="What is kept meanwhile [-]")
     ppo: PPO = Field(default=PPO(), description="Hyperparameters of ppo [-]")
     recurrent_ppo: RecurrentPPO = Field(default=RecurrentPPO(), description="Those of recurrent_ppo [-]")
+    privileged_ppo: PrivilegedPPO = Field(default=PrivilegedPPO(), description="Those of privileged_ppo [-]")
     sac: SAC = Field(default=SAC(), description="Those of sac [-]")
     tqc: TQC = Field(default=TQC(), description="Those of tqc [-]")
     sweep: Mapping[str, Dimension] = Field(
@@ -188,6 +189,25 @@ class Training(Frozen):
         return self
 
     @model_validator(mode="after")
+    def _can_learn_with_a_privileged_critic(self) -> Self:
+        if self.algorithm == "privileged_ppo":
+            wanted = self.engine == "planar" and self.environment.observation_mode == "flat"
+            if not wanted or self.residual is not None:
+                raise ValueError(
+                    "privileged_ppo needs engine 'planar', observation_mode 'flat' and no residual"
+                )
+            chosen = self.privileged_ppo
+            rows = self.num_envs if chosen.memory else self.num_envs * chosen.n_steps
+            if chosen.n_minibatches > rows:
+                raise ValueError(
+                    f"privileged_ppo.n_minibatches = {chosen.n_minibatches} must not exceed {rows}"
+                )
+            for stage in range(len(chosen.curriculum.stages)):
+                shaped = self.at_stage(stage).shaped
+                configure(find(self.task), shaped.config, shaped.sensors, shaped.contact)
+        return self
+
+    @model_validator(mode="after")
     def _can_spread(self) -> Self:
         if self.spread and self.engine != "planar":
             raise ValueError("spread needs engine 'planar'")
@@ -208,6 +228,12 @@ class Training(Frozen):
         values["config"] = merge(values["config"], self.shaping)
         return Environment.model_validate(values)
 
+    def at_stage(self, stage: int) -> Training:
+        """The run in a stage of its curriculum; from the number of stages on, the run itself."""
+        stages = self.privileged_ppo.curriculum.stages
+        overrides = stages[stage] if stage < len(stages) else {}
+        return self.model_copy(update={"shaping": merge(self.shaping, overrides)})
+
     def combinations(self) -> list[dict[str, Any]]:
         """Every combination of the options of reset that vary; without any, a single empty one."""
         return [
@@ -215,6 +241,6 @@ class Training(Frozen):
         ]
 
     @property
-    def hyperparameters(self) -> PPO | SAC:
+    def hyperparameters(self) -> PPO | SAC | PrivilegedPPO:
         """Those of the algorithm."""
         return getattr(self, self.algorithm)

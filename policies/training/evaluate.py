@@ -21,9 +21,11 @@ def evaluate(config: Training, model: Any, envs: VecEnv) -> Row:
         model: The learner; its statistics are used as they are.
         envs: Environments to run in, not those of the training.
     """
-    frozen = learners.normalised(config, envs, training=False)
-    if frozen.norm_obs:
-        frozen.obs_rms = model.get_vec_normalize_env().obs_rms
+    frozen: Any = envs
+    if config.algorithm != "privileged_ppo":
+        frozen = learners.normalised(config, envs, training=False)
+        if frozen.norm_obs:
+            frozen.obs_rms = model.get_vec_normalize_env().obs_rms
     wanted, found = config.evaluation.episodes, []
     for begun in range(0, wanted, envs.num_envs):
         count = min(envs.num_envs, wanted - begun)
@@ -34,7 +36,7 @@ def evaluate(config: Training, model: Any, envs: VecEnv) -> Row:
 
 def _episodes(model: Any, envs: Any, seed: int) -> list[tuple[float, ...]]:
     """One episode of each environment: success, drop, sum of rewards, length."""
-    envs.venv.seed(seed)
+    envs.seed(seed)
     observations: Any = envs.reset()
     outcomes: dict[int, tuple[float, ...]] = {}
     state, starts = None, np.ones(envs.num_envs, dtype=bool)

@@ -8,10 +8,11 @@ from typing import Any
 
 from stable_baselines3.common.vec_env import VecNormalize
 
-from policies.learned import export
-from policies.training import derived
+from policies.learned import export, files
+from policies.training import derived, policy_tensors
 from policies.training import model as learners
 from policies.training.config import Training
+from policies.versions import versions
 from slipgym.tasks import find
 
 POLICY = "policy"
@@ -37,13 +38,41 @@ def write(
     path = folder / POLICY
     if path.exists():
         return path
-    envs = model.get_vec_normalize_env()
-    learners.set_normalisation(envs, dict(normalisation))
     arguments = config.environment.model_dump(mode="json")
     env_id = find(config.task).id
+    if config.algorithm == "privileged_ppo":
+        return _privileged(model, path, env_id, arguments, config, command, seed)
+    envs = model.get_vec_normalize_env()
+    learners.set_normalisation(envs, dict(normalisation))
     if config.derived:
         model, envs = _folded(model, envs, config)
     return export.save(model, path, env_id, arguments, envs, command, [seed], residual=config.residual)
+
+
+def _privileged(
+    model: Any,
+    path: Path,
+    env_id: str,
+    arguments: Mapping[str, Any],
+    config: Training,
+    command: str,
+    seed: int,
+) -> Path:
+    """Writes the actor of `privileged_ppo`."""
+    normalised = policy_tensors.NORMALISATION if config.normalisation.observation else None
+    description = {
+        "environment": export.described(env_id, arguments),
+        "network": policy_tensors.network(config).model_dump(mode="json"),
+        "normalisation": normalised and normalised.model_dump(mode="json"),
+        "origin": {
+            "algorithm": "PrivilegedPPO",
+            "command": command,
+            "steps": model.num_timesteps,
+            "seeds": [seed],
+            "versions": versions(),
+        },
+    }
+    return files.write(path, description, policy_tensors.take(model.ppo.actor))
 
 
 def _folded(model: Any, envs: VecNormalize, config: Training) -> tuple[Any, VecNormalize]:

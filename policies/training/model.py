@@ -14,9 +14,10 @@ from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.vec_env import VecNormalize
 from torch import nn
 
-from policies.training import vector
+from policies.training import plain, vector
 from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv, Moments
+from policies.training.privileged_ppo import PrivilegedPPO
 from policies.training.state_checks import check_like, fits
 
 _CLASSES: dict[str, Any] = {"ppo": PPO, "recurrent_ppo": RecurrentPPO, "sac": SAC, "tqc": TQC}
@@ -44,6 +45,18 @@ def normalised(config: Training, envs: Any, training: bool = True) -> VecNormali
     if isinstance(envs, DerivedVecEnv) and chosen.observation:
         made.obs_rms = Moments(envs.matrix.shape[1], sum(envs.matrix.shape))
     return made
+
+
+def begin(config: Training, seed: int) -> Any:
+    """An untrained learner of a run, in environments of its own, which `get_env().close()` ends.
+
+    Args:
+        config: The run.
+        seed: Of the first environment.
+    """
+    if config.algorithm == "privileged_ppo":
+        return PrivilegedPPO(config, seed)
+    return make(config, normalised(config, vector.make(config, seed, shaped=True)), seed)
 
 
 def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
@@ -82,13 +95,15 @@ def get_state(model: Any, replay: bool = True) -> dict[str, Any]:
         model: From `make`, between two updates.
         replay: Whether the replay buffer is part of it.
     """
+    if isinstance(model, PrivilegedPPO):
+        return model.get_state(environments=replay)
     envs = model.get_vec_normalize_env()
     state: dict[str, Any] = {
-        "parameters": _plain(model.get_parameters()),
-        "entropy": _plain(getattr(model, "log_ent_coef", None)),
+        "parameters": plain.arrays(model.get_parameters()),
+        "entropy": plain.arrays(getattr(model, "log_ent_coef", None)),
         "counters": {name: getattr(model, name) for name in _COUNTERS},
         "last": {name: _copied(getattr(model, name)) for name in _LAST},
-        "lstm": _plain(getattr(model, "_last_lstm_states", None)),
+        "lstm": plain.arrays(getattr(model, "_last_lstm_states", None)),
         "normalisation": normalisation(envs),
         "environments": vector.get_state(envs.venv),
         "generators": _generators(model),
@@ -112,6 +127,9 @@ def set_state(model: Any, state: dict[str, Any]) -> None:
         ValueError: It is of a learner with another configuration.
     """
     with fits("the checkpoint"):
+        if isinstance(model, PrivilegedPPO):
+            model.set_state(state)
+            return
         _check(model, state)
         _set_state(model, state)
 
@@ -137,7 +155,7 @@ def _set_state(model: Any, state: dict[str, Any]) -> None:
     for name in _LAST:
         setattr(model, name, _copied(state["last"][name]))
     if state["lstm"] is not None:
-        pi, vf = _tensors(state["lstm"])
+        pi, vf = plain.tensors(state["lstm"])
         model._last_lstm_states = RNNStates(pi, vf)
     set_normalisation(envs, state["normalisation"])
     vector.set_state(envs.venv, state["environments"])
@@ -155,10 +173,13 @@ def _set_state(model: Any, state: dict[str, Any]) -> None:
 
 def set_parameters(model: Any, state: dict[str, Any]) -> None:
     """Give a learner the parameters of a state, optimizers included."""
-    model.set_parameters(_tensors(state["parameters"]), exact_match=True, device="cpu")
+    if isinstance(model, PrivilegedPPO):
+        model.set_parameters(state)
+        return
+    model.set_parameters(plain.tensors(state["parameters"]), exact_match=True, device="cpu")
     if state["entropy"] is not None:
         with torch.no_grad():
-            model.log_ent_coef.copy_(_tensors(state["entropy"]))
+            model.log_ent_coef.copy_(plain.tensors(state["entropy"]))
 
 
 def normalisation(envs: VecNormalize) -> dict[str, Any]:
@@ -190,28 +211,6 @@ def _generators(model: Any) -> dict[str, Any]:
         "python": random.getstate(),
         "actions": model.action_space.np_random.bit_generator.state,
     }
-
-
-def _plain(value: Any) -> Any:
-    """Tensors as arrays, at every depth."""
-    if isinstance(value, torch.Tensor):
-        return {"tensor": value.detach().cpu().numpy().copy()}
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value] if isinstance(value, list) else tuple(map(_plain, value))
-    return value
-
-
-def _tensors(value: Any) -> Any:
-    """The reverse of `_plain`."""
-    if isinstance(value, dict):
-        if set(value) == {"tensor"}:
-            return torch.from_numpy(value["tensor"].copy())
-        return {key: _tensors(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_tensors(item) for item in value] if isinstance(value, list) else tuple(map(_tensors, value))
-    return value
 
 
 def _copied(value: Any) -> Any:

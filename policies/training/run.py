@@ -47,10 +47,9 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
 def _train(path: Path, config: Training, seed: int, progress: bool, position: int) -> dict[str, Any]:
     first = seeds.training(seed)
     episodes = min(config.num_envs, config.evaluation.episodes)
-    training = vector.make(config, first, shaped=True)
+    model = learners.begin(config, first)
     held_out = vector.make(config, seeds.held_out(0), episodes)
     try:
-        model = learners.make(config, learners.normalised(config, training), first)
         state = checkpoints.last(path)
         if state:
             with fits(f"{path}: the last checkpoint"):
@@ -70,7 +69,7 @@ def _train(path: Path, config: Training, seed: int, progress: bool, position: in
         writer.close()
         return _finish(path, config, seed, model, callback)
     finally:
-        training.close()
+        model.get_env().close()
         held_out.close()
 
 

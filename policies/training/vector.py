@@ -47,18 +47,22 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
         shaped: Whether they are those in which it learns.
     """
     keywords = (config.shaped if shaped else config.environment).model_dump()
+    privileged = config.algorithm == "privileged_ppo"
+    if privileged:
+        keywords["observation_mode"] = "dict"
     count = config.num_envs if num_envs is None else num_envs
     combinations = config.combinations()
     scenarios = [combinations[i % len(combinations)] for i in range(count)]
     if config.engine == "planar":
         varied = scenarios if config.vary else None
         made = make_vec_env(
-            _id(config.task),
+            config.task,
             count,
             seed,
             config.engine_threads,
             scenarios=varied,
             spread=config.spread and shaped,
+            privileged=privileged,
             **keywords,
         )
     else:

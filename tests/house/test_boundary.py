@@ -17,6 +17,7 @@ PUBLIC = (
     "slipgym.envs.actions",
     "slipgym.envs.arguments",
     "slipgym.envs.engines",
+    "slipgym.envs.load_part",
     "slipgym.envs.observation",
     "slipgym.envs.simulation",
     "slipgym.registration",

@@ -72,8 +72,8 @@ class Imitation(Frozen):
             raise ValueError(
                 "environment.observation_mode must be 'flat'; friction_source 'none' shows sensors"
             )
-        if self.environment.action_mode is not None:
-            raise ValueError("environment.action_mode must be null: it is the controller's")
+        if self.environment.action_mode not in (None, "log_grip_force"):
+            raise ValueError("environment.action_mode must be null, the controller's, or 'log_grip_force'")
         if self.rounds * self.rows > seeds.ROWS:
             raise ValueError(f"rounds * rows = {self.rounds * self.rows} episodes; at most {seeds.ROWS}")
         return self

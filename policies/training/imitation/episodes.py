@@ -13,10 +13,14 @@ from policies.controllers import table as controllers
 from policies.controllers.rate import at_rate
 from policies.learned.forward import Network
 from policies.training.imitation.config import Imitation
+from slipgym.envs.load_part import LOAD
 from slipgym.envs.observation import FRICTION_COLUMNS
 from slipgym.tasks import find
 
 _FRICTION = [column.name for column in FRICTION_COLUMNS]
+_LOAD = {reading.name for reading in LOAD}
+LOGARITHMIC = "log_grip_force"
+"""The action mode in which a network may act in place of its controller's, "grip_force"."""
 KNOWN = 0.05
 """Confidence of an estimate from which the teacher "revealed" is given the truth in its place [-]."""
 
@@ -36,9 +40,20 @@ class Demonstrations:
 
 
 def arguments(config: Imitation) -> dict[str, Any]:
-    """Keyword arguments of the environments, with the action mode of the controller."""
+    """Keyword arguments of the environments, with the action mode of the controller or its logarithmic one.
+
+    Raises:
+        ValueError: The controller has no logarithmic mode.
+    """
+    given = config.environment.model_dump(mode="json")
     modes = policies.modes(policies.make(find(config.task).key))
-    return {**config.environment.model_dump(mode="json"), **modes}
+    if given["action_mode"] == LOGARITHMIC:
+        if modes["action_mode"] != "grip_force":
+            raise ValueError(
+                f"environment.action_mode = {LOGARITHMIC!r}: {config.task} moves more than the grip"
+            )
+        modes["action_mode"] = LOGARITHMIC
+    return {**given, **modes}
 
 
 class Scene:
@@ -59,11 +74,22 @@ class Scene:
         self.controller = controllers.make(task.key, {"config": at})
         names = [column.name for column in self.envs.columns]
         self._bare = names.index(_FRICTION[0]) if _FRICTION[0] in names else len(names)
-        self._width = self._bare if source == "none" else len(names)
+        blind = [k for k, name in enumerate(names) if k < self._bare or name in _LOAD]
+        self._kept = blind if source == "none" else list(range(len(names)))
+        (force,) = self.envs.action_columns[:1]
+        self._ends = np.exp([force.low, force.high]) if given["action_mode"] == LOGARITHMIC else None
 
     def seen(self, observations: np.ndarray) -> np.ndarray:
         """What the network observes of observations (n, m)."""
-        return observations[:, : self._width]
+        return observations[:, self._kept]
+
+    def acted(self, actions: np.ndarray) -> np.ndarray:
+        """Actions (n, k) of the controller as the environments take them, on the scale of their grip."""
+        if self._ends is None:
+            return actions
+        low, high = self._ends
+        force = low + 0.5 * (np.clip(actions, -1.0, 1.0) + 1.0) * (high - low)
+        return (2.0 * np.log(force / low) / np.log(high / low) - 1.0).astype(np.float32)
 
     def taught(self, observations: np.ndarray, true: np.ndarray) -> np.ndarray:
         """What the controller observes.
@@ -102,6 +128,7 @@ def demonstrate(scene: Scene, network: Network | None, acts: np.ndarray, seed: i
     seen, wanted, lengths = [], [], np.zeros(n, np.int64)
     while running.any():
         labels, state = scene.controller.predict(scene.taught(observations, infos["true"]), state)
+        labels = scene.acted(labels)
         actions, observed = labels, scene.seen(observations)
         if network is not None:
             given, memory = network.forward(observed, memory)

@@ -21,6 +21,7 @@ def small():
             "checkpoints": {"every": 32},
             "ppo": {"n_steps": 16, "batch_size": 16, "n_epochs": 1},
             "recurrent_ppo": {"n_steps": 16, "batch_size": 16, "n_epochs": 1, "lstm_hidden_size": 8},
+            "privileged_ppo": {"n_steps": 16, "n_epochs": 1, "n_minibatches": 1},
             "sac": {"buffer_size": 80, "learning_starts": 40, "batch_size": 16},
             "tqc": {"buffer_size": 80, "learning_starts": 40, "batch_size": 16},
         }

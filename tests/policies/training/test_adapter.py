@@ -77,7 +77,8 @@ def actions(envs, steps, seed=0):
 @pytest.mark.parametrize(("threads", "limit"), [(1, None), (2, None), (1, 10)])
 def test_equals_a_dummy_vec_env(make, kind, threads, limit):
     env_id, keywords = KINDS[kind]
-    ours = make(3, env_id, seed=7, threads=threads, max_episode_steps=limit, **{"config": None, **keywords})
+    told = {"threads": threads, "max_episode_steps": limit, "privileged": True}
+    ours = make(3, env_id, seed=7, **{"config": None, **told, **keywords})
     theirs = dummy(3, env_id, 7, max_episode_steps=limit, **keywords)
     assert ours.observation_space == theirs.observation_space
     assert ours.action_space == theirs.action_space

@@ -48,12 +48,6 @@ def test_a_learner_takes_steps(kind, normalise):
     assert torch.get_num_threads() == threads
 
 
-def test_ppo_takes_groups():
-    envs = policies.make_vec_env("slipgym/LinearSlip-v0", 4, observation_mode="dict", normalise={}, **SHORT)
-    learned("ppo", envs, 128, "MultiInputPolicy")
-    envs.close()
-
-
 def test_learning_is_the_same_again():
     weights = []
     for threads in (1, 2):

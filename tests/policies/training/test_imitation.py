@@ -179,7 +179,7 @@ def _assignments():
     ("change", "message"),
     [
         ({"environment": {"history": 2}}, "history must be 0"),
-        ({"environment": {"action_mode": "grip_force"}}, "action_mode must be null"),
+        ({"environment": {"action_mode": "grip_force"}}, "must be null, the controller"),
         ({"rows": 4096, "rounds": 8}, "at most 16384"),
         ({"task": "Linear"}, "unknown task"),
         ({"teacher": "estimate", "environment": {"friction_source": "true"}}, "none or estimated"),
@@ -189,3 +189,15 @@ def _assignments():
 def test_what_cannot_be_imitated_is_refused(change, message):
     with pytest.raises(ValueError, match=message):
         read({**SMALL, **change})
+
+
+def test_a_logarithmic_network_is_taught_the_same_grip():
+    """The controller's linear action and what the network is taught command the same force."""
+    small = {**SMALL, "environment": {**SMALL.get("environment", {}), "action_mode": "log_grip_force"}}
+    scene = Scene(Imitation.model_validate(small), 2)
+    linear = np.array([[-1.0], [-0.3], [0.0], [0.7], [1.0]], np.float32)
+    low, high = np.exp([scene.envs.action_columns[0].low, scene.envs.action_columns[0].high])
+    wanted = low + 0.5 * (linear + 1.0) * (high - low)
+    found = low * (high / low) ** (0.5 * (scene.acted(linear) + 1.0))
+    np.testing.assert_allclose(found, wanted, rtol=1e-5)
+    scene.close()

@@ -84,6 +84,45 @@ def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algori
     assert differing(*(checkpoint_io.read(checkpoints.best(path)) for path in (whole, broken))) == []
 
 
+@pytest.mark.parametrize("memory", [0, 4])
+def test_a_resumed_run_with_stages_is_equal_bit_for_bit(small, tmp_path, monkeypatch, memory):
+    """The curriculum moves on between the checkpoint and the interruption, and after it."""
+    stages = [{"tasks": {"linear_slip": {"tolerance": t}}} for t in (0.05, 0.02)]
+    config = small(
+        algorithm="privileged_ppo",
+        budget=128,
+        privileged_ppo={
+            "n_steps": 16,
+            "n_epochs": 2,
+            "n_minibatches": 2,
+            "memory": memory,
+            "critic_first": 1,
+            "curriculum": {"stages": stages, "success": 0.0, "episodes": 3},
+        },
+    )
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    folder.begin(whole, config, 3)
+    run.train(whole, progress=False)
+    folder.begin(broken, config, 3)
+    save = checkpoints.save
+
+    def save_and_die(path, steps, state, keep):
+        save(path, steps, state, keep)
+        if steps == 64:
+            raise Killed
+
+    monkeypatch.setattr(checkpoints, "save", save_and_die)
+    with pytest.raises(Killed):
+        run.train(broken, progress=False)
+    monkeypatch.undo()
+    run.train(broken, progress=False)
+    ends = [checkpoints.last(path) for path in (whole, broken)]
+    assert ends[0]["learner"]["counters"]["stage"] == 2
+    for end in ends:
+        end["record"].pop("seconds"), end["record"].pop("cpu_seconds")
+    assert differing(*ends) == []
+
+
 def test_the_comparison_notices_one_bit(small, tmp_path):
     path = tmp_path / "run"
     folder.begin(path, small(budget=32), 0)

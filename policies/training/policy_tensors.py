@@ -1,0 +1,94 @@
+"""Between the actor of `privileged_ppo` and the tensors of a policy's file (docs/policy_files.md)."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+import torch
+from torch import nn
+
+from policies.learned import files
+from policies.learned.description import WEIGHTS, Memory, Network, Normalisation
+from policies.learned.extract import LSTM, array
+from policies.training.config import Training
+from slipgym.tasks import find
+
+NORMALISATION = Normalisation(clip=1e6, epsilon=1e-8)
+"""What a file says about the observations: rsl-rl does not clip them."""
+_SEEN = 10_000_000
+"""Samples that the observations' statistics of a policy count as, which training goes on from."""
+
+
+def dense(actor: Any) -> list[nn.Linear]:
+    """The dense layers of an actor, first to last."""
+    return [layer for layer in actor.mlp if isinstance(layer, nn.Linear)]
+
+
+def network(config: Training) -> Network:
+    """What a file says about the network of a run."""
+    chosen = config.privileged_ppo
+    memory = Memory(size=chosen.memory, layers=1) if chosen.memory else None
+    return Network(
+        kind="lstm" if memory else "mlp",
+        memory=memory,
+        layers=chosen.net_arch,
+        activation=chosen.activation,
+        squash=False,
+    )
+
+
+def take(actor: Any) -> dict[str, np.ndarray]:
+    """Tensors of an actor by their names in a file.
+
+    rsl-rl divides by the standard deviation plus a constant, a file by the root of the variance plus one.
+    """
+    found = {}
+    if actor.obs_normalization:
+        scale = actor.obs_normalizer.std.double() + actor.obs_normalizer.eps
+        found["observation.mean"] = array(actor.obs_normalizer.mean.double())
+        found["observation.var"] = array(scale.square() - NORMALISATION.epsilon)
+    if hasattr(actor, "rnn"):
+        for ours, theirs in LSTM.items():
+            found[f"memory.0.{ours}"] = array(getattr(actor.rnn.rnn, f"{theirs}0"))
+    for k, layer in enumerate(dense(actor)):
+        found[f"layers.{k}.weight"], found[f"layers.{k}.bias"] = array(layer.weight), array(layer.bias)
+    return found
+
+
+def load(actor: Any, path: str | os.PathLike[str], config: Training) -> None:
+    """Gives an actor the network of a policy, and the statistics of its observations.
+
+    Raises:
+        FileNotFoundError: There is nothing at the path.
+        ValueError: It is no policy, of another task, or its network is another one.
+    """
+    description, weights = files.read(path, WEIGHTS)
+    if description.environment.id != find(config.task).id:
+        raise ValueError(f"{path}: is a policy for {description.environment.id}, not for {config.task}")
+    if description.network != network(config) or description.residual is not None:
+        raise ValueError(
+            f"{path}: privileged_ppo.start needs the network that is trained, {network(config)!r}, and no "
+            f"residual; the policy has {description.network!r}"
+        )
+    own = take(actor)
+    for name, value in own.items():
+        if name not in weights or weights[name].shape != value.shape:
+            raise ValueError(f"{path}: {name!r} does not fit the observation or action of the run")
+    tensors: dict[str, Any] = {name: torch.from_numpy(np.array(weights[name])) for name in own}
+    with torch.no_grad():
+        if actor.obs_normalization:
+            normaliser, read = actor.obs_normalizer, description.normalisation
+            epsilon = read.epsilon if read else 0.0
+            std = (tensors["observation.var"] + epsilon).sqrt() - normaliser.eps
+            normaliser._mean.copy_(tensors["observation.mean"])
+            normaliser._std.copy_(std.clamp(min=0.0))
+            normaliser._var.copy_(normaliser._std.square())
+            normaliser.count.fill_(_SEEN)
+        if hasattr(actor, "rnn"):
+            for ours, theirs in LSTM.items():
+                getattr(actor.rnn.rnn, f"{theirs}0").copy_(tensors[f"memory.0.{ours}"])
+        for k, layer in enumerate(dense(actor)):
+            layer.weight.copy_(tensors[f"layers.{k}.weight"])
+            layer.bias.copy_(tensors[f"layers.{k}.bias"])

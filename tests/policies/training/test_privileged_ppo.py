@@ -1,0 +1,142 @@
+"""PPO of rsl-rl: what its actor sees, the policy that it leaves behind, the start from one, its stages."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("stable_baselines3")
+pytest.importorskip("rsl_rl")
+import policies
+from policies.training import checkpoint_io, checkpoints, files, folder, model, run, vector
+from policies.training.adapter import make_vec_env
+from policies.training.files import checked
+
+
+@pytest.fixture(scope="module", params=[0, 5])
+def trained(request, small, tmp_path_factory):
+    """A run and its configuration, without and with a memory."""
+    chosen = {"n_steps": 16, "n_epochs": 1, "n_minibatches": 1, "memory": request.param, "net_arch": [8, 6]}
+    config = small(algorithm="privileged_ppo", privileged_ppo=chosen)
+    path = tmp_path_factory.mktemp("run") / "run"
+    folder.begin(path, config, 0)
+    run.train(path, progress=False)
+    return config, path
+
+
+def played(config, act, steps=12):
+    """Actions (steps, n, m) in the held-out environments; `act` gets observations by group."""
+    envs = vector.make(config, 7, 2)
+    observations, starts, found = envs.reset(), np.ones(2, bool), []
+    for _ in range(steps):
+        found.append(act(observations, starts))
+        observations, _, starts, _ = envs.step(found[-1])
+    envs.close()
+    return np.array(found)
+
+
+def of_file(path):
+    """How the policy in a folder acts."""
+    policy, memory = policies.load(path), [None]
+
+    def act(observations, starts):
+        actions, memory[0] = policy.predict(observations["policy"], memory[0], starts)
+        return actions
+
+    return act
+
+
+def acting(learner):
+    """How a learner acts, memory included."""
+    memory = [None]
+
+    def act(observations, starts):
+        actions, memory[0] = learner.predict(observations, memory[0], starts)
+        return actions
+
+    return act
+
+
+def test_the_policy_of_a_run_acts_as_its_best_learner(trained):
+    config, path = trained
+    by_file = played(config, of_file(path / "policy"))
+    learner = model.begin(config, 0)
+    model.set_parameters(learner, checkpoint_io.read(checkpoints.best(path))["learner"])
+    np.testing.assert_allclose(by_file, played(config, acting(learner)), atol=2e-5)
+    learner.get_env().close()
+
+
+def test_a_learner_starts_as_the_policy_that_it_is_given(trained):
+    config, path = trained
+    values = config.model_dump()
+    values["privileged_ppo"]["start"] = str(path / "policy")
+    learner = model.begin(checked(values, "test"), 1)
+    by_file = played(config, of_file(path / "policy"))
+    np.testing.assert_allclose(played(config, acting(learner)), by_file, atol=2e-5)
+    learner.get_env().close()
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"privileged_ppo": {"memory": 3}}, "needs the network"),
+        ({"task": "Hinge"}, "is a policy for slipgym/LinearSlip-v0"),
+        ({"environment": {"load_columns": True}}, "does not fit the observation"),
+    ],
+)
+def test_a_policy_that_does_not_fit_is_refused(trained, changes, named):
+    config, path = trained
+    values = config.model_dump()
+    values["privileged_ppo"]["start"] = str(path / "policy")
+    if "task" in changes:
+        values["environment"]["config"] = {}
+    for name, value in changes.items():
+        values[name] = {**values[name], **value} if isinstance(value, dict) else value
+    with pytest.raises(ValueError, match=named):
+        model.begin(checked(values, "test"), 1)
+
+
+def test_the_actor_does_not_read_the_privileged_group(trained):
+    config, _ = trained
+    learner = model.begin(config, 0)
+    act, rng = acting(learner), np.random.default_rng(0)
+
+    def blind(observations, starts):
+        other = rng.normal(size=observations["privileged"].shape).astype(np.float32)
+        return act({**observations, "privileged": other}, starts)
+
+    seen = played(config, acting(learner))
+    np.testing.assert_array_equal(played(config, blind), seen)
+    learner.get_env().close()
+
+
+def test_a_plain_actor_is_not_shown_the_truth():
+    with pytest.raises(ValueError, match="would show the true friction to the actor"):
+        make_vec_env("Carry", 2, observation_mode="dict")
+
+
+@pytest.mark.parametrize("name", ["carry", "Carry", "slipgym/Carry-v0"])
+def test_a_task_has_any_spelling(name):
+    envs = make_vec_env(name, 2, 0, threads=1)
+    assert envs.reset().shape[0] == 2
+    envs.close()
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"engine": "bullet"}, "needs engine 'planar'"),
+        ({"residual": {"controller": "linear_slip", "reach": 0.1}}, "no residual"),
+        ({"privileged_ppo": {"n_minibatches": 99}}, "must not exceed 64"),
+        ({"privileged_ppo": {"curriculum": {"stages": [{"tasks": {"linear_slip": {"tol": 1}}}]}}}, "tol"),
+        ({"privileged_ppo": {"memory": -1}}, "whole number >= 0"),
+    ],
+)
+def test_a_wrong_configuration_says_what_is_wrong(small, changes, named):
+    with pytest.raises(ValueError, match=named):
+        small(algorithm="privileged_ppo", **changes)
+
+
+def test_the_configurations_from_nothing_are_read():
+    found = [name for name in files.names() if name.endswith("_scratch")]
+    assert len(found) == 9
+    for name in found:
+        assert files.load(name).algorithm == "privileged_ppo"
