@@ -244,7 +244,7 @@ def make_vec_env(
     if keywords.get("observation_mode") == "dict" and not privileged:
         raise ValueError(
             "observation_mode = 'dict' would show the true friction to the actor: Stable-Baselines3 joins "
-            "all groups. Use 'flat', or algorithm privileged_ppo of `slipgym train`, whose critic alone reads it"
+            "all groups. Use 'flat', or algorithm privileged_ppo of `slipgym train`: only its critic reads it"
         )
     batch = gym.make_vec(
         env_id if "/" in env_id else f"slipgym:{find(env_id).id}",
