@@ -26,7 +26,7 @@ class Run(NamedTuple):
     """A finished run of a configuration that comes with slipgym."""
 
     key: str
-    """Its task's key, which is its configuration's name, too."""
+    """Its configuration's name: the task's key, or that with "_scratch"."""
     source: str
     """Its friction information in training."""
     seed: int
@@ -35,6 +35,12 @@ class Run(NamedTuple):
     """Episodes of an evaluation."""
     policy: Path
     """The folder of its policy."""
+
+    @property
+    def name(self) -> str:
+        """What its policy is called; the configurations from nothing are told the true friction."""
+        told = self.key.endswith("_scratch") and self.source == "true"
+        return self.key if told else f"{self.key}_{self.source}"
 
     @property
     def command(self) -> str:
@@ -92,7 +98,10 @@ def _finished(path: Path) -> Run:
     if folder.result(path) is None:
         raise ValueError(f"{path} is not finished")
     key, source = find(config.task).key, config.environment.friction_source
-    if config != files.load(key, {"environment.friction_source": source}):
+    given = {"environment.friction_source": source}
+    if config.algorithm == "privileged_ppo":
+        key += "_scratch"
+    if config != files.load(key, given):
         raise ValueError(f"{path} was not trained as configs/training/{key}.yaml says")
     return Run(key, source, seed, folder.read_curve(path), config.evaluation.episodes, path / export.POLICY)
 
@@ -102,7 +111,7 @@ def _put(run: Run, target: Path) -> Path:
     description, weights = policy_files.read(run.policy)
     values = description.model_dump(mode="json", exclude={"format", "files"})
     values["origin"] |= {"command": run.command, "steps": run.best.steps, "critic": None}
-    path = target / f"{run.key}_{run.source}"
+    path = target / run.name
     if path.exists():
         shutil.rmtree(path)
     return policy_files.write(path, values, weights)

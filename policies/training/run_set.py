@@ -62,12 +62,18 @@ def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -
     if len(runs) > 1:
         _draw(path, runs)
     lines = [
-        f"  {run.name}: solved {result['best']['success']:.0%} of the held-out episodes at step "
-        f"{result['best']['steps']}; ended by {result['ended']} at step {result['steps']} "
+        f"  {run.name}: {_best(run, result['best'])}; ended by {result['ended']} at step {result['steps']} "
         f"after {_time(result)}" + ("" if result["steps"] else "; nothing was learned")
         for run, result in zip(runs, results, strict=True)
     ]
     return "\n".join([f"Look at {path}", *lines])
+
+
+def _best(run: Path, row: Mapping[str, Any]) -> str:
+    """The best evaluation; a residual policy is its controller before any learning."""
+    said = f"solved {row['success']:.0%} of the held-out episodes at step {row['steps']}"
+    untrained = row["steps"] == 0 and folder.order(run)[0].residual is not None
+    return f"{said}, as its controller does without learning" if untrained else said
 
 
 def _time(result: Mapping[str, Any]) -> str:
