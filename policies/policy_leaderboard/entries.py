@@ -78,7 +78,9 @@ def learned(key: str) -> list[Member]:
             members.append(Member(f"learned, {source}", policy, {"friction_source": source, **policy.modes}))
     if (name := f"{key}_scratch") in pretrained.folders():
         policy = LearnedPolicy(pretrained.folders()[name])
-        members.append(Member("learned from nothing, true", policy, {"friction_source": "true", **policy.modes}))
+        members.append(
+            Member("learned from nothing, true", policy, {"friction_source": "true", **policy.modes})
+        )
     return members
 
 

@@ -59,11 +59,12 @@ def _privileged(
     seed: int,
 ) -> Path:
     """Writes the actor of `privileged_ppo`."""
-    normalised = policy_tensors.NORMALISATION if config.normalisation.observation else None
+    chosen = config.normalisation
+    normalised = {"clip": chosen.clip, "epsilon": policy_tensors.EPSILON} if chosen.observation else None
     description = {
         "environment": export.described(env_id, arguments),
         "network": policy_tensors.network(config).model_dump(mode="json"),
-        "normalisation": normalised and normalised.model_dump(mode="json"),
+        "normalisation": normalised,
         "origin": {
             "algorithm": "PrivilegedPPO",
             "command": command,
@@ -72,7 +73,8 @@ def _privileged(
             "versions": versions(),
         },
     }
-    return files.write(path, description, policy_tensors.take(model.ppo.actor))
+    moments = model.moments["policy"] if chosen.observation else None
+    return files.write(path, description, policy_tensors.take(model.ppo.actor, moments))
 
 
 def _folded(model: Any, envs: VecNormalize, config: Training) -> tuple[Any, VecNormalize]:

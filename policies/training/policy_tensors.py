@@ -10,13 +10,13 @@ import torch
 from torch import nn
 
 from policies.learned import files
-from policies.learned.description import WEIGHTS, Memory, Network, Normalisation
+from policies.learned.description import WEIGHTS, Memory, Network
 from policies.learned.extract import LSTM, array
 from policies.training.config import Training
 from slipgym.tasks import find
 
-NORMALISATION = Normalisation(clip=1e6, epsilon=1e-8)
-"""What a file says about the observations: rsl-rl does not clip them."""
+EPSILON = 1e-8
+"""Added to the variance of an observation [unit^2]."""
 _SEEN = 10_000_000
 """Samples that the observations' statistics of a policy count as, which training goes on from."""
 
@@ -39,16 +39,11 @@ def network(config: Training) -> Network:
     )
 
 
-def take(actor: Any) -> dict[str, np.ndarray]:
-    """Tensors of an actor by their names in a file.
-
-    rsl-rl divides by the standard deviation plus a constant, a file by the root of the variance plus one.
-    """
+def take(actor: Any, moments: Any) -> dict[str, np.ndarray]:
+    """Tensors of an actor and moments of its observations, None without, by their names in a file."""
     found = {}
-    if actor.obs_normalization:
-        scale = actor.obs_normalizer.std.double() + actor.obs_normalizer.eps
-        found["observation.mean"] = array(actor.obs_normalizer.mean.double())
-        found["observation.var"] = array(scale.square() - NORMALISATION.epsilon)
+    if moments is not None:
+        found = {"observation.mean": np.array(moments.mean), "observation.var": np.array(moments.var)}
     if hasattr(actor, "rnn"):
         for ours, theirs in LSTM.items():
             found[f"memory.0.{ours}"] = array(getattr(actor.rnn.rnn, f"{theirs}0"))
@@ -57,7 +52,7 @@ def take(actor: Any) -> dict[str, np.ndarray]:
     return found
 
 
-def load(actor: Any, path: str | os.PathLike[str], config: Training) -> None:
+def load(actor: Any, moments: Any, path: str | os.PathLike[str], config: Training) -> None:
     """Gives an actor the network of a policy, and the statistics of its observations.
 
     Raises:
@@ -72,20 +67,18 @@ def load(actor: Any, path: str | os.PathLike[str], config: Training) -> None:
             f"{path}: privileged_ppo.start needs the network that is trained, {network(config)!r}, and no "
             f"residual; the policy has {description.network!r}"
         )
-    own = take(actor)
+    normalised = config.normalisation.observation
+    if normalised != (description.normalisation is not None):
+        raise ValueError(f"{path}: normalisation.observation = {normalised} is not that of the policy")
+    own = take(actor, moments if normalised else None)
     for name, value in own.items():
         if name not in weights or weights[name].shape != value.shape:
             raise ValueError(f"{path}: {name!r} does not fit the observation or action of the run")
     tensors: dict[str, Any] = {name: torch.from_numpy(np.array(weights[name])) for name in own}
+    if normalised:
+        moments.mean, moments.var = weights["observation.mean"].copy(), weights["observation.var"].copy()
+        moments.count = _SEEN
     with torch.no_grad():
-        if actor.obs_normalization:
-            normaliser, read = actor.obs_normalizer, description.normalisation
-            epsilon = read.epsilon if read else 0.0
-            std = (tensors["observation.var"] + epsilon).sqrt() - normaliser.eps
-            normaliser._mean.copy_(tensors["observation.mean"])
-            normaliser._std.copy_(std.clamp(min=0.0))
-            normaliser._var.copy_(normaliser._std.square())
-            normaliser.count.fill_(_SEEN)
         if hasattr(actor, "rnn"):
             for ours, theirs in LSTM.items():
                 getattr(actor.rnn.rnn, f"{theirs}0").copy_(tensors[f"memory.0.{ours}"])

@@ -47,12 +47,14 @@ class PrivilegedPPO:
         self.num_timesteps, self.stage, self._updates = 0, 0, 0
         self.envs = self._make()
         self._returns, self._running = RunningMeanStd(shape=()), np.zeros(config.num_envs)
+        spaces = self.envs.observation_space.spaces
+        self.moments = {name: RunningMeanStd(shape=space.shape) for name, space in spaces.items()}
         self._solved: deque[bool] = deque(maxlen=self._chosen.curriculum.episodes)
         self._last: TensorDict | None = None
         self.ppo = self._ppo()
         self.logger: Any = None
         if self._chosen.start is not None:
-            policy_tensors.load(self.ppo.actor, self._chosen.start, config)
+            policy_tensors.load(self.ppo.actor, self.moments["policy"], self._chosen.start, config)
 
     def _make(self) -> Any:
         return vector.make(self._config.at_stage(self.stage), self._seed, shaped=True)
@@ -64,7 +66,6 @@ class PrivilegedPPO:
             batch_size=[self.envs.num_envs],
         )
         common = {"hidden_dims": list(chosen.net_arch), "activation": chosen.activation}
-        common["obs_normalization"] = self._config.normalisation.observation
         noise = {
             "class_name": "rsl_rl.modules.distribution:GaussianDistribution",
             "init_std": float(np.exp(chosen.log_std_init)),
@@ -115,7 +116,7 @@ class PrivilegedPPO:
         end = self.num_timesteps + total
         callback.init_callback(self)
         if self._last is None:
-            self._last = _tensors(self.envs.reset())
+            self._last = self._observed(self.envs.reset())
         while self.num_timesteps < end:
             callback.on_rollout_start()
             if not self._collect(callback):
@@ -123,6 +124,19 @@ class PrivilegedPPO:
             self._update(min(self.num_timesteps / self._config.budget, 1.0))
             self._go_on()
         callback.on_training_end()
+
+    def _observed(self, observations: Any, learn: bool = True) -> TensorDict:
+        """Normalised observations by group, from which their moments are learned."""
+        chosen, found = self._config.normalisation, {}
+        for name, values in observations.items():
+            moments, scaled = self.moments[name], values
+            if chosen.observation:
+                if learn:
+                    moments.update(values)
+                scaled = (values - moments.mean) / np.sqrt(moments.var + policy_tensors.EPSILON)
+                scaled = np.clip(scaled, -chosen.clip, chosen.clip).astype(np.float32)
+            found[name] = torch.from_numpy(scaled)
+        return TensorDict(found, batch_size=[len(observations["policy"])])
 
     def _collect(self, callback: Any) -> bool:
         """Plays the steps of one update; False if the callback ends the run."""
@@ -142,7 +156,7 @@ class PrivilegedPPO:
                 scaled = np.clip(
                     rewards / scale, -self._config.normalisation.clip, self._config.normalisation.clip
                 )
-                self._last = _tensors(observations)
+                self._last = self._observed(observations)
                 self.ppo.process_env_step(
                     self._last, torch.from_numpy(scaled.astype(np.float32)), torch.from_numpy(dones), {}
                 )
@@ -166,7 +180,7 @@ class PrivilegedPPO:
             self.stage += 1
             self.envs.close()
             self.envs = self._make()
-            self._last = _tensors(self.envs.reset())
+            self._last = self._observed(self.envs.reset())
             with torch.inference_mode():
                 self.ppo.actor.reset(torch.ones(self.envs.num_envs, dtype=torch.bool))
             self._running[:] = 0.0
@@ -187,7 +201,7 @@ class PrivilegedPPO:
         with torch.inference_mode():
             actor.reset(hidden_state=state)
             actor.reset(torch.from_numpy(starts)) if state is not None else None
-            actions = np.clip(actor(_tensors(observations)).numpy(), -1.0, 1.0)
+            actions = np.clip(actor(self._observed(observations, learn=False)).numpy(), -1.0, 1.0)
             after = actor.get_hidden_state()
             actor.reset(hidden_state=own)
         return actions, after
@@ -201,8 +215,7 @@ class PrivilegedPPO:
         state: dict[str, Any] = {
             "parameters": plain.arrays(self.ppo.save()),
             "counters": {"steps": self.num_timesteps, "updates": self._updates, "stage": self.stage},
-            "returns": {name: float(getattr(self._returns, name)) for name in ("mean", "var", "count")},
-            "normalisation": {},
+            "normalisation": {name: _of(moments) for name, moments in self._all_moments().items()},
         }
         if environments:
             state |= {
@@ -224,8 +237,8 @@ class PrivilegedPPO:
         own = self.get_state()
         check_like(
             "learner",
-            {k: state[k] for k in ("counters", "returns", "running")},
-            {k: own[k] for k in ("counters", "returns", "running")},
+            {k: state[k] for k in ("counters", "normalisation", "running")},
+            {k: own[k] for k in ("counters", "normalisation", "running")},
         )
         self.set_parameters(state)
         counters = state["counters"]
@@ -235,8 +248,6 @@ class PrivilegedPPO:
             self.envs.close()
             self.envs = self._make()
         self.envs.reset()
-        for name, value in state["returns"].items():
-            setattr(self._returns, name, np.float64(value))
         self._running = state["running"].copy()
         self._solved.extend(state["solved"])
         last = plain.tensors(state["last"])
@@ -248,9 +259,18 @@ class PrivilegedPPO:
     def set_parameters(self, state: dict[str, Any]) -> None:
         """Give it the parameters of a state, that of the optimiser included."""
         self.ppo.load(plain.tensors(state["parameters"]), None, strict=True)
+        for name, moments in self._all_moments().items():
+            for part, value in state["normalisation"][name].items():
+                setattr(moments, part, np.array(value) if part != "count" else value)
+
+    def _all_moments(self) -> dict[str, RunningMeanStd]:
+        return {**self.moments, "returns": self._returns}
 
 
-def _tensors(observations: Any) -> TensorDict:
-    count = len(observations["policy"])
-    groups = {name: torch.from_numpy(values) for name, values in observations.items()}
-    return TensorDict(groups, batch_size=[count])
+def _of(moments: RunningMeanStd) -> dict[str, Any]:
+    """Mean, variance and count as plain data."""
+    return {
+        "mean": np.array(moments.mean),
+        "var": np.array(moments.var),
+        "count": float(moments.count),
+    }
