@@ -84,6 +84,8 @@ def episodes(
         FileNotFoundError: There is no policy at the path.
         ValueError: A name or value is wrong, or the environment is not one the policy can act in.
     """
+    if task is not None:
+        find(task)  # first of all: one of your own registers itself
     policy = policies.load(which)
     env_id, arguments = environment_of(os.fspath(which), policy, task)
     if "estimator" not in (changes or {}):

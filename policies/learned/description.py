@@ -57,7 +57,11 @@ _Columns = Annotated[tuple[Column, ...], BeforeValidator(as_tuple), Field(min_le
 class Environment(Frozen):
     """The environment a policy was trained in."""
 
-    id: str = Field(pattern=r"\Aslipgym/[A-Za-z]+-v[0-9]+\z", description="Its Gymnasium id [-]")
+    id: str = Field(
+        pattern=r"\A([A-Za-z0-9_-]+/)?[A-Za-z0-9_]+(-v[0-9]+)?\z",
+        max_length=200,
+        description="Its Gymnasium id, without a module to import [-]",
+    )
     arguments: Mapping[str, JsonValue] = Field(description="Keyword arguments it was made with [-]")
     rate: Positive = Field(description="Steps per second [Hz]")
     history: int = Field(ge=0, le=1024, description="Earlier observations along with each [-]")

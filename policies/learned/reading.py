@@ -9,7 +9,7 @@ from slipgym.config import load
 from slipgym.envs.actions import ACTION_MODES
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR, friction_part
 from slipgym.envs.observation import columns
-from slipgym.tasks import find
+from slipgym.tasks import Task, find
 
 
 def layout(trained: Environment) -> tuple[str, ...]:
@@ -20,8 +20,11 @@ def layout(trained: Environment) -> tuple[str, ...]:
 
     Args:
         trained: The environment the policy was trained in.
+
+    Raises:
+        ValueError: Its id is not registered.
     """
-    given, task = trained.arguments, find(trained.id)
+    given, task = trained.arguments, _task(trained.id)
     read = tuple(column.name for column in trained.observation)
     source, action_mode, mode = (
         str(given.get(name) or default)
@@ -38,6 +41,15 @@ def layout(trained: Environment) -> tuple[str, ...]:
         for column in columns(load(), task, source, action_mode, mode, bool(given.get("load_columns", False)))
     )
     return present if set(read) <= set(present) else read
+
+
+def _task(env_id: str) -> Task:
+    """The task of an id that is registered: what comes with a policy imports nothing."""
+    try:
+        return find(env_id)
+    except ValueError as error:
+        own = "a task of your own: import its module first, or give --task module:attribute"
+        raise ValueError(f"{error}; {own}") from None
 
 
 def selection(trained: Environment, width: int) -> np.ndarray | None:

@@ -9,7 +9,9 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 from pydantic import BeforeValidator, Field, create_model, field_validator, model_validator
 
 import policies
+from estimator.reference import is_reference
 from policies.learned.description import Residual
+from policies.task_names import canonical
 from policies.training import seeds
 from policies.training.algorithms import PPO, SAC, TQC, PrivilegedPPO, RecurrentPPO
 from slipgym.config import load, load_randomization
@@ -18,14 +20,9 @@ from slipgym.config.errors import unknown
 from slipgym.config.load import merge
 from slipgym.envs.arguments import CommonArguments, fields
 from slipgym.registration import ENVIRONMENTS
-from slipgym.tasks import TASKS, configure, find
+from slipgym.tasks import configure, find
 
 Algorithm: TypeAlias = Literal["ppo", "recurrent_ppo", "sac", "tqc", "privileged_ppo"]
-
-
-def trainable() -> list[str]:
-    """Names of the tasks that policies can be trained for: those that come with slipgym."""
-    return [task.name for task in TASKS.values() if task.id in ENVIRONMENTS]
 
 
 _DIFFERENT: dict[str, Any] = {"randomization": "train", "config": {}}
@@ -113,7 +110,7 @@ class Dimension(Frozen):
 class Training(Frozen):
     """A training run, but for its seed."""
 
-    task: str = Field(description="Task of the environment [-]")
+    task: str = Field(description="Task of the environment; one of your own: module:attribute [-]")
     algorithm: Algorithm = Field(default="ppo", description="What learns [-]")
     budget: Count = Field(description="Steps of all environments together [-]")
     num_envs: int = Field(default=8, ge=1, le=seeds.ROWS, description="Environments side by side [-]")
@@ -164,9 +161,9 @@ class Training(Frozen):
     @classmethod
     def _task_exists(cls, name: str) -> str:
         task = find(name)
-        if task.id not in ENVIRONMENTS:
-            raise ValueError(unknown("task", name, trainable()))
-        return task.name
+        if task.id not in ENVIRONMENTS and not is_reference(name):
+            raise ValueError(f"name {name!r}, a task of your own, as module:attribute")
+        return canonical(name)
 
     @model_validator(mode="after")
     def _can_change_the_controller(self) -> Self:
@@ -178,7 +175,7 @@ class Training(Frozen):
         needs, has = policies.modes(controller)["action_mode"], find(self.task).action_mode
         if needs != (self.environment.action_mode or has):
             raise ValueError(f"residual: {self.residual.controller} needs action_mode {needs!r}")
-        if getattr(controller, "task", None) not in (None, self.task):
+        if getattr(controller, "task", None) not in (None, find(self.task).name):
             raise ValueError(f"residual: {self.residual.controller} is not for {self.task}")
         return self
 

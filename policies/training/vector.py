@@ -9,6 +9,7 @@ from typing import Any
 import gymnasium as gym
 from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv, VecMonitor
 
+from estimator.reference import is_reference
 from policies.learned.residual import Underlying
 from policies.training.adapter import SlipVecEnv, TaskEnd, make_vec_env
 from policies.training.config import Training
@@ -143,4 +144,5 @@ def _is_batch(envs: VecMonitor) -> bool:
 
 def _id(task: str) -> str:
     """The id of a task's environment, with the module that registers it."""
-    return f"slipgym:{find(task).id}"
+    module = task.partition(":")[0] if is_reference(task) else "slipgym"
+    return f"{module}:{find(task).id}"

@@ -123,6 +123,7 @@ def put(*keys, value):
         (put("files", TRAINING, value="0" * 64), r"origin\.critic is needed with"),
         (put("environment", "id", value="os:slipgym/Hold-v0"), r"environment\.id = 'os:slipgym/Hold-v0'"),
         (put("environment", "id", value="slipgym/Hold-v0\n"), r"environment\.id"),
+        (put("environment", "id", value="os:path/Hold-v0"), r"environment\.id"),
         (put("environment", "arguments", "config", value="/etc/passwd"), r"config = '/etc/passwd' must be"),
         (put("environment", "arguments", "randomization", value="a.yaml"), r"unknown randomization 'a.yaml'"),
         (put("environment", "arguments", "render_mode", value="human"), r"'render_mode' is no part"),
