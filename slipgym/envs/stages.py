@@ -26,6 +26,7 @@ from slipgym.envs.reset_kernels import HARDWARE, START, equip_rows, open_episode
 from slipgym.envs.values import VALUES
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks.episode import EPISODE
+from slipgym.tasks.typing_errors import explained
 from slipgym.world.records import FINGER, WORLD
 
 
@@ -177,8 +178,9 @@ class Stages:
                 programs[name] = Program(*each)
                 one_more()
             self.calls = {name: program.call for name, program in programs.items()}
-            task.script_wrist.compile(SCRIPT_WRIST)
-            task.evaluate_step.compile(EVALUATE_STEP)
+            with explained(task):
+                task.script_wrist.compile(SCRIPT_WRIST)
+                task.evaluate_step.compile(EVALUATE_STEP)
             self.linked = Linked(
                 Pointer(task.script_wrist, SCRIPT_WRIST),
                 Pointer(task.evaluate_step, EVALUATE_STEP),

@@ -1,6 +1,7 @@
 """The tasks, one file each."""
 
 from slipgym.config.task import Option, TaskConfig, setting
+from slipgym.tasks.check import check
 from slipgym.tasks.configure import configure
 from slipgym.tasks.table import TASKS, find
 from slipgym.tasks.task import Column, Task, Term, event, term
@@ -12,6 +13,7 @@ __all__ = [
     "Task",
     "TaskConfig",
     "Term",
+    "check",
     "configure",
     "event",
     "find",

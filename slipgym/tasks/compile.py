@@ -30,7 +30,7 @@ class _Column(Protocol):
     def read(self) -> str | Callable[..., Any]: ...
 
 
-def _track_arguments(track: Any) -> tuple[str, ...]:
+def track_arguments(track: Any) -> tuple[str, ...]:
     """Arguments that a task's `track` takes: `fingers` came later, and those written before do without.
 
     Raises:
@@ -102,7 +102,7 @@ def compile_evaluate_step(
     body = [
         "for i in range(episodes.shape[0]):",
         "    episode, world, fingers = episodes[i], worlds[i], grippers[i]",
-        *([f"    track({', '.join(_track_arguments(functions['track']))})"] if "track" in namespace else []),
+        *([f"    track({', '.join(track_arguments(functions['track']))})"] if "track" in namespace else []),
         "    episode.dropped = detect_drop(episode, world, fingers)",
         "    before = episode.violated",
         f"    episode.violated = before{violated}",
