@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable
 
 import gymnasium as gym
+from records import rows
 
 from slipgym.config import load_randomization
 from slipgym.config.distribution import Distribution
@@ -91,10 +92,16 @@ def single_tasks() -> str:
     return table("Preset | Task | Fields that differ", rows)
 
 
+def record_fields() -> str:
+    """Fields of the records that the functions of a task read."""
+    return table("Field | Unit | Meaning", rows())
+
+
 TABLES = {
     "privileged columns": privileged_columns,
     "randomization fields": fields,
     "randomization disturbances": disturbances,
     "randomization single tasks": single_tasks,
+    "record fields": record_fields,
 }
 """Name -> function that writes the table."""

@@ -18,38 +18,34 @@ _SHAKE_RISE = 0.5  # [s] over which a shaking builds up, so that it starts witho
 _LEAST, _MOST = 0.2, 5.0  # drift takes friction no further than this, over the drawn one
 
 FIELDS = [
-    (
-        "shakes",
-        "f8",
-        (SHAKES, 3, 3),
-    ),  # per axis: amplitude [m, rad], omega [rad/s], phase [rad]
-    ("tilt_shakes", "f8", (2, 3)),  # the same in roll and along the grip axis, with `physics.tilt`
+    ("shakes", "f8", (SHAKES, 3, 3)),  # per axis: amplitude [m, rad], omega [rad/s], phase [rad]
+    ("tilt_shakes", "f8", (2, 3)),  # the same in roll and along the grip axis [m, rad], [rad/s], [rad]
     ("mass", "f8"),  # of the object at reset [kg]
-    ("inertia", "f8"),  # likewise [kg m^2]
-    ("mass_step", "i8"),  # control step at which both change
-    ("mass_factor", "f8"),  # after over before [-]
-    ("mu_s", "f8"),  # at reset [-]
-    ("mu_c", "f8"),
-    ("r", "f8"),  # at reset, mean of both pads [m]
-    ("finger_friction", "f8", 2),  # of either pad over these [-]
+    ("inertia", "f8"),  # of the object at reset [kg m^2]
+    ("mass_step", "i8"),  # control step at which mass and inertia change
+    ("mass_factor", "f8"),  # mass after over before it [-]
+    ("mu_s", "f8"),  # static friction at reset, mean of both pads [-]
+    ("mu_c", "f8"),  # Coulomb friction, likewise [-]
+    ("r", "f8"),  # radius of the equivalent rim contact, likewise [m]
+    ("finger_friction", "f8", 2),  # friction of either pad over the mean [-]
     # as in PAD, `soft_pad.at_load` reads the first three
-    ("reference_force", "f8"),
-    ("load_exponent", "f8"),
-    ("radius_exponent", "f8"),
-    ("radius_max", "f8"),
-    ("compliance", "f8"),
-    ("shear_time", "f8"),
-    ("axes", "f8", 2),
-    ("cops", "f8", (2, 2)),  # of either pad
-    ("radii", "f8", 2),  # r of either pad
-    ("drift", "f8"),  # relative rate of both [1/s]
-    ("jump_step", "i8"),  # control step at which both change
-    ("jump_factor", "f8"),  # after over before [-]
-    ("region", "f8", 2),  # distance from the grasp at which it begins and ends [m]
+    ("reference_force", "f8"),  # normal force at which mu_s, mu_c and r hold [N]
+    ("load_exponent", "f8"),  # friction falls with the normal force to the power of this [-]
+    ("radius_exponent", "f8"),  # r grows with it to the power of this [-]
+    ("radius_max", "f8"),  # largest r [m]
+    ("compliance", "f8"),  # tangential compliance of the rubber [m/N]
+    ("shear_time", "f8"),  # damping of the rubber over its stiffness [s]
+    ("axes", "f8", 2),  # friction along the pad's x and y over its mean [-]
+    ("cops", "f8", (2, 2)),  # centre of pressure of either pad, pad frame [m]
+    ("radii", "f8", 2),  # r of either pad [m]
+    ("drift", "f8"),  # relative rate of friction [1/s]
+    ("jump_step", "i8"),  # control step at which friction changes
+    ("jump_factor", "f8"),  # friction after over before it [-]
+    ("region", "f8", 2),  # distance from the grasp at which another surface begins and ends [m]
     ("region_factor", "f8"),  # friction on it over elsewhere [-]
-    ("pushes", "i8"),  # how many
+    ("pushes", "i8"),  # how many pushes
     # last, as they are long and most steps have no push
-    ("push_start", "i8", PUSHES_MAX),  # control step
+    ("push_start", "i8", PUSHES_MAX),  # control step at which a push begins
     ("push_end", "i8", PUSHES_MAX),  # first control step without it
     ("push_wrench", "f8", (PUSHES_MAX, 3)),  # on the centre of mass, world [N, N, N m]
 ]

@@ -48,27 +48,27 @@ EPISODE = np.dtype(
         ("slide_tolerance", "f8"),  # largest slip at the pad centre for success [m]
         ("tilt_tolerance", "f8"),  # largest tilt for success [rad]
         ("wrist_start", "f8", 3),  # pad centre (x, z) and pitch at reset [m, m, rad]
-        ("wrist_roll", "f8"),  # at reset [rad]
+        ("wrist_roll", "f8"),  # roll of the wrist at reset [rad]
         ("reach", "f8", 2),  # pad centre may lie this far from the object's centre, (x, z) [m]
         ("object_centre", "f8", 2),  # geometric centre from the grasp point, body frame [m]
-        ("pad_radius", "f8"),  # [m]
+        ("pad_radius", "f8"),  # radius of a pad [m]
         ("force_min", "f8"),  # lower end of the force action [N]
         ("force_max", "f8"),  # upper end of the force action [N]
-        ("wrist_speed_max", "f8"),  # of the gripper [m/s]
-        ("wrist_pitch_rate_max", "f8"),  # of the gripper [rad/s]
+        ("wrist_speed_max", "f8"),  # largest speed of the gripper [m/s]
+        ("wrist_pitch_rate_max", "f8"),  # largest pitch rate of the gripper [rad/s]
         ("command", "f8"),  # grip force commanded now [N]
         ("last_command", "f8"),  # grip force commanded before [N]
         ("wrist_command", "f8", 3),  # wrist velocity that the agent commands now [m/s, m/s, rad/s]
-        ("reference", "f8", 3),  # position, velocity, acceleration along the task's coordinate
-        ("terms", "f8", TERMS_MAX),  # scaled reward terms of the last step
-        ("scales", "f8", TERMS_MAX),
-        ("success", "?"),
-        ("dropped", "?"),
+        ("reference", "f8", 3),  # position, velocity, acceleration of the task's coordinate [m or rad, s]
+        ("terms", "f8", TERMS_MAX),  # reward terms of the last step, scaled [-]
+        ("scales", "f8", TERMS_MAX),  # of the reward terms [-]
+        ("success", "?"),  # whether the episode has ended as a success
+        ("dropped", "?"),  # whether the object is lost
         ("violated", "?"),  # whether success has become impossible; it stays true
         ("just_violated", "?"),  # whether it became impossible in the last step
         ("ended", "?"),  # whether the task ended the episode before its length
-        ("end_at_violation", "?"),  # whether a violation does
-        ("guesses", "?"),  # whether the agent states friction
+        ("end_at_violation", "?"),  # whether a violation ends it
+        ("guesses", "?"),  # whether the agent states friction itself
         ("guess", "f8", 6),  # mu_s, mu_c [-], r [m], their relative deviations: the agent's or the estimate
         ("largest_slip", "f8"),  # of the pad centre since reset [m]
         ("largest_tilt", "f8"),  # of the object against its start since reset [rad]
@@ -78,15 +78,15 @@ EPISODE = np.dtype(
         ("grip_limit", "f8"),  # force at which it breaks, or mean grip allowed [N]
         ("grip_budget", "f8"),  # largest sum of the grip over the control steps that count, 0: any [N]
         ("grip_sum", "f8"),  # that sum so far [N]
-        ("grip_counted", "i8"),  # control step up to which it goes
+        ("grip_counted", "i8"),  # control step up to which the sum goes
         # tasks with a reference
-        ("goal", "f8"),  # where it ends [m or rad]
-        ("duration", "f8"),  # [s]
-        ("settle", "f8"),  # [s]
+        ("goal", "f8"),  # where the reference ends [m or rad]
+        ("duration", "f8"),  # of the motion [s]
+        ("settle", "f8"),  # before the motion [s]
         # tasks with a support and a planned motion of the wrist
         ("support", "f8", 4),  # times: lift-off begins and ends, touch-down begins and ends [s]
         ("moves", "f8", (MOVES_MAX, 5)),  # start, duration [s], and way in x, z, pitch [m, m, rad]
-        ("own", "f8", OWN_MAX),  # what else a task keeps, named by `scratch`; zero before its start
+        ("own", "f8", OWN_MAX),  # what else a task keeps, named by `scratch`; zero before its start [its own]
         *FIELDS,
     ],
     align=True,

@@ -12,6 +12,8 @@ from slipgym.config import load_randomization
 from slipgym.config.randomization import Ranges
 from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import find
+from slipgym.tasks.episode import EPISODE
+from slipgym.world.records import FINGER, WORLD
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
@@ -62,6 +64,16 @@ def test_fields_are_those_of_the_presets(tables):
     assert found.keys() == Ranges.model_fields.keys() - {"disturbances"}
     low, high = re.match(r"(\S+) to (\S+)$", found["mu_c"][1]).groups()
     assert (float(low), float(high)) == load_randomization("train").mu_c.ends
+
+
+def test_record_fields_are_those_of_the_records(tables):
+    found = rows(tables.record_fields())
+    records = {"episode": EPISODE, "world": WORLD, "fingers[f]": FINGER}
+    expected = [f"{record}.{name}" for record, dtype in records.items() for name in dtype.names]
+    assert [re.match("`(.+)`", row[0])[1] for row in found] == expected
+    assert all(meaning for *_, meaning in found)
+    assert [row[0] for row in found if not row[1] and row[0].startswith("`episode.")] == []
+    assert ["`world.slip` (3)", "m, m, rad", "slip displacement (x, y, theta)"] in found
 
 
 def test_disturbances_and_tasks_are_those_of_the_presets(tables):
