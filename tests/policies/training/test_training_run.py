@@ -167,7 +167,7 @@ def test_ray_that_is_missing_is_asked_for(monkeypatch):
 def test_ray_does_the_same(tmp_path):
     pytest.importorskip("ray")
     code = (
-        "from policies.training import scatter, seeds\n"
+        "from policies.training import parallel, seeds\n"
         "print(parallel.run_all(seeds.training, [(1,), (2,)], ray='local'))"
     )
     home = {**os.environ, "HOME": str(tmp_path)}  # Ray keeps a token there
