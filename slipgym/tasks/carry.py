@@ -161,7 +161,7 @@ def track(episode, world, fingers):
     """Compute the least grip at the start, add up the grip, and store the largest slip."""
     own = episode.own
     if episode.step == 0:
-        episode.least_grip, own[SCRATCH.mean], _ = rehearse(episode, world)
+        episode.least_grip, own[SCRATCH.mean], _ = rehearse(episode, world, True)
         episode.grip_limit = own[SCRATCH.economy] * own[SCRATCH.mean]
         episode.grip_budget = episode.steps * episode.grip_limit
     episode.least_grip_now = least_grip(episode, world)

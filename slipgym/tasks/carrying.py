@@ -14,9 +14,19 @@ import numpy as np
 from slipgym._numba.compiled import compiled, compiled_call
 from slipgym.tasks.disturbance import friction_factor, load
 from slipgym.tasks.episode import drive_wrist, slip_distance
-from slipgym.tasks.least_grip import least_under, load_at_rest, swing, torsional_stiffness
+from slipgym.tasks.least_grip import (
+    bearing,
+    demand,
+    load_at_rest,
+    on_soft_pads,
+    square_at,
+    swing,
+    torsional_stiffness,
+    varies,
+)
 from slipgym.tasks.task import Column, term
 from slipgym.world.actuator import mean_force
+from slipgym.world.object_motion import pad_axes
 from slipgym.world.records import WORLD
 
 ACCELERATION = 10.0 / math.sqrt(3.0)
@@ -75,29 +85,30 @@ def wrist_velocity(episode, world):
 
 _REPETITIONS = 2
 """Rehearsals with swing, on soft pads."""
+_ROWS = 5
+"""What a rehearsal keeps of every step, see `plan_loads`."""
 
 
 @compiled_call
-def rehearse_at(episode, world, grip):
-    """Least grip that keeps both pads stuck through the episode, if the object swings as in a given grip.
+def plan_loads(episode, world, loads):
+    """Loads on the pads in every step of the episode.
 
     The object is moved along with the wrist, as if it never slipped, under the scripted motion, oscillations,
-    support, pushes, and changes of mass and friction; see `least_under`.
+    support, pushes, and changes of mass and friction.
 
     Args:
-        episode: EPISODE record at step 0, with mu_s and r; its step is 0 again afterwards.
+        episode: EPISODE record at step 0; its step is 0 again afterwards.
         world: WORLD record; it is not changed.
-        grip: Normal force of either pad in which it swings; 0: it does not [N].
+        loads: Output (_ROWS, steps): load as from `load_at_rest`, friction over that at reset [-], inertia of
+            the object about the pads [kg m^2].
 
     Returns:
-        Largest and mean least grip [N], where the mean counts each step with at least the gripper's smallest
-        force, and the largest acceleration of the wrist less gravity [m/s^2].
+        Largest acceleration of the wrist less gravity [m/s^2].
     """
     worlds = np.empty(1, WORLD)
     worlds[0] = world
     plan = worlds[0]
-    dt, peak, total, fastest = episode.step_time, 0.0, 0.0, 0.0
-    angle, rate, stiffness = 0.0, 0.0, torsional_stiffness(episode, grip) if grip > 0.0 else 0.0
+    dt, fastest, square = episode.step_time, 0.0, 0.0
     for step in range(episode.steps):
         episode.step = step
         load(episode, plan)
@@ -106,43 +117,95 @@ def rehearse_at(episode, world, grip):
         for a in range(3):  # the object goes with the wrist, whose velocity changes linearly in the step
             plan.wrist_velocity[a] += 0.5 * dt * plan.wrist_acceleration[a]
             plan.wrist[a] += 0.5 * dt * plan.wrist_velocity[a]
-        cos, sin = math.cos(plan.wrist[2]), math.sin(plan.wrist[2])
+        cos, sin = pad_axes(plan)
         x, z = plan.grasp_point[0], plan.grasp_point[1]
         plan.com[0] = plan.wrist[0] - cos * x + sin * z
         plan.com[1] = plan.wrist[1] - sin * x - cos * z
-        f_x, f_y, torque = load_at_rest(episode, plan)
-        if grip > 0.0:
-            torque, angle, rate = swing(episode, plan, torque, stiffness, angle, rate)
-        need = least_under(episode, (f_x, f_y, torque), friction_factor(episode, plan))
-        peak, total = max(peak, need), total + max(need, episode.force_min)
-        along = math.hypot(plan.wrist_acceleration[0], plan.wrist_acceleration[1] + plan.gravity)
-        fastest = max(fastest, along)
+        loads[0, step], loads[1, step], loads[2, step] = load_at_rest(episode, plan)
+        loads[3, step] = friction_factor(episode, plan)
+        loads[4, step] = plan.inertia + plan.mass * (x * x + z * z)
+        across, along = plan.wrist_acceleration[0], plan.wrist_acceleration[1] + plan.gravity
+        if across * across + along * along > 0.999 * square:  # the length costs more
+            square = max(square, across * across + along * along)
+            fastest = max(fastest, math.hypot(across, along))
         for a in range(3):
             plan.wrist[a] += 0.5 * dt * plan.wrist_velocity[a]
             plan.wrist_velocity[a] += 0.5 * dt * plan.wrist_acceleration[a]
     episode.step = 0
-    return peak, total / episode.steps, fastest
+    return fastest
 
 
 @compiled
-def rehearse(episode, world):
+def swung(episode, loads, grip):
+    """Torques on soft pads in a grip, whose torsion the object swings on (steps,) [N m]."""
+    torques = np.empty(loads.shape[1])
+    angle, rate, stiffness = 0.0, 0.0, torsional_stiffness(episode, grip)
+    for k in range(loads.shape[1]):
+        torques[k], angle, rate = swing(episode, loads[4, k], loads[2, k], stiffness, angle, rate)
+    return torques
+
+
+@compiled_call
+def least_through(episode, loads, torques, every):
+    """Least grip that keeps both pads stuck under a sequence of loads.
+
+    Args:
+        episode: EPISODE record, with mu_s and r.
+        loads: From `plan_loads`.
+        torques: On the pads (steps,) [N m].
+        every: Whether the mean is needed on soft pads, too.
+
+    Returns:
+        Largest and mean least grip [N], where the mean counts each step with at least the gripper's smallest
+        force.
+    """
+    steps, least = loads.shape[1], episode.force_min
+    needs, shares, pads = np.empty(steps), np.empty(steps), bearing(episode)
+    for k in range(steps):
+        needs[k], shares[k] = demand(pads, (loads[0, k], loads[1, k], torques[k]), loads[3, k])
+    first, total = 0, 0.0
+    for k in range(steps):
+        total += max(needs[k], least)
+        first = k if needs[k] > needs[first] else first
+    peak = needs[first]
+    if not varies(episode) or peak == 0.0:
+        return peak, total / steps
+    # most steps need less than the one found first, at the friction and r of that one
+    peak, x, c = on_soft_pads(episode, peak, shares[first], math.log(peak / episode.reference_force))
+    most, total = square_at(needs[first], shares[first], c), 0.0
+    for k in range(steps):
+        grip, higher = 0.0, square_at(needs[k], shares[k], c) > most
+        if higher or (every and needs[k] > 0.0):
+            grip, x, now = on_soft_pads(episode, needs[k], shares[k], x)
+            if higher:
+                peak, c, most = grip, now, square_at(needs[k], shares[k], now)
+        total += max(grip, least)
+    return peak, total / steps
+
+
+@compiled
+def rehearse(episode, world, every):
     """Least grip that keeps both pads stuck through the episode, as far as its start determines it.
 
     On soft pads the object swings, by how much depends on the grip: the grip is found by repetition, from
     that without swing on.
 
     Args:
-        episode: As in `rehearse_at`.
-        world: Likewise.
+        episode: EPISODE record at step 0, with mu_s and r.
+        world: As for `plan_loads`.
+        every: As for `least_through`.
 
     Returns:
-        As `rehearse_at`.
+        As `least_through`, and as `plan_loads`.
     """
-    found = rehearse_at(episode, world, 0.0)
-    if episode.compliance > 0.0:
-        for _ in range(_REPETITIONS):
-            found = rehearse_at(episode, world, max(found[0], episode.force_min))
-    return found
+    loads = np.empty((_ROWS, episode.steps))
+    fastest = plan_loads(episode, world, loads)
+    swings = _REPETITIONS if episode.compliance > 0.0 else 0
+    peak, mean = least_through(episode, loads, loads[2], every and swings == 0)
+    for k in range(swings):
+        torques = swung(episode, loads, max(peak, episode.force_min))
+        peak, mean = least_through(episode, loads, torques, every and k == swings - 1)
+    return peak, mean, fastest
 
 
 @compiled

@@ -97,10 +97,14 @@ def shake_tilt(episodes, tilts):
 @compiled
 def friction_factor(episode, world):
     """Friction now over that at reset [-]: drift, jump, and the surface region under the pads."""
-    factor = min(max(math.exp(episode.drift * episode.step * episode.step_time), _LEAST), _MOST)
+    factor = 1.0
+    if episode.drift != 0.0:
+        factor = min(max(math.exp(episode.drift * episode.step * episode.step_time), _LEAST), _MOST)
     if episode.step >= episode.jump_step:
         factor *= episode.jump_factor
-    if episode.region[0] <= math.hypot(world.slip[0], world.slip[1]) < episode.region[1]:
+    region = episode.region
+    uneven = episode.region_factor != 1.0
+    if uneven and region[0] <= math.hypot(world.slip[0], world.slip[1]) < region[1]:
         factor *= episode.region_factor
     return factor
 

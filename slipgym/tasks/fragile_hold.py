@@ -146,7 +146,7 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
 def track(episode, world, fingers):
     """Compute the breaking force at the start, and store the largest slip."""
     if episode.step == 0:
-        episode.least_grip, _, episode.own[SCRATCH.acceleration] = rehearse(episode, world)
+        episode.least_grip, _, episode.own[SCRATCH.acceleration] = rehearse(episode, world, False)
         episode.grip_limit = episode.own[SCRATCH.allowance] * episode.least_grip
     episode.least_grip_now = least_grip(episode, world)
     episode.reference[0], episode.reference[1] = episode.grip_limit, episode.least_grip

@@ -168,7 +168,7 @@ def track(episode, world, fingers):
     ratio = episode.own[SCRATCH.ratio]
     if ratio > 0.0:
         if episode.step == 0:
-            episode.least_grip, _, _ = rehearse(episode, world)
+            episode.least_grip, _, _ = rehearse(episode, world, False)
             episode.grip_limit = ratio * episode.least_grip
             episode.grip_budget = (episode.steps - episode.grip_counted) * episode.grip_limit
         episode.least_grip_now = least_grip(episode, world)

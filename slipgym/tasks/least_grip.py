@@ -15,8 +15,8 @@ from slipgym.contact.soft_pad import at_load
 from slipgym.tasks.disturbance import friction_factor
 from slipgym.world.object_motion import wrench_at_rest
 
-_NEWTON, _CLOSE = 6, 1e-4
-"""Most steps of Newton's method, and the relative change after which it ends."""
+_NEWTON, _CLOSE = 6, 3e-3
+"""Most steps of Newton's method, and the relative change after which it ends: 1e-6 of it is left."""
 
 
 @compiled
@@ -37,36 +37,90 @@ def torsion_arm(episode):
 
 
 @compiled
-def least_under(episode, load, factor):
-    """Least grip per finger that keeps both pads stuck under a load [N].
+def bearing(episode):
+    """What `demand` needs of both pads, as numbers: a loop over loads then computes several at once."""
+    cops, radii, axes, arm = episode.cops, episode.radii, episode.axes, torsion_arm(episode)
+    x, y = 0.5 * (cops[0, 0] - cops[1, 0]), 0.5 * (cops[0, 1] - cops[1, 1])
+    mu_s, friction = episode.mu_s, episode.finger_friction
+    first = x, y, friction[0] * mu_s, radii[0] ** 2 / arm, radii[0]
+    return arm, (axes[0], axes[1]), first, (-x, -y, friction[1] * mu_s, radii[1] ** 2 / arm, radii[1])
+
+
+@compiled
+def demand(pads, load, factor):
+    """Least grip under a load at the friction and r of the reference force [N], and the torque's share in it.
+
+    Args:
+        pads: From `bearing`.
+        load: From `load_at_rest`.
+        factor: Friction now over that at reset [-].
+
+    Returns:
+        The grip, of the pad that needs more, and w = (tau / r)^2 over the square of its load [-].
+    """
+    f_x, f_y, torque = load
+    arm, axes, first, second = pads
+    grip, turning, twist = 0.0, 0.0, torque / arm
+    for x, y, mu_s, share, r in (first, second):
+        own_x, own_y = 0.5 * f_x - y * twist, 0.5 * f_y + x * twist
+        turns = (torque * share / r) ** 2
+        square = (own_x / axes[0]) ** 2 + (own_y / axes[1]) ** 2 + turns
+        needed = math.sqrt(square) / (mu_s * factor)
+        turning = turns / square if needed > grip else turning
+        grip = needed if needed > grip else grip
+    return grip, turning
+
+
+@compiled
+def varies(episode):
+    """Whether friction or r depend on the grip."""
+    return episode.load_exponent != 0.0 or episode.radius_exponent != 0.0
+
+
+@compiled
+def square_at(needed, turning, c):
+    """Square of what a load needs, where (r / r(f_n))^2 is c: mu_s(f_n) / mu_s f_n must reach it [N^2]."""
+    return needed * needed * (1.0 - turning + turning * c)
+
+
+@compiled
+def on_soft_pads(episode, needed, turning, guess):
+    """Least grip where friction and r are those at this grip.
+
+    With f_0 the reference force, x = ln(f_n / f_0) and c = (r / r(f_n))^2 it solves
+    (1 - load_exponent) x = ln(needed / f_0) + ln(1 - w + w c) / 2 by Newton's method.
 
     Args:
         episode: EPISODE record.
-        load: From `load_at_rest`.
-        factor: Friction now over that at reset [-].
+        needed: From `demand`, > 0 [N].
+        turning: From `demand`, w.
+        guess: Of x.
+
+    Returns:
+        The grip [N], x and c.
     """
-    f_x, f_y, torque = load
-    cops, radii, axes, arm = episode.cops, episode.radii, episode.axes, torsion_arm(episode)
-    grip, slide, turn = 0.0, 0.0, 0.0
-    for f in range(2):  # the pad that needs more at the reference force
-        x, y = 0.5 * (cops[f, 0] - cops[1 - f, 0]), 0.5 * (cops[f, 1] - cops[1 - f, 1])
-        own_x, own_y = 0.5 * f_x - y * (torque / arm), 0.5 * f_y + x * (torque / arm)
-        friction = episode.finger_friction[f] * episode.mu_s * factor
-        slides = (own_x / axes[0]) ** 2 + (own_y / axes[1]) ** 2
-        turns = (torque * (radii[f] ** 2 / arm) / radii[f]) ** 2
-        needed = math.sqrt(slides + turns) / friction
-        if needed > grip:
-            grip, slide, turn = needed, slides / friction**2, turns / friction**2
-    if (episode.load_exponent == 0.0 and episode.radius_exponent == 0.0) or grip == 0.0:
-        return grip
-    for _ in range(_NEWTON):  # in the logarithm of the grip
-        scale, r = at_load(episode, grip)
-        turns = turn * (episode.r / min(r, episode.radius_max)) ** 2
-        gap = math.log(math.sqrt(slide + turns) / (scale * grip))
-        gap /= 1.0 - episode.load_exponent + episode.radius_exponent * turns / (slide + turns)
-        grip *= math.exp(gap)
+    a, b, x = 1.0 - episode.load_exponent, episode.radius_exponent, guess
+    wanted, least = math.log(needed / episode.reference_force), (episode.r / episode.radius_max) ** 2
+    c = 1.0
+    for _ in range(_NEWTON):
+        grows, c = b, math.exp(-2.0 * b * x)
+        if c < least:
+            grows, c = 0.0, least
+        square = 1.0 - turning + turning * c
+        gap = (wanted + 0.5 * math.log(square) - a * x) / (a + grows * turning * c / square)
+        x += gap
         if abs(gap) < _CLOSE:
             break
+    return episode.reference_force * math.exp(x), x, c
+
+
+@compiled
+def least_under(episode, load, factor):
+    """Least grip per finger that keeps both pads stuck under a load [N], see `demand`."""
+    grip, turning = demand(bearing(episode), load, factor)
+    if varies(episode) and grip > 0.0:
+        guess = math.log(grip / episode.reference_force)
+        grip, _, _ = on_soft_pads(episode, grip, turning, guess)
     return grip
 
 
@@ -84,12 +138,12 @@ def torsional_stiffness(episode, grip):
 
 
 @compiled
-def swing(episode, world, torque, stiffness, angle, rate):
+def swing(episode, inertia, torque, stiffness, angle, rate):
     """Let the object swing on the torsion of soft pads for a control step, by the implicit midpoint rule.
 
     Args:
         episode: EPISODE record.
-        world: WORLD record.
+        inertia: Of the object about the pads [kg m^2].
         torque: Of `load_at_rest` [N m].
         stiffness: From `torsional_stiffness` [N m/rad].
         angle: Of the swing [rad].
@@ -99,8 +153,7 @@ def swing(episode, world, torque, stiffness, angle, rate):
         Torque on the pads in the middle of the step, angle and rate at its end [N m, rad, rad/s].
     """
     dt, damping = episode.step_time, episode.shear_time * stiffness
-    inertia = world.inertia + world.mass * (world.grasp_point[0] ** 2 + world.grasp_point[1] ** 2)
-    drag, last = dt * (0.5 * damping + 0.25 * dt * stiffness) / inertia, rate
-    rate = ((1.0 - drag) * last - dt * (stiffness * angle + torque) / inertia) / (1.0 + drag)
+    drag, last = dt * (0.5 * damping + 0.25 * dt * stiffness), rate
+    rate = ((inertia - drag) * last - dt * (stiffness * angle + torque)) / (inertia + drag)
     mean = 0.5 * (last + rate)
     return -stiffness * (angle + 0.5 * dt * mean) - damping * mean, angle + dt * mean, rate

@@ -23,7 +23,9 @@ def ramp_wrist(
         pitch_rate_max: The target of the pitch rate is brought down to this [rad/s].
         duration: Length of the ramp [s].
     """
-    fraction = min(1.0, speed_max / max(math.hypot(x, z), 1e-12))
+    fraction = 1.0
+    if abs(x) + abs(z) > 0.999 * speed_max:  # the length costs more
+        fraction = min(1.0, speed_max / max(math.hypot(x, z), 1e-12))
     rate = min(max(pitch, -pitch_rate_max), pitch_rate_max)
     world.wrist_acceleration[0] = (fraction * x - world.wrist_velocity[0]) / duration
     world.wrist_acceleration[1] = (fraction * z - world.wrist_velocity[1]) / duration
