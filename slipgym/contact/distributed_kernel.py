@@ -217,7 +217,7 @@ def prescribed_step(
     """
     pad = pads[0]
     load_pad(pad, normal)
-    prepare_shear(pad, h)
+    prepare_shear(pad, h, 0.0)
     twist = (pad.axes[0] * v_x, pad.axes[1] * v_y, pad.radius * omega)
     set_friction_levels(pad, cells, twist)
     store_state(pad, cells, (h * twist[0], h * twist[1], h * twist[2]), h)

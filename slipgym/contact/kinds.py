@@ -76,8 +76,8 @@ def set_friction_level(pad: Pad, cells: np.ndarray | None, i: int, h: float) -> 
     """Set the friction levels of a sub-step; returns their mean over the load [-]."""
     if cells is None:
         return ellipsoid_kernel.set_friction_level(pad, h)
-    prepare_shear(pad, h)
     if cells.ndim == PATCHES:
+        prepare_shear(pad, h, 0.0)
         twist = cell_levels.expected_twist(pad, h)
         return cell_levels.set_friction_levels(pad, cells[i], twist)
     return soft_kernel.set_friction_level(pad, h)

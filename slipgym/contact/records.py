@@ -61,6 +61,7 @@ PAD_STATE = np.dtype(
         ("wrench", "f8", 3),  # on the object at the centre of pressure, pad frame [N, N, N m]
         ("shear", "f8", 3),  # scaled displacement of the rubber's surface against the finger [m]
         ("relaxed", "f8", 3),  # the part of it to which the relaxing stiffness has come [m]
+        ("shear_rate", "f8", 3),  # of a pad without cells, mean of the last sub-step [m/s]
         ("dwell", "f8"),  # age of the contact [s]
         ("aged", "f8"),  # dwell time for which `static_gain` was computed [s]
         ("turn", "f8"),  # position on the disc's curve
@@ -71,12 +72,13 @@ PAD_STATE = np.dtype(
 """What a sub-step finds of those before."""
 PAD_SCRATCH = np.dtype(
     [
-        ("prepared", "f8"),  # length of the sub-step that the next three belong to [s]
+        ("prepared", "f8"),  # length of the sub-step that the next four belong to [s]
+        ("ahead", "f8"),  # distance of its end from its middle, over that of its middle from the last one's
         ("give", "f8"),  # compliance of the rubber within this sub-step [m/N]
-        ("recall", "f8", 2),  # weights of `shear` and `relaxed` in its force over its stiffness [-]
+        ("recall", "f8", 3),  # weights of `shear`, `relaxed` [-] and `shear_rate` [s] in its force over that
         ("relaxing", "f8"),  # fraction of the way to `shear` that `relaxed` goes in this sub-step [-]
         # of `slipgym.contact.soft_kernel`: coefficients of this sub-step, see `slipgym.contact.bristle`
-        ("loaded", "f8", 2),  # normal force [N] and sub-step [s] that they belong to
+        ("loaded", "f8", 3),  # normal force [N], sub-step [s] and `give` that they belong to
         ("stiffness", "f8", 3),  # elastic, damping and viscous force per displacement [N/m]
         ("softer", "f8", 2),  # 1 / (1 + give (E + V)) and 1 / (1 + give V) [-]
         # and results for the displacement that was evaluated last

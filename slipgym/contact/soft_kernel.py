@@ -22,11 +22,11 @@ from slipgym.contact.soft_pad import advance_age, advance_shear, load_pad, prepa
 @compiled
 def rear_of(pad: Pad) -> Vector:
     """What the rubber remembers of its shear [m]."""
-    now, before = pad.recall
+    now, before, rate = pad.recall
     return (
-        now * pad.shear[0] + before * pad.relaxed[0],
-        now * pad.shear[1] + before * pad.relaxed[1],
-        now * pad.shear[2] + before * pad.relaxed[2],
+        now * pad.shear[0] + before * pad.relaxed[0] + rate * pad.shear_rate[0],
+        now * pad.shear[1] + before * pad.relaxed[1] + rate * pad.shear_rate[1],
+        now * pad.shear[2] + before * pad.relaxed[2] + rate * pad.shear_rate[2],
     )
 
 
@@ -88,9 +88,10 @@ def friction_and_jacobian(pad: Pad, delta: Vector, level: float) -> tuple[Vector
 @compiled
 def set_friction_level(pad: Pad, h: float) -> float:
     """Set the friction level of a sub-step and shorten the bristles to it; returns the level [-]."""
-    prepare_shear(pad, h)
-    if pad.loaded[0] != pad.normal or pad.loaded[1] != h:
-        pad.loaded[0], pad.loaded[1] = pad.normal, h
+    prepare_shear(pad, h, h / (h + 2.0 * pad.half_step))
+    loaded = pad.loaded
+    if loaded[0] != pad.normal or loaded[1] != h or loaded[2] != pad.give:
+        loaded[0], loaded[1], loaded[2] = pad.normal, h, pad.give
         stiffness = bristle.coefficients(pad, pad.normal, h)
         for a in range(3):
             pad.stiffness[a] = stiffness[a]

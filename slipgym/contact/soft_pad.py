@@ -16,11 +16,12 @@ With f_n the normal force, f_0 `reference_force`, and all displacements scaled, 
 
 Shear and bristles are in series. In a sub-step h the force of the rubber is
 
-    f_t = (dp + rear) / give,    rear = recall_0 p + recall_1 q,
+    f_t = (dp + rear) / give,    rear = recall_0 p + recall_1 q + recall_2 v,
 
-with dp the shear that it adds (backward Euler); `slipgym.contact.bristle` solves both together in closed
-form. The stiffness is the same in all scaled directions: k r^2 in torsion, where a disc that shears evenly
-has k R^2 / 2 = 1.13 k r^2.
+with dp the shear that it adds: p and q are those of its end, and so is dp/dt, which without cells is
+extrapolated from dp / h and the same of the last sub-step, v. `slipgym.contact.bristle` solves both together
+in closed form. The stiffness is the same in all scaled directions: k r^2 in torsion, where a disc that shears
+evenly has k R^2 / 2 = 1.13 k r^2.
 """
 
 from __future__ import annotations
@@ -55,13 +56,19 @@ def load_pad(pad: Pad, normal: float) -> None:
 @compiled
 def expand_load(pad: Pad, normal: float) -> None:
     """Set friction scale and radius by their third-order expansion about a normal force within 5 %."""
-    anchor = pad.load_anchor
-    x = normal / anchor[0] - 1.0
-    if not abs(x) < EXPANDED or anchor[3] != pad.r:
+    anchor, x = pad.load_anchor, near_anchor(pad, normal)
+    if not abs(x) < EXPANDED:
         anchor[0], anchor[3], x = normal, pad.r, 0.0
         anchor[1], anchor[2] = at_load(pad, normal)
     pad.friction_scale = anchor[1] * power(x, -pad.load_exponent)
     pad.radius = min(anchor[2] * power(x, pad.radius_exponent), pad.radius_max)
+
+
+@compiled
+def near_anchor(pad: Pad, normal: float) -> float:
+    """Distance of a normal force from the anchor of the expansion, over that [-]; NaN if r is another one."""
+    anchor = pad.load_anchor
+    return normal / anchor[0] - 1.0 if anchor[3] == pad.r else math.nan
 
 
 @compiled
@@ -91,25 +98,28 @@ def present_friction(pad: Pad) -> Vector:
 @compiled
 def static_limit(pad: Pad, normal: float) -> float:
     """Largest tangential force that a pad holds at a normal force, without growth by dwell time [N]."""
-    scale = 1.0
-    if pad.load_exponent != 0.0:
-        scale, _ = at_load(pad, normal)
-    return scale * pad.mu_s * normal
+    if pad.load_exponent == 0.0:
+        return pad.mu_s * normal
+    x = near_anchor(pad, max(normal, LIGHTEST))
+    if abs(x) < EXPANDED:
+        return pad.load_anchor[1] * power(x, -pad.load_exponent) * pad.mu_s * normal
+    return at_load(pad, normal)[0] * pad.mu_s * normal
 
 
 @compiled
-def prepare_shear(pad: Pad, h: float) -> None:
-    """Set `give` and `recall` for a sub-step of h [s]."""
+def prepare_shear(pad: Pad, h: float, ahead: float) -> None:
+    """Set `give` and `recall` for a sub-step of h [s]; `ahead` 0: its end has its mean rate of shear."""
     if pad.compliance == 0.0:
         pad.give = 0.0
-    elif pad.prepared != h:  # sub-steps take few lengths
-        pad.prepared = h
+    elif pad.prepared != h or pad.ahead != ahead:  # sub-steps take few lengths
+        pad.prepared, pad.ahead = h, ahead
         pad.relaxing = h / (pad.creep_time + h)
         relaxing = pad.creep * (1.0 - pad.relaxing)
         lasting = 1.0 - pad.creep + relaxing
-        per_stiffness = 1.0 / (lasting + pad.shear_time / h)
+        per_stiffness = 1.0 / (lasting + pad.shear_time * (1.0 + ahead) / h)
         pad.give = pad.compliance * per_stiffness
         pad.recall[0], pad.recall[1] = lasting * per_stiffness, -relaxing * per_stiffness
+        pad.recall[2] = -ahead * pad.shear_time * per_stiffness
 
 
 @compiled
@@ -124,7 +134,9 @@ def advance_shear(pad: Pad, motion: Vector, slip: Vector) -> None:
     """Advance the shear of a pad without cells: what of a scaled motion is not slip."""
     if pad.give > 0.0:
         for a in range(3):
-            pad.shear[a], pad.relaxed[a] = sheared(pad, pad.shear[a], pad.relaxed[a], motion[a] - slip[a])
+            gained = motion[a] - slip[a]
+            pad.shear[a], pad.relaxed[a] = sheared(pad, pad.shear[a], pad.relaxed[a], gained)
+            pad.shear_rate[a] = gained / pad.prepared
 
 
 @compiled
@@ -144,5 +156,6 @@ def let_go(pad: Pad) -> None:
     """Forget shear and age, as after a loss of contact."""
     pad.shear[:] = 0.0
     pad.relaxed[:] = 0.0
+    pad.shear_rate[:] = 0.0
     pad.dwell = pad.aged = 0.0
     pad.static_gain = 1.0

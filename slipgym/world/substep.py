@@ -38,6 +38,8 @@ from slipgym.world.object_motion import (
 from slipgym.world.records import Finger, Records, World
 
 HOLDING = 1e-2  # [N]; pads with less, a fiftieth of the smallest grip, do not hold the object
+RESOLVED = 0.2
+"""Angle of a vibration on rubber per sub-step [rad]: its period is then off by 0.2^2 / 12 = 0.3 %."""
 
 
 @compiled
@@ -152,7 +154,8 @@ def advance_object(
     # rubber vibrates slowly: the mean of the forces at both ends, of second order, where sub-steps resolve it
     elastic = False
     if held and cells is not None:
-        elastic = pads[0].compliance > 0.0 and h < 1.001 * world.substep_ticks * world.tick_length
+        longest = world.substep_ticks * world.tick_length
+        elastic = pads[0].compliance > 0.0 and h < 1.001 * max(longest, longest_vibration(world, pads[0]))
     part = 0.5 * len(pads)  # one pad holds half of the object
     if held:
         drift = drift_on_pads(world, h)
@@ -211,6 +214,15 @@ def sticks(pad: Pad, h: float) -> bool:
     """Whether a pad sticks, or its slip is expected to end within h."""
     slip = pad.slip_rate != 0.0 and pad.slip_speed + (pad.half_step + h) * pad.slip_rate > 0.0
     return pad.normal > HOLDING and not slip
+
+
+@compiled
+def longest_vibration(world: World, pad: Pad) -> float:
+    """Longest sub-step that resolves the object's vibration on the rubber of pads like this one [s]."""
+    x, y = pad.pressure_centre[0] - world.relative[0], pad.pressure_centre[1] - world.relative[1]
+    mobility = 1.0 / world.mass + (pad.radius * pad.radius + x * x + y * y) / world.inertia
+    stiffness = 2.0 / (pad.compliance + 1.0 / (pad.sigma_0 * max(pad.normal, HOLDING)))
+    return RESOLVED / math.sqrt(stiffness * mobility)
 
 
 @compiled

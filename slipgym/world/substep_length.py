@@ -18,7 +18,7 @@ from slipgym.contact.soft_pad import static_limit
 from slipgym.contact.stribeck import flat_speed, levels
 from slipgym.world.actuator import force_bounds, lowest_force
 from slipgym.world.records import Records, World
-from slipgym.world.substep import HOLDING
+from slipgym.world.substep import HOLDING, longest_vibration
 
 FIRM = 0.95  # of the friction limit: below it sub-steps may have `calm_ticks`; the rest is for changing loads
 FAST = 0.85  # of the friction limit: below it a sub-step may last until the next command
@@ -89,8 +89,9 @@ def longest_stick(
 ) -> int:
     """Ticks of the longest sub-step for a pad that sticks, at most `asked`.
 
-    Possible break-away and vibration need short sub-steps. A pad at rest below FIRM of the limit is calm; one
-    at rest below FAST of it, or without contact, needs no sub-steps of its own.
+    Possible break-away and vibration need short sub-steps, a vibration on rubber not as short ones. A pad at
+    rest below FIRM of the limit is calm; one at rest below FAST of it, or without contact, needs no sub-steps
+    of its own.
 
     Args:
         world: WORLD record.
@@ -119,8 +120,14 @@ def longest_stick(
         if most > fast * fast * limit:
             ticks, part = min(asked, world.calm_ticks), firm
             limit = squared_limit(pad, lowest_force(fingers, world.tick, ticks, world.tick_length))
+    if most > part * part * limit:
+        return world.substep_ticks
     swing += squared_vibration_force(world, pad, fingers, forces[0])
-    return world.substep_ticks if most > part * part * limit or swing > STILL * STILL * limit else ticks
+    if swing <= STILL * STILL * limit:
+        return ticks
+    if cells is None or cells.ndim == PATCHES or pad.compliance == 0.0:
+        return world.substep_ticks
+    return min(ticks, max(world.substep_ticks, int(longest_vibration(world, pad) / world.tick_length)))
 
 
 @compiled

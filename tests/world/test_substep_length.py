@@ -7,6 +7,7 @@ import pytest
 
 from slipgym.config import load
 from slipgym.world.plant import build
+from slipgym.world.substep import RESOLVED
 from slipgym.world.substep_length import FAST, FIRM, STEADY, STILL, longest_common_substep
 
 PLANT = build(load())
@@ -72,6 +73,17 @@ def test_but_not_for_what_lets_go_or_slips(contact, fields, expected):
         longest_common_substep(world, (pad,), None, (finger,), (0.0, 1.8 * FIRM * LIMIT, 0.0), ASKED)
         == expected
     )
+
+
+@pytest.mark.parametrize("compliance", [5e-5, 1e-4, 2e-4])
+def test_a_vibration_on_rubber_takes_sub_steps_that_resolve_it(contact, compliance):
+    moving = {"relative_velocity": (0.0, 0.01, 0.0), "normal": 5.0}
+    world, pad, finger = contact(compliance=compliance, **moving)
+    ticks = longest_common_substep(world, (pad,), np.zeros((1, 0)), (finger,), (0.0, 0.0, 0.0), ASKED)
+    omega = math.sqrt(2.0 / (compliance + 1.0 / STIFFNESS) * (1.0 / 0.2 + R * R / 1e-4))
+    assert SHORT < ticks <= RESOLVED / (omega * world["tick_length"]) < ticks + 1
+    world, pad, finger = contact(**moving)
+    assert longest_common_substep(world, (pad,), None, (finger,), (0.0, 0.0, 0.0), ASKED) == SHORT
 
 
 @pytest.mark.parametrize("speed", [5, 20, 100])
