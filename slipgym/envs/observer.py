@@ -54,8 +54,9 @@ class Observer:
         low, high = _bounds(self.columns)
         wrist = np.array(wrist_part(simulation.task, action_mode), dtype=np.int64)
         friction = _friction_part(simulation, friction_source)
-        self._settings = wrist, friction, low, high, np.arange(len(LOAD) if load_columns else 0)
-        self._write_to(np.zeros((simulation.n, len(self.columns)), dtype=np.float32))
+        settings = wrist, friction, low, high, np.arange(len(LOAD) if load_columns else 0)
+        out = np.zeros((simulation.n, len(self.columns)), dtype=np.float32)
+        self.buffers, self._first = ObservationBuffers(*settings, out), out[0]
         if history:  # the newest observation comes last
             self._frames = np.zeros((simulation.n, history + 1, len(self.columns)), dtype=np.float32)
         policy = gym.spaces.Box(np.tile(low, history + 1), np.tile(high, history + 1))
@@ -67,6 +68,8 @@ class Observer:
             self._ground_truth = np.zeros((simulation.n, len(self.privileged)), dtype=np.float32)
             ground_truth = gym.spaces.Box(*self._privileged_bounds)
             self.space = gym.spaces.Dict({"policy": policy, "privileged": ground_truth})
+        self._all = np.arange(simulation.n)
+        self._look(self._all)
 
     def begin(self, rows: np.ndarray) -> None:
         """Observe some environments after a reset; the first observation fills their whole history."""
@@ -75,7 +78,7 @@ class Observer:
             self._frames[rows] = self.buffers.out[rows, np.newaxis]
 
     def next(self, active: np.ndarray) -> None:
-        """Append the observations of a step, which the simulation has written to `buffers`, to the history.
+        """Complete the observations of a step, which the simulation has written to `buffers`.
 
         Args:
             active: Environments that made a step, (n,) bool.
@@ -83,33 +86,22 @@ class Observer:
         if self.history:
             self._frames[active, :-1] = self._frames[active, 1:]
             self._frames[active, -1] = self.buffers.out[active]
-
-    def again(self) -> None:
-        """Write the present observations of all environments to `buffers` again, after `read` replaced it."""
-        self._look(np.arange(self._simulation.n))
+        if self.privileged:
+            self._look_behind(self._all)
 
     def present(self) -> Observation:
         """Views of the observations of all environments, (n, k) each; the next step or reset changes them."""
         policy = self._frames.reshape(self._simulation.n, -1) if self.history else self.buffers.out
         if not self.privileged:
             return policy
-        plant, (low, high) = self._simulation.plant, self._privileged_bounds
-        write_privileged(
-            plant.world, plant.pads, plant.fingers, self._simulation.ground_truth, self._simulation.episode,
-            plant.slip_sensors, plant.force_torque, low, high, self._ground_truth,
-        )  # fmt: skip
         return {"policy": policy, "privileged": self._ground_truth}
 
     def read(self) -> Observation:
-        """Observations of all environments, owned by the caller; the next ones are written to new arrays."""
+        """Observations of all environments, owned by the caller."""
         observations = self.present()
-        if self.history:
-            self._frames = self._frames.copy()
-        else:
-            self._write_to(np.empty_like(self.buffers.out))
-        if self.privileged:
-            self._ground_truth = np.empty_like(self._ground_truth)
-        return observations
+        if isinstance(observations, dict):
+            return {group: values.copy() for group, values in observations.items()}
+        return observations.copy()
 
     def first(self) -> Observation:
         """The observation of the first environment, owned by the caller."""
@@ -124,20 +116,26 @@ class Observer:
         """The last observations (n, history + 1, m), the newest one last."""
         if self.history:
             return self._frames.copy()
-        self.again()
         return self.buffers.out[:, np.newaxis].copy()
 
     def set_state(self, frames: np.ndarray, rows: np.ndarray) -> None:
-        """Restore the history of some rows (n,) bool; without one, the simulation's state suffices."""
+        """Restore the history of some rows (n,) bool; all else follows from the simulation's state."""
+        self._look(self._all)
         if self.history:
             self._frames[rows] = frames[rows]
 
-    def _write_to(self, out: np.ndarray) -> None:
-        """Have observations written to an array, (n, k)."""
-        self.buffers, self._first = ObservationBuffers(*self._settings, out), out[0]
-
     def _look(self, rows: np.ndarray) -> None:
         self._simulation.stages.look_at(rows, self._state, self.buffers)
+        if self.privileged:
+            self._look_behind(rows)
+
+    def _look_behind(self, rows: np.ndarray) -> None:
+        """Write the group "privileged" of some environments."""
+        plant, (low, high) = self._simulation.plant, self._privileged_bounds
+        write_privileged(
+            rows, plant.world, plant.pads, plant.fingers, self._simulation.ground_truth,
+            self._simulation.episode, plant.slip_sensors, plant.force_torque, low, high, self._ground_truth,
+        )  # fmt: skip
 
 
 def _friction_part(simulation: Simulation, source: str) -> np.ndarray:

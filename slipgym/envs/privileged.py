@@ -155,11 +155,12 @@ def privileged_columns(config: Config) -> tuple[Column, ...]:
 
 @compiled
 def write_privileged(
-    worlds, pads, fingers, friction, episodes, slip_sensors, force_torque, low, high, out
+    rows, worlds, pads, fingers, friction, episodes, slip_sensors, force_torque, low, high, out
 ):  # fmt: skip
     """Write the privileged group, clipped to its bounds.
 
     Args:
+        rows: Which environments, (k,).
         worlds: WORLD (n,).
         pads: PAD (n, 2).
         fingers: FINGER (n, 2).
@@ -171,7 +172,7 @@ def write_privileged(
         high: Upper bounds (m,).
         out: Output (n, m), float32.
     """
-    for i in range(out.shape[0]):
+    for i in rows:
         _write_privileged_row(
             out[i], i, worlds, pads, fingers, friction, episodes, slip_sensors, force_torque
         )  # fmt: skip

@@ -269,8 +269,8 @@ class Drawn:
             numbers[cells], masks[cells] = self._numbers[own][:, columns], True
         masks[rows, len(names) :] = True
         infos: dict[str, Any] = {}
-        for k, name in enumerate(names):
-            infos[name], infos[f"_{name}"] = numbers[:, k], masks[:, k]
+        for name, values, mask in zip(names, numbers.T, masks.T, strict=False):
+            infos[name], infos[f"_{name}"] = values, mask
         for name in infos.keys() & set(WHOLE):
             infos[name] = np.zeros(self._n, dtype=np.int64)
             infos[name][rows] = numbers[rows, names.index(name)]

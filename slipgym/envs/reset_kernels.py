@@ -198,12 +198,13 @@ def open_episodes(update, starts, fresh, state, force_torque, terms):
     Args:
         update: Function of the estimator.
         starts: START (m,).
-        fresh: Of both fingers: initial states of the estimators, as bytes (2, q), and ESTIMATE (2,).
+        fresh: Of both fingers: initial states of the estimators, as bytes (2, q), and ESTIMATE (2,); whether
+            there are estimators.
         state: `BatchState` of n environments.
         force_torque: FORCE_TORQUE (n, 2).
         terms: (n, k).
     """
-    states, estimates = fresh
+    states, estimates, estimating = fresh
     for k in range(starts.shape[0]):
         i = starts[k].row
         for f in range(2):
@@ -212,7 +213,8 @@ def open_episodes(update, starts, fresh, state, force_torque, terms):
             for b in range(states.shape[1]):
                 state.estimator_states[2 * i + f, b] = states[f, b]
             state.estimates[2 * i + f] = estimates[f]
-        show_open_gripper(update, state, force_torque, i)
+        if estimating:
+            show_open_gripper(update, state, force_torque, i)
         for a in range(state.commands.shape[1]):
             state.commands[i, a] = 0.0
         for a in range(terms.shape[1]):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from itertools import groupby
 from typing import Any
 
@@ -36,7 +37,7 @@ class RowOptions:
             rows, mask = given.pop("rows", None), given.pop("reset_mask", None)
             rows = rows.tolist() if isinstance(rows, np.ndarray) else rows
         self.mask = np.ones(n, dtype=bool) if mask is None else _checked_mask(mask, n)
-        self._common = kind.parse(given)
+        self._common = _nothing(kind) if given in (None, {}) else kind.parse(given)
         self._rows: list[EpisodeOptions] | None = None
         if rows is not None:
             if not isinstance(rows, Sequence) or len(rows) != n:
@@ -55,6 +56,12 @@ class RowOptions:
         for _, some in groupby(rows.tolist(), lambda i: id(own[i])):
             together = np.array(list(some))
             yield own[together[0]], together
+
+
+@cache
+def _nothing(kind: type[EpisodeOptions]) -> EpisodeOptions:
+    """The options that fix nothing: the same object, which is compared quickly."""
+    return kind.parse(None)
 
 
 def _row(i: int, row: Any, common: Mapping[str, Any], kind: type[EpisodeOptions]) -> EpisodeOptions:

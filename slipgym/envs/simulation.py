@@ -109,7 +109,8 @@ class Simulation(ABC):
             ground_truth=self.ground_truth,
         )
         self._hardware = hardware
-        self._fresh = self.state.estimator_states[:2].copy(), learned.estimates[:2].copy()
+        states = self.state.estimator_states[:2].copy()
+        self._fresh = states, learned.estimates[:2].copy(), self.estimating
         self._choose_programs()
         self._dropped, self._ended, self._steps, self._length = (
             self.episode[name] for name in ("dropped", "ended", "step", "steps")

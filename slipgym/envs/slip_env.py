@@ -130,7 +130,7 @@ class SlipEnv(Conventions, gym.Env[Any, np.ndarray]):
             simulation.step(actions, self._actions.table, self._frame_skip, _ONE, observer.buffers)
         else:
             self._step_in_pictures(actions)
-        if observer.history:
+        if observer.history or observer.privileged:
             observer.next(_ONE)
         info, reward, terminated, timed_out = self._report()
         observation = observer.first()

@@ -66,8 +66,8 @@ INFOS = types.NamedTuple([F2, array(types.boolean, 2), F2], InfoBuffer)
 """Type of an `InfoBuffer`."""
 VALUES_TYPE = array(VALUES)
 """Type of VALUES (m,)."""
-FRESH = types.Tuple([BYTES, _TYPES.estimates])
-"""Type of initial states of the estimators, as bytes, and estimates."""
+FRESH = types.Tuple([BYTES, _TYPES.estimates, types.boolean])
+"""Type of initial states of the estimators, as bytes, estimates, and whether there are estimators."""
 _HEADS = array(types.uint8, 1, "A")
 SCRIPT_WRIST = types.void(_TYPES.episodes, _TYPES.worlds)
 EVALUATE_STEP = types.void(_TYPES.episodes, _TYPES.worlds, _TYPES.fingers, F2)

@@ -106,7 +106,6 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
         rows = np.flatnonzero(asked.mask)
         self._ready[rows] = self._over[rows] = False
         self._begin(rows, asked)
-        self._observer.again()
         infos = self.simulation.infos.some(rows, *self._told)
         return self._observer.read(), {**infos, **self.simulation.drawn.some(rows)}
 

@@ -69,12 +69,12 @@ from slipgym.config.task import FrictionRange, InitialForce, MassRange, TaskConf
 from slipgym.tasks.carrying import (
     PAUSE,
     WRIST_COLUMNS,
-    move_time,
     planned_acceleration,
     rehearse,
     spend,
     still_wide,
     wrist_velocity,
+    write_moves,
 )
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
 from slipgym.tasks.least_grip import least_grip
@@ -148,11 +148,7 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
         (acceleration, (-0.5 * swing, 0.0, -pitch)),
         (gentle, (0.0, -lift, 0.0)),
     )
-    for move, (most, way) in zip(episode["moves"], moves, strict=False):
-        duration = move_time(math.hypot(way[0], way[1]), most, speed)
-        move[:] = time, duration, *way
-        time += duration
-    time += REST
+    time = write_moves(episode, time, moves, speed) + REST
     episode["support"][2:] = time, time + settings.lift_off
     episode["steps"] = max(1, round(settings.duration / episode["step_time"].item()))
 

@@ -8,6 +8,7 @@ velocity 15 / 8 d / T.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -47,6 +48,28 @@ def move_time(way: float, acceleration: float, speed: float) -> float:
         speed: Largest velocity, > 0 [m/s or rad/s].
     """
     return max(math.sqrt(ACCELERATION * abs(way) / acceleration), VELOCITY * abs(way) / speed)
+
+
+def write_moves(
+    episode: np.void, time: float, moves: Sequence[tuple[float, tuple[float, float, float]]], speed: float
+) -> float:
+    """Plan moves of the wrist one after the other.
+
+    Args:
+        episode: EPISODE record.
+        time: Start of the first one [s].
+        moves: Largest acceleration of each [m/s^2], and its way in x, z and pitch [m, m, rad].
+        speed: Largest velocity [m/s].
+
+    Returns:
+        End of the last one [s].
+    """
+    plan = []
+    for acceleration, way in moves:
+        plan.append((time, move_time(math.hypot(way[0], way[1]), acceleration, speed), *way))
+        time += plan[-1][1]
+    episode["moves"][: len(plan)] = plan
+    return time
 
 
 @compiled

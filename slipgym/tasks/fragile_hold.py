@@ -59,7 +59,7 @@ import numpy as np
 
 from slipgym.config.base import NonNegative, Positive, PositiveInterval, ends_within
 from slipgym.config.task import FrictionRange, InitialForce, MassRange, Option, TaskConfig, setting
-from slipgym.tasks.carrying import PAUSE, WRIST_COLUMNS, move_time, rehearse, wrist_velocity
+from slipgym.tasks.carrying import PAUSE, WRIST_COLUMNS, rehearse, wrist_velocity, write_moves
 from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
 from slipgym.tasks.least_grip import least_grip
 from slipgym.tasks.motion import Motion
@@ -121,7 +121,7 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     shares = rng.random(7).tolist()  # drawn always, so that options do not shift later draws
     episode["tolerance"] = settings.tolerance
     episode["steps"] = max(1, round(settings.duration / episode["step_time"].item()))
-    allowance = dict(options)["allowance"]
+    allowance = vars(options)["allowance"]
     episode["own"][SCRATCH.allowance] = allowance or between(settings.allowance, shares[0])
     time = settings.settle + settings.lift_off
     episode["support"][:2] = settings.settle, time
@@ -137,10 +137,7 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     for k in range(STROKES):
         way = settings.stroke * (-1.0) ** k
         ways.append((way * math.cos(heading), way * math.sin(heading), 0.0))
-    for move, way in zip(episode["moves"], ways, strict=False):
-        duration = move_time(math.hypot(way[0], way[1]), acceleration, speed)
-        move[:] = time, duration, *way
-        time += duration
+    write_moves(episode, time, [(acceleration, way) for way in ways], speed)
 
 
 def track(episode, world, fingers):
