@@ -44,8 +44,10 @@ def records(state) -> dict[str, np.ndarray]:
 
 
 def changed(array) -> None:
-    """Change one number of an array: NaN, or one bit."""
-    if array.dtype.kind == "f":
+    """Change one number of an array: NaN, or one bit; in a record, its first field."""
+    if array.dtype.names:
+        changed(array[array.dtype.names[0]])
+    elif array.dtype.kind == "f":
         array.flat[0] = np.nan
     else:
         array.flat[0] = array.flat[0] ^ 1
