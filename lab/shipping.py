@@ -38,9 +38,9 @@ class Run(NamedTuple):
 
     @property
     def name(self) -> str:
-        """What its policy is called; the configurations from nothing are told the true friction."""
-        told = self.key.endswith("_scratch") and self.source == "true"
-        return self.key if told else f"{self.key}_{self.source}"
+        """What its policy is called; the configurations from nothing observe the true friction."""
+        own = self.key.endswith("_scratch") and self.source == "true"
+        return self.key if own else f"{self.key}_{self.source}"
 
     @property
     def command(self) -> str:

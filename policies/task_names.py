@@ -7,6 +7,7 @@ import os
 from estimator.reference import is_reference
 from policies import registry
 from slipgym.config.yaml_model import names
+from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import find
 
 
@@ -33,13 +34,13 @@ def file_name(which: str | os.PathLike[str], folder: str) -> str | os.PathLike[s
 def canonical(name: str) -> str:
     """The name of a task, however it is spelled.
 
-    "module:attribute" stays as it is, since other processes have to import the module.
+    "module:attribute" of a reader's own task stays as it is, since other processes have to import the module.
 
     Raises:
         ValueError: There is no such task.
     """
     task = find(name)
-    return name if is_reference(name) else task.name
+    return name if is_reference(name) and task.id not in ENVIRONMENTS else task.name
 
 
 def own_policy(task: str) -> str:
