@@ -26,15 +26,15 @@ WORLD = np.dtype(
         ("angle", "f8"),  # of the object about the grip axis [rad]
         ("velocity", "f8", 3),  # of the centre of mass, world [m/s, m/s, rad/s]
         ("external", "f8", 3),  # disturbance on the centre of mass, world [N, N, N m]
-        ("wrist", "f8", 3),  # pad centre (x, z) and pitch as the engine has it
-        ("wrist_plan", "f8", 3),  # the same as commanded
-        ("wrist_velocity", "f8", 3),  # commanded, now
-        ("wrist_acceleration", "f8", 3),  # commanded, over this control step
+        ("wrist", "f8", 3),  # pad centre (x, z) and pitch as the engine has it [m, m, rad]
+        ("wrist_plan", "f8", 3),  # the same as commanded [m, m, rad]
+        ("wrist_velocity", "f8", 3),  # commanded, now [m/s, m/s, rad/s]
+        ("wrist_acceleration", "f8", 3),  # commanded, over this control step [m/s^2, m/s^2, rad/s^2]
         ("pitch", "f8"),  # wrist pitch that `axes` belong to [rad]
-        ("axes", "f8", 2),  # its cosine and sine
-        ("relative", "f8", 3),  # centre of mass and angle in the pad frame
-        ("relative_velocity", "f8", 3),  # of the centre of mass in the pad frame; mean of a short sub-step
-        ("grasp_point", "f8", 2),  # body point at the pad centre at the grasp, from the com
+        ("axes", "f8", 2),  # its cosine and sine [-]
+        ("relative", "f8", 3),  # centre of mass and angle in the pad frame [m, m, rad]
+        ("relative_velocity", "f8", 3),  # of the centre of mass, mean of a short sub-step [m/s, m/s, rad/s]
+        ("grasp_point", "f8", 2),  # body point at the pad centre at the grasp, from the com [m]
         ("slip", "f8", 3),  # slip displacement (x, y, theta) [m, m, rad]
         ("slip_twist", "f8", 3),  # at the pad centre [m/s, m/s, rad/s]
     ]
@@ -66,7 +66,7 @@ FINGER_STATE = np.dtype(
         ("mean_force", "f8"),  # mean force of both actuators, mean over the engine step [N]
         ("contact_mean_force", "f8"),  # the same over the step of `contact_force` [N]
         ("contact_force", "f8"),  # normal force of the engine, mean over its last step [N]
-        ("reaction", "f8", 3),  # friction on the object, world, mean over the engine step
+        ("reaction", "f8", 3),  # friction on the object, world, mean over the engine step [N, N, N m]
     ]
 )
 FINGER_SCRATCH = np.dtype(
