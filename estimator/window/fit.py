@@ -14,7 +14,7 @@ from estimator.window.stick import stick
 TAILS = 2.0
 """Squared normalised residual at which an entry counts half: Cauchy, as in the Student distribution with few
 degrees of freedom."""
-OFTEN, STARTS = 8, 3
+OFTEN, STARTS = 3, 3
 """First fits that are tried from several radii, and their number: later ones start from the last fit."""
 
 
