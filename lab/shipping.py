@@ -111,6 +111,7 @@ def _put(run: Run, target: Path) -> Path:
     description, weights = policy_files.read(run.policy)
     values = description.model_dump(mode="json", exclude={"format", "files"})
     values["origin"] |= {"command": run.command, "steps": run.best.steps, "critic": None}
+    del values["origin"]["versions"]["platform"]  # of the machine that trained it
     path = target / run.name
     if path.exists():
         shutil.rmtree(path)

@@ -12,7 +12,7 @@ from slipgym import atomic_io
 PACKAGES = (
     *("slipgym", "gymnasium", "numpy", "numba", "pybullet", "pydantic", "scipy"),
     *("joblib", "matplotlib", "pandas", "pyarrow"),
-    *("torch", "stable-baselines3", "sb3-contrib", "optuna"),
+    *("torch", "stable-baselines3", "sb3-contrib", "rsl-rl-lib", "optuna"),
 )
 """Packages of the base installation, of evaluation and of training."""
 

@@ -21,8 +21,6 @@ from policies.training import plain, policy_tensors, vector
 from policies.training.config import Training
 from policies.training.state_checks import check_like
 
-_GROUPS = {True: ["policy", "privileged"], False: ["policy"]}
-"""What the critic reads: whether the privileged group, too."""
 _FIRST_OUTPUT = 0.01
 """What the last layer of a new actor is multiplied with: its first actions are about the middle."""
 
@@ -74,9 +72,10 @@ class PrivilegedPPO:
         memory = {"class_name": "rsl_rl.models.rnn_model:RNNModel", "rnn_type": "lstm"}
         memory |= {"rnn_hidden_dim": chosen.memory, "rnn_num_layers": 1}
         dense = {"class_name": "rsl_rl.models.mlp_model:MLPModel"}
+        read = ["policy", "privileged"] if chosen.privileged else ["policy"]
         settings = {
             "num_steps_per_env": chosen.n_steps,
-            "obs_groups": {"actor": ["policy"], "critic": _GROUPS[chosen.privileged]},
+            "obs_groups": {"actor": ["policy"], "critic": read},
             "multi_gpu": None,
             "actor": {**common, "distribution_cfg": noise, **(memory if chosen.memory else dense)},
             "critic": {**common, **dense},

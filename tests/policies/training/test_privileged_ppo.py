@@ -9,6 +9,8 @@ import policies
 from policies.training import checkpoint_io, checkpoints, files, folder, model, run, vector
 from policies.training.adapter import make_vec_env
 from policies.training.files import checked
+from policies.training.imitation.config import Imitation
+from policies.training.imitation.run import imitate
 
 
 @pytest.fixture(scope="module", params=[0, 5])
@@ -70,6 +72,26 @@ def test_a_learner_starts_as_the_policy_that_it_is_given(trained):
     values["privileged_ppo"]["start"] = str(path / "policy")
     learner = model.begin(checked(values, "test"), 1)
     by_file = played(config, of_file(path / "policy"))
+    np.testing.assert_allclose(played(config, acting(learner)), by_file, atol=2e-5)
+    learner.get_env().close()
+
+
+def test_a_learner_starts_as_an_imitated_network(small, tmp_path):
+    """Its columns have scales from micrometres to newtons."""
+    environment = {
+        **small().environment.model_dump(mode="json"),
+        "friction_source": "none",
+        "action_mode": "log_grip_force",
+        "load_columns": True,
+    }
+    sizes = {"memory": 5, "layers": [6], "rounds": 1, "rows": 8, "updates": 3, "batch": 4, "held_out": 0}
+    folder, _ = imitate(
+        Imitation.model_validate({"task": "LinearSlip", "environment": environment, **sizes}), tmp_path
+    )
+    chosen = {"memory": 5, "net_arch": [6], "start": str(folder / "policy"), "n_minibatches": 1}
+    config = small(algorithm="privileged_ppo", privileged_ppo=chosen, environment=environment)
+    learner = model.begin(config, 1)
+    by_file = played(config, of_file(folder / "policy"))
     np.testing.assert_allclose(played(config, acting(learner)), by_file, atol=2e-5)
     learner.get_env().close()
 
