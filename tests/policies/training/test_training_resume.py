@@ -38,6 +38,28 @@ def differing(one, other, at=""):
     return [] if one == other else [at]
 
 
+def whole_and_broken(config, tmp_path, monkeypatch):
+    """Folders of a run, and of the same run that is killed at its checkpoint of 64 steps and resumed."""
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    folder.begin(whole, config, 3)
+    run.train(whole, progress=False)
+    folder.begin(broken, config, 3)
+    save = checkpoints.save
+
+    def save_and_die(path, steps, state, keep):
+        save(path, steps, state, keep)
+        if steps == 64:
+            raise Killed
+
+    monkeypatch.setattr(checkpoints, "save", save_and_die)
+    with pytest.raises(Killed):
+        run.train(broken, progress=False)
+    monkeypatch.undo()
+    assert folder.result(broken) is None
+    run.train(broken, progress=False)
+    return whole, broken
+
+
 @pytest.mark.parametrize(
     "algorithm",
     [
@@ -55,25 +77,7 @@ def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algori
         spread=residual is None,
         derived={"grip": {"f_n_1": 0.5, "f_n_2": 0.5}} if algorithm == "ppo" and residual is None else {},
     )
-    whole, broken = tmp_path / "whole", tmp_path / "broken"
-    folder.begin(whole, config, 3)
-    run.train(whole, progress=False)
-
-    folder.begin(broken, config, 3)
-    save = checkpoints.save
-
-    def save_and_die(path, steps, state, keep):
-        save(path, steps, state, keep)
-        if steps == 64:
-            raise Killed
-
-    monkeypatch.setattr(checkpoints, "save", save_and_die)
-    with pytest.raises(Killed):
-        run.train(broken, progress=False)
-    monkeypatch.undo()
-    assert folder.result(broken) is None
-    run.train(broken, progress=False)
-
+    whole, broken = whole_and_broken(config, tmp_path, monkeypatch)
     assert folder.read_curve(broken) == folder.read_curve(whole)
     assert [row.steps for row in folder.read_curve(whole)] == [0, 32, 64, 96]
     ends = [checkpoints.last(path) for path in (whole, broken)]
@@ -100,23 +104,7 @@ def test_a_resumed_run_with_stages_is_equal_bit_for_bit(small, tmp_path, monkeyp
             "curriculum": {"stages": stages, "success": 0.0, "episodes": 3},
         },
     )
-    whole, broken = tmp_path / "whole", tmp_path / "broken"
-    folder.begin(whole, config, 3)
-    run.train(whole, progress=False)
-    folder.begin(broken, config, 3)
-    save = checkpoints.save
-
-    def save_and_die(path, steps, state, keep):
-        save(path, steps, state, keep)
-        if steps == 64:
-            raise Killed
-
-    monkeypatch.setattr(checkpoints, "save", save_and_die)
-    with pytest.raises(Killed):
-        run.train(broken, progress=False)
-    monkeypatch.undo()
-    run.train(broken, progress=False)
-    ends = [checkpoints.last(path) for path in (whole, broken)]
+    ends = [checkpoints.last(path) for path in whole_and_broken(config, tmp_path, monkeypatch)]
     assert ends[0]["learner"]["counters"]["stage"] == 2
     for end in ends:
         end["record"].pop("seconds"), end["record"].pop("cpu_seconds")
