@@ -10,10 +10,11 @@ import math
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
-from estimator.window.fit import conclude, descend, refit
+from estimator.window.fit import conclude, descend
 from estimator.window.layout import EMPTY, ENTRIES, MU, OLD, SLIDE, STATES
 from estimator.window.slide import slide
 
+FIRST, STEPS = 3, 4  # First fits, far from their start, and the steps of each
 NEWEST = 0.155  # Slip time of the newest slips [s]: friction that changed is right again after it
 EVIDENT = 6.0  # Squared deviation of their mean from which a change is tried: 2.4 standard deviations
 ODDS = 8.0
@@ -54,7 +55,7 @@ def fit(state, p):
     x[:] = state.x
     if not changed:
         x[OLD] = 0.0
-    cost, misfit = refit(state, p, x, changed, a, g)
+    cost, misfit = descend(state, p, x, changed, STEPS if state.fits < FIRST else 1, a, g)
     evidence, lacks = 0.0, 0.0
     if not changed and state.slip_time > 2.0 * NEWEST:
         evidence, lacks = _newest(state, p, x)

@@ -14,8 +14,6 @@ from estimator.window.stick import stick
 TAILS = 2.0
 """Squared normalised residual at which an entry counts half: Cauchy, as in the Student distribution with few
 degrees of freedom."""
-OFTEN, STARTS = 3, 3
-"""First fits that are tried from several radii, and their number: later ones start from the last fit."""
 
 
 @njit(error_model="numpy")
@@ -112,28 +110,6 @@ def descend(state, p, x, changed, steps, a, g):
             x[j] += 0.5 / largest * g[j]
         _limit(p, x)
     return cost, misfit
-
-
-@njit(error_model="numpy")
-def refit(state, p, x, changed, a, g):
-    """Improves x, from other radii as well as long as there is little data; returns as `descend`.
-
-    A first slip is explained by a small friction at a large radius as well as by the opposite, with two
-    minima.
-    """
-    few = state.fits < OFTEN
-    cost, misfit = descend(state, p, x, changed, 4 if few else 1, a, g)
-    if not few:
-        return cost, misfit
-    other = matrix(1, STATES)[0]
-    for start in range(STARTS):
-        other[:] = state.x
-        other[at.R] = state.mean[at.R] - 0.9 + 0.7 * start
-        found, _ = descend(state, p, other, changed, 6, a, g)
-        if found < cost - 0.5:
-            cost = found
-            x[:] = other
-    return descend(state, p, x, changed, 1, a, g)
 
 
 @njit(error_model="numpy")
