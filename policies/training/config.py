@@ -181,8 +181,8 @@ class Training(Frozen):
 
     @model_validator(mode="after")
     def _can_fold_derived_columns(self) -> Self:
-        if self.derived and (self.algorithm != "ppo" or self.residual is not None):
-            raise ValueError("derived needs algorithm 'ppo' and no residual")
+        if self.derived and (self.algorithm not in ("ppo", "privileged_ppo") or self.residual is not None):
+            raise ValueError("derived needs algorithm 'ppo' or 'privileged_ppo', and no residual")
         return self
 
     @model_validator(mode="after")

@@ -7,7 +7,7 @@ trained network needs no such columns: its first layer can compute them (`fold`)
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,51 @@ from slipgym.config.errors import unknown
 Derived = Mapping[str, Mapping[str, float]]
 """Name of a derived column -> column of the observation -> coefficient."""
 _FIRST_LAYERS = "mlp_extractor.policy_net.0", "mlp_extractor.value_net.0"
+
+
+def combinations(derived: Derived, columns: Sequence[Any], history: int, width: int) -> np.ndarray:
+    """What turns an observation into its derived columns, (d, k) float64.
+
+    Args:
+        derived: The combinations.
+        columns: Of one observation.
+        history: Earlier observations in each.
+        width: Numbers of an observation, k.
+
+    Raises:
+        ValueError: The observation has no such column.
+    """
+    names = [column.name for column in columns]
+    for column in (column for combination in derived.values() for column in combination):
+        if column not in names:
+            raise ValueError(f"derived: {unknown('column', column, names)}")
+    rows = np.zeros((len(derived), len(names)))
+    for row, combination in zip(rows, derived.values(), strict=True):
+        row[:] = [combination.get(name, 0.0) for name in names]
+    matrix = np.kron(np.eye(history + 1), rows)
+    return np.pad(matrix, ((0, 0), (0, width - matrix.shape[1])))
+
+
+def folded(
+    weight: np.ndarray, bias: np.ndarray, matrix: np.ndarray, mean: np.ndarray, scale: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """First layer of a network that reads the normalised observation alone and computes the same.
+
+    Args:
+        weight: Of the layer that reads the derived columns behind the observation, (m, k + d).
+        bias: (m,).
+        matrix: See `combinations`.
+        mean: Of the columns, subtracted from them in their normalisation, (k + d,).
+        scale: What they are then divided by.
+
+    Returns:
+        Weight (m, k) and bias (m,).
+    """
+    count = matrix.shape[1]
+    own, derived = weight[:, :count].astype(np.float64), weight[:, count:].astype(np.float64)
+    of_normalised = matrix * scale[:count] / scale[count:, None]
+    offset = (matrix @ mean[:count] - mean[count:]) / scale[count:]
+    return (own + derived @ of_normalised).astype(np.float32), (bias + derived @ offset).astype(np.float32)
 
 
 class DerivedVecEnv(VecEnvWrapper):
@@ -44,14 +89,8 @@ class DerivedVecEnv(VecEnvWrapper):
     def __init__(self, venv: VecEnv, derived: Derived, history: int) -> None:
         observed = venv.observation_space
         assert isinstance(observed, Box)
-        names = [column.name for column in venv.get_attr("columns")[0]]
-        for column in (column for combination in derived.values() for column in combination):
-            if column not in names:
-                raise ValueError(f"derived: {unknown('column', column, names)}")
-        rows = [[combination.get(name, 0.0) for name in names] for combination in derived.values()]
-        matrix = np.kron(np.eye(history + 1), np.array(rows, np.float64))
-        self.matrix = np.pad(matrix, ((0, 0), (0, observed.shape[0] - matrix.shape[1])))
-        ends = np.full(len(matrix), np.inf, np.float32)
+        self.matrix = combinations(derived, venv.get_attr("columns")[0], history, observed.shape[0])
+        ends = np.full(len(self.matrix), np.inf, np.float32)
         super().__init__(venv, Box(np.append(observed.low, -ends), np.append(observed.high, ends)))
 
     def reset(self) -> np.ndarray:
@@ -103,17 +142,13 @@ def fold(
     Returns:
         The state of a policy with k columns.
     """
-    count = matrix.shape[1]
     mean, scale = np.zeros(sum(matrix.shape)), np.ones(sum(matrix.shape))
     if normalisation.norm_obs:
         moments: Any = normalisation.obs_rms
         mean, scale = moments.mean, np.sqrt(moments.var + normalisation.epsilon)
-    of_normalised = matrix * scale[:count] / scale[count:, None]
-    offset = (matrix @ mean[:count] - mean[count:]) / scale[count:]
-    folded = dict(parameters)
+    found = dict(parameters)
     for layer in _FIRST_LAYERS:
-        weight, bias = parameters[f"{layer}.weight"].double(), parameters[f"{layer}.bias"].double()
-        own, derived = weight[:, :count], weight[:, count:]
-        folded[f"{layer}.weight"] = (own + derived @ torch.from_numpy(of_normalised)).float()
-        folded[f"{layer}.bias"] = (bias + derived @ torch.from_numpy(offset)).float()
-    return folded
+        given = [parameters[f"{layer}.{part}"].detach().numpy() for part in ("weight", "bias")]
+        weight, bias = folded(*given, matrix, mean, scale)
+        found[f"{layer}.weight"], found[f"{layer}.bias"] = torch.from_numpy(weight), torch.from_numpy(bias)
+    return found

@@ -74,7 +74,7 @@ def _privileged(
         },
     }
     moments = model.moments["policy"] if chosen.observation else None
-    return files.write(path, description, policy_tensors.take(model.ppo.actor, moments))
+    return files.write(path, description, policy_tensors.take(model.ppo.actor, moments, model.matrix))
 
 
 def _folded(model: Any, envs: VecNormalize, config: Training) -> tuple[Any, VecNormalize]:

@@ -13,6 +13,7 @@ from policies.learned import files
 from policies.learned.description import WEIGHTS, Memory, Network
 from policies.learned.extract import LSTM, array
 from policies.training.config import Training
+from policies.training.derived import folded
 from slipgym.tasks import find
 
 EPSILON = 1e-8
@@ -39,8 +40,14 @@ def network(config: Training) -> Network:
     )
 
 
-def take(actor: Any, moments: Any) -> dict[str, np.ndarray]:
-    """Tensors of an actor and moments of its observations, None without, by their names in a file."""
+def take(actor: Any, moments: Any, matrix: np.ndarray) -> dict[str, np.ndarray]:
+    """Tensors of an actor by their names in a file, and the moments of its observations.
+
+    Args:
+        actor: It reads derived columns behind the observation.
+        moments: None without.
+        matrix: What turns an observation into its derived columns, (d, k).
+    """
     found = {}
     if moments is not None:
         found = {"observation.mean": np.array(moments.mean), "observation.var": np.array(moments.var)}
@@ -49,11 +56,24 @@ def take(actor: Any, moments: Any) -> dict[str, np.ndarray]:
             found[f"memory.0.{ours}"] = array(getattr(actor.rnn.rnn, f"{theirs}0"))
     for k, layer in enumerate(dense(actor)):
         found[f"layers.{k}.weight"], found[f"layers.{k}.bias"] = array(layer.weight), array(layer.bias)
+    if len(matrix):
+        mean, scale = np.zeros(sum(matrix.shape)), np.ones(sum(matrix.shape))
+        if moments is not None:
+            mean[: matrix.shape[1]] = moments.mean
+            scale[: matrix.shape[1]] = np.sqrt(moments.var + EPSILON)
+        first = "memory.0.input" if hasattr(actor, "rnn") else "layers.0"
+        join = "_" if hasattr(actor, "rnn") else "."
+        weight, bias = f"{first}{join}weight", f"{first}{join}bias"
+        found[weight], found[bias] = folded(found[weight], found[bias], matrix, mean, scale)
     return found
 
 
-def load(actor: Any, moments: Any, path: str | os.PathLike[str], config: Training) -> None:
+def load(
+    actor: Any, moments: Any, matrix: np.ndarray, path: str | os.PathLike[str], config: Training
+) -> None:
     """Gives an actor the network of a policy, and the statistics of its observations.
+
+    Derived columns count nothing at first. For the arguments see `take`.
 
     Raises:
         FileNotFoundError: There is nothing at the path.
@@ -70,7 +90,7 @@ def load(actor: Any, moments: Any, path: str | os.PathLike[str], config: Trainin
     normalised = config.normalisation.observation
     if normalised != (description.normalisation is not None):
         raise ValueError(f"{path}: normalisation.observation = {normalised} is not that of the policy")
-    own = take(actor, moments if normalised else None)
+    own = take(actor, moments if normalised else None, matrix)
     for name, value in own.items():
         if name not in weights or weights[name].shape != value.shape:
             raise ValueError(f"{path}: {name!r} does not fit the observation or action of the run")
@@ -81,7 +101,13 @@ def load(actor: Any, moments: Any, path: str | os.PathLike[str], config: Trainin
     with torch.no_grad():
         if hasattr(actor, "rnn"):
             for ours, theirs in LSTM.items():
-                getattr(actor.rnn.rnn, f"{theirs}0").copy_(tensors[f"memory.0.{ours}"])
+                _fill(getattr(actor.rnn.rnn, f"{theirs}0"), tensors[f"memory.0.{ours}"])
         for k, layer in enumerate(dense(actor)):
-            layer.weight.copy_(tensors[f"layers.{k}.weight"])
-            layer.bias.copy_(tensors[f"layers.{k}.bias"])
+            _fill(layer.weight, tensors[f"layers.{k}.weight"])
+            _fill(layer.bias, tensors[f"layers.{k}.bias"])
+
+
+def _fill(parameter: Any, values: Any) -> None:
+    """Copies values into a parameter, whose further columns are 0."""
+    parameter.zero_()
+    parameter[..., : values.shape[-1]].copy_(values)

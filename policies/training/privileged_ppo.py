@@ -19,6 +19,7 @@ from tensordict import TensorDict
 
 from policies.training import plain, policy_tensors, vector
 from policies.training.config import Training
+from policies.training.derived import combinations
 from policies.training.state_checks import check_like
 
 _FIRST_OUTPUT = 0.01
@@ -34,6 +35,7 @@ class PrivilegedPPO:
 
     Attributes:
         num_timesteps: Steps of all environments so far.
+        matrix: What turns an observation into its derived columns, (d, k).
         stage: Number of the curriculum's present stage; as many as there are: the task itself.
         envs: The environments of that stage.
     """
@@ -49,10 +51,14 @@ class PrivilegedPPO:
         self.moments = {name: RunningMeanStd(shape=space.shape) for name, space in spaces.items()}
         self._solved: deque[bool] = deque(maxlen=self._chosen.curriculum.episodes)
         self._last: TensorDict | None = None
+        columns, width = self.envs.get_attr("columns")[0], spaces["policy"].shape[0]
+        self.matrix = combinations(config.derived, columns, config.environment.history, width)
         self.ppo = self._ppo()
         self.logger: Any = None
         if self._chosen.start is not None:
-            policy_tensors.load(self.ppo.actor, self.moments["policy"], self._chosen.start, config)
+            policy_tensors.load(
+                self.ppo.actor, self.moments["policy"], self.matrix, self._chosen.start, config
+            )
 
     def _make(self) -> Any:
         return vector.make(self._config.at_stage(self.stage), self._seed, shaped=True)
@@ -63,6 +69,8 @@ class PrivilegedPPO:
             {name: torch.zeros(self.envs.num_envs, *space.shape) for name, space in spaces.items()},
             batch_size=[self.envs.num_envs],
         )
+        more = torch.zeros(self.envs.num_envs, len(self.matrix))
+        like["policy"] = torch.cat((like["policy"], more), dim=1)
         common = {"hidden_dims": list(chosen.net_arch), "activation": chosen.activation}
         noise = {
             "class_name": "rsl_rl.modules.distribution:GaussianDistribution",
@@ -134,6 +142,9 @@ class PrivilegedPPO:
                     moments.update(values)
                 scaled = (values - moments.mean) / np.sqrt(moments.var + policy_tensors.EPSILON)
                 scaled = np.clip(scaled, -chosen.clip, chosen.clip).astype(np.float32)
+            if name == "policy" and len(self.matrix):
+                more = np.clip(values @ self.matrix.T, -chosen.clip, chosen.clip)
+                scaled = np.concatenate((scaled, more), axis=1, dtype=np.float32)
             found[name] = torch.from_numpy(scaled)
         return TensorDict(found, batch_size=[len(observations["policy"])])
 

@@ -74,7 +74,7 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
         columns, metadata = envs.get_attr("columns")[0], envs.get_attr("metadata")[0]
         underlying = Underlying(config.residual, keywords, len(columns), metadata["render_fps"])
         envs = ResidualVecEnv(envs, underlying)
-    if config.derived:
+    if config.derived and not privileged:
         envs = DerivedVecEnv(envs, config.derived, config.environment.history)
     return envs
 

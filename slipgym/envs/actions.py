@@ -12,17 +12,20 @@ from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.tasks.task import Column
 
-ACTION_MODES = {
+_LINEAR = {
     "grip_force": ("grip_force",),
     "grip_force_pitch": ("grip_force", "wrist_pitch_rate"),
     "grip_force_translation": ("grip_force", "wrist_velocity_x", "wrist_velocity_z"),
     "grip_force_wrist": ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate"),
-    "force_increment": ("force_increment",),
     "grip_force_wrist_guess": (
         *("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate"),
         *("ln_mu_s", "ln_mu_c", "ln_r", "ln_sd_mu_s", "ln_sd_mu_c", "ln_sd_r"),
     ),
-    "log_grip_force": ("ln_grip_force",),
+}
+ACTION_MODES = {
+    **_LINEAR,
+    "force_increment": ("force_increment",),
+    **{f"log_{mode}": ("ln_grip_force", *names[1:]) for mode, names in _LINEAR.items()},
 }
 """Mode -> names of an action's components, in order."""
 

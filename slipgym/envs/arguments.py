@@ -35,8 +35,9 @@ from slipgym.config.plain import plain
 
 FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
 ActionMode: TypeAlias = Literal[
-    "grip_force", "grip_force_pitch", "grip_force_translation", "grip_force_wrist", "force_increment",
-    "grip_force_wrist_guess", "log_grip_force",
+    "grip_force", "grip_force_pitch", "grip_force_translation", "grip_force_wrist", "grip_force_wrist_guess",
+    "force_increment", "log_grip_force", "log_grip_force_pitch", "log_grip_force_translation",
+    "log_grip_force_wrist", "log_grip_force_wrist_guess",
 ]  # fmt: skip
 ObservationMode: TypeAlias = Literal["flat", "deviations", "sensor", "dict"]
 Engine: TypeAlias = Literal["auto", "bullet", "planar"]

@@ -72,8 +72,10 @@ class Imitation(Frozen):
             raise ValueError(
                 "environment.observation_mode must be 'flat'; friction_source 'none' shows sensors"
             )
-        if self.environment.action_mode not in (None, "log_grip_force"):
-            raise ValueError("environment.action_mode must be null, the controller's, or 'log_grip_force'")
+        if not (self.environment.action_mode or "log_").startswith("log_"):
+            raise ValueError(
+                "environment.action_mode must be null, the controller's, or the same with a logarithmic grip"
+            )
         if self.rounds * self.rows > seeds.ROWS:
             raise ValueError(f"rounds * rows = {self.rounds * self.rows} episodes; at most {seeds.ROWS}")
         return self

@@ -19,8 +19,8 @@ from slipgym.tasks import find
 
 _FRICTION = [column.name for column in FRICTION_COLUMNS]
 _LOAD = {reading.name for reading in LOAD}
-LOGARITHMIC = "log_grip_force"
-"""The action mode in which a network may act in place of its controller's, "grip_force"."""
+LOGARITHMIC = "log_"
+"""Begins the action mode in which a network may act in place of its controller's."""
 KNOWN = 0.05
 """Confidence of an estimate from which the teacher "revealed" is given the truth in its place [-]."""
 
@@ -47,12 +47,14 @@ def arguments(config: Imitation) -> dict[str, Any]:
     """
     given = config.environment.model_dump(mode="json")
     modes = policies.modes(policies.make(find(config.task).key))
-    if given["action_mode"] == LOGARITHMIC:
-        if modes["action_mode"] != "grip_force":
+    if given["action_mode"] is not None:
+        wanted = LOGARITHMIC + modes["action_mode"]
+        if given["action_mode"] != wanted:
             raise ValueError(
-                f"environment.action_mode = {LOGARITHMIC!r}: {config.task} moves more than the grip"
+                f"environment.action_mode = {given['action_mode']!r}: the controller of {config.task} needs "
+                f"{wanted!r}, or null"
             )
-        modes["action_mode"] = LOGARITHMIC
+        modes["action_mode"] = wanted
     return {**given, **modes}
 
 
@@ -77,7 +79,7 @@ class Scene:
         blind = [k for k, name in enumerate(names) if k < self._bare or name in _LOAD]
         self._kept = blind if source == "none" else list(range(len(names)))
         (force,) = self.envs.action_columns[:1]
-        self._ends = np.exp([force.low, force.high]) if given["action_mode"] == LOGARITHMIC else None
+        self._ends = np.exp([force.low, force.high]) if given["action_mode"].startswith(LOGARITHMIC) else None
 
     def seen(self, observations: np.ndarray) -> np.ndarray:
         """What the network observes of observations (n, m)."""
@@ -88,8 +90,9 @@ class Scene:
         if self._ends is None:
             return actions
         low, high = self._ends
-        force = low + 0.5 * (np.clip(actions, -1.0, 1.0) + 1.0) * (high - low)
-        return (2.0 * np.log(force / low) / np.log(high / low) - 1.0).astype(np.float32)
+        force, found = low + 0.5 * (np.clip(actions[:, 0], -1.0, 1.0) + 1.0) * (high - low), actions.copy()
+        found[:, 0] = 2.0 * np.log(force / low) / np.log(high / low) - 1.0
+        return found
 
     def taught(self, observations: np.ndarray, true: np.ndarray) -> np.ndarray:
         """What the controller observes.

@@ -15,9 +15,10 @@ from policies.training.imitation.run import imitate
 
 @pytest.fixture(scope="module", params=[0, 5])
 def trained(request, small, tmp_path_factory):
-    """A run and its configuration, without and with a memory."""
+    """A run and its configuration, without and with a memory; it reads a derived column."""
     chosen = {"n_steps": 16, "n_epochs": 1, "n_minibatches": 1, "memory": request.param, "net_arch": [8, 6]}
-    config = small(algorithm="privileged_ppo", privileged_ppo=chosen)
+    error = {"error": {"measured_slip_y": -100.0, "reference_position": -100.0}}
+    config = small(algorithm="privileged_ppo", privileged_ppo=chosen, derived=error)
     path = tmp_path_factory.mktemp("run") / "run"
     folder.begin(path, config, 0)
     run.train(path, progress=False)
@@ -109,7 +110,7 @@ def test_a_policy_that_does_not_fit_is_refused(trained, changes, named):
     values = config.model_dump()
     values["privileged_ppo"]["start"] = str(path / "policy")
     if "task" in changes:
-        values["environment"]["config"] = {}
+        values["environment"]["config"], values["derived"] = {}, {}
     for name, value in changes.items():
         values[name] = {**values[name], **value} if isinstance(value, dict) else value
     with pytest.raises(ValueError, match=named):
