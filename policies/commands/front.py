@@ -22,6 +22,7 @@ COMMANDS = {
     "evaluate": "Compare policies by the friction they know; test one.",
     "study": "Study what friction information is worth.",
     "imitate": "Train a network that imitates a controller.",
+    "demonstrate": "Store episodes of a policy as a Minari dataset.",
     "leaderboard": "Rank the estimators on the same records.",
     "policy-leaderboard": "Rank policies on the same episodes.",
     "estimate": "Run an estimator on a record of your gripper.",

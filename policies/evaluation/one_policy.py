@@ -63,6 +63,28 @@ def environment_of(which: str, policy: Policy, task: str | None) -> tuple[str, d
     return env_id, policies.modes(policy)
 
 
+def opened(
+    which: str | os.PathLike[str], task: str | None = None, changes: Mapping[str, Any] | None = None
+) -> tuple[Policy, gym.Env]:
+    """A policy and the environment that it is for; arguments and errors as for `episodes`."""
+    if task is not None:
+        find(task)  # first of all: one of your own registers itself
+    policy = policies.load(which)
+    env_id, arguments = environment_of(os.fspath(which), policy, task)
+    if "estimator" not in (changes or {}):
+        _check_estimator(arguments.get("estimator"))
+    arguments = {**arguments, **(changes or {})}
+    policies.check_estimates(os.fspath(which), policy, arguments)
+    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **arguments)
+    if isinstance(policy, LearnedPolicy):
+        try:
+            policy.check(env)
+        except ValueError:
+            env.close()
+            raise
+    return policy, env
+
+
 def episodes(
     which: str | os.PathLike[str],
     count: int,
@@ -84,18 +106,8 @@ def episodes(
         FileNotFoundError: There is no policy at the path.
         ValueError: A name or value is wrong, or the environment is not one the policy can act in.
     """
-    if task is not None:
-        find(task)  # first of all: one of your own registers itself
-    policy = policies.load(which)
-    env_id, arguments = environment_of(os.fspath(which), policy, task)
-    if "estimator" not in (changes or {}):
-        _check_estimator(arguments.get("estimator"))
-    arguments = {**arguments, **(changes or {})}
-    policies.check_estimates(os.fspath(which), policy, arguments)
-    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **arguments)
+    policy, env = opened(which, task, changes)
     try:
-        if isinstance(policy, LearnedPolicy):
-            policy.check(env)
         for number in range(first, first + count):
             observation, info = env.reset(seed=seeds.held_out(number))
             total = 0.0

@@ -7,15 +7,17 @@ import sys
 from pathlib import Path
 
 import gymnasium
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).parents[2]
+SLIPGYM = [sys.executable, "-m", "slipgym"]
 PAGES = {
     "ppo": ("torch",),
     "skrl": ("torch", "skrl"),
     "torchrl": ("torch", "torchrl"),
     "rllib": ("torch", "ray.rllib"),
-    "minari": ("minari", "jax", "h5py"),
+    "minari": ("minari", "jax", "h5py", "torch"),
 }
 """Page -> what its example imports besides slipgym; test-only where it is installed."""
 
@@ -81,10 +83,41 @@ def test_the_single_file_takes_another_task(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_dataset_is_collected(tmp_path):
-    printed = run("minari", tmp_path, 2)
-    assert "2 episodes, 1560 steps, 2 solved, mean return" in printed
-    assert printed.endswith("every episode repeats itself bit for bit\n")
+def test_a_clone_learns_from_demonstrations(tmp_path):
+    for library in PAGES["minari"]:
+        pytest.importorskip(library)
+    home, name = {"MINARI_DATASETS_PATH": str(tmp_path / "datasets")}, "slipgym/fragile_hold/learned-v0"
+    stored = called(
+        [*SLIPGYM, "demonstrate", "fragile_hold_scratch", name, "--episodes", "60"], tmp_path, **home
+    )
+    assert re.fullmatch(rf"{name}: 60 episodes, \d+ steps, (5\d|60) solved\n", stored)
+    printed = run("minari", tmp_path, name, 30)
+    (solved,) = re.findall(r"the clone solves (\d+) of 100", printed)
+    assert int(solved) > 60
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # Minari's temporary folder
+def test_a_demonstration_repeats_itself_bit_for_bit(tmp_path, monkeypatch):
+    minari = pytest.importorskip("minari")
+    pytest.importorskip("h5py")
+    from policies.evaluation.demonstrations import demonstrate
+
+    monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path))
+    stored = demonstrate("hold", "hold-v0", 2, first=5, changes={"engine": "planar"})
+    assert (stored.episodes, stored.solved) == (2, 2)
+    dataset = minari.load_dataset("hold-v0")
+    again = dataset.recover_environment()
+    for number, episode in enumerate(dataset.iterate_episodes()):
+        first, _ = again.reset(seed=5 + number)
+        np.testing.assert_array_equal(first, episode.observations[0])
+        for action, expected in zip(episode.actions, episode.observations[1:], strict=True):
+            np.testing.assert_array_equal(again.step(action)[0], expected)
+    again.close()
+    with pytest.raises(FileExistsError, match="hold-v0"):
+        demonstrate("hold", "hold-v0", 1)
+    with pytest.raises(ValueError, match="bad name"):
+        demonstrate("hold", "bad name", 1)
 
 
 def test_the_first_policy_learns_something():

@@ -1,0 +1,73 @@
+"""Stores episodes of a policy as a Minari dataset, for offline learning: `slipgym demonstrate`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from tqdm import tqdm
+
+from policies.evaluation.one_policy import opened
+from policies.stepping import steps
+
+
+class Stored(NamedTuple):
+    """What a dataset holds."""
+
+    episodes: int
+    steps: int
+    solved: int
+
+
+def demonstrate(
+    which: str | os.PathLike[str],
+    dataset: str,
+    count: int,
+    first: int = 0,
+    task: str | None = None,
+    changes: Mapping[str, Any] | None = None,
+) -> Stored:
+    """Plays episodes of a policy and stores them as a dataset; nothing is stored before the last one is over.
+
+    Args:
+        which: As `policies.load` takes it.
+        dataset: Name of the dataset, such as "slipgym/hold/controller-v0".
+        count: Episodes, at least 1.
+        first: Seed of the first one; episode i has the seed `first` + i.
+        task: Needed for a controller that serves every task.
+        changes: Keyword arguments of the environment instead of those of the policy.
+
+    Raises:
+        ModuleNotFoundError: Minari is not installed.
+        FileExistsError: There is a dataset of that name.
+        FileNotFoundError: There is no such policy.
+        ValueError: A name or value is wrong, or the environment is not one the policy can act in.
+    """
+    import minari
+    from minari.dataset.minari_dataset import parse_dataset_id
+
+    parse_dataset_id(dataset)
+    if dataset in minari.list_local_datasets():
+        raise FileExistsError(f"there is a dataset {dataset!r}: minari delete {dataset} removes it")
+    policy, inner = opened(which, task, changes)
+    env = minari.DataCollector(inner, record_infos=False)
+    solved = 0
+    try:
+        for seed in tqdm(range(first, first + count), disable=None, leave=False):
+            observation, info = env.reset(seed=seed)
+            for step in steps(env, policy, observation):
+                info = step.info
+            solved += bool(info["is_success"])
+        made = env.create_dataset(
+            dataset,
+            eval_env=inner.spec,
+            algorithm_name=os.fspath(which),
+            author="slipgym",
+            author_email="none",
+            code_permalink="none",
+            description=f"{solved} of {count} episodes solved, seeds from {first} on",
+        )
+    finally:
+        env.close()
+    return Stored(int(made.total_episodes), int(made.total_steps), solved)
