@@ -36,6 +36,7 @@ def main(
     demo: Annotated[bool, typer.Option("--demo", help="Run the experiment 'demo': about a minute.")] = False,
     trials: Annotated[int | None, typer.Option(min=1, help="Trials per cell, not the experiment's.")] = None,
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
+    ray: Annotated[str, typer.Option(help="Run on Ray: local, or a cluster's address.")] = "",
     friction_source: Annotated[
         list[str] | None, typer.Option(help="Keep only this source or label of the experiment; repeatable.")
     ] = None,
@@ -87,7 +88,9 @@ def main(
         raise typer.BadParameter(str(error)) from error
     for experiment in chosen:
         try:
-            folder = evaluation.evaluate(experiment, output, jobs)
+            folder = evaluation.evaluate(experiment, output, jobs, ray=ray)
+        except (ModuleNotFoundError, ConnectionError) as error:
+            raise typer.BadParameter(str(error), param_hint="--ray") from error
         except OSError as error:
             words = "; ".join([str(error), *getattr(error, "__notes__", ())])
             raise typer.BadParameter(words, param_hint="--output") from error

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from policies import parallel
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.folder import INCOMPLETE, run_path, write_origin
 from policies.evaluation.plan import plan
@@ -26,6 +27,7 @@ def evaluate(
     output: str | os.PathLike[str] = "runs",
     jobs: int = 1,
     progress: bool = True,
+    ray: str = "",
 ) -> Path:
     """Runs an experiment and writes its tables and figures.
 
@@ -34,6 +36,7 @@ def evaluate(
         output: Folder that the run's own folder goes to.
         jobs: Processes; -1 for one per core. The results do not depend on it.
         progress: Whether to show a progress bar.
+        ray: See `policies.parallel.results`.
 
     Returns:
         The run's folder. Until the run is over it holds the trials of the cells that are complete, and the
@@ -42,7 +45,10 @@ def evaluate(
     Raises:
         ValueError: A policy refuses its parameters or the observations.
         OSError: The output cannot be written, which is found out before any trial.
+        ModuleNotFoundError: Ray is asked for and not installed.
+        ConnectionError: There is no such cluster.
     """
+    parallel.check(ray)
     path, trials = run_path(experiment, output), plan(experiment)
     check_folder(path.parent)
     with new_folder(path) as folder:
@@ -55,7 +61,7 @@ def evaluate(
             (folder / INCOMPLETE).write_text(_missing(len(results), len(trials)), encoding="utf-8")
 
     try:
-        results = run_trials(experiment, trials, jobs, progress, keep)
+        results = run_trials(experiment, trials, jobs, progress, keep, ray)
         with new_files(path) as folder:
             write_results(experiment, results, folder)
     except BaseException as error:

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import gymnasium as gym
-import joblib
 import numpy as np
 from tqdm import tqdm
 
 import policies
+from policies import parallel
 from policies.controllers.base import ObservationIndex
 from policies.controllers.rate import at_rate
 from policies.evaluation.batch import acts_on_batches, blocks, record_block
@@ -41,6 +41,7 @@ def run_trials(
     jobs: int = 1,
     progress: bool = True,
     keep: Callable[[list[Result]], None] | None = None,
+    ray: str = "",
 ) -> list[Result]:
     """Runs trials in parallel; the results do not depend on how many run at once.
 
@@ -53,16 +54,15 @@ def run_trials(
         jobs: Processes; -1 for one per core.
         progress: Whether to show a progress bar.
         keep: Called with all results so far whenever a cell of the experiment is complete.
+        ray: See `policies.parallel.results`.
 
     Raises:
         ValueError: A policy refuses its parameters or the observations.
     """
     work = pieces(experiment, trials)
-    parallel = joblib.Parallel(n_jobs=jobs, return_as="generator")
     results: list[Result] = []
     with tqdm(total=len(trials), desc=experiment.name, unit="trial", disable=not progress) as bar:
-        found: Any = parallel(joblib.delayed(run_block)(experiment, block) for block in work)
-        for some in found:
+        for some in parallel.results(run_block, [(experiment, block) for block in work], jobs, ray):
             results += some
             bar.update(len(some))
             if keep is not None and some[-1].row["trial"] == experiment.trials - 1:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import joblib
 import pandas as pd
 from tqdm import tqdm
 
+from policies import parallel
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import pieces, run_block
 from policies.study.conditions import Condition
@@ -38,12 +38,8 @@ def episodes(
     pending = [condition for condition in conditions if not store.has(condition)]
     experiments = [condition.experiment(study) for condition in pending]
     planned = [(condition, each, plan(each)) for condition, each in zip(pending, experiments, strict=True)]
-    parallel = joblib.Parallel(n_jobs=jobs, return_as="generator")
-    results: Any = parallel(
-        joblib.delayed(run_block)(experiment, piece)
-        for _, experiment, trials in planned
-        for piece in pieces(experiment, trials)
-    )
+    work = [(each, piece) for _, each, trials in planned for piece in pieces(each, trials)]
+    results = parallel.results(run_block, work, jobs)
     total = sum(len(trials) for _, _, trials in planned)
     with tqdm(total=total, desc=study.name, unit="episode", disable=not progress) as bar:
         for condition, _, trials in planned:

@@ -41,7 +41,7 @@ def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Calla
         path: Its folder.
         others: Further options by name, none of which may be given.
         jobs: Runs at once.
-        ray: See `parallel.run_all`.
+        ray: See `policies.parallel.results`.
 
     Raises:
         FileNotFoundError: The folder holds no run.
@@ -74,14 +74,15 @@ def begun(
         trials: Runs of a sweep; 0: no sweep.
         output: Folder that the new one goes to.
         jobs: Runs at once.
-        ray: See `parallel.run_all`.
+        ray: See `policies.parallel.results`.
 
     Raises:
         ModuleNotFoundError: Ray is asked for and not installed.
         OSError: The output cannot be written.
         ValueError: A seed or source is wrong, or a sweep has several.
     """
-    from policies.training import parallel, run_set, sweep
+    from policies import parallel
+    from policies.training import run_set, sweep
 
     parallel.check(ray)
     check_folder(output)

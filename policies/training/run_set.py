@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from policies import parallel
 from policies.evaluation.folder import stamped
 from policies.evaluation.plots.style import STYLE, styled
-from policies.training import curve, folder, parallel
+from policies.training import curve, folder
 from policies.training import seeds as numbers
 from policies.training.config import Training
 from policies.training.files import changed
@@ -47,7 +48,7 @@ def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -
     Args:
         path: The study's folder, or that of one run.
         jobs: Runs at once; -1 for one per core.
-        ray: See `parallel.run_all`.
+        ray: See `policies.parallel.results`.
         progress: Whether to show progress bars.
 
     Returns:
@@ -58,7 +59,8 @@ def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -
         ModuleNotFoundError: Ray is asked for and not installed.
     """
     runs = folder.runs(path)
-    results = parallel.run_all(train, [(run, progress, k) for k, run in enumerate(runs)], jobs, ray)
+    work = [(run, progress, k) for k, run in enumerate(runs)]
+    results = list(parallel.results(train, work, jobs, ray))
     if len(runs) > 1:
         _draw(path, runs)
     lines = [

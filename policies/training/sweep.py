@@ -11,8 +11,9 @@ import optuna
 from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
 
+from policies import parallel
 from policies.evaluation.folder import stamped
-from policies.training import files, folder, parallel
+from policies.training import files, folder
 from policies.training.config import Dimension, Training
 from policies.training.curve import Row
 from policies.training.run import train
@@ -53,14 +54,14 @@ def sweep(
         trials: How many.
         seed: Of all runs, and of the search.
         jobs: Runs at once; with more than one, what is tried depends on which ends first.
-        ray: See `parallel.run_all`.
+        ray: See `policies.parallel.results`.
         progress: Whether to show progress bars.
 
     Returns:
         What came out, as text.
     """
     items = [(path, config, seed, k, progress) for k in range(trials)]
-    parallel.run_all(trial, items, jobs, ray)
+    list(parallel.results(trial, items, jobs, ray))
     study = optuna.load_study(storage=_storage(path), study_name=_NAME)
     found = files.changed(config, _values(study.best_params))
     atomic_io.write(path / "best.yaml", files.text(found).encode())

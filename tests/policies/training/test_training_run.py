@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 pytest.importorskip("stable_baselines3")
 import policies
+from policies import parallel
 from policies.commands.train import app
 from policies.training import (
     checkpoint_io,
@@ -17,7 +18,6 @@ from policies.training import (
     export,
     files,
     folder,
-    parallel,
     run,
     run_set,
     seeds,
@@ -160,21 +160,29 @@ def test_the_area_rewards_learning_early(small):
 def test_ray_that_is_missing_is_asked_for(monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(ModuleNotFoundError, match=r"pip install 'slipgym\[ray\]'"):
-        parallel.run_all(divmod, [(7, 3)], ray="local")
+        list(parallel.results(divmod, [(7, 3)], ray="local"))
 
 
 @pytest.mark.slow
 def test_ray_does_the_same(tmp_path):
     pytest.importorskip("ray")
-    code = (
-        "from policies.training import parallel, seeds\n"
-        "print(parallel.run_all(seeds.training, [(1,), (2,)], ray='local'))"
-    )
-    home = {**os.environ, "HOME": str(tmp_path)}  # Ray keeps a token there
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, env=home, capture_output=True, text=True, check=False
-    )
-    assert done.stdout.strip().endswith("[16384, 32768]"), done.stderr
+    home = {**os.environ, "HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path[1:]])}
+    small = ["budget=512", "num_envs=16", "evaluation.episodes=2", "privileged_ppo.n_minibatches=2"]
+
+    def called(where, *words):
+        command = [sys.executable, "-m", "slipgym", *words, "--output", str(tmp_path / where)]
+        done = subprocess.run(command, env=home, capture_output=True, text=True, check=False)  # HOME: a token
+        assert done.returncode == 0, done.stderr
+
+    train = ["train", "linear_slip_scratch", "--seeds", "0", "1", "--set", *small]
+    trials = ["evaluate", "hold", "--trials", "1", "--friction-source", "true"]
+    for words, kept in ((train, "**/curve.csv"), (trials, "**/trials.parquet")):
+        called("ray", *words, "--ray", "local")
+        called("here", *words)
+        found, wanted = (sorted((tmp_path / where).glob(kept)) for where in ("ray", "here"))
+        assert len(found) == len(wanted) > 0
+        for one, other in zip(found, wanted, strict=True):
+            assert one.read_bytes() == other.read_bytes()
 
 
 def test_the_command_trains(small, tmp_path, monkeypatch):

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import joblib
 
 
-def run_all(
-    function: Callable[..., Any], items: Sequence[tuple[Any, ...]], jobs: int = 1, ray: str = ""
-) -> list[Any]:
-    """Calls a function for every item and returns the results in order.
+def results(
+    function: Callable[..., Any], items: Iterable[tuple[Any, ...]], jobs: int = 1, ray: str = ""
+) -> Iterator[Any]:
+    """Calls a function for every item, several at once, and yields the results in the items' order.
 
     Args:
         function: Top-level function of a module.
@@ -27,14 +27,17 @@ def run_all(
         ConnectionError: There is no such cluster.
     """
     if not ray:
-        return list(joblib.Parallel(n_jobs=jobs)(joblib.delayed(function)(*item) for item in items))
+        work = joblib.Parallel(n_jobs=jobs, return_as="generator")
+        yield from work(joblib.delayed(function)(*item) for item in items)
+        return
     check(ray)
     module: Any = importlib.import_module("ray")
     where = {"include_dashboard": False} if ray == "local" else {"address": ray}
     module.init(log_to_driver=False, **where)
     try:
         remote = module.remote(num_cpus=1)(function)
-        return module.get([remote.remote(*item) for item in items])
+        for started in [remote.remote(*item) for item in items]:
+            yield module.get(started)
     finally:
         module.shutdown()
 
