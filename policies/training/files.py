@@ -13,6 +13,8 @@ from policies.training.config import Training
 from slipgym.config import files, yaml_model
 
 _FOLDER = "training"
+OWN = "_scratch"
+"""Ending of the configuration that a task's own name stands for."""
 
 
 def names() -> list[str]:
@@ -24,8 +26,8 @@ def load(which: str | os.PathLike[str], overrides: Mapping[str, Any] | None = No
     """Reads a training configuration.
 
     Args:
-        which: One of `names()`, or the path of a YAML file. A task's own configuration also goes by the
-            task's other names, "LinearSlip" for example.
+        which: One of `names()`, or the path of a YAML file. A task's name, "carry" or "Carry", stands for the
+            configuration that learns it from nothing, "carry_scratch".
         overrides: Values by dotted key ("ppo.gamma") that replace the file's.
 
     Raises:
@@ -33,7 +35,7 @@ def load(which: str | os.PathLike[str], overrides: Mapping[str, Any] | None = No
         ValueError: The name is unknown, or a key or value is wrong; the message names the file or option,
             the key, and what is valid.
     """
-    found = yaml_model.read_model(file_name(which, _FOLDER), Training, _FOLDER, "training configuration")
+    found = yaml_model.read_model(file_name(which, _FOLDER, OWN), Training, _FOLDER, "training configuration")
     return changed(found, overrides or {})
 
 
