@@ -48,10 +48,16 @@ def changed(training: Training, overrides: Mapping[str, Any], source: str = "com
         source: Where they come from, for the message of an error.
 
     Raises:
-        ValueError: A key or value is wrong.
+        ValueError: A key or value is wrong, or estimates are asked for where no estimator runs.
     """
     values = with_values(training.model_dump(exclude_unset=True), overrides)
-    return checked(values, source if overrides else training.task)
+    found = checked(values, source if overrides else training.task)
+    if overrides.get("environment.friction_source") == "estimated" and found.environment.estimator is None:
+        raise ValueError(
+            f"{source}: friction_source 'estimated' needs an estimator, and environment.estimator is null; "
+            "--set environment.estimator=adaptive runs one"
+        )
+    return found
 
 
 def with_values(values: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:

@@ -30,10 +30,9 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
     """
     for seed in seeds:
         numbers.training(seed)
-    given = sources or [config.environment.friction_source]
     conditions = [
-        changed(config, {"environment.friction_source": source}, "--friction-source") for source in given
-    ]
+        changed(config, {"environment.friction_source": source}, "--friction-source") for source in sources
+    ] or [config]
     path = stamped(output, f"{find(config.task).key}__{config.algorithm}")
     for condition in conditions:
         for seed in seeds:

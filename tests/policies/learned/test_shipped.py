@@ -46,6 +46,14 @@ def test_its_name_says_its_task_and_what_it_was_told(name):
     assert name in files.names()
 
 
+def test_the_example_of_the_page_runs():
+    page = (PAGES.parent / "learned.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    found = {}
+    exec(compile(example, "learned.md", "exec"), found)
+    assert found["env"].action_space.contains(found["action"])
+
+
 def test_every_policy_of_the_page_comes_with_slipgym():
     page = (PAGES.parent / "learned.md").read_text(encoding="utf-8")
     assert set(re.findall(r"`(\w+_(?:scratch|memory|lab))`", page)) == set(SHIPPED)

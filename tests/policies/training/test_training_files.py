@@ -77,6 +77,18 @@ def test_assignments_win_over_options_and_both_over_the_file():
     assert chosen.ppo.n_steps == files.load("linear_slip_scratch").ppo.n_steps
 
 
+def test_estimates_need_an_estimator(tmp_path):
+    pytest.importorskip("stable_baselines3")
+    with pytest.raises(ValueError, match=r"--friction-source: .*'estimated' needs an estimator"):
+        command.begun(files.load("carry"), [], ["true", "estimated"], 0, tmp_path, 1, "")
+    assert not list(tmp_path.iterdir())
+    wanted = ["environment.friction_source=estimated"]
+    with pytest.raises(ValueError, match=r"environment\.estimator=adaptive runs one"):
+        command.chosen("carry", {}, wanted)
+    told = command.chosen("carry", {}, [*wanted, "environment.estimator=adaptive"])
+    assert (told.environment.friction_source, told.environment.estimator) == ("estimated", "adaptive")
+
+
 def test_no_training_seed_is_held_out():
     last = seeds.training(seeds.RUNS - 1) + seeds.ROWS - 1
     assert last == seeds.held_out(0) - 1
