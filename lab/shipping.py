@@ -25,8 +25,8 @@ CURVES = Path("docs") / "learned"
 class Run(NamedTuple):
     """A finished run of a configuration that comes with slipgym."""
 
-    key: str
-    """Its configuration's name: the task's key, or that with "_scratch"."""
+    name: str
+    """Its configuration's name, which its policy goes by: "carry_scratch" for example."""
     source: str
     """Its friction information in training."""
     seed: int
@@ -35,17 +35,15 @@ class Run(NamedTuple):
     """Episodes of an evaluation."""
     policy: Path
     """The folder of its policy."""
-
-    @property
-    def name(self) -> str:
-        """What its policy is called; the configurations from nothing observe the true friction."""
-        own = self.key.endswith("_scratch") and self.source == "true"
-        return self.key if own else f"{self.key}_{self.source}"
+    start: str | None
+    """The folder of the policy that it began as."""
 
     @property
     def command(self) -> str:
-        """What trains it again."""
-        return f"python scripts/train.py {self.key} --friction-source {self.source} --seeds {self.seed}"
+        """What trains it again; of the start only the run's own folder, as the others are one machine's."""
+        said = f"python scripts/train.py {self.name} --friction-source {self.source} --seeds {self.seed}"
+        start = "/".join(Path(self.start).parts[-2:]) if self.start else ""
+        return f"{said} --set privileged_ppo.start={start}" if start else said
 
     @property
     def best(self) -> Row:
@@ -53,15 +51,18 @@ class Run(NamedTuple):
         return curve.best(self.curve, self.episodes)
 
 
-def ship(studies: Sequence[Path], target: Path = FOLDER, pages: Path = CURVES) -> list[Path]:
-    """Adds the best seed of each task and friction source to the pretrained ones, all curves to the pages.
+def ship(
+    studies: Sequence[Path], name: str | None = None, target: Path = FOLDER, pages: Path = CURVES
+) -> list[Path]:
+    """Adds the best seed of each configuration to the pretrained ones, all curves to the pages.
 
-    Policies and curves of the same tasks and sources give way.
+    Policies and curves of the same name give way.
 
     Args:
         studies: Folders of finished studies or runs.
+        name: Configuration that they were trained as; None: the one that the task's name stands for.
         target: Folder for the policies.
-        pages: Folder for the curves, a table and a picture for each task.
+        pages: Folder for the curves, a table and a picture for each name.
 
     Returns:
         The folders of the policies.
@@ -69,21 +70,20 @@ def ship(studies: Sequence[Path], target: Path = FOLDER, pages: Path = CURVES) -
     Raises:
         FileNotFoundError: A folder holds no run.
         OSError: A folder cannot be written to.
-        ValueError: A run is not finished, or not one of the configuration that its task has.
+        ValueError: A run is not finished, or not one of the configuration.
     """
-    found = [_finished(path) for study in studies for path in folder.runs(study)]
+    found = [_finished(path, name) for study in studies for path in folder.runs(study)]
     for each in (target, pages):
         check_folder(each)
     pages.mkdir(parents=True, exist_ok=True)
     shipped = []
-    for key in sorted({run.key for run in found}):
-        runs = sorted(run for run in found if run.key == key)
-        conditions = {run.source: [other for other in runs if other.source == run.source] for run in runs}
-        shipped += [_put(_best(same), target) for same in conditions.values()]
-        (pages / f"{key}.csv").write_text(_table(runs), encoding="utf-8")
+    for each in sorted({run.name for run in found}):
+        runs = sorted(run for run in found if run.name == each)
+        shipped.append(_put(_best(runs), target))
+        (pages / f"{each}.csv").write_text(_table(runs), encoding="utf-8")
         with styled():
-            curves = {source: [run.curve for run in same] for source, same in conditions.items()}
-            curve.plot(curves).savefig(pages / f"{key}.png", dpi=STYLE.dpi)
+            curves = {runs[0].source: [run.curve for run in runs]}
+            curve.plot(curves).savefig(pages / f"{each}.png", dpi=STYLE.dpi)
     return shipped
 
 
@@ -93,17 +93,20 @@ def _best(seeds: Sequence[Run]) -> Run:
     return seeds[ends.index(curve.best(ends, seeds[0].episodes))]
 
 
-def _finished(path: Path) -> Run:
+def _finished(path: Path, name: str | None) -> Run:
     config, seed = folder.order(path)
     if folder.result(path) is None:
         raise ValueError(f"{path} is not finished")
-    key, source = find(config.task).key, config.environment.friction_source
-    given = {"environment.friction_source": source}
-    if config.algorithm == "privileged_ppo":
-        key += "_scratch"
-    if config != files.load(key, given):
-        raise ValueError(f"{path} was not trained as configs/training/{key}.yaml says")
-    return Run(key, source, seed, folder.read_curve(path), config.evaluation.episodes, path / export.POLICY)
+    name = name or find(config.task).key + files.OWN
+    start = config.privileged_ppo.start
+    wanted = files.load(name, {"privileged_ppo.start": start})
+    has, needs = config.model_dump(), wanted.model_dump()
+    if other := [key for key in needs if has[key] != needs[key]]:
+        raise ValueError(
+            f"{path} was not trained as configs/training/{name}.yaml says: {', '.join(other)} differ"
+        )
+    source, episodes = config.environment.friction_source, config.evaluation.episodes
+    return Run(name, source, seed, folder.read_curve(path), episodes, path / export.POLICY, start)
 
 
 def _put(run: Run, target: Path) -> Path:

@@ -11,24 +11,25 @@ from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import find
 
 
-def file_name(which: str | os.PathLike[str], folder: str) -> str | os.PathLike[str]:
-    """The name of a default file, where a task's name is given that is spelled in another way.
+def file_name(which: str | os.PathLike[str], folder: str, ending: str = "") -> str | os.PathLike[str]:
+    """The name of a task's default file, where the task's name is given, in whatever spelling.
 
     Args:
         which: Name or path of a YAML file, or a task as `slipgym.tasks.find` takes it: "linear_slip",
             "LinearSlip", "slipgym/LinearSlip-v0" or "module:attribute".
         folder: Folder of the default configuration, "experiments" for example.
+        ending: What the file's name has behind the task's key.
 
     Returns:
-        The task's key if that is the name of a file in the folder; otherwise what was given.
+        The task's key with the ending if that is the name of a file in the folder; otherwise what was given.
     """
     if not isinstance(which, str) or which in names(folder):
         return which
     try:
-        key = find(which).key
+        name = find(which).key + ending
     except ValueError:
         return which
-    return key if key in names(folder) else which
+    return name if name in names(folder) else which
 
 
 def canonical(name: str) -> str:

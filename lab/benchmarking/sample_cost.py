@@ -17,6 +17,7 @@ from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv
 from policies.training.residual import ResidualVecEnv
 from slipgym.benchmarking.report import Figure
+from slipgym.config.errors import unknown
 from slipgym.tasks import find
 
 _WRAPPERS: dict[type, str] = {
@@ -30,9 +31,15 @@ _WRAPPERS: dict[type, str] = {
 
 
 def configuration(env_id: str) -> str:
-    """The configuration of an environment's task: the one that trains from scratch, where there is one."""
-    key = find(env_id).key
-    return next(name for name in (f"{key}_plain", key) if name in files.names())
+    """The configuration of an environment's task that trains with Stable-Baselines3's PPO.
+
+    Raises:
+        ValueError: The task has none.
+    """
+    name = f"{find(env_id).key}_plain"
+    if name not in files.names():
+        raise ValueError(unknown("training configuration", name, files.names()))
+    return name
 
 
 def sample_cost(name: str, updates: int) -> list[Figure]:

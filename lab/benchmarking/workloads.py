@@ -76,7 +76,7 @@ def _players(env_id: str, size: int) -> Iterator[tuple[str, Act, dict[str, Any]]
     task = find(env_id)
     for name, forces in RANDOM.items():
         yield name, _random(env_id, forces, size), {}
-    kinds = {task.key: "controller", f"{task.key}_estimated": "learned policy"}
+    kinds = {task.key: "controller", f"{task.key}_scratch": "learned policy"}
     for name in sorted(kinds.keys() & {*policies.names()}):  # not every task has a learned policy
         policy = policies.make(name)
         yield f"{kinds[name]} {name}", _Acting(policy), policies.modes(policy)

@@ -5,7 +5,6 @@ COMMANDS = {
     "closed-loop": "Rank the estimators in the loop of a controller.",
     "compare-engines": "Compare the planar engine with PyBullet.",
     "compare-estimators": "Compare the estimators on recorded episodes.",
-    "compare-learned": "Compare pretrained policies with controllers.",
     "compare-simulators": "Compare the contact with other simulators.",
     "delays": 'Print "adaptive" in stick-slip with late velocities.',
     "estimator-costs": "Print what an update of each estimator costs.",

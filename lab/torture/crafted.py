@@ -61,7 +61,7 @@ def yaml(rng: np.random.Generator) -> str:
 
 def policy(rng: np.random.Generator) -> str:
     """A pretrained policy, changed; half of them with checksums that fit."""
-    source = policy_files.Path(policies.learned.__file__).parent / "pretrained_policies" / "hold_none"
+    source = policy_files.Path(policies.learned.__file__).parent / "pretrained_policies" / "hold_scratch"
     content = {path.name: path.read_bytes() for path in source.iterdir() if path.is_file()}
     name = sorted(content)[rng.integers(len(content))]
     content[name] = mutated(rng, content[name])

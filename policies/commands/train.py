@@ -11,11 +11,11 @@ EPILOG = """
 Examples:\n
 \b
   slipgym train linear_slip
-  slipgym train --task linear_slip --algorithm sac --budget 300000
-  slipgym train linear_slip --seeds 0 1 2 --friction-source estimated true none --jobs 2
-  slipgym train linear_slip --set ppo.gamma=0.98 num_envs=16
+  slipgym train linear_slip_plain --algorithm sac --budget 300000
+  slipgym train linear_slip_plain --seeds 0 1 2 --friction-source estimated true none --jobs 2
+  slipgym train linear_slip_plain --set ppo.gamma=0.98 num_envs=16
   slipgym train --resume runs/linear_slip__ppo__20260101-120000-000
-  slipgym train linear_slip --sweep 20 --ray local
+  slipgym train linear_slip_plain --sweep 20 --ray local
 \n
 A configuration is a YAML file; configs/training/ holds those that come with slipgym, and docs/training.md
 says what their keys mean and what a run writes.
@@ -28,7 +28,8 @@ def main(
     configuration: Annotated[
         str | None,
         typer.Argument(
-            help="Name of a configuration (a task's: linear_slip, also LinearSlip), or path of a YAML file.",
+            help="Name of a configuration, or path of a YAML file; linear_slip and LinearSlip are "
+            "linear_slip_scratch.",
             show_default=False,
         ),
     ] = None,

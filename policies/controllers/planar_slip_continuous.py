@@ -51,8 +51,7 @@ class ContinuousPlanarSlipGains(PlanGains):
 class ContinuousPlanarSlipPolicy(PlanarPlanPolicy[ContinuousPlanarSlipGains]):
     """The plan of `PlanarPlanPolicy` in slips of a regulated speed.
 
-    It needs a slip velocity that is at most one or two samples old; "planar_slip" does not. The pretrained
-    residual policies of PlanarSlip change the actions of this controller.
+    It needs a slip velocity that is at most one or two samples old; "planar_slip" does not.
 
     A slip is let go by what balances the load at Coulomb friction, f_slip, as in "rotational_slip": v is the
     speed of the slide or the rate of the turn, v_cmd the one wanted,

@@ -22,6 +22,12 @@ from slipgym.tasks import find
 
 CANDIDATES = 16
 """Constant forces that are tried, spaced geometrically over the gripper's range."""
+LEARNED = {
+    "scratch": "learned from nothing",
+    "memory": "recurrent",
+    "lab": "recurrent, trained on lab",
+}
+"""What the names of shipped policies have behind the task's key -> what tables call them."""
 _SELECTION_SEED = 10_000_000
 """Of the first episode on which the constant force is chosen."""
 
@@ -71,16 +77,12 @@ def learned(key: str) -> list[Member]:
     Args:
         key: Of the task.
     """
-    members = []
-    for source in ("estimated", "true", "none"):
-        if (name := f"{key}_{source}") in pretrained.folders():
-            policy = LearnedPolicy(pretrained.folders()[name])
-            members.append(Member(f"learned, {source}", policy, {"friction_source": source, **policy.modes}))
-    if (name := f"{key}_scratch") in pretrained.folders():
-        policy = LearnedPolicy(pretrained.folders()[name])
-        members.append(
-            Member("learned from nothing, true", policy, {"friction_source": "true", **policy.modes})
-        )
+    members, shipped = [], pretrained.folders()
+    for ending, called in LEARNED.items():
+        if (name := f"{key}_{ending}") in shipped:
+            policy = LearnedPolicy(shipped[name])
+            source = policy.description.environment.arguments.get("friction_source", "estimated")
+            members.append(Member(f"{called}, {source}", policy, {"friction_source": source, **policy.modes}))
     return members
 
 

@@ -23,15 +23,19 @@ def policies_of(study: Study) -> Shelf:
 
     A policy lies in a folder <task>_<source> or <task>_<source>_<seed>, as in "linear_slip_true_2"; without a
     number it is seed 0. Or it is one of those that `slipgym train` or `slipgym imitate` left in the folder.
+    Of those that come with slipgym, <task>_scratch is for the source "true", and for "none" <task>_memory, or
+    <task>_lab if the study has the sensors "lab".
 
     Raises:
         ValueError: Two folders stand for the same seed.
     """
+    endings: dict[str, str] = {source: source for source in SOURCES}
+    endings |= {"scratch": "true", "lab" if study.sensors == "lab" else "memory": "none"}
     found: Shelf = {}
     for kind, where in folders(study).items():
         for folder, name in _named(where):
-            for task, source in itertools.product(study.tasks, SOURCES):
-                match = re.fullmatch(rf"{find(task).key}_{source}(?:_+(\d+))?", name)
+            for task, (ending, source) in itertools.product(study.tasks, endings.items()):
+                match = re.fullmatch(rf"{find(task).key}_{ending}(?:_+(\d+))?", name)
                 if match is not None:
                     _keep(found.setdefault((kind, task, source), {}), int(match[1] or 0), folder)
     return found

@@ -13,6 +13,8 @@ from policies.training.config import Training
 from slipgym.config import files, yaml_model
 
 _FOLDER = "training"
+OWN = "_scratch"
+"""Ending of the configuration that a task's own name stands for."""
 
 
 def names() -> list[str]:
@@ -24,8 +26,8 @@ def load(which: str | os.PathLike[str], overrides: Mapping[str, Any] | None = No
     """Reads a training configuration.
 
     Args:
-        which: One of `names()`, or the path of a YAML file. A task's own configuration also goes by the
-            task's other names, "LinearSlip" for example.
+        which: One of `names()`, or the path of a YAML file. A task's name, "carry" or "Carry", stands for the
+            configuration that learns it from nothing, "carry_scratch".
         overrides: Values by dotted key ("ppo.gamma") that replace the file's.
 
     Raises:
@@ -33,7 +35,7 @@ def load(which: str | os.PathLike[str], overrides: Mapping[str, Any] | None = No
         ValueError: The name is unknown, or a key or value is wrong; the message names the file or option,
             the key, and what is valid.
     """
-    found = yaml_model.read_model(file_name(which, _FOLDER), Training, _FOLDER, "training configuration")
+    found = yaml_model.read_model(file_name(which, _FOLDER, OWN), Training, _FOLDER, "training configuration")
     return changed(found, overrides or {})
 
 
@@ -46,10 +48,16 @@ def changed(training: Training, overrides: Mapping[str, Any], source: str = "com
         source: Where they come from, for the message of an error.
 
     Raises:
-        ValueError: A key or value is wrong.
+        ValueError: A key or value is wrong, or estimates are asked for where no estimator runs.
     """
     values = with_values(training.model_dump(exclude_unset=True), overrides)
-    return checked(values, source if overrides else training.task)
+    found = checked(values, source if overrides else training.task)
+    if overrides.get("environment.friction_source") == "estimated" and found.environment.estimator is None:
+        raise ValueError(
+            f"{source}: friction_source 'estimated' needs an estimator, and environment.estimator is null; "
+            "--set environment.estimator=adaptive runs one"
+        )
+    return found
 
 
 def with_values(values: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:

@@ -31,10 +31,9 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
     """
     for seed in seeds:
         numbers.training(seed)
-    given = sources or [config.environment.friction_source]
     conditions = [
-        changed(config, {"environment.friction_source": source}, "--friction-source") for source in given
-    ]
+        changed(config, {"environment.friction_source": source}, "--friction-source") for source in sources
+    ] or [config]
     path = stamped(output, f"{find(config.task).key}__{config.algorithm}")
     for condition in conditions:
         for seed in seeds:
@@ -72,10 +71,12 @@ def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -
 
 
 def _best(run: Path, row: Mapping[str, Any]) -> str:
-    """The best evaluation; a residual policy is its controller before any learning."""
+    """The best evaluation; that at step 0 is of the controller or policy that the run started from."""
     said = f"solved {row['success']:.0%} of the held-out episodes at step {row['steps']}"
-    untrained = row["steps"] == 0 and folder.order(run)[0].residual is not None
-    return f"{said}, as its controller does without learning" if untrained else said
+    config, _ = folder.order(run)
+    given = config.algorithm == "privileged_ppo" and config.privileged_ppo.start
+    kind = "controller" if config.residual else "policy" if given else None
+    return said if row["steps"] or kind is None else f"{said}: the {kind} that it started from solves as many"
 
 
 def _time(result: Mapping[str, Any]) -> str:

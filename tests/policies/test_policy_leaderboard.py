@@ -1,5 +1,8 @@
 """The leaderboard of policies: outcomes, entries, table and picture."""
 
+import json
+import shutil
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,7 +10,8 @@ from typer.testing import CliRunner
 
 from policies.commands.policy_leaderboard import app
 from policies.evaluation.plots.style import styled
-from policies.policy_leaderboard.entries import best_constant, constant, entered, further, opponents
+from policies.learned import pretrained
+from policies.policy_leaderboard.entries import best_constant, constant, entered, further, learned, opponents
 from policies.policy_leaderboard.folder import plot_policies, write
 from policies.policy_leaderboard.run import COLUMNS, ROWS, by_level, episodes_of, outcomes
 
@@ -60,6 +64,24 @@ def test_opponents_and_entries():
     assert mine.arguments["observation_mode"] == "deviations"
     with pytest.raises(FileNotFoundError, match="no policy at 'nowhere'"):
         entered(["nowhere"], "true")
+
+
+def test_policies_that_come_with_slipgym_are_named_by_what_they_learned_with(monkeypatch, tmp_path):
+    assert "learned from nothing, true" in [member.name for member in learned("hinge")]
+    for name, source in (("hold_scratch", "true"), ("hold_memory", "estimated"), ("hold_lab", None)):
+        shutil.copytree(pretrained.folders()["carry_scratch"], tmp_path / name)
+        file = tmp_path / name / "policy.json"
+        values = json.loads(file.read_text())
+        del values["environment"]["arguments"]["friction_source"]
+        values["environment"]["arguments"] |= {"friction_source": source} if source else {}
+        file.write_text(json.dumps(values))
+    monkeypatch.setattr(pretrained, "FOLDER", tmp_path)
+    assert {member.name: member.arguments["friction_source"] for member in learned("hold")} == {
+        "learned from nothing, true": "true",
+        "recurrent, estimated": "estimated",
+        "recurrent, trained on lab, estimated": "estimated",
+    }
+    assert learned("carry") == []
 
 
 def test_a_folder_has_table_and_picture(tmp_path):

@@ -26,7 +26,7 @@ def test_a_training_run_lists_what_learns(tmp_path):
     pytest.importorskip("stable_baselines3")
     from policies.training import files, folder
 
-    folder.begin(tmp_path / "run", files.load("linear_slip"), 0)
+    folder.begin(tmp_path / "run", files.load("linear_slip_plain"), 0)
     found = json.loads((tmp_path / "run" / "versions.json").read_text())
     for package in ("torch", "stable-baselines3", "sb3-contrib"):
         assert found[package] == importlib.metadata.version(package)

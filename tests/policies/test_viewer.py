@@ -241,9 +241,9 @@ def test_recordings_are_numbered_and_have_watching_time(session, tmp_path):
 
 
 def test_policies_on_offer_fit_the_task():
-    offered = policies_for(find("linear_slip"))
-    assert {"linear_slip", "constant_force", "linear_slip_estimated"} <= set(offered)
-    assert not {"hinge", "rotational_slip_estimated"} & set(offered)
+    offered = policies_for(find("hinge"))
+    assert {"hinge", "constant_force", "hinge_scratch"} <= set(offered)
+    assert not {"linear_slip", "rotational_slip_scratch"} & set(offered)
 
 
 def test_without_viser_the_extra_is_named(monkeypatch):

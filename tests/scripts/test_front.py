@@ -95,6 +95,6 @@ def test_options_take_several_values():
 
 def test_export_without_onnx_names_the_extra(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "policies.learned.onnx_graph", None)
-    done = slip("export-policy", "linear_slip_true", "--onnx", tmp_path / "policy.onnx")
+    done = slip("export-policy", "hold_scratch", "--onnx", tmp_path / "policy.onnx")
     assert done.exit_code == 2
     assert "slipgym[onnx]" in done.output

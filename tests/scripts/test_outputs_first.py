@@ -35,7 +35,7 @@ COMMANDS = {
     ),
     "export-policy": (
         export_policy,
-        ["hold_estimated", "--onnx", "{}/p.onnx"],
+        ["hold_scratch", "--onnx", "{}/p.onnx"],
         "policies.learned.onnx_graph.graph_of",
     ),
     "import-policy": (

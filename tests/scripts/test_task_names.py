@@ -43,19 +43,6 @@ def test_study(name):
 
 
 @spelled
-def test_compare_learned(name, monkeypatch):
-    from lab import compare_learned
-
-    seen = []
-    monkeypatch.setattr(compare_learned, "best_force", lambda experiment, progress: 5.0)
-    monkeypatch.setattr(
-        compare_learned, "run_trials", lambda experiment, *_: seen.append(experiment.task) or []
-    )
-    compare_learned.trials_of(name, 2)
-    assert set(seen) == {"Hold"}
-
-
-@spelled
 def test_play_and_record(name, tmp_path, called):
     assert "held" not in called("play", name, "--video", tmp_path / "a.gif", *SHORT)
     assert (tmp_path / "a.gif").exists()
@@ -81,9 +68,7 @@ def test_settings_of_the_environment_add_up(invoke):
     assert "wrong" in done.output
 
 
-@pytest.mark.parametrize(
-    "name", ["train", "evaluate", "play", "record", "study", "compare_learned", "compare_engines"]
-)
+@pytest.mark.parametrize("name", ["train", "evaluate", "play", "record", "study", "compare_engines"])
 def test_help_shows_the_canonical_name(name, called):
     text = " ".join(called(name, "--help").split())
     assert "linear_slip" in text

@@ -51,9 +51,10 @@ def test_parts_of_a_sample(monkeypatch, small):
     assert 0.0 < figures["test, evaluation"] * config.evaluation.every / (3 * 16 * 4) < available - of_updates
 
 
-@pytest.mark.parametrize(("env_id", "name"), [(LINEAR, "linear_slip_plain"), ("slipgym/Hold-v0", "hold")])
-def test_the_configuration_of_a_task(env_id, name):
-    assert sample_cost.configuration(env_id) == name
+def test_the_configuration_of_a_task():
+    assert sample_cost.configuration(LINEAR) == "linear_slip_plain"
+    with pytest.raises(ValueError, match=r"'hold_plain'.*linear_slip_plain"):
+        sample_cost.configuration("slipgym/Hold-v0")
 
 
 @pytest.mark.slow

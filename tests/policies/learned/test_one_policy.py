@@ -69,7 +69,7 @@ def test_mistakes_are_explained(policy_folder, arguments, message):
 
 
 @pytest.mark.parametrize("name", pretrained.folders())
-@pytest.mark.quick_cases("hold_estimated", "linear_slip_none", "planar_slip_true")
+@pytest.mark.quick_cases("hold_scratch", "carry_scratch")
 def test_what_comes_with_slipgym_acts_in_the_environment_of_its_training(name):
     (outcome,) = episodes(name, 1)
     assert outcome.time > 0.0

@@ -89,6 +89,18 @@ def test_learned_policies_by_task_source_and_seed(small, shelf):
     assert "no policy of kind learned for estimated;" in notice
 
 
+@pytest.mark.parametrize(
+    ("sensors", "untold"), [("realistic", "linear_slip_memory"), ("lab", "linear_slip_lab")]
+)
+def test_learned_policies_that_come_with_slipgym(small, shelf, sensors, untold):
+    folder = shelf("linear_slip_scratch", "linear_slip_memory", "linear_slip_lab", "hold_scratch")
+    found = policies_of(small(learned=folder, sensors=sensors))
+    assert {source: [path.name for path in paths.values()] for (_, _, source), paths in found.items()} == {
+        "true": ["linear_slip_scratch"],
+        "none": [untold],
+    }
+
+
 def test_learned_policies_as_training_left_them(small, shelf):
     runs = [
         f"linear_slip__ppo__20260101/{source}__{seed}/policy"

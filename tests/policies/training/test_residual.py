@@ -1,14 +1,17 @@
 """A learner that changes a controller's actions."""
 
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 pytest.importorskip("stable_baselines3")
 import policies
 from policies.learned import LearnedPolicy
-from policies.training import folder, run, vector
+from policies.training import files, folder, run, vector
 from policies.training import model as learners
 
 RESIDUAL = {"controller": "linear_slip_continuous", "reach": 0.2}
@@ -120,6 +123,14 @@ def test_a_crafted_file_is_refused(small, tmp_path, monkeypatch):
     )
     with pytest.raises(ValueError, match="had 2 numbers in training, in this version of slipgym it has 5"):
         policies.load(file.parent)
+
+
+def test_the_example_of_the_page_is_a_configuration():
+    page = (Path(__file__).parents[3] / "docs" / "training.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```yaml\n(.*?residual.*?)```", page, re.DOTALL)
+    config = files.checked(yaml.safe_load(example), "docs/training.md")
+    assert config.residual is not None
+    assert files.checked(yaml.safe_load(files.text(config)), "again") == config
 
 
 def test_what_does_not_fit_is_refused(small):

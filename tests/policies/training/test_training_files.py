@@ -9,8 +9,17 @@ from slipgym.tasks import TASKS
 @pytest.mark.parametrize("name", files.names())
 def test_every_configuration_loads_and_is_written_as_it_was_read(name):
     training = files.load(name)
-    assert command.chosen(None, {"task": training.task}, []) == files.load(TASKS[training.task].key)
+    assert command.chosen(None, {"task": training.task}, []).task == training.task
     assert files.checked(yaml.safe_load(files.text(training)), name) == training
+
+
+@pytest.mark.parametrize("task", TASKS.values(), ids=lambda task: task.key)
+def test_a_tasks_name_stands_for_learning_it_from_nothing(task):
+    own = files.load(f"{task.key}_scratch")
+    for name in (task.key, task.name, task.id):
+        assert files.load(name) == command.chosen(None, {"task": name}, []) == own
+    with pytest.raises(ValueError, match=rf"configuration '{task.key}_nothing'.*carry_scratch"):
+        files.load(f"{task.key}_nothing")
 
 
 def test_every_sweep_tries_keys_that_exist():
@@ -65,7 +74,19 @@ def test_assignments_win_over_options_and_both_over_the_file():
     options = {"task": "LinearSlip", "budget": 1000, "algorithm": None}
     chosen = command.chosen(None, options, ["budget=2000", "ppo.learning_rate=1e-3", "ppo.net_arch=[8]"])
     assert (chosen.budget, chosen.ppo.learning_rate, chosen.ppo.net_arch) == (2000, 1e-3, (8,))
-    assert chosen.ppo.n_steps == files.load("linear_slip").ppo.n_steps
+    assert chosen.ppo.n_steps == files.load("linear_slip_scratch").ppo.n_steps
+
+
+def test_estimates_need_an_estimator(tmp_path):
+    pytest.importorskip("stable_baselines3")
+    with pytest.raises(ValueError, match=r"--friction-source: .*'estimated' needs an estimator"):
+        command.begun(files.load("carry"), [], ["true", "estimated"], 0, tmp_path, 1, "")
+    assert not list(tmp_path.iterdir())
+    wanted = ["environment.friction_source=estimated"]
+    with pytest.raises(ValueError, match=r"environment\.estimator=adaptive runs one"):
+        command.chosen("carry", {}, wanted)
+    told = command.chosen("carry", {}, [*wanted, "environment.estimator=adaptive"])
+    assert (told.environment.friction_source, told.environment.estimator) == ("estimated", "adaptive")
 
 
 def test_no_training_seed_is_held_out():

@@ -114,6 +114,26 @@ def test_a_stopping_rule_that_is_met_before_learning_warns(small, tmp_path, monk
     assert text.endswith("nothing was learned")
 
 
+@pytest.mark.parametrize(
+    ("changes", "kind"),
+    [
+        ({"residual": {"controller": "linear_slip", "reach": 0.1}}, "controller"),
+        ({"algorithm": "privileged_ppo", "privileged_ppo.start": "given/policy"}, "policy"),
+        ({"privileged_ppo.start": "given/policy"}, None),  # of a learner that does not run
+        ({}, None),
+    ],
+)
+@pytest.mark.parametrize("steps", [0, 96])
+def test_a_run_that_is_best_before_learning_says_what_solves_as_many(small, tmp_path, changes, kind, steps):
+    path = run_set.begin(files.changed(small(), changes), [0], [], tmp_path)
+    best = {"steps": steps, "success": 0.95}
+    (place,) = folder.runs(path)
+    folder.write_result(place, {"ended": "budget", "steps": 96, "seconds": 1.0, "best": best})
+    started = f": the {kind} that it started from solves as many" if kind and not steps else ""
+    said = f"solved 95% of the held-out episodes at step {steps}{started}; ended by budget"
+    assert said in run_set.train_all(path, progress=False)
+
+
 def test_seeds_and_sources_run_side_by_side(small, tmp_path):
     path = run_set.begin(small(budget=32), [0, 1], ["true", "none"], tmp_path)
     text = run_set.train_all(path, jobs=1, progress=False)
