@@ -16,6 +16,7 @@ Examples:\n
   slipgym policy-leaderboard rotational_slip --level hard --sensors lab --without scale
   slipgym policy-leaderboard hold --policy grips:Catch
   slipgym policy-leaderboard hold --engine bullet --episodes 50
+  slipgym policy-leaderboard hold --level hard --worlds
 \n
 docs/policy_leaderboard.md explains the table and how to enter a policy.
 """
@@ -45,6 +46,10 @@ def main(
     imitation: Annotated[
         Path | None, typer.Option(help="Folder of the runs of slipgym imitate.", show_default=False)
     ] = None,
+    worlds: Annotated[
+        bool,
+        typer.Option("--worlds", help="Instead: each policy in other worlds, such as PyBullet."),
+    ] = False,
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
 ) -> None:
     """Print a table of policies by success, and write it with a picture."""
@@ -53,8 +58,9 @@ def main(
     from policies.leaderboard.one_imperfection import without as lacking
     from policies.leaderboard.tables import markdown
     from policies.policy_leaderboard.entries import entered, opponents
-    from policies.policy_leaderboard.folder import write
+    from policies.policy_leaderboard.folder import write, write_table
     from policies.policy_leaderboard.run import by_level, outcomes
+    from policies.policy_leaderboard.worlds import generalisation
     from slipgym.atomic_io import check_folder
     from slipgym.config.level import level_names
     from slipgym.envs.arguments import ENGINES, FRICTION_SOURCES, one_of
@@ -75,11 +81,18 @@ def main(
         for task in tasks or TASKS:
             for name in level or level_names(find(task).key):
                 others = opponents(task, {**arguments, "level": name}, max(episodes // 2, 1), imitation)
+                if worlds:
+                    found.append(generalisation(task, name, [*mine, *others], episodes))
+                    continue
                 found.append(outcomes(task, name, [*mine, *others], episodes, arguments, engine))
                 typer.echo(markdown(found[-1], 1))
     except (ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
     table = pd.concat(found, ignore_index=True)
+    if worlds:
+        folder = write_table(table, output, "worlds")
+        typer.echo(f"Solved [%]:\n\n{markdown(table, 1)}\nLook at:\n  {folder / 'worlds.csv'}")
+        return
     folder = write(table, output)
     typer.echo(f"Solved [%], {episodes} episodes each:\n\n{markdown(by_level(table), 1)}")
     typer.echo(f"Look at:\n  {folder / 'policies.png'}")

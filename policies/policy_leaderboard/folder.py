@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -32,11 +33,19 @@ def write(table: pd.DataFrame, output: Path) -> Path:
     Returns:
         The folder: `policies.csv`, `policies.png`, `versions.json`.
     """
-    place = stamped(output, "policies")
+    return write_table(table, output, "policies", plot_policies)
+
+
+def write_table(
+    table: pd.DataFrame, output: Path, name: str, plot: Callable[[pd.DataFrame], Figure] | None = None
+) -> Path:
+    """Writes a table, its picture if there is one, and `versions.json` into a folder of their own."""
+    place = stamped(output, name)
     with new_folder(place) as folder:
-        table.to_csv(folder / "policies.csv", index=False, float_format="%.3f")
-        with styled():
-            plot_policies(table).savefig(folder / "policies.png", dpi=STYLE.dpi)
+        table.to_csv(folder / f"{name}.csv", index=False, float_format="%.3f")
+        if plot is not None:
+            with styled():
+                plot(table).savefig(folder / f"{name}.png", dpi=STYLE.dpi)
         write_versions(folder)
     return place
 

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from policies.commands.policy_leaderboard import app
 from policies.evaluation.plots.style import styled
 from policies.learned import pretrained
+from policies.policy_leaderboard import worlds
 from policies.policy_leaderboard.entries import best_constant, constant, entered, further, learned, opponents
 from policies.policy_leaderboard.folder import plot_policies, write
 from policies.policy_leaderboard.run import COLUMNS, ROWS, by_level, episodes_of, outcomes
@@ -116,3 +117,16 @@ def test_wrong_arguments_are_named(arguments, said, tmp_path):
     assert result.exit_code == 2
     assert said in result.output
     assert not list(tmp_path.iterdir())
+
+
+def test_a_policy_plays_in_other_worlds(monkeypatch):
+    chosen = [world for world in worlds.WORLDS if world.name in ("itself", "train", "bullet")]
+    monkeypatch.setattr(worlds, "WORLDS", tuple(world._replace(share=1.0) for world in chosen))
+    firm, weak = constant(25.0), constant(0.6)
+    table = worlds.generalisation("fragile_hold", "easy", [firm, weak], 3, progress=False)
+    assert list(table.columns) == ["task", "level", "policy", "itself", "train", "bullet"]
+    assert list(table["policy"]) == [firm.name, weak.name]
+    for world in chosen:
+        given = {**world.arguments, "level": "easy"}
+        played = episodes_of("fragile_hold", firm, 3, given, world.engine)
+        assert table.loc[0, world.name] == pytest.approx(100.0 * played.success.mean())
