@@ -108,7 +108,12 @@ class TrainingCallback(BaseCallback):
         for name, value in asdict(row).items():
             self.logger.record(f"evaluation/{name}", value)
         self.logger.dump(row.steps)
-        self._bar.set_postfix({"success": f"{row.success:.0%}", "drops": f"{row.drops:.0%}"})
+        shown = {"success": f"{row.success:.0%}", "drops": f"{row.drops:.0%}"}
+        if self._config.algorithm == "privileged_ppo" and (
+            stages := len(self._config.privileged_ppo.curriculum.stages)
+        ):
+            shown["stage"] = f"{self.model.stage + 1} of {stages + 1}"  # type: ignore[attr-defined]
+        self._bar.set_postfix(shown)
         stop = self._config.stop
         last = self.curve[-stop.evaluations :]
         reached = [stop.success is not None and one.success >= stop.success for one in last]

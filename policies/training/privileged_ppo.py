@@ -179,8 +179,12 @@ class PrivilegedPPO:
         for group in self.ppo.optimizer.param_groups:
             group["lr"] = rate
         self.ppo.actor.requires_grad_(self._updates >= chosen.critic_first)
-        self.ppo.update()
+        losses = self.ppo.update()
         self._updates += 1
+        if self.logger is not None:
+            solved = float(np.mean(self._solved)) if self._solved else 0.0
+            for name, value in {**losses, "solved": solved, "stage": self.stage, "learning_rate": rate}.items():
+                self.logger.record_mean(f"train/{name}", value)
 
     def _go_on(self) -> None:
         """Begins the next stage of the curriculum if enough of the last episodes were solved."""

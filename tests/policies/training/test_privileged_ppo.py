@@ -163,3 +163,11 @@ def test_the_configurations_from_nothing_are_read():
     assert len(found) == 9
     for name in found:
         assert files.load(name).algorithm == "privileged_ppo"
+
+
+def test_losses_and_what_training_solves_are_recorded(trained):
+    accumulator = pytest.importorskip("tensorboard.backend.event_processing.event_accumulator")
+    events = accumulator.EventAccumulator(str(trained[1] / "tensorboard"))
+    events.Reload()
+    wanted = {f"train/{name}" for name in ("value", "surrogate", "entropy", "solved", "stage")}
+    assert wanted <= set(events.Tags()["scalars"])
