@@ -13,12 +13,14 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.vec_env import DummyVecEnv, VecEnv, VecMonitor
 
 from lab.benchmarking.measure import ACTIONS
-from lab.benchmarking.sample_cost import configuration, sample_cost
+from lab.benchmarking.sample_cost import sample_cost
 from lab.benchmarking.stopwatches import Stopwatches
 from lab.benchmarking.timing import Block, compare
+from policies.training import files
 from policies.training.adapter import make_vec_env
 from slipgym.benchmarking import report
 from slipgym.benchmarking.report import Figure
+from slipgym.tasks import find
 
 LIBRARIES = ("stable-baselines3", "torch")
 BATCH, SCALAR = 256, 8
@@ -29,6 +31,15 @@ SIZES = 256, 4096
 """Batches whose steps are taken apart."""
 STEPS = 1000
 """As many: more than an episode has, so that every environment ends some."""
+RECURRENT = {
+    "num_envs": 256,
+    "environment.friction_source": "none",
+    "privileged_ppo.memory": 64,
+    "privileged_ppo.n_steps": 64,
+    "privileged_ppo.n_epochs": 3,
+    "privileged_ppo.n_minibatches": 4,
+}
+"""What "<task>_memory" changes of "<task>_scratch": with it the cost is that of a recurrent learner."""
 
 
 def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
@@ -45,7 +56,11 @@ def benchmark(env_id: str, pairs: int, json: Path | None = None) -> None:
     figures = learning(env_id, max(2, pairs // 50))
     for size in SIZES:
         figures += shares(env_id, size, STEPS)
-    figures += sample_cost(configuration(env_id), max(2, pairs // 20))
+    key, updates = find(env_id).key, max(2, pairs // 20)
+    if f"{key}_plain" in files.names():
+        figures += sample_cost(f"{key}_plain", updates)
+    figures += sample_cost(f"{key}_scratch", updates)
+    figures += sample_cost(f"{key}_scratch", updates, RECURRENT, f"{key}_scratch with a memory")
     report.publish(figures, json, *LIBRARIES)
 
 

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from time import process_time
 from typing import Any
 
 import torch
+from stable_baselines3.common.callbacks import CallbackList
 from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
 
 from lab.benchmarking.stopwatches import Stopwatches
 from policies.training import evaluate, files, seeds, vector
 from policies.training import model as learners
 from policies.training.adapter import SlipVecEnv
-from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv
+from policies.training.privileged_ppo import PrivilegedPPO
 from policies.training.residual import ResidualVecEnv
 from slipgym.benchmarking.report import Figure
-from slipgym.config.errors import unknown
-from slipgym.tasks import find
 
 _WRAPPERS: dict[type, str] = {
     SlipVecEnv: "adapter",
@@ -30,57 +29,57 @@ _WRAPPERS: dict[type, str] = {
 """Label of each layer around the vector environment."""
 
 
-def configuration(env_id: str) -> str:
-    """The configuration of an environment's task that trains with Stable-Baselines3's PPO.
-
-    Raises:
-        ValueError: The task has none.
-    """
-    name = f"{find(env_id).key}_plain"
-    if name not in files.names():
-        raise ValueError(unknown("training configuration", name, files.names()))
-    return name
-
-
-def sample_cost(name: str, updates: int) -> list[Figure]:
-    """CPU time per sample of a configuration with PPO on the batch, by part.
+def sample_cost(
+    name: str, updates: int, changes: Mapping[str, Any] | None = None, label: str = ""
+) -> list[Figure]:
+    """CPU time per sample of a configuration on the batch, by part.
 
     The first update is not measured. An evaluation is measured once; its time is divided by the samples
     between two evaluations.
 
     Args:
-        name: Of the configuration.
+        name: Of the configuration; its algorithm is "ppo" or "privileged_ppo".
         updates: Rollouts and updates that are measured.
+        changes: Of the configuration, by dotted keys.
+        label: What the figures are called; the name by default.
 
     Returns:
         CPU time per sample [µs]: that of each part, then the sum.
     """
-    config = files.load(name, {})
+    config = files.load(name, dict(changes or {}))
     first = seeds.training(0)
-    training = vector.make(config, first, shaped=True)
     held_out = vector.make(config, seeds.held_out(0), min(config.num_envs, config.evaluation.episodes))
-    model: Any = learners.make(config, learners.normalised(config, training), first)
-    rollout = model.n_steps * config.num_envs
-    model.learn(rollout)
+    model: Any = learners.begin(config, first)
+    rollout, idle = config.hyperparameters.n_steps * config.num_envs, CallbackList([])
+    model.learn(rollout, idle)
     samples = updates * rollout
     with Stopwatches(clock=process_time) as watches:
-        _watch(watches, model)
-        model.learn(samples, reset_num_timesteps=False)
-    spent = {label: seconds / samples for label, seconds in watches.spent.items()}
-    spent["evaluation"] = _evaluation(config, model, held_out) / config.evaluation.every
-    training.close()
+        _watch_layers(watches, model.get_env())
+        (_watch_privileged if isinstance(model, PrivilegedPPO) else _watch)(watches, model)
+        model.learn(samples, idle, reset_num_timesteps=False)
+    spent = {part: seconds / samples for part, seconds in watches.spent.items()}
+    evaluate.evaluate(config, model, held_out)  # the first one also prepares its options
+    start = process_time()
+    evaluate.evaluate(config, model, held_out)
+    spent["evaluation"] = (process_time() - start) / config.evaluation.every
+    model.get_env().close()
     held_out.close()
     spent["sum"] = sum(spent.values())
-    return [Figure(f"{name}, {label}", 1e6 * seconds, "us") for label, seconds in spent.items()]
+    return [Figure(f"{label or name}, {part}", 1e6 * seconds, "us") for part, seconds in spent.items()]
+
+
+def _watch_layers(watches: Stopwatches, envs: Any) -> None:
+    """Time each layer of a stack of environments."""
+    while not isinstance(envs, SlipVecEnv):
+        watches.watch(_WRAPPERS[type(envs)], envs, "step_wait")
+        envs = envs.venv
+    watches.watch(_WRAPPERS[SlipVecEnv], envs, "step_wait")
+    watches.watch("environments", envs.env, "step")
+    watches.watch("resets", envs.env, "reset")
 
 
 def _watch(watches: Stopwatches, model: Any) -> None:
-    """Time the parts of `model.learn`."""
-    for layer in _layers(model.get_env()):
-        watches.watch(_WRAPPERS[type(layer)], layer, "step_wait")
-        if isinstance(layer, SlipVecEnv):
-            watches.watch("environments", layer.env, "step")
-            watches.watch("resets", layer.env, "reset")
+    """Time the parts of `learn` of Stable-Baselines3's PPO."""
     policy, buffer = model.policy, model.rollout_buffer
     watches.watch("policy in rollouts", policy, "forward")
     watches.watch("policy in rollouts", policy, "predict_values")
@@ -96,17 +95,9 @@ def _watch(watches: Stopwatches, model: Any) -> None:
     watches.watch("losses and loops of the learner", model, "learn")
 
 
-def _layers(envs: Any) -> Iterator[Any]:
-    """A stack of environments, from the outermost layer to the adapter."""
-    while not isinstance(envs, SlipVecEnv):
-        yield envs
-        envs = envs.venv
-    yield envs
-
-
-def _evaluation(config: Training, model: Any, envs: Any) -> float:
-    """CPU time of an evaluation [s]; the second one, since the first one also prepares its options."""
-    evaluate.evaluate(config, model, envs)
-    start = process_time()
-    evaluate.evaluate(config, model, envs)
-    return process_time() - start
+def _watch_privileged(watches: Stopwatches, model: Any) -> None:
+    """Time the parts of `learn` of `privileged_ppo`."""
+    watches.watch("normalisation", model, "_observed")
+    watches.watch("actor and critic in rollouts", model.ppo, "act")
+    watches.watch("update", model.ppo, "update")
+    watches.watch("loops of the learner", model, "learn")

@@ -115,8 +115,10 @@ class SlipVecEnv(VecEnv):
                 last, final = observations, infos
                 observations, infos = self._begin(dones)
             splits = _split(final, ended), _split(infos, ended)
+            grouped = isinstance(last, dict)
             for i, info, start in zip(ended.tolist(), *splits, strict=True):
-                info["terminal_observation"] = last[i]
+                shown = {name: group[i] for name, group in last.items()} if grouped else last[i]
+                info["terminal_observation"] = shown
                 info["TimeLimit.truncated"] = cut.item(i) and not info["finished"]
                 returned[i], self.reset_infos[i] = info, start
         return observations, rewards.astype(np.float32), dones, returned

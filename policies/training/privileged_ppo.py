@@ -183,7 +183,12 @@ class PrivilegedPPO:
         self._updates += 1
         if self.logger is not None:
             solved = float(np.mean(self._solved)) if self._solved else 0.0
-            for name, value in {**losses, "solved": solved, "stage": self.stage, "learning_rate": rate}.items():
+            for name, value in {
+                **losses,
+                "solved": solved,
+                "stage": self.stage,
+                "learning_rate": rate,
+            }.items():
                 self.logger.record_mean(f"train/{name}", value)
 
     def _go_on(self) -> None:

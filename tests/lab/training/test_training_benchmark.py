@@ -31,30 +31,29 @@ def test_ppo_in_both():
     assert min(figures.values()) > 0.0
 
 
-def test_parts_of_a_sample(monkeypatch, small):
-    config = small(
-        num_envs=4,
-        residual={"controller": "linear_slip", "reach": 0.2},
-        vary={"distance": [0.02, 0.03]},
-    )
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        (
+            {"residual": {"controller": "linear_slip", "reach": 0.2}},
+            {"controller", "policy in rollouts", "forward pass", "backward pass", "optimiser"},
+        ),
+        ({"algorithm": "privileged_ppo"}, {"actor and critic in rollouts", "update"}),
+    ],
+)
+def test_parts_of_a_sample(monkeypatch, small, changes, named):
+    config = small(num_envs=4, vary={"distance": [0.02, 0.03]}, **changes)
     monkeypatch.setattr(sample_cost.files, "load", lambda name, changes: config)
     start = process_time()
     figures = {figure.name: figure.value for figure in sample_cost.sample_cost("test", 3)}
     available = 1e6 * (process_time() - start) / (3 * 16 * 4)  # per sample of the measured updates
     total = figures.pop("test, sum")
     parts = {name.removeprefix("test, ") for name in figures}
-    assert {"environments", "adapter", "monitor", "controller", "normalisation"} <= parts
-    assert {"policy in rollouts", "forward pass", "backward pass", "optimiser", "evaluation"} <= parts
+    assert {"environments", "adapter", "monitor", "normalisation", "evaluation"} | named <= parts
     assert total == pytest.approx(sum(figures.values()))
     of_updates = total - figures["test, evaluation"]  # an evaluation is divided by other samples
     assert 0.0 < of_updates < available
     assert 0.0 < figures["test, evaluation"] * config.evaluation.every / (3 * 16 * 4) < available - of_updates
-
-
-def test_the_configuration_of_a_task():
-    assert sample_cost.configuration(LINEAR) == "linear_slip_plain"
-    with pytest.raises(ValueError, match=r"'hold_plain'.*linear_slip_plain"):
-        sample_cost.configuration("slipgym/Hold-v0")
 
 
 @pytest.mark.slow

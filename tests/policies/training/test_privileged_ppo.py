@@ -171,3 +171,8 @@ def test_losses_and_what_training_solves_are_recorded(trained):
     events.Reload()
     wanted = {f"train/{name}" for name in ("value", "surrogate", "entropy", "solved", "stage")}
     assert wanted <= set(events.Tags()["scalars"])
+
+
+def test_options_of_reset_vary_in_training(small, tmp_path):
+    folder.begin(tmp_path / "run", small(algorithm="privileged_ppo", vary={"distance": [0.02, 0.03]}), 0)
+    assert run.train(tmp_path / "run", progress=False)["ended"] == "budget"
