@@ -37,6 +37,8 @@ class Run(NamedTuple):
     """The folder of its policy."""
     start: str | None
     """The folder of the policy that it began as."""
+    cpu_seconds: float | None
+    """Time of the processor that it took; None: not known [s]."""
 
     @property
     def command(self) -> str:
@@ -95,7 +97,8 @@ def _best(seeds: Sequence[Run]) -> Run:
 
 def _finished(path: Path, name: str | None) -> Run:
     config, seed = folder.order(path)
-    if folder.result(path) is None:
+    result = folder.result(path)
+    if result is None:
         raise ValueError(f"{path} is not finished")
     name = name or find(config.task).key + files.OWN
     start = config.privileged_ppo.start
@@ -106,7 +109,16 @@ def _finished(path: Path, name: str | None) -> Run:
             f"{path} was not trained as configs/training/{name}.yaml says: {', '.join(other)} differ"
         )
     source, episodes = config.environment.friction_source, config.evaluation.episodes
-    return Run(name, source, seed, folder.read_curve(path), episodes, path / export.POLICY, start)
+    return Run(
+        name,
+        source,
+        seed,
+        folder.read_curve(path),
+        episodes,
+        path / export.POLICY,
+        start,
+        result.get("cpu_seconds"),
+    )
 
 
 def _put(run: Run, target: Path) -> Path:
@@ -114,6 +126,7 @@ def _put(run: Run, target: Path) -> Path:
     description, weights = policy_files.read(run.policy)
     values = description.model_dump(mode="json", exclude={"format", "files"})
     values["origin"] |= {"command": run.command, "steps": run.best.steps, "critic": None}
+    values["origin"]["cpu_seconds"] = run.cpu_seconds and round(run.cpu_seconds, 1)
     del values["origin"]["versions"]["platform"]  # of the machine that trained it
     path = target / run.name
     if path.exists():

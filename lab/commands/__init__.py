@@ -2,6 +2,7 @@
 
 COMMANDS = {
     "benchmark-parts": "Measure what the parts of a step and a first use cost.",
+    "cards": "Print what each learned policy solves, and where.",
     "closed-loop": "Rank the estimators in the loop of a controller.",
     "compare-engines": "Compare the planar engine with PyBullet.",
     "compare-estimators": "Compare the estimators on recorded episodes.",

@@ -160,6 +160,9 @@ class Origin(Frozen):
         description="Seeds of the training [-]"
     )
     versions: Mapping[str, str | None] = Field(description="Versions of what trained it [-]")
+    cpu_seconds: float | None = Field(
+        default=None, ge=0.0, description="Time of the processor that its run took; null: not known [s]"
+    )
     critic: Critic | None = Field(default=None, description="With `training.safetensors` only [-]")
 
 

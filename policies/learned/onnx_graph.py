@@ -83,7 +83,9 @@ def graph_of(description: Description, tensors: dict[str, np.ndarray]) -> onnx.M
         ir_version=IR_VERSION,
         producer_name="slipgym",
     )
-    helper.set_model_props(model, {"policy": json.dumps(description.model_dump(mode="json"))})
+    helper.set_model_props(
+        model, {"policy": json.dumps(description.model_dump(mode="json", exclude_unset=True))}
+    )
     return model
 
 
