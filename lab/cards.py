@@ -1,4 +1,4 @@
-"""Says of each policy that comes with slipgym what it was told, what it took and what it solves where."""
+"""Prints what each policy that comes with slipgym is given of friction, what it took, what it solves."""
 
 from __future__ import annotations
 
@@ -35,15 +35,15 @@ def cards(names: Sequence[str], episodes: int, progress: bool = True) -> pd.Data
         policy = LearnedPolicy(pretrained.locate(name))
         where, origin = policy.description.environment, policy.description.origin
         task, level = find(where.id).name, where.arguments["level"]
-        told = where.arguments["friction_source"]
-        member = Member(name, policy, {"friction_source": told, **policy.modes})
+        source = where.arguments["friction_source"]
+        member = Member(name, policy, {"friction_source": source, **policy.modes})
         easy = episodes_of(task, member, episodes, {"level": "easy"})
         own = episodes_of(task, member, episodes, {"level": level})
         worlds = generalisation(task, level, [member], episodes, progress=False).iloc[0]
         cost = {"million steps": 1e-6 * origin.steps, "CPU [s]": origin.cpu_seconds}
         solved = {"easy": 100.0 * easy.success.mean(), level: worlds["itself"]}
         rows.append(
-            {"policy": name, "told": told, **cost, **solved}
+            {"policy": name, "friction": source, **cost, **solved}
             | {world: worlds[world] for world in list(worlds.index)[4:]}
             | {"dropped": 100.0 * own.dropped.mean()}
         )

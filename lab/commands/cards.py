@@ -4,10 +4,18 @@ from typing import Annotated
 
 import typer
 
+EPILOG = """
+Examples:\n
+\b
+  slipgym cards
+  slipgym cards hinge_memory --episodes 100
+\n
+docs/learned.md shows the table.
+"""
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command()
+@app.command(epilog=EPILOG)
 def main(
     names: Annotated[list[str] | None, typer.Argument(help="Policies; all of them by default.")] = None,
     episodes: Annotated[int, typer.Option(min=1, help="Episodes in each world.")] = 400,
