@@ -60,10 +60,11 @@ def test_every_policy_of_the_page_comes_with_slipgym():
     assert set(re.findall(r"\(learned/(\w+)\.png\)", page)) == set(SHIPPED)
 
 
-@pytest.mark.parametrize("name", [name for name in SHIPPED if name.endswith("_scratch")])
-@pytest.mark.quick_cases("hold_scratch", "carry_scratch")
-def test_it_solves_most_episodes(name):
-    policy, n = policies.load(name), 24
+@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.quick_cases("hold_scratch", "carry_memory")
+def test_it_solves_as_many_episodes_as_its_curve_says(name):
+    """The curve's best point is of 256 episodes and was chosen: some percent too high."""
+    policy, n = policies.load(name), 96
     where = policy.description.environment
     arguments = {**where.arguments, "autoreset_mode": "Disabled"}
     envs = gym.make_vec(f"slipgym:{where.id}", n, "vector_entry_point", **arguments)
@@ -72,13 +73,15 @@ def test_it_solves_most_episodes(name):
     while running.any():
         actions, state = policy.predict(observations, state)
         observations, _, terminated, truncated, infos = envs.step(actions)
-        ended = running & (terminated | truncated)
+        ended = terminated | truncated
         if ended.any():
-            solved |= ended & infos["is_success"]
+            solved |= running & ended & infos["is_success"]
             running &= ~ended
             observations, _ = envs.reset(options={"reset_mask": ended})
     envs.close()
-    assert solved.mean() >= 0.75
+    with (PAGES / f"{name}.csv").open(newline="", encoding="utf-8") as file:
+        said = max(float(row["success"]) for row in csv.DictReader(file))
+    assert solved.mean() >= said - 0.03 - 3.0 * np.sqrt(max(said * (1.0 - said), 0.02) / n)
 
 
 @pytest.mark.parametrize("name", SHIPPED)
