@@ -78,7 +78,7 @@ def test_from_an_episode_to_estimates(tmp_path):
     files = "forces.parquet", "--velocity", "velocities.csv"
     done = call(tmp_path, "record.py", "LinearSlip", "linear_slip", *files, "--finger", "2", *options)
     assert done.returncode == 0, done.stderr
-    done = call(tmp_path, "estimate.py", *files, "--set", "heuristic=false", "--output", "out")
+    done = call(tmp_path, "estimate.py", *files, "--set", "memory=0.5", "--output", "out")
     assert done.returncode == 0, done.stderr
     (run,) = (tmp_path / "out").iterdir()
     assert run.name.startswith("forces__")
