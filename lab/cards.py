@@ -34,12 +34,12 @@ def cards(names: Sequence[str], episodes: int, progress: bool = True) -> pd.Data
     for name in tqdm(names or pretrained.folders(), unit="policy", disable=not progress):
         policy = LearnedPolicy(pretrained.locate(name))
         where, origin = policy.description.environment, policy.description.origin
-        task, level = find(where.id).name, where.arguments["level"]
-        source = where.arguments["friction_source"]
+        task, level = find(where.id).name, str(where.arguments["level"])
+        source = str(where.arguments["friction_source"])
         member = Member(name, policy, {"friction_source": source, **policy.modes})
         easy = episodes_of(task, member, episodes, {"level": "easy"})
         own = episodes_of(task, member, episodes, {"level": level})
-        worlds = generalisation(task, level, [member], episodes, progress=False).iloc[0]
+        worlds = generalisation(task, level, [member], episodes, {}, progress=False).iloc[0]
         cost = {"million steps": 1e-6 * origin.steps, "CPU [s]": origin.cpu_seconds}
         solved = {"easy": 100.0 * easy.success.mean(), level: worlds["itself"]}
         rows.append(

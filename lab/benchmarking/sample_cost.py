@@ -50,7 +50,7 @@ def sample_cost(
     first = seeds.training(0)
     held_out = vector.make(config, seeds.held_out(0), min(config.num_envs, config.evaluation.episodes))
     model: Any = learners.begin(config, first)
-    rollout, idle = config.hyperparameters.n_steps * config.num_envs, CallbackList([])
+    rollout, idle = getattr(config, config.algorithm).n_steps * config.num_envs, CallbackList([])
     model.learn(rollout, idle)
     samples = updates * rollout
     with Stopwatches(clock=process_time) as watches:

@@ -82,7 +82,7 @@ def main(
             for name in level or level_names(find(task).key):
                 others = opponents(task, {**arguments, "level": name}, max(episodes // 2, 1), imitation)
                 if worlds:
-                    found.append(generalisation(task, name, [*mine, *others], episodes))
+                    found.append(generalisation(task, name, [*mine, *others], episodes, arguments))
                     continue
                 found.append(outcomes(task, name, [*mine, *others], episodes, arguments, engine))
                 typer.echo(markdown(found[-1], 1))

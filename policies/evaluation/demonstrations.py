@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from importlib import import_module
 from typing import Any, NamedTuple
 
 from tqdm import tqdm
@@ -44,10 +45,8 @@ def demonstrate(
         FileNotFoundError: There is no such policy.
         ValueError: A name or value is wrong, or the environment is not one the policy can act in.
     """
-    import minari
-    from minari.dataset.minari_dataset import parse_dataset_id
-
-    parse_dataset_id(dataset)
+    minari: Any = import_module("minari")
+    import_module("minari.dataset.minari_dataset").parse_dataset_id(dataset)
     if dataset in minari.list_local_datasets():
         raise FileExistsError(f"there is a dataset {dataset!r}: minari delete {dataset} removes it")
     policy, inner = opened(which, task, changes)

@@ -36,7 +36,12 @@ WORLDS = (
 
 
 def generalisation(
-    task: str, level: str, members: Sequence[Member], episodes: int, progress: bool = True
+    task: str,
+    level: str,
+    members: Sequence[Member],
+    episodes: int,
+    arguments: Mapping[str, Any],
+    progress: bool = True,
 ) -> pd.DataFrame:
     """What each policy solves in each world [%], on the same episodes of a world for all of them.
 
@@ -45,6 +50,7 @@ def generalisation(
         level: Level of difficulty.
         members: The policies.
         episodes: How many in each world, of the slow ones a share.
+        arguments: Further arguments of the environments, which those of a world replace.
         progress: Whether to show a progress bar.
 
     Returns:
@@ -57,7 +63,7 @@ def generalisation(
             for world in WORLDS:
                 bar.set_description(f"{find(task).key}, {world.name}")
                 count = max(round(world.share * episodes), 1)
-                given = {**world.arguments, "level": level}
+                given = {**arguments, **world.arguments, "level": level}
                 played = episodes_of(task, member, count, given, world.engine)
                 row[world.name] = 100.0 * float(played.success.mean())
                 bar.update()

@@ -148,7 +148,7 @@ def fold(
         mean, scale = moments.mean, np.sqrt(moments.var + normalisation.epsilon)
     found = dict(parameters)
     for layer in _FIRST_LAYERS:
-        given = [parameters[f"{layer}.{part}"].detach().numpy() for part in ("weight", "bias")]
-        weight, bias = folded(*given, matrix, mean, scale)
+        weight, bias = (parameters[f"{layer}.{part}"].detach().numpy() for part in ("weight", "bias"))
+        weight, bias = folded(weight, bias, matrix, mean, scale)
         found[f"{layer}.weight"], found[f"{layer}.bias"] = torch.from_numpy(weight), torch.from_numpy(bias)
     return found
