@@ -33,7 +33,7 @@ def demonstrate(
 
     Args:
         which: As `policies.load` takes it.
-        dataset: Name of the dataset, such as "slipgym/hold/controller-v0".
+        dataset: Name of the dataset, such as "hold/controller-v0".
         count: Episodes, at least 1.
         first: Seed of the first one; episode i has the seed `first` + i.
         task: Needed for a controller that serves every task.

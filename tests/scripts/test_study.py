@@ -37,9 +37,10 @@ def test_an_unknown_study_is_refused_by_name(tmp_path, invoke):
 
 
 def test_a_missing_package_names_the_extra_before_anything_runs(tmp_path, invoke, monkeypatch):
-    for name in [name for name in sys.modules if name.startswith("policies.study")]:
+    for name in [name for name in sys.modules if name.startswith(("policies.study", "policies.parallel"))]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.delattr(policies, "study", raising=False)
+    monkeypatch.delattr(policies, "parallel", raising=False)
     monkeypatch.setitem(sys.modules, "joblib", None)
     done = invoke("study", "quick")
     assert done.exit_code == 2
