@@ -95,4 +95,7 @@ def test_the_sums_of_the_scales_are_those_of_the_tasks():
         positive = sum(term.scale for term in dense) - negative
         expected.append(f"| {task.name} | {positive:g} | {negative:g} |")
     page = (DOCS / "rewards.md").read_text(encoding="utf-8")
-    assert [line for line in page.splitlines() if re.match(r"\| [A-Z]\w+ \|", line)] == expected
+    shown = [line for line in page.splitlines() if re.match(r"\| [A-Z]\w+ \|", line)]
+    assert sorted(shown) == sorted(
+        expected
+    )  # other tests register tasks of their own, and one of these again
