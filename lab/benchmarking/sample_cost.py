@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from time import process_time
 from typing import Any
 
@@ -29,9 +28,7 @@ _WRAPPERS: dict[type, str] = {
 """Label of each layer around the vector environment."""
 
 
-def sample_cost(
-    name: str, updates: int, changes: Mapping[str, Any] | None = None, label: str = ""
-) -> list[Figure]:
+def sample_cost(name: str, updates: int) -> list[Figure]:
     """CPU time per sample of a configuration on the batch, by part.
 
     The first update is not measured. An evaluation is measured once; its time is divided by the samples
@@ -40,13 +37,11 @@ def sample_cost(
     Args:
         name: Of the configuration; its algorithm is "ppo" or "privileged_ppo".
         updates: Rollouts and updates that are measured.
-        changes: Of the configuration, by dotted keys.
-        label: What the figures are called; the name by default.
 
     Returns:
         CPU time per sample [µs]: that of each part, then the sum.
     """
-    config = files.load(name, dict(changes or {}))
+    config = files.load(name)
     first = seeds.training(0)
     held_out = vector.make(config, seeds.held_out(0), min(config.num_envs, config.evaluation.episodes))
     model: Any = learners.begin(config, first)
@@ -65,7 +60,7 @@ def sample_cost(
     model.get_env().close()
     held_out.close()
     spent["sum"] = sum(spent.values())
-    return [Figure(f"{label or name}, {part}", 1e6 * seconds, "us") for part, seconds in spent.items()]
+    return [Figure(f"{name}, {part}", 1e6 * seconds, "us") for part, seconds in spent.items()]
 
 
 def _watch_layers(watches: Stopwatches, envs: Any) -> None:

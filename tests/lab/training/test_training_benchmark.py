@@ -43,7 +43,7 @@ def test_ppo_in_both():
 )
 def test_parts_of_a_sample(monkeypatch, small, changes, named):
     config = small(num_envs=4, vary={"distance": [0.02, 0.03]}, **changes)
-    monkeypatch.setattr(sample_cost.files, "load", lambda name, changes: config)
+    monkeypatch.setattr(sample_cost.files, "load", lambda name: config)
     start = process_time()
     figures = {figure.name: figure.value for figure in sample_cost.sample_cost("test", 3)}
     available = 1e6 * (process_time() - start) / (3 * 16 * 4)  # per sample of the measured updates
@@ -66,7 +66,7 @@ def test_the_script_runs(tmp_path):
     found = json.loads(path.read_text())
     names = [figure["name"] for figure in found["figures"]]
     assert len(names) == len(set(names))
-    configurations = {"linear_slip_plain", "linear_slip_scratch", "linear_slip_scratch with a memory"}
+    configurations = {"linear_slip_plain", "linear_slip_scratch", "fragile_hold_memory"}
     assert {f"{name}, sum" for name in configurations} < set(names)
     assert all(name in done.stdout for name in names)
     assert "torch" in found["machine"]
