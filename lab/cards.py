@@ -8,9 +8,9 @@ import pandas as pd
 from tqdm import tqdm
 
 from policies.learned import LearnedPolicy, pretrained
+from policies.policy_leaderboard import worlds
 from policies.policy_leaderboard.entries import Member
-from policies.policy_leaderboard.run import episodes_of
-from policies.policy_leaderboard.worlds import generalisation
+from policies.policy_leaderboard.worlds import play_in
 from slipgym.tasks import find
 
 
@@ -37,14 +37,17 @@ def cards(names: Sequence[str], episodes: int, progress: bool = True) -> pd.Data
         task, level = find(where.id).name, str(where.arguments["level"])
         source = str(where.arguments["friction_source"])
         member = Member(name, policy, {"friction_source": source, **policy.modes})
-        easy = episodes_of(task, member, episodes, {"level": "easy"})
-        own = episodes_of(task, member, episodes, {"level": level})
-        worlds = generalisation(task, level, [member], episodes, {}, progress=False).iloc[0]
-        cost = {"million steps": 1e-6 * origin.steps, "CPU [s]": origin.cpu_seconds}
-        solved = {"easy": 100.0 * easy.success.mean(), level: worlds["itself"]}
+        played = {"easy": play_in(worlds.WORLDS[0], task, "easy", member, episodes, {})}
+        for world in worlds.WORLDS:
+            played[world.name] = play_in(world, task, level, member, episodes, {})
         rows.append(
-            {"policy": name, "friction": source, **cost, **solved}
-            | {world: worlds[world] for world in list(worlds.index)[4:]}
-            | {"dropped": 100.0 * own.dropped.mean()}
+            {
+                "policy": name,
+                "friction": source,
+                "million steps": 1e-6 * origin.steps,
+                "CPU [s]": origin.cpu_seconds,
+                **{where: 100.0 * found.success.mean() for where, found in played.items()},
+                "dropped": 100.0 * played["itself"].dropped.mean(),
+            }
         )
     return pd.DataFrame(rows)

@@ -75,6 +75,8 @@ def main(
     try:
         check_folder(output)
         arguments["config"] = lacking(without or [])
+        if worlds and engine != "planar":
+            raise ValueError(f"--engine {engine}: --worlds plays on both engines")
         engine = resolved(one_of("engine", engine, ENGINES))
         mine = entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
         found = []

@@ -8,8 +8,10 @@ from typing import Any, NamedTuple
 import pandas as pd
 from tqdm import tqdm
 
+from policies.evaluation.play import Played
 from policies.policy_leaderboard.entries import Member
 from policies.policy_leaderboard.run import episodes_of
+from slipgym.envs.engines import resolved
 from slipgym.tasks import find
 
 
@@ -35,6 +37,14 @@ WORLDS = (
 """Columns of the table; PyBullet and the distributed contact are slow."""
 
 
+def play_in(
+    world: World, task: str, level: str, member: Member, episodes: int, arguments: Mapping[str, Any]
+) -> Played:
+    """Plays a world's share of so many episodes; arguments as for `generalisation`."""
+    count, given = max(round(world.share * episodes), 1), {**arguments, **world.arguments, "level": level}
+    return episodes_of(task, member, count, given, world.engine)
+
+
 def generalisation(
     task: str,
     level: str,
@@ -55,16 +65,19 @@ def generalisation(
 
     Returns:
         A row for each policy with the columns "task", "level", "policy" and the names of `WORLDS`.
+
+    Raises:
+        ValueError: An engine is not installed.
     """
+    for world in WORLDS:
+        resolved(world.engine)
     rows = []
     with tqdm(total=len(members) * len(WORLDS), unit="cell", disable=not progress) as bar:
         for member in members:
             row: dict[str, Any] = {"task": find(task).name, "level": level, "policy": member.name}
             for world in WORLDS:
                 bar.set_description(f"{find(task).key}, {world.name}")
-                count = max(round(world.share * episodes), 1)
-                given = {**arguments, **world.arguments, "level": level}
-                played = episodes_of(task, member, count, given, world.engine)
+                played = play_in(world, task, level, member, episodes, arguments)
                 row[world.name] = 100.0 * float(played.success.mean())
                 bar.update()
             rows.append(row)
