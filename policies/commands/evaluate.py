@@ -74,22 +74,23 @@ def main(
         return
     if set_ or task:
         raise typer.BadParameter("--set and --task are for --policy; an experiment names its own")
-    from policies import evaluation
+    from policies import evaluation, parallel
 
     if demo == bool(experiments):
         known = ", ".join(evaluation.experiment_names())
         raise typer.BadParameter(f"give experiments ({known}, or YAML files) or --demo")
     try:
+        parallel.check(ray)
         chosen = [
             evaluation.narrowed(evaluation.load_experiment(name), trials, seed, friction_source or (), level)
             for name in experiments or ["demo"]
         ]
-    except (ValueError, FileNotFoundError) as error:
+    except (ValueError, FileNotFoundError, ModuleNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
     for experiment in chosen:
         try:
             folder = evaluation.evaluate(experiment, output, jobs, ray=ray)
-        except (ModuleNotFoundError, ConnectionError) as error:
+        except ConnectionError as error:
             raise typer.BadParameter(str(error), param_hint="--ray") from error
         except OSError as error:
             words = "; ".join([str(error), *getattr(error, "__notes__", ())])

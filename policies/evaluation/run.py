@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pandas as pd
 
-from policies import parallel
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.folder import INCOMPLETE, run_path, write_origin
 from policies.evaluation.plan import plan
@@ -45,10 +44,8 @@ def evaluate(
     Raises:
         ValueError: A policy refuses its parameters or the observations.
         OSError: The output cannot be written, which is found out before any trial.
-        ModuleNotFoundError: Ray is asked for and not installed.
-        ConnectionError: There is no such cluster.
+        ModuleNotFoundError, ConnectionError: See `policies.parallel.results`.
     """
-    parallel.check(ray)
     path, trials = run_path(experiment, output), plan(experiment)
     check_folder(path.parent)
     with new_folder(path) as folder:
