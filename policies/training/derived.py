@@ -24,7 +24,7 @@ Derived = Mapping[str, Mapping[str, float]]
 _FIRST_LAYERS = "mlp_extractor.policy_net.0", "mlp_extractor.value_net.0"
 
 
-def combinations(derived: Derived, columns: Sequence[Any], history: int, width: int) -> np.ndarray:
+def coefficients(derived: Derived, columns: Sequence[Any], history: int, width: int) -> np.ndarray:
     """What turns an observation into its derived columns, (d, k) float64.
 
     Args:
@@ -55,7 +55,7 @@ def folded(
     Args:
         weight: Of the layer that reads the derived columns behind the observation, (m, k + d).
         bias: (m,).
-        matrix: See `combinations`.
+        matrix: See `coefficients`.
         mean: Of the columns, subtracted from them in their normalisation, (k + d,).
         scale: What they are then divided by.
 
@@ -89,7 +89,7 @@ class DerivedVecEnv(VecEnvWrapper):
     def __init__(self, venv: VecEnv, derived: Derived, history: int) -> None:
         observed = venv.observation_space
         assert isinstance(observed, Box)
-        self.matrix = combinations(derived, venv.get_attr("columns")[0], history, observed.shape[0])
+        self.matrix = coefficients(derived, venv.get_attr("columns")[0], history, observed.shape[0])
         ends = np.full(len(self.matrix), np.inf, np.float32)
         super().__init__(venv, Box(np.append(observed.low, -ends), np.append(observed.high, ends)))
 

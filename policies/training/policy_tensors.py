@@ -61,9 +61,8 @@ def take(actor: Any, moments: Any, matrix: np.ndarray) -> dict[str, np.ndarray]:
         if moments is not None:
             mean[: matrix.shape[1]] = moments.mean
             scale[: matrix.shape[1]] = np.sqrt(moments.var + EPSILON)
-        first = "memory.0.input" if hasattr(actor, "rnn") else "layers.0"
-        join = "_" if hasattr(actor, "rnn") else "."
-        weight, bias = f"{first}{join}weight", f"{first}{join}bias"
+        first = "memory.0.input_" if hasattr(actor, "rnn") else "layers.0."
+        weight, bias = f"{first}weight", f"{first}bias"
         found[weight], found[bias] = folded(found[weight], found[bias], matrix, mean, scale)
     return found
 

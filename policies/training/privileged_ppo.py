@@ -19,7 +19,7 @@ from tensordict import TensorDict
 
 from policies.training import plain, policy_tensors, vector
 from policies.training.config import Training
-from policies.training.derived import combinations
+from policies.training.derived import coefficients
 from policies.training.state_checks import check_like
 
 _FIRST_OUTPUT = 0.01
@@ -52,7 +52,7 @@ class PrivilegedPPO:
         self._solved: deque[bool] = deque(maxlen=self._chosen.curriculum.episodes)
         self._last: TensorDict | None = None
         columns, width = self.envs.get_attr("columns")[0], spaces["policy"].shape[0]
-        self.matrix = combinations(config.derived, columns, config.environment.history, width)
+        self.matrix = coefficients(config.derived, columns, config.environment.history, width)
         self.ppo = self._ppo()
         self.logger: Any = None
         if self._chosen.start is not None:
@@ -183,12 +183,8 @@ class PrivilegedPPO:
         self._updates += 1
         if self.logger is not None:
             solved = float(np.mean(self._solved)) if self._solved else 0.0
-            for name, value in {
-                **losses,
-                "solved": solved,
-                "stage": self.stage,
-                "learning_rate": rate,
-            }.items():
+            losses |= {"solved": solved, "stage": self.stage, "learning_rate": rate}
+            for name, value in losses.items():
                 self.logger.record_mean(f"train/{name}", value)
 
     def _go_on(self) -> None:

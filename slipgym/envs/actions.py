@@ -22,10 +22,12 @@ _LINEAR = {
         *("ln_mu_s", "ln_mu_c", "ln_r", "ln_sd_mu_s", "ln_sd_mu_c", "ln_sd_r"),
     ),
 }
+LOGARITHMIC = "log_"
+"""Begins the name of a mode that has `ln_grip_force` in place of `grip_force`."""
 ACTION_MODES = {
     **_LINEAR,
     "force_increment": ("force_increment",),
-    **{f"log_{mode}": ("ln_grip_force", *names[1:]) for mode, names in _LINEAR.items()},
+    **{LOGARITHMIC + mode: ("ln_grip_force", *names[1:]) for mode, names in _LINEAR.items()},
 }
 """Mode -> names of an action's components, in order."""
 

@@ -57,9 +57,8 @@ class Argument:
     doc: str
     """Its meaning, in Markdown."""
     least: int | None = None
-    """Smallest value, of an argument that is a whole number."""
     most: int | None = None
-    """Largest value of it."""
+    """Smallest and largest value, of an argument that is a whole number."""
 
 
 class CommonArguments(TypedDict, total=False):

@@ -96,6 +96,4 @@ def test_the_sums_of_the_scales_are_those_of_the_tasks():
         expected.append(f"| {task.name} | {positive:g} | {negative:g} |")
     page = (DOCS / "rewards.md").read_text(encoding="utf-8")
     shown = [line for line in page.splitlines() if re.match(r"\| [A-Z]\w+ \|", line)]
-    assert sorted(shown) == sorted(
-        expected
-    )  # other tests register tasks of their own, and one of these again
+    assert sorted(shown) == sorted(expected)  # other tests register tasks, and one of these again

@@ -11,6 +11,7 @@ from policies.training import seeds
 from policies.training.config import Environment
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.yaml_model import Choice, read_model
+from slipgym.envs.actions import LOGARITHMIC
 
 FOLDER = "imitation"
 """Folder of the default configuration that holds them."""
@@ -72,7 +73,7 @@ class Imitation(Frozen):
             raise ValueError(
                 "environment.observation_mode must be 'flat'; friction_source 'none' shows sensors"
             )
-        if not (self.environment.action_mode or "log_").startswith("log_"):
+        if not (self.environment.action_mode or LOGARITHMIC).startswith(LOGARITHMIC):
             raise ValueError(
                 "environment.action_mode must be null, the controller's, or the same with a logarithmic grip"
             )

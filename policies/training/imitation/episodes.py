@@ -13,14 +13,13 @@ from policies.controllers import table as controllers
 from policies.controllers.rate import at_rate
 from policies.learned.forward import Network
 from policies.training.imitation.config import Imitation
+from slipgym.envs.actions import LOGARITHMIC
 from slipgym.envs.load_part import LOAD
 from slipgym.envs.observation import FRICTION_COLUMNS
 from slipgym.tasks import find
 
 _FRICTION = [column.name for column in FRICTION_COLUMNS]
 _LOAD = {reading.name for reading in LOAD}
-LOGARITHMIC = "log_"
-"""Begins the action mode in which a network may act in place of its controller's."""
 KNOWN = 0.05
 """Confidence of an estimate from which the teacher "revealed" is given the truth in its place [-]."""
 
