@@ -16,7 +16,7 @@ IMPERFECTIONS = {
     "cross-talk": {"force_torque": ("crosstalk",)},
     "off centre": {"force_torque": ("off_centre",)},
     "late force": {"force_torque": ("latency_spread",)},
-    "late velocity": {"slip": ("latency_samples", "latency_spread", "jitter")},
+    "late velocity": {"slip": ("latency_samples", "latency_spread", "own_latency", "jitter")},
     "scale": {"slip": ("scale_error",)},
     "lost chip": {"slip": ("chip_failure",)},
     "lost readings": {"force_torque": ("dropout",), "slip": ("dropout",)},

@@ -34,6 +34,7 @@ SLIP_SENSOR_FIXED = np.dtype(
         ("range", "f8"),  # largest displacement per axis and sample [m]
         ("window", "i8"),  # samples averaged
         ("delay_spread", "i8"),  # what an episode may add to the latency, in samples
+        ("own_delay", "i8"),  # 1 if it samples that by itself, 0 if it shares finger 1's
         ("jitter", "f8"),  # probability that a reading is a sample older [-]
         ("dropout", "f8"),  # probability that a reading is the last one again [-]
         ("scale_spread", "f8"),  # largest relative error of an episode's counts [-]

@@ -44,11 +44,12 @@ def start_sensors(
                 wrench.history[k, a] = 0.0
         wrench.read = 0
         wrench.key, wrench.drift_key, slip.key = keys[0, i], keys[1, i], keys[2, i]
-        # the fingers' sensors share a bus, and with it the latency
+        # the fingers' sensors share a bus, and with it the latency, unless the chips have a USB port each
         wrench.delay = wrench.least_delay + among(keys[1, 0], LATENCY, wrench.delay_spread)
         if wrench.misaligned:
             mount(wrench)
-        slip.delay = slip.least_delay + among(keys[2, 0], SLIP_LATENCY, slip.delay_spread)
+        late = keys[2, i if slip.own_delay else 0]
+        slip.delay = slip.least_delay + among(late, SLIP_LATENCY, slip.delay_spread)
         slip.scale = 1.0 + about(slip.key, SCALE, slip.scale_spread)
         slip.failed, slip.delivered = -1, -1
         if share(slip.key, FAILS) < slip.chip_failure:

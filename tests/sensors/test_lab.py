@@ -105,6 +105,18 @@ def test_latencies_are_sampled_and_shared_by_the_fingers():
     assert np.abs(counts - 60).max() < 4 * (300 * 0.2 * 0.8) ** 0.5
 
 
+def test_each_finger_may_have_its_own_latency():
+    pairs, shared = [], []
+    for seed in range(400):
+        late = {"latency_samples": 1, "latency_spread": 4}
+        pairs.append(started(seed, slip=late | {"own_latency": True})[1]["delay"].copy())
+        shared.append(started(seed, slip=late)[1]["delay"].copy())
+    own = np.array(pairs)
+    np.testing.assert_array_equal(own[:, 0], np.array(shared)[:, 0])
+    together = np.bincount(5 * (own[:, 0] - 1) + own[:, 1] - 1, minlength=25)
+    assert ((together - 16) ** 2 / 16).sum() < 51.2, "independent: chi-square of 24 degrees, 0.1 %"
+
+
 def test_scale_and_a_failed_chip():
     failed, scales = 0, []
     for seed in range(200):
