@@ -83,7 +83,7 @@ def pair(force_t: Array, twist_t: Array, limits: Limits, last: tuple[float, int]
     """
     at = newest(force_t, twist_t)
     kept = np.flatnonzero((at >= 0) & (twist_t - force_t[at] <= limits.force))
-    gaps, at = np.cumsum(np.diff(force_t, prepend=force_t[0]) > limits.force), at[kept]
+    gaps, at = np.cumsum(np.diff(force_t, prepend=force_t[0]) > limits.force, dtype=np.int64), at[kept]
     t, before = twist_t[kept], gaps[at]
     t0, gaps0 = last or (t[0], before[0]) if len(t) else (0.0, 0)
     fresh = (np.diff(t, prepend=t0) > limits.velocity) | (np.diff(before, prepend=gaps0) > 0)
@@ -117,7 +117,7 @@ def align(record: Record, allow_gaps: bool = False) -> Samples:
         wrench=record.wrench[at],
         twist=twist if record.cop is None else twist_at(twist, record.cop[at]),
         truth=None if record.truth is None else record.truth[at],
-        segment=np.cumsum(fresh),
+        segment=np.cumsum(fresh, dtype=np.int64),
         left_out=len(record.twist_t) - len(kept),
     )
 
