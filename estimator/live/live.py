@@ -146,7 +146,8 @@ class Live:
         """Of each sensor, what became of its readings.
 
         `received` is the sum of `accepted` and all reasons to refuse: `late`, `duplicate`, `not_finite`,
-        `too_large`, `jump` (a stamp on another clock), `clock` (used to find its offset), `width`, `overflow`.
+        `too_large`, `jump` (a stamp on another clock), `clock` (used to find its offset), `width`,
+        `overflow`.
         `accepted` velocities are `estimated`, have `no_force`, or are `waiting`; by the rate, `missing` never
         came.
         """

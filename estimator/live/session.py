@@ -15,6 +15,7 @@ from estimator.live.log import Log
 LONGEST = 65536
 """Bytes of a message at most."""
 _FORMS = (*({"finger", "t", kind} for kind in KINDS), {"t", "grip"}, {"columns"})
+_NO_OBJECT = "not a JSON object"
 _ERRORS = 10
 """Messages a second at most whose error is answered and recorded; all are counted."""
 
@@ -77,6 +78,8 @@ class Session:
     def _feed(self, message: Any, now: float) -> list[Output]:
         if isinstance(message, str):
             raise ValueError(message)
+        if not isinstance(message, Mapping):
+            raise ValueError(_NO_OBJECT)
         keys = next((keys for keys in _FORMS if keys == set(message)), None)
         if keys is None:
             forms = "; ".join(", ".join(sorted(keys)) for keys in _FORMS)
@@ -134,4 +137,4 @@ def _message(text: bytes | str) -> dict[str, Any] | str:
         message = json.loads(text)
     except (ValueError, RecursionError):
         return "not JSON"
-    return message if isinstance(message, dict) else "not a JSON object"
+    return message if isinstance(message, dict) else _NO_OBJECT
