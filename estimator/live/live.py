@@ -16,7 +16,7 @@ from estimator.registry import DEFAULT
 CLOCKS = ("stamps", "arrival")
 KINDS = {"wrench": "force", "twist": "velocity"}
 APART = 0.05
-"""Difference of the clocks of a finger's sensors from which it is told [s]; a network delays by less."""
+"""Difference of the clocks of a finger's sensors from which there is a warning [s]; a network delays by less."""
 
 
 class Live:
@@ -130,13 +130,13 @@ class Live:
         self._log(
             {**line, "arrival": arrival, "verdict": verdict} | ({} if t == stamp else {"at": _plain(t)})
         )
-        return self._told(outputs)
+        return self._logged(outputs)
 
     def flush(self) -> list[Output]:
         """Estimates from all that still waits: the data have ended."""
-        return self._told([output for hand in self._hands.values() for output in hand.release(math.inf)])
+        return self._logged([output for hand in self._hands.values() for output in hand.release(math.inf)])
 
-    def _told(self, outputs: list[Output]) -> list[Output]:
+    def _logged(self, outputs: list[Output]) -> list[Output]:
         for output in outputs:
             self._log(as_line(output))
         return outputs

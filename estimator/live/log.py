@@ -5,15 +5,18 @@ from __future__ import annotations
 import errno
 import json
 import os
+from array import array
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from estimator.live.hand import at_cop
 from estimator.records.reading import CONTACT
-from estimator.records.record import Record, cop_of_tilt
+from estimator.records.record import Array, Record, cop_of_tilt, wrench_at
+
+_Part: TypeAlias = dict[str, tuple["array[float]", "array[float]"]]
+"""Of "wrench" and "twist" the times and all values."""
 
 
 class Log:
@@ -101,34 +104,38 @@ def records(path: str | os.PathLike[str]) -> dict[int, list[Record]]:
     Raises:
         ValueError: The file is no log.
     """
-    parts: dict[int, list[dict[str, dict[float, list[float]]]]] = {}
+    parts: dict[int, list[_Part]] = {}
     periods = (1e-3, 1.0 / 120.0)
     for line in read(path):
         if "rates" in line:
             periods = (1.0 / line["rates"][0], 1.0 / line["rates"][1])
             for of_finger in parts.values():
-                of_finger.append({"wrench": {}, "twist": {}})
+                of_finger.append({})
         if line.get("verdict") not in ("accepted", "restart"):
             continue
-        of_finger = parts.setdefault(line["finger"], [{"wrench": {}, "twist": {}}])
+        of_finger = parts.setdefault(line["finger"], [{}])
         if line["verdict"] == "restart":
-            of_finger.append({"wrench": {}, "twist": {}})
+            of_finger.append({})
         kind = "wrench" if "wrench" in line else "twist"
-        of_finger[-1][kind][line.get("at", line["t"])] = line[kind]
+        t, values = of_finger[-1].setdefault(kind, (array("d"), array("d")))
+        t.append(line.get("at", line["t"]))
+        values.extend(line[kind])
     name = Path(path).name
     return {
-        finger: [_record(name, part, periods) for part in found if all(map(len, part.values()))]
+        finger: [_record(name, part, periods) for part in found if len(part) == 2]
         for finger, found in parts.items()
     }
 
 
-def _record(name: str, part: dict[str, dict[float, list[float]]], periods: tuple[float, float]) -> Record:
-    (force_t, wrench), (twist_t, twist) = (
-        (np.array(sorted(part[kind])), np.array([part[kind][t] for t in sorted(part[kind])]))
-        for kind in ("wrench", "twist")
-    )
+def _record(name: str, part: _Part, periods: tuple[float, float]) -> Record:
+    (force_t, wrench), (twist_t, twist) = (_ordered(*part[kind]) for kind in ("wrench", "twist"))
     cop = None
     if wrench.shape[1] == 6:
         cop = cop_of_tilt(wrench[:, 4:], wrench[:, 2], CONTACT)
-        wrench = np.array([at_cop(row.tolist(), [0.0, 0.0, 0.0])[0] for row in wrench])
+        wrench = wrench_at(wrench[:, :4], cop)
     return Record(name, force_t, wrench, cop, twist_t, twist, None, None, periods)
+
+
+def _ordered(t: array[float], values: array[float]) -> tuple[Array, Array]:
+    order = np.argsort(t)
+    return np.array(t)[order], np.array(values).reshape(len(t), -1)[order]

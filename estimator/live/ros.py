@@ -23,7 +23,7 @@ DEPTH = 1000
 
 
 def serve_ros2(session: Session, fingers: int, going: Callable[[], bool] = lambda: True) -> None:
-    """Answers on ROS 2 until told to stop.
+    """Answers on ROS 2 until `going` says no.
 
     Args:
         session: What understands the messages.
@@ -73,7 +73,7 @@ def serve_ros2(session: Session, fingers: int, going: Callable[[], bool] = lambd
 def serve_rosbridge(
     session: Session, fingers: int, host: str, port: int = 9090, going: Callable[[], bool] = lambda: True
 ) -> None:
-    """Answers on a rosbridge, of ROS 1 or 2, until told to stop.
+    """Answers on a rosbridge, of ROS 1 or 2, until `going` says no.
 
     Args:
         session: What understands the messages.

@@ -54,7 +54,7 @@ class Session:
 
     def __init__(self, live: Live, pilot: Pilot | None = None, log: Log | None = None) -> None:
         self.live, self.pilot, self.malformed = live, pilot, Counter()
-        self._log, self._second, self._told = log, 0, 0
+        self._log, self._second, self._errors = log, 0, 0
 
     def take(self, text: bytes | str, now: float | None = None) -> list[dict[str, Any]]:
         """Answers one message.
@@ -111,9 +111,9 @@ class Session:
     def _refuse(self, why: str, now: float) -> list[dict[str, Any]]:
         self.malformed[why if len(self.malformed) < 100 or why in self.malformed else "others"] += 1
         if int(now) != self._second:
-            self._second, self._told = int(now), 0
-        self._told += 1
-        if self._told > _ERRORS:
+            self._second, self._errors = int(now), 0
+        self._errors += 1
+        if self._errors > _ERRORS:
             return []
         if self._log:
             self._log({"error": why, "arrival": now})

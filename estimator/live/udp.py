@@ -37,7 +37,7 @@ def opened(host: str = "127.0.0.1", port: int = PORT) -> socket.socket:
 
 
 def serve(session: Session, door: socket.socket, going: Callable[[], bool] = lambda: True) -> None:
-    """Answers until told to stop.
+    """Answers until `going` says no.
 
     A datagram holds one or several lines. Every sender of a valid reading gets all estimates and commands;
     errors go to their sender alone.

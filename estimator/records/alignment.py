@@ -83,10 +83,12 @@ def pair(force_t: Array, twist_t: Array, limits: Limits, last: tuple[float, int]
     """
     at = newest(force_t, twist_t)
     kept = np.flatnonzero((at >= 0) & (twist_t - force_t[at] <= limits.force))
-    gaps, at = np.cumsum(np.diff(force_t, prepend=force_t[0]) > limits.force, dtype=np.int64), at[kept]
-    t, before = twist_t[kept], gaps[at]
-    t0, gaps0 = last or (t[0], before[0]) if len(t) else (0.0, 0)
-    fresh = (np.diff(t, prepend=t0) > limits.velocity) | (np.diff(before, prepend=gaps0) > 0)
+    gaps, at = np.zeros(len(force_t), np.int64), at[kept]
+    np.cumsum(force_t[1:] - force_t[:-1] > limits.force, out=gaps[1:])
+    t, before, fresh = twist_t[kept], gaps[at], np.zeros(len(kept), bool)
+    fresh[1:] = (t[1:] - t[:-1] > limits.velocity) | (before[1:] > before[:-1])
+    if last and len(t):
+        fresh[0] = t[0] - last[0] > limits.velocity or before[0] > last[1]
     return Pairs(kept, at, gaps, fresh)
 
 

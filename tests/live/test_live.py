@@ -12,7 +12,7 @@ from estimator.live import Live, Log
 from estimator.live import records as of_log
 from estimator.live.source import CAPACITY, LEARNED, RESTART
 from estimator.records.separated import read_csv
-from tests.live.streams import faulty, feed, stick_slip
+from lab.live_streams import faulty, feed, readings
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = ROOT / "examples" / "linear_slip_wood.csv.gz"
@@ -76,7 +76,7 @@ def test_and_so_it_does_shuffled_within_the_lateness():
 @pytest.mark.parametrize("width", [4, 6])
 def test_under_faults_the_estimates_are_those_of_the_accepted_readings(seed, width, log):
     live = Live("rls", fingers=1, log=log)
-    outputs = feed(live, faulty(stick_slip(6.0, seed, width), seed)) + live.flush()
+    outputs = feed(live, faulty(readings(6.0, seed, width), seed)) + live.flush()
     (record,) = of_log(log.path)[1]
     assert same(outputs, records.estimate(record, "rls", allow_gaps=True))
     for why in ("late", "duplicate", "not_finite", "missing"):
@@ -88,7 +88,7 @@ def test_under_faults_the_estimates_are_those_of_the_accepted_readings(seed, wid
 @pytest.mark.parametrize("kind", ["wrench", "twist"])
 def test_a_gap_begins_afresh_as_in_a_record(kind, log):
     live = Live("rls", fingers=1, log=log)
-    stream = [row for row in stick_slip(4.0) if row[0] != kind or not 2.3 < row[1] < 2.4]
+    stream = [row for row in readings(4.0) if row[0] != kind or not 2.3 < row[1] < 2.4]
     outputs = feed(live, stream) + live.flush()
     (record,) = of_log(log.path)[1]
     result = records.estimate(record, "rls", allow_gaps=True)
@@ -100,7 +100,7 @@ def test_a_gap_begins_afresh_as_in_a_record(kind, log):
 def test_two_fingers_do_not_mix():
     live, alone = Live("rls"), [Live("rls", fingers=1) for _ in range(2)]
     both = [[], []]
-    streams = [stick_slip(1.0, seed) for seed in range(2)]
+    streams = [list(readings(1.0, seed)) for seed in range(2)]
     for rows in zip(*streams, strict=True):
         for finger, (kind, t, values) in enumerate(rows, 1):
             take = live.feed_wrench if kind == "wrench" else live.feed_twist
@@ -115,7 +115,7 @@ def test_two_fingers_do_not_mix():
 
 def test_every_refusal_is_counted_and_told_with_the_next_estimate():
     live = Live("rls", fingers=1)
-    feed(live, stick_slip(0.5, width=4))
+    feed(live, readings(0.5, width=4))
     good = [0.1, 0.0, 5.0, 0.0]
     before = live.counts["force 1"]["received"]
     for t, values in (
@@ -132,14 +132,14 @@ def test_every_refusal_is_counted_and_told_with_the_next_estimate():
     refused = {why: counts[why] for why in REFUSED if counts[why]}
     assert refused == {"late": 1, "duplicate": 1, "not_finite": 2, "too_large": 1, "jump": 1, "width": 1}
     assert counts["received"] == before + 7
-    (output, *_) = feed(live, [(kind, t, v) for kind, t, v in stick_slip(0.6, width=4) if t > 0.5])
+    (output, *_) = feed(live, [(kind, t, v) for kind, t, v in readings(0.6, width=4) if t > 0.5])
     assert output.status == "duplicate 1, jump 1, late 1, not_finite 2, too_large 1, width 1"
     nothing_lost(live)
 
 
 def test_missing_samples_are_those_that_never_came():
     live = Live("rls", fingers=1)
-    stream = stick_slip(2.0)
+    stream = list(readings(2.0))
     gone = {100, 101, 500, 900}
     feed(live, [row for k, row in enumerate(stream) if k not in gone])
     kinds = [stream[k][0] for k in gone]
@@ -149,13 +149,13 @@ def test_missing_samples_are_those_that_never_came():
 
 def test_jitter_of_the_stamps_is_not_taken_for_missing_samples():
     live, rng = Live("rls", fingers=1), np.random.default_rng(0)
-    feed(live, [(kind, t + 0.0009 * rng.random(), values) for kind, t, values in stick_slip(2.0)])
+    feed(live, [(kind, t + 0.0009 * rng.random(), values) for kind, t, values in readings(2.0)])
     assert live.counts["force 1"]["missing"] <= 1
 
 
 def test_a_sensor_that_starts_again_from_zero_is_followed(log):
     live = Live("rls", fingers=1, log=log)
-    first, second = stick_slip(2.0), stick_slip(2.0, 1)
+    first, second = readings(2.0), readings(2.0, 1)
     outputs = feed(live, [(kind, t + 100.0, values, t) for kind, t, values in first])
     outputs += feed(live, [(kind, t, values, t + 5.0) for kind, t, values in second]) + live.flush()
     assert live.counts["force 1"]["jump"] == RESTART - 1
@@ -171,7 +171,7 @@ def test_a_sensor_that_starts_again_from_zero_is_followed(log):
 
 @pytest.mark.parametrize("wild", [1e300, -1e300, 1e18, 5.0])
 def test_wild_stamps_among_good_ones_do_no_harm(wild):
-    live, quiet, stream = Live("rls", fingers=1), Live("rls", fingers=1), stick_slip(2.0)
+    live, quiet, stream = Live("rls", fingers=1), Live("rls", fingers=1), list(readings(2.0))
     noisy = []
     for k, (kind, t, values) in enumerate(stream):
         noisy.append((kind, t, values, t))
@@ -185,20 +185,20 @@ def test_wild_stamps_among_good_ones_do_no_harm(wild):
 def test_a_first_stamp_that_is_wild_is_recovered_from():
     live = Live("rls", fingers=1)
     live.feed_wrench(1, 1e300, [0.0, 0.0, 5.0, 0.0, 0.0, 0.0], 0.0)
-    outputs = feed(live, stick_slip(2.0))
+    outputs = feed(live, readings(2.0))
     assert len(outputs) > 200
 
 
 def test_a_stall_of_the_network_loses_nothing():
     live = Live("rls", fingers=1)
-    stalled = [(kind, t, values, max(t, 1.9) if t > 0.5 else t) for kind, t, values in stick_slip(2.0)]
+    stalled = [(kind, t, values, max(t, 1.9) if t > 0.5 else t) for kind, t, values in readings(2.0)]
     feed(live, stalled)
     assert all(n["accepted"] == n["received"] for n in live.counts.values())
 
 
 def test_the_offset_of_two_clocks_is_found_and_told():
     live = Live("rls", fingers=1)
-    shifted = [(kind, t + 0.07 * (kind == "twist"), values, t + 0.001) for kind, t, values in stick_slip(1.0)]
+    shifted = [(kind, t + 0.07 * (kind == "twist"), values, t + 0.001) for kind, t, values in readings(1.0)]
     feed(live, shifted)
     clocks = live.clocks()
     assert clocks["force 1"] == pytest.approx(0.001, abs=1e-6)
@@ -211,10 +211,10 @@ def test_the_offset_of_two_clocks_is_found_and_told():
 def test_by_arrival_sensors_with_clocks_of_their_own_are_paired(offset, log):
     live = Live("rls", fingers=1, clocks="arrival", lateness=0.004, log=log)
     rng, stream = np.random.default_rng(0), []
-    for kind, t, values in stick_slip(3.0):
+    for kind, t, values in readings(3.0):
         stream.append((kind, t + offset * (kind == "twist"), values, t + 0.002 * rng.random()))
     outputs = feed(live, sorted(stream, key=lambda row: row[3])) + live.flush()
-    truth = feed(whole := Live("rls", fingers=1), stick_slip(3.0)) + whole.flush()
+    truth = feed(whole := Live("rls", fingers=1), readings(3.0)) + whole.flush()
     assert outputs[-1].estimate.mu_c == pytest.approx(truth[-1].estimate.mu_c, rel=0.02)
     assert outputs[-1].estimate.updates_mu_c > 0.7 * truth[-1].estimate.updates_mu_c
     assert live.counts["force 1"]["clock"] == live.counts["velocity 1"]["clock"] == LEARNED
@@ -225,9 +225,7 @@ def test_by_arrival_sensors_with_clocks_of_their_own_are_paired(offset, log):
 
 def test_by_arrival_clocks_that_drift_apart_are_told():
     live = Live("rls", fingers=1, clocks="arrival")
-    drifted = [
-        (kind, t * (1.0 + 0.01 * (kind == "twist")), values, t) for kind, t, values in stick_slip(20.0)
-    ]
+    drifted = [(kind, t * (1.0 + 0.01 * (kind == "twist")), values, t) for kind, t, values in readings(20.0)]
     feed(live, drifted)
     assert live.warnings() != []
 
@@ -236,7 +234,7 @@ def test_by_arrival_clocks_that_drift_apart_are_told():
 def test_memory_is_bounded_whatever_stops(silent):
     live = Live("rls", fingers=1)
     most = 0
-    for row in stick_slip(5.0):
+    for row in readings(5.0):
         if row[0] != silent:
             feed(live, [row])
             most = max(most, *(n["waiting"] for n in live.counts.values()))
@@ -258,7 +256,7 @@ def test_a_flood_within_the_lateness_is_refused_and_counted():
 def test_silent_sensors_are_named():
     live = Live("rls", fingers=1)
     assert live.silent(0.0, 1e9) == ["force 1", "velocity 1"]
-    feed(live, [row for row in stick_slip(1.0) if row[0] == "wrench"])
+    feed(live, [row for row in readings(1.0) if row[0] == "wrench"])
     assert live.silent(1.0, 0.1) == ["velocity 1"]
     live.feed_wrench(1, 1.5, [math.nan] * 6, 1.5)  # a sensor that gives NaN is as good as silent
     assert live.silent(1.5, 0.1) == ["force 1", "velocity 1"]

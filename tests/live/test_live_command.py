@@ -15,7 +15,7 @@ import pytest
 
 from estimator.live import Live, Log, read, ros
 from estimator.live.session import Session
-from tests.live.streams import feed, stick_slip
+from lab.live_streams import feed, readings
 
 ROOT = Path(__file__).parents[2]
 CLIENTS = ROOT / "examples" / "live"
@@ -99,7 +99,7 @@ def test_a_log_becomes_mcap(tmp_path):
 
     log = Log(tmp_path / "run.jsonl")
     live = Live("rls", fingers=1, log=log)
-    feed(live, stick_slip(1.0))
+    feed(live, readings(1.0))
     live.feed_grip(1.0, 5.0, 1.0)
     log.close()
     lines = list(read(log.path))
@@ -179,7 +179,7 @@ def test_ros_2_readings_are_answered():
         }
         while not all(out.get_subscription_count() for out in outs.values()):
             time.sleep(0.01)
-        for kind, t, values in stick_slip(1.0):
+        for kind, t, values in readings(1.0):
             message = geometry.WrenchStamped() if kind == "wrench" else geometry.TwistStamped()
             message.header.stamp.sec, message.header.stamp.nanosec = 100, round(t * 1e9)
             if kind == "wrench":
@@ -199,3 +199,58 @@ def test_ros_2_readings_are_answered():
     assert len(heard) >= 50
     assert {answer["estimate"] for answer in heard} == {1}
     assert session.live.counts["force 1"]["received"] > 900
+
+
+BRIDGE = """
+import json, sys
+from autobahn.twisted.websocket import WebSocketServerFactory, WebSocketServerProtocol
+from twisted.internet import reactor
+from lab.live_streams import readings
+
+class Bridge(WebSocketServerProtocol):
+    asked = set()
+
+    def onMessage(self, payload, binary):
+        message = json.loads(payload)
+        if message["op"] == "subscribe":
+            self.asked.add(message["topic"])
+            if len(self.asked) == 2:
+                self.play()
+        if message["op"] == "publish":
+            print(json.dumps(message), flush=True)
+
+    def play(self):
+        for kind, t, values in readings(1.0):
+            stamp = {"secs": 100, "nsecs": round(t * 1e9)}
+            pad = dict(zip(("x", "y", "z"), values[:3] if kind == "wrench" else [*values[:2], 0.0]))
+            turn = [*values[4:], values[3]] if kind == "wrench" else [0.0, 0.0, values[2]]
+            turn = dict(zip(("x", "y", "z"), turn))
+            body = {"force": pad, "torque": turn} if kind == "wrench" else {"linear": pad, "angular": turn}
+            topic = "/finger_1/" + {"wrench": "wrench", "twist": "slip"}[kind]
+            message = {"op": "publish", "topic": topic, "msg": {"header": {"stamp": stamp}, kind: body}}
+            self.sendMessage(json.dumps(message).encode())
+
+factory = WebSocketServerFactory()
+factory.protocol = Bridge
+port = reactor.listenTCP(0, factory, interface="127.0.0.1")
+print(port.getHost().port, flush=True)
+reactor.run()
+"""
+
+
+def test_rosbridge_readings_are_answered():
+    pytest.importorskip("roslibpy")
+    bridge = subprocess.Popen([sys.executable, "-c", BRIDGE], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    assert bridge.stdout is not None
+    port = int(bridge.stdout.readline())
+    live = slipgym(
+        "--door", "rosbridge", "--port", port, "--fingers", 1, "--estimator", "rls", "--seconds", 5
+    )
+    messages = [json.loads(bridge.stdout.readline()) for _ in range(100)]
+    printed, errors = live.communicate()
+    bridge.kill()
+    bridge.communicate()
+    assert live.returncode == 0, errors
+    assert {message["topic"] for message in messages} == {ros.ESTIMATES}
+    assert json.loads(messages[-1]["msg"]["data"])["estimate"] == 1
+    assert re.search(r"force 1: received (\d+), accepted \1, waiting", printed)

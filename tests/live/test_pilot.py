@@ -7,8 +7,8 @@ import pytest
 import policies
 from estimator.live import Live
 from estimator.live.session import Session
+from lab.live_streams import readings
 from policies.live import AGAIN, PolicyPilot
-from tests.live.streams import stick_slip
 
 TIMED = ("time_left", "violated")
 WRIST = ("wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate")
@@ -30,7 +30,7 @@ def session(policy="hold", fingers=2, **arguments):
 def play(found, seconds=1.0, start=0.0, fingers=(1, 2)):
     """All commands while fingers deliver."""
     commands = []
-    for kind, t, values in stick_slip(seconds, width=4):
+    for kind, t, values in readings(seconds, width=4):
         for finger in fingers:
             answers = found.give({"finger": finger, "t": start + t, kind: values}, start + t)
             commands += [each for each in answers + found.tick(start + t) if "command" in each]
@@ -111,7 +111,7 @@ def test_one_silent_sensor_is_enough(silent):
     found = session()
     play(found)
     commands = []
-    for kind, t, values in stick_slip(0.5, width=4):
+    for kind, t, values in readings(0.5, width=4):
         for finger in (1, 2):
             if (kind, finger) != silent:
                 commands += found.give({"finger": finger, "t": 1.0 + t, kind: values}, 1.0 + t)

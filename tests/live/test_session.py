@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from estimator.live import Live, Log, read
 from estimator.live.session import LONGEST, Session
 from estimator.live.udp import LINES, opened, serve
-from tests.live.streams import stick_slip
+from lab.live_streams import readings
 
 ROOT = Path(__file__).parents[2]
 WRENCH = {"finger": 1, "t": 0.0, "wrench": [0.0, 0.0, 5.0, 0.0]}
@@ -128,7 +128,7 @@ def test_the_door_answers_estimates_after_garbage():
     with Door(session) as door:
         door.send(b"\xff\x00garbage")
         assert door.answer() == {"error": "not JSON"}
-        lines = [text(*row) for row in stick_slip(0.2)]
+        lines = [text(*row) for row in readings(0.2)]
         for k in range(0, len(lines), 20):
             door.send("\n".join(lines[k : k + 20]).encode())
         answer = door.answer()
@@ -156,9 +156,9 @@ def test_the_default_door_is_closed_to_other_machines():
 KILLED = """
 import sys
 from estimator.live import Live, Log
-from tests.live.streams import feed, stick_slip
+from lab.live_streams import feed, readings
 live = Live("rls", fingers=1, log=Log(sys.argv[1]))
-stream = stick_slip(60.0)
+stream = readings(60.0)
 for k, row in enumerate(stream):
     feed(live, [row])
     if k == 1500:
@@ -186,7 +186,7 @@ def test_a_log_survives_a_kill_and_is_continued(tmp_path):
     log = Log(path)
     live = Live("rls", fingers=1, log=log)
     outputs = [live.feed_wrench(1, t, v, t) if kind == "wrench" else live.feed_twist(1, t, v, t)
-               for kind, t, v in stick_slip(1.0)]  # fmt: skip
+               for kind, t, v in readings(1.0)]  # fmt: skip
     live.flush()
     log.close()
     assert list(read(path))[: len(before)] == before
