@@ -144,10 +144,9 @@ class PolicyPilot:
 
     def act(self, outputs: list[Output], now: float) -> dict[str, Any] | None:
         """See `estimator.live.session.Pilot`."""
-        fingers = len({name.split()[1] for name in self._live.clocks()})
         for output in outputs:
-            self._take(output, fingers)
-        if len(self._new) < fingers or self._live.silent(now, self._timeout):
+            self._take(output)
+        if len(self._new) < self._live.fingers or self._live.silent(now, self._timeout):
             return None
         self._new.clear()
         self._steps += 1
@@ -186,9 +185,9 @@ class PolicyPilot:
         wanted = {places.get(PLACES[k], PLACES[k]) for k in self._table["command"]} & set(COMMANDS)
         return {"command": 1, "t": t, "status": status} | {k: v for k, v in values.items() if k in wanted}
 
-    def _take(self, output: Output, fingers: int) -> None:
+    def _take(self, output: Output) -> None:
         k = output.finger - 1
-        rows = [k] if fingers == 2 else [0, 1]  # one finger stands for both
+        rows = [k] if self._live.fingers == 2 else [0, 1]  # one finger stands for both
         self._wrench[0, rows], self._twist[0, rows] = output.wrench, output.twist
         self._estimates[rows] = np.array(tuple(output.estimate), ESTIMATE)
         apart = output.t - self._t[k]

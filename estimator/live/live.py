@@ -10,13 +10,13 @@ from typing import Any
 
 from estimator.live.hand import Hand, Output
 from estimator.live.source import Source
-from estimator.online import TWIST, WRENCH, make
+from estimator.online import TWIST, WRENCH, OnlineEstimator, make
 from estimator.registry import DEFAULT
 
 CLOCKS = ("stamps", "arrival")
 KINDS = {"wrench": "force", "twist": "velocity"}
 APART = 0.05
-"""Difference of the clocks of a finger's sensors from which there is a warning [s]; a network delays by less."""
+"""Difference of the clocks of a finger's sensors that is a warning [s]; networks delay by less."""
 
 
 class Live:
@@ -60,7 +60,7 @@ class Live:
                 raise ValueError(f"rate of {name} = {rate!r} Hz: expected 1 to 25000")
         if not 0.0 <= lateness <= 1.0:
             raise ValueError(f"lateness = {lateness!r} s: expected 0 to 1")
-        self.rates, self.grip = rates, math.nan
+        self.fingers, self.rates, self.grip = fingers, rates, math.nan
         self._log = log or (lambda line: None)
         self._hands = {}
         for finger in range(1, fingers + 1):
@@ -68,7 +68,7 @@ class Live:
                 kind: Source(f"{what} {finger}", 1.0 / rate, clocks == "arrival")
                 for (kind, what), rate in zip(KINDS.items(), rates, strict=True)
             }
-            self._hands[finger] = Hand(finger, make(estimator, **parameters), sources, lateness)
+            self._hands[finger] = Hand(finger, _ready(estimator, parameters), sources, lateness)
         self._log({"live": 1, "estimator": estimator, "parameters": parameters, "rates": list(rates),
                    "lateness": lateness, "clocks": clocks})  # fmt: skip
 
@@ -161,13 +161,13 @@ class Live:
         """Of each sensor, the receiver's clock less its own, with the smallest recent delay [s]."""
         return {source.name: source.offset for source in self._sources()}
 
-    def warnings(self) -> list[str]:
-        """Sensors of a finger whose clocks differ, or by arrival have drifted apart."""
-        lines = []
+    def warnings(self) -> dict[int, str]:
+        """Of each finger whose sensors' clocks differ, or by arrival have drifted apart, by how much."""
+        lines = {}
         for hand in self._hands.values():
             apart = hand.force.ahead - hand.velocity.ahead
             if abs(apart) > APART:
-                lines.append(
+                lines[hand.finger] = (
                     f"the clock of {hand.velocity.name} is {apart:+.3f} s against that of {hand.force.name}: "
                     "set them alike, or use clocks='arrival'"
                 )
@@ -181,6 +181,14 @@ def as_line(output: Output) -> dict[str, Any]:
     """An output as a flat mapping that JSON can hold."""
     given = {"finger": output.finger, "t": output.t, "status": output.status, "lag": output.lag}
     return {"estimate": 1, **given, **output.estimate._asdict()}
+
+
+def _ready(name: str, parameters: dict[str, Any]) -> OnlineEstimator:
+    """An estimator whose compiled code is loaded, which takes a second at its first sample."""
+    found = make(name, **parameters)
+    found.update(0.0, [0.0] * len(WRENCH), [0.0] * len(TWIST))
+    found.reset()
+    return found
 
 
 def _now(arrival: float | None) -> float:

@@ -36,7 +36,7 @@ def serve_ros2(session: Session, fingers: int, going: Callable[[], bool] = lambd
     rclpy, qos = _extra("rclpy", "ros2"), _extra("rclpy.qos", "ros2")
     messages = _extra("geometry_msgs.msg", "ros2"), _extra("std_msgs.msg", "ros2")
     context = rclpy.context.Context()
-    rclpy.init(context=context)
+    rclpy.init(context=context, signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
     try:
         node = rclpy.create_node("slipgym", context=context)
         executor = rclpy.executors.SingleThreadedExecutor(context=context)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import time
 from collections import Counter
 from collections.abc import Mapping
@@ -55,6 +56,7 @@ class Session:
     def __init__(self, live: Live, pilot: Pilot | None = None, log: Log | None = None) -> None:
         self.live, self.pilot, self.malformed = live, pilot, Counter()
         self._log, self._second, self._errors = log, 0, 0
+        self._looked, self._warnings = -math.inf, {}
 
     def take(self, text: bytes | str, now: float | None = None) -> list[dict[str, Any]]:
         """Answers one message.
@@ -99,13 +101,25 @@ class Session:
     def tick(self, now: float | None = None) -> list[dict[str, Any]]:
         """What is due without a message: the watchdog's commands. Call it at least every 20 ms."""
         now = time.monotonic() if now is None else now
-        return self._commanded(self.pilot.watch(self.live, now) if self.pilot else None)
+        return [
+            *self._warned(now),
+            *self._commanded(self.pilot.watch(self.live, now) if self.pilot else None),
+        ]
+
+    def _warned(self, now: float) -> list[dict[str, Any]]:
+        """Once a second, the warnings that were not there a second ago."""
+        if abs(now - self._looked) < 1.0:
+            return []
+        before, self._looked, self._warnings = self._warnings, now, self.live.warnings()
+        lines = [{"warning": text} for finger, text in self._warnings.items() if finger not in before]
+        for line in lines:
+            self._record({**line, "arrival": now})
+        return lines
 
     def _commanded(self, command: dict[str, Any] | None) -> list[dict[str, Any]]:
         if command is None:
             return []
-        if self._log:
-            self._log(command)
+        self._record(command)
         return [command]
 
     def _refuse(self, why: str, now: float) -> list[dict[str, Any]]:
@@ -115,9 +129,12 @@ class Session:
         self._errors += 1
         if self._errors > _ERRORS:
             return []
-        if self._log:
-            self._log({"error": why, "arrival": now})
+        self._record({"error": why, "arrival": now})
         return [{"error": why}]
+
+    def _record(self, line: dict[str, Any]) -> None:
+        if self._log:
+            self._log(line)
 
     def report(self) -> str:
         """What became of all readings, in lines."""
@@ -126,7 +143,7 @@ class Session:
         lines += [f"{often} messages refused: {why}" for why, often in self.malformed.most_common(5)]
         if self._log and self._log.lost:
             lines.append(f"Warning: {self._log.lost} lines are not in {self._log.path}: {self._log.why}")
-        return "\n".join([*lines, *(f"Warning: {line}" for line in self.live.warnings())])
+        return "\n".join([*lines, *(f"Warning: {line}" for line in self.live.warnings().values())])
 
 
 def _message(text: bytes | str) -> dict[str, Any] | str:

@@ -203,7 +203,7 @@ def test_the_offset_of_two_clocks_is_found_and_told():
     clocks = live.clocks()
     assert clocks["force 1"] == pytest.approx(0.001, abs=1e-6)
     assert clocks["velocity 1"] == pytest.approx(-0.069, abs=1e-6)
-    (line,) = live.warnings()
+    (line,) = live.warnings().values()
     assert "+0.070 s" in line
 
 
@@ -218,7 +218,7 @@ def test_by_arrival_sensors_with_clocks_of_their_own_are_paired(offset, log):
     assert outputs[-1].estimate.mu_c == pytest.approx(truth[-1].estimate.mu_c, rel=0.02)
     assert outputs[-1].estimate.updates_mu_c > 0.7 * truth[-1].estimate.updates_mu_c
     assert live.counts["force 1"]["clock"] == live.counts["velocity 1"]["clock"] == LEARNED
-    assert live.warnings() == []
+    assert live.warnings() == {}
     (record,) = of_log(log.path)[1]
     assert same(outputs, records.estimate(record, "rls", allow_gaps=True))
 
@@ -227,7 +227,7 @@ def test_by_arrival_clocks_that_drift_apart_are_told():
     live = Live("rls", fingers=1, clocks="arrival")
     drifted = [(kind, t * (1.0 + 0.01 * (kind == "twist")), values, t) for kind, t, values in readings(20.0)]
     feed(live, drifted)
-    assert live.warnings() != []
+    assert live.warnings() != {}
 
 
 @pytest.mark.parametrize("silent", ["wrench", "twist", "neither"])

@@ -239,3 +239,11 @@ def test_a_full_disk_stops_no_gripper_and_is_told(takes, tmp_path):
     log.close()
     assert [line.get("t") for line in read(log.path)] == [None, 0.001]
     assert "1 lines are not in" in session.report()
+
+
+def test_clocks_that_differ_are_told_while_it_runs():
+    session, answers = Session(Live("rls", fingers=1)), []
+    for kind, t, values in readings(3.0):
+        answers += session.take(text(kind, t + 0.3 * (kind == "twist"), values), t) + session.tick(t)
+    (warning,) = [answer["warning"] for answer in answers if "warning" in answer]
+    assert "+0.300 s" in warning
