@@ -37,6 +37,8 @@ class Log:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path, self.lost, self.why = Path(path), 0, ""
+        if self.path.exists() and not self.path.is_file():
+            raise ValueError(f"{path} is not a regular file")
         if self.path.exists() and self.path.stat().st_size:
             next(read(self.path))
         self._file = self.path.open("ab+", buffering=0)

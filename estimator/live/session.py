@@ -138,8 +138,10 @@ class Session:
 
     def report(self) -> str:
         """What became of all readings, in lines."""
-        lines = [f"{name}: " + ", ".join(f"{what} {often}" for what, often in counts.items() if often)
-                 for name, counts in self.live.counts.items()]  # fmt: skip
+        lines = []
+        for name, counts in self.live.counts.items():
+            found = ", ".join(f"{what} {often}" for what, often in counts.items() if often)
+            lines.append(f"{name}: {found or 'received nothing'}")
         lines += [f"{often} messages refused: {why}" for why, often in self.malformed.most_common(5)]
         if self._log and self._log.lost:
             lines.append(f"Warning: {self._log.lost} lines are not in {self._log.path}: {self._log.why}")

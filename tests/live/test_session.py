@@ -1,6 +1,7 @@
 """Messages: what is understood, what is refused, and what nobody can break."""
 
 import json
+import os
 import socket
 import subprocess
 import sys
@@ -247,3 +248,9 @@ def test_clocks_that_differ_are_told_while_it_runs():
         answers += session.take(text(kind, t + 0.3 * (kind == "twist"), values), t) + session.tick(t)
     (warning,) = [answer["warning"] for answer in answers if "warning" in answer]
     assert "+0.300 s" in warning
+
+
+def test_a_pipe_is_no_log(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(ValueError, match="regular"):
+        Log(tmp_path / "pipe")
