@@ -11,6 +11,7 @@ import numpy as np
 import policies
 from estimator.estimate import ESTIMATE
 from estimator.live import Live, Output
+from estimator.sample import LARGEST
 from policies.learned import LearnedPolicy
 from slipgym.config.errors import unknown
 from slipgym.envs import observation as layout
@@ -110,13 +111,16 @@ class PolicyPilot:
         if trained:
             rows = [(PLACES.index(each.name), each.low, each.high) for each in trained.action]
             self._table = np.array(rows, COMPONENT)
+        given = {PLACES[k] for k in self._table["command"]}
+        self._commands = [name for name in COMMANDS if name == "grip_force" or name in given]
 
     def set_columns(self, values: Mapping[str, Any]) -> None:
         """See `estimator.live.session.Pilot`."""
         for name, value in values.items():
             if name not in self._given:
                 raise ValueError(unknown("observation column", name, self._given))
-            if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            number = isinstance(value, int | float) and not isinstance(value, bool)
+            if not number or not abs(value) < LARGEST:
                 raise ValueError(f"column {name}: expected a finite number")
         self._given.update(values)
 
@@ -124,7 +128,7 @@ class PolicyPilot:
         """A new episode, in a firm grip."""
         self._why, self._state, self._frames, self._steps = why, None, [], 0
         self._new = set()
-        self._given.update({name: 0.0 for name in COMMANDS if name in self._given})
+        self._given.update({name: 0.0 for name in self._commands if name in self._given})
         self._slip["measured_slip"] = 0.0
         force = max(self._firm, float(self._episode["command"][0]))
         self._episode["command"] = force
@@ -180,10 +184,8 @@ class PolicyPilot:
 
     def _command(self, t: float | None, commands: np.ndarray) -> dict[str, Any]:
         status = f"firm: {self._why}" if self._why else "ok"
-        values = dict(zip(COMMANDS, commands.tolist(), strict=True))
-        places = {"force_increment": "grip_force", "ln_grip_force": "grip_force"}
-        wanted = {places.get(PLACES[k], PLACES[k]) for k in self._table["command"]} & set(COMMANDS)
-        return {"command": 1, "t": t, "status": status} | {k: v for k, v in values.items() if k in wanted}
+        values: dict[str, float] = dict(zip(COMMANDS, commands.tolist(), strict=True))
+        return {"command": 1, "t": t, "status": status} | {name: values[name] for name in self._commands}
 
     def _take(self, output: Output) -> None:
         k = output.finger - 1

@@ -203,3 +203,17 @@ def test_messages_set_columns_that_no_sensor_reads():
 
 def test_one_finger_with_sensors_stands_for_both():
     assert play(session(fingers=1), fingers=(1,))[-1]["status"] == "ok"
+
+
+@pytest.mark.parametrize("value", ["NaN", "null", "true", '"1"', "[1]", "1e999", "9" * 400])
+def test_no_value_of_a_column_breaks_a_session(value):
+    found = session("hold")
+    (refused,) = found.take(f'{{"columns": {{"time_left": {value}}}}}', 0.0)
+    assert "finite" in refused["error"]
+
+
+def test_columns_that_were_given_stay_when_the_grip_was_firm():
+    found = session("hold", columns={"wrist_velocity_x": 0.1})
+    play(found)
+    found.tick(5.0)
+    assert found.pilot._given["wrist_velocity_x"] == 0.1
