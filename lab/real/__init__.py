@@ -1,1 +1,1 @@
-"""Real data of others: what limit surfaces, estimators and their slip decision say of it (docs/real_data.md)."""
+"""Compares surfaces, estimators and their slip decision with real data of others (docs/real_data.md)."""

@@ -36,13 +36,13 @@ def table(
 
 
 def page(data: Path | None, number: int, seed: int) -> str:
-    """The tables of all sets, as Markdown; arguments and errors as `table`, `number` resamples of a `seed`."""
+    """The tables of all sets, as Markdown; `number` resamples of a `seed`, the rest as `table`."""
     friction = table("silicone", silicone.EXTRACT, silicone.reduced, data)
     grasps = table("tugs", tugs.EXTRACT, tugs.reduced, data)
     logs = pushes.read(pushes.EXTRACT if data is None else data / "pushes")
     parts = [
         "# Silicone on PLA: exponent of the load",
-        markdown(silicone.exponents(friction, number, seed), 0),
+        markdown(silicone.exponents(friction, number, seed), 1),
         "# Tugged grasps: is the largest score of a record that of a tug?",
         f"{int(grasps['tugged'].sum())} of {len(grasps)} records are tugged.",
         markdown(tugs.areas(grasps, number, seed)),

@@ -1,12 +1,13 @@
 """Reads the friction of two silicones on PLA and fits the power law of `load_exponent` to it.
 
 The set has a mean coefficient of friction for each cycle, at one speed and without torque or time: an
-estimator has nothing to estimate in it. One row of the extract is a sequence of cycles under one load.
+estimator has nothing to estimate in it. One row of the extract is all cycles of a rig under one load.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -23,35 +24,32 @@ FEWEST = 6
 
 
 def reduced(folder: Path) -> pd.DataFrame:
-    """Rig and material, load [N], cycles and mean friction of each sequence of the set in a folder.
+    """Rig and material, load [N], number of cycles and their mean friction, of the set in a folder.
 
     Raises:
         ValueError: The file is missing or another one.
     """
-    from io import BytesIO
-
     raw = pd.read_csv(BytesIO(read(SETS["silicone"], folder, FILE)))
-    of_each = raw.groupby(["DataName", "SequenceID"], sort=False)
-    table = of_each.agg(load=("NominalLoad", "first"), cycles=("CoF.mean", "size"), mu=("CoF.mean", "mean"))
-    table = table.reset_index(names=["rig", "sequence"])
+    of_each = raw.groupby(["DataName", "NominalLoad"], sort=False)["CoF.mean"]
+    table = of_each.agg(cycles="size", mu="mean").reset_index(names=["rig", "load"])
     return table.assign(load=1e-3 * table["load"])
 
 
 def exponent(load: np.ndarray, mu: np.ndarray) -> float:
-    """a of mu = c load^-a by least squares of the logarithms [-]; NaN if all loads are one."""
+    """The exponent a of mu = c load^-a by least squares of the logarithms [-]; NaN if all loads are one."""
     if len(np.unique(load)) < 2:
         return np.nan
     return -float(np.polyfit(np.log(load), np.log(mu), 1)[0])
 
 
 def off_the_law(load: np.ndarray, mu: np.ndarray) -> np.ndarray:
-    """mu over that of the fitted law, less 1, (n,) [-]."""
+    """Friction over that of the fitted law, less 1, (n,) [-]."""
     law = np.polyfit(np.log(load), np.log(mu), 1)
     return mu / np.exp(np.polyval(law, np.log(load))) - 1.0
 
 
 def exponents(table: pd.DataFrame, number: int, seed: int) -> pd.DataFrame:
-    """A row for each rig: exponents with 95 % intervals of a bootstrap over sequences, and what is off the law.
+    """A row for each rig: exponents with 95 % intervals of a bootstrap over loads, and what is off the law.
 
     Args:
         table: Of `reduced`, or the extract.
@@ -70,7 +68,7 @@ def _rows(table: pd.DataFrame, number: int, rng: np.random.Generator) -> Iterato
         yield {
             "rig": rig,
             "loads [N]": f"{load.min():g}…{load.max():g}",
-            "sequences": len(own),
+            "number": len(own),
             "a": f"{exponent(load, mu):.2f}" if few else _interval(load, mu, number, rng),
             "lower half": "–" if few else _interval(load[lower], mu[lower], number, rng),
             "upper half": "–" if few else _interval(load[~lower], mu[~lower], number, rng),

@@ -1,4 +1,4 @@
-"""Reads the tugged grasps of magnetic pads, and asks whether the slip decision of the estimators finds the tugs.
+"""Reads the tugged grasps of magnetic pads, and asks whether the slip decision of the estimators finds tugs.
 
 A record is 300 samples of two pads with five magnetometers of three axes each, in raw units, and one label:
 tugged or not. There is no calibrated force, no slip velocity, no rate and no time of onset. A slip of the
@@ -56,7 +56,7 @@ def record(data: bytes) -> np.ndarray:
 
 
 def scores(field: np.ndarray) -> np.ndarray:
-    """Largest speed and largest excursion of each pad, in the order of `SCORES` [raw units a sample, raw units].
+    """Largest speed and largest excursion of each pad, in the order of `SCORES` [raw units].
 
     Args:
         field: Of `record`.
