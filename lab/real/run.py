@@ -44,7 +44,7 @@ def page(data: Path | None, number: int, seed: int) -> str:
         "# Silicone on PLA: exponent of the load",
         markdown(silicone.exponents(friction, number, seed), 1),
         "# Tugged grasps: is the largest score of a record that of a tug?",
-        f"{int(grasps['tugged'].sum())} of {len(grasps)} records are tugged.",
+        f"{int(grasps['tugged'].to_numpy(int).sum())} of {len(grasps)} records are tugged.",
         markdown(tugs.areas(grasps, number, seed)),
         "# Pushes of a block",
         pushes.run_pushes(logs, number, seed),

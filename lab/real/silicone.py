@@ -31,7 +31,7 @@ def reduced(folder: Path) -> pd.DataFrame:
     """
     raw = pd.read_csv(BytesIO(read(SETS["silicone"], folder, FILE)))
     of_each = raw.groupby(["DataName", "NominalLoad"], sort=False)["CoF.mean"]
-    table = of_each.agg(cycles="size", mu="mean").reset_index(names=["rig", "load"])
+    table = of_each.agg(cycles="size", mu="mean").rename_axis(["rig", "load"]).reset_index()
     return table.assign(load=1e-3 * table["load"])
 
 

@@ -61,7 +61,7 @@ def scores(field: np.ndarray) -> np.ndarray:
     Args:
         field: Of `record`.
     """
-    smooth, speed = (savgol_filter(field, WINDOW, ORDER, deriv=order, axis=0) for order in (0, 1))
+    smooth, speed = (np.array(savgol_filter(field, WINDOW, ORDER, deriv=k, axis=0)) for k in (0, 1))
     excursion = smooth - np.median(smooth[:REST], axis=0)
     return np.concatenate([np.linalg.norm(values, axis=2).max(axis=0) for values in (speed, excursion)])
 
