@@ -21,5 +21,6 @@ COMMANDS = {
     "torture": "Attack the public interface for some hours.",
     "train-estimator": 'Train the network of the estimator "gru".',
     "validate-parts": "Check steps, engines, patches, tilt and soft pads.",
+    "validate-real": "Compare surfaces and estimators with real data.",
 }
 """Name of each sub-command and its line of help."""
