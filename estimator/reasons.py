@@ -26,7 +26,7 @@ NEEDS = {
 
 
 BLIND = {
-    1: "these sensors measure no slip velocity, so that a slip does not show in them",
+    1: "these sensors measure no slip velocity, so that a slip shows in a sudden fall of the load alone",
     2: "these sensors measure neither slip nor tangential force: nothing in them depends on friction",
 }
 """What is not measured -> why no motion shows the value."""
@@ -68,12 +68,11 @@ def reasons(
     for name, whys in causes(estimate, misfit, at_bound).items():
         if getattr(estimate, f"confidence_{name}") >= CONFIDENT:
             continue
-        data = int(getattr(estimate, COUNTS[name]))
+        data, needs = int(getattr(estimate, COUNTS[name])), BLIND.get(int(unmeasured), NEEDS[name])
         if not data:
-            needs = BLIND.get(int(unmeasured), NEEDS[name])
             found[name] = f"{whys[0]}: this is the start value; {needs}"
         else:
-            found[name] = f"{', '.join(whys) or f'little data ({data})'}: be cautious; {NEEDS[name]}"
+            found[name] = f"{', '.join(whys) or f'little data ({data})'}: be cautious; {needs}"
     return found
 
 

@@ -42,14 +42,13 @@ def actions(forces: np.ndarray) -> np.ndarray:
     return np.clip(2.0 * (forces[:, None] - LEAST) / (MOST - LEAST) - 1.0, -1.0, 1.0).astype(np.float32)
 
 
-def slid(options: list[dict[str, float]], follow: bool, seed: int, gains: np.ndarray, **made: Any) -> Any:
+def slid(options: list[dict[str, Any]], follow: bool, seed: int, **made: Any) -> Any:
     """Lowers the grip of each object until it has slipped, the first one's or its own, and closes it.
 
     Args:
         options: Of each environment.
         follow: Whether all get the commands of the first.
         seed: Of the environments.
-        gains: Of the actuators, (n,).
         made: Further arguments of the environments.
 
     Returns:
@@ -67,7 +66,7 @@ def slid(options: list[dict[str, float]], follow: bool, seed: int, gains: np.nda
             if follow:
                 caught[:] = caught[0]
             forces = np.where(caught, np.minimum(forces * 1.3, MOST), np.maximum(0.99 * forces, LEAST))
-            envs.step(actions(gains * forces))
+            envs.step(actions(forces))
             since += bool(caught.all())
             wrenches.append(inner.wrenches.copy())
             twists.append(inner.twists.copy())
@@ -140,17 +139,16 @@ def bound(sensors: SensorsConfig, wrenches: np.ndarray, twists: np.ndarray, trus
     return float(np.sqrt(np.linalg.inv(information)[0, 0]))
 
 
-def worlds(options: dict[str, float]) -> tuple[list[dict[str, float]], np.ndarray]:
-    """Options of the nominal world and of each unknown up and down by STEP, and gains of the actuators."""
-    rows, gains = [options], [1.0]
+def worlds(options: dict[str, float]) -> list[dict[str, Any]]:
+    """Options of the nominal world and of each unknown up and down by STEP."""
+    rows: list[dict[str, Any]] = [{**options, "force_gain": [1.0, 1.0]}]
     for name in UNKNOWN:
         for sign in (1.0, -1.0):
-            factor, row = math.exp(sign * STEP), dict(options)
+            factor, row = math.exp(sign * STEP), dict(rows[0])
             for key in {"mu_c": ("mu_c", "mu_s"), "ratio": ("mu_s",), "mass": ("object_mass",)}.get(name, ()):
                 row[key] *= factor
-            rows.append(row)
-            gains.append(factor if name == "actuator" else 1.0)
-    return rows, np.array(gains)
+            rows.append({**row, "force_gain": [factor, factor]} if name == "actuator" else row)
+    return rows
 
 
 def main(
@@ -162,8 +160,7 @@ def main(
     options = [drawn(rng) for _ in range(episodes)]
     kept: dict[str, list[tuple[float, float]]] = {name: [] for name in PRESETS}
     for row in options:
-        rows, gains = worlds(row)
-        wrenches, twists, _ = slid(rows, True, seed, gains, sensors="ideal", estimator=None)
+        wrenches, twists, _ = slid(worlds(row), True, seed, sensors="ideal", estimator=None)
         for name in PRESETS:
             sensors = load(sensors=name).sensors
             kept[name].append(tuple(bound(sensors, wrenches, twists, trust) for trust in (True, False)))
@@ -171,7 +168,7 @@ def main(
     typer.echo(f"{'sensors':10} {'bound':>8} {'actuator unknown':>17} {'adaptive errs':>14} {'states':>8}")
     true = np.array([row["mu_c"] for row in options])
     for name in PRESETS:
-        estimated = slid(options, False, seed, np.ones(episodes), sensors=name)[2]
+        estimated = slid(options, False, seed, sensors=name)[2]
         errors = np.abs(np.log(estimated[:, 1] / true))
         figures = (
             *np.median(kept[name], axis=0),
