@@ -1,9 +1,10 @@
 """Learns from sudden falls of the load where no slip velocity is measured: a slip that begins shows as one.
 
 At the onset of a slip friction falls from mu_s to mu_c times the normal force, within a sample or two. A push
-that ends looks the same, and so does a sudden stop of the wrist: one fall alone is therefore weak evidence,
-and several that agree are less so. The error of the normal force is common to all, so that no number of them
-makes the deviation smaller than that.
+that ends looks the same, and so does a sudden stop of the wrist. So a fall counts only if the load over the
+normal force was about as large as any that held before, and if it is no larger than mu_s over mu_c can be.
+One fall alone is still weak evidence, and several that agree are less so. The error of the normal force is
+common to all, so that no number of them makes the deviation smaller than that.
 """
 
 import math
@@ -16,6 +17,10 @@ from estimator.window.layout import SAMPLES
 
 FALL = 0.08
 """Least fall of the load that is a slip, over the load: mu_c is below mu_s by more than that."""
+MOST, LIKE = 0.4, 0.85
+"""Largest fall, over the load; least load over normal force before it, over the largest that held so far."""
+FIRM = 5.0
+"""Normal force from which that counts, over the least in contact."""
 SIGMAS = 4.0
 """The same over the noise of its measurement."""
 EITHER = 0.25
@@ -44,10 +49,16 @@ def learn_drop(state, p):
         state.quiet -= 1
     if state.in_a_row < 6 or state.quiet > 0:
         return
-    before, normal, _ = _load(state, 3)
-    now, pressed, torque = _load(state, 0)
+    before, normal, _ = _load(state, 4)
+    falling, _, _ = _load(state, 1)
+    now, pressed, torque = _load(state, 0)  # one sample later, when it has fallen
     noise = SIGMAS * p.sd_force
-    fell = before - now > max(FALL * before, noise) and pressed > p.eps_fn
+    ratio = before / max(normal, 1e-9)
+    largest = state.drop_largest
+    if normal > FIRM * p.eps_fn:
+        state.drop_largest = max(largest, ratio)
+    fell = before - max(falling, now) > max(FALL * before, noise) and pressed > p.eps_fn
+    fell &= ratio > LIKE * largest and now > (1.0 - MOST) * before
     if not fell or now < noise or torque > 0.3 * p.r0 * now + SIGMAS * p.sd_torque:
         return
     state.quiet = APART

@@ -46,7 +46,7 @@ STATE = np.dtype(
         *_numbers("touched learned fitted", np.bool_),
         *_numbers("elapsed timing sign power stored unloaded variance_normal noise spring slip_time changed"),
         *_numbers("split reference misfit at_bound unmeasured load look_time fit_time springs sd_lever"),
-        *_numbers("drops drop_mean drop_static"),
+        *_numbers("drops drop_mean drop_static drop_largest"),
         ("products", np.float64, (CANDIDATES,)),
         ("energies", np.float64, (2,)),
         ("zeros", np.float64, (4,)),
@@ -78,7 +78,7 @@ one; `entry`: number of the next one; `fitted`: whether there was a fit since th
 of the normal force at which ln mu_c and ln r are; `mean`, `variance`: of the states without any slip;
 `misfit`: mean squared normalised residual; `at_bound`: 1 if r is at its bound; `unmeasured`: the
 parameter; `drops`: weight of the falls of the load, `drop_mean`, `drop_static`: ln mu_c and ln mu_s of
-them; `load`: normal force of the
+them, `drop_largest`: largest load over normal force that held; `load`: normal force of the
 published values [N], found at `look_time`; `fit_time`: time of the last fit [s]; `springs`: share of
 the entries that may be springs of the pad."""
 

@@ -92,7 +92,7 @@ class ObservationIndex:
 _WHOLE = {
     "f_x": ("wrist_f_x", 0.5),
     "f_y": ("wrist_f_y", 0.5),
-    "tau": ("wrist_tau", 0.5),
+    "tau": ("wrist_tau", 0.0),  # the lever from wrist to pad makes noise of it, as large as what pads hold
     "f_n": ("motor_force", 1.0),
 }
 """Column of a finger -> the gripper's, and the part of it that stands for one finger."""

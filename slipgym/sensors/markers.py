@@ -135,14 +135,14 @@ def press(markers: Any, pad: Any, cells: Any, i: int, f: int) -> None:
         field *= max(scale, 0.0)
         fx, fy = fx - max(scale, 0.0) * own[0], fy - max(scale, 0.0) * own[1]
         tau -= max(scale, 0.0) * own[2]
-    mx, my, spread = 0.0, 0.0, 1e-12
+    mx, my, spread = 0.0, 0.0, 0.0
     for k in range(COUNT):
         x, y = place_of(markers, k)
         mx, my = mx + weights[k] * x, my + weights[k] * y
     for k in range(COUNT):
         x, y = place_of(markers, k)
         spread += weights[k] * ((x - mx) ** 2 + (y - my) ** 2)
-    turn = (tau - mx * fy + my * fx) / spread
+    turn = (tau - mx * fy + my * fx) / max(spread, 1e-12)
     for k in range(COUNT):
         x, y = place_of(markers, k)
         part = markers.gain * markers.compliance * weights[k]
