@@ -163,7 +163,9 @@ def main(
         wrenches, twists, _ = slid(worlds(row), True, seed, sensors="ideal", estimator=None)
         for name in PRESETS:
             sensors = load(sensors=name).sensors
-            kept[name].append(tuple(bound(sensors, wrenches, twists, trust) for trust in (True, False)))
+            kept[name].append(
+                (bound(sensors, wrenches, twists, True), bound(sensors, wrenches, twists, False))
+            )
     typer.echo(f"slipgym {slipgym.__version__}, {episodes} objects, slip of {1e3 * SLIP:g} mm; medians [%]")
     typer.echo(f"{'sensors':10} {'bound':>8} {'actuator unknown':>17} {'adaptive errs':>14} {'states':>8}")
     true = np.array([row["mu_c"] for row in options])

@@ -13,7 +13,6 @@ import pandas as pd
 import typer
 
 import policies
-
 from policies.policy_leaderboard.entries import Member, best_constant, controllers, entered, remembering
 from policies.policy_leaderboard.run import kinds, outcomes
 from slipgym.tasks import find

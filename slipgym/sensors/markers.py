@@ -66,7 +66,7 @@ def place_of(markers: Any, k: int) -> tuple[float, float]:
 
 
 @compiled
-def nearest(markers: Any, x: float, y: float) -> int:
+def nearest(markers: Any, x: float, y: float) -> Any:
     """The marker next to a point of the pad frame [m]."""
     column = np.int64(np.rint(x / markers.spacing[0] + 0.5 * (COLUMNS - 1)))
     row = np.int64(np.rint(y / markers.spacing[1] + 0.5 * (ROWS - 1)))
