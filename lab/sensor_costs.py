@@ -52,21 +52,22 @@ def main(
     episodes: Annotated[int, typer.Option(min=10, help="Of each task, preset and policy.")] = 200,
     level: Annotated[str, typer.Option(help="Level of difficulty.")] = "hard",
     task: Annotated[list[str] | None, typer.Option(help="Tasks; repeatable.")] = None,
+    preset: Annotated[list[str] | None, typer.Option(help="Presets; repeatable.")] = None,
     policy: Annotated[list[str] | None, typer.Option(help="Learned policies; repeatable.")] = None,
 ) -> None:
     """Print what is solved [%], a row for each task and policy, a column for each preset."""
     rows = []
     for name in task or TASKS:
-        for preset in PRESETS:
-            given = {"sensors": preset, "level": level}
+        for chosen in preset or PRESETS:
+            given = {"sensors": chosen, "level": level}
             for member in members(name, given, episodes, policy or []):
                 try:
-                    table = outcomes(name, level, [member], episodes, {"sensors": preset}, progress=False)
+                    table = outcomes(name, level, [member], episodes, {"sensors": chosen}, progress=False)
                 except (
                     ValueError
                 ):  # these sensors do not measure what it needs, or not what it was trained on
                     continue
-                rows.append(table.assign(sensors=preset, policy=kinds(table)))
+                rows.append(table.assign(sensors=chosen, policy=kinds(table)))
     whole = pd.concat(rows)
     wide = whole.pivot_table(index=["task", "policy"], columns="sensors", values="solved [%]", sort=False)
     typer.echo(wide[[name for name in PRESETS if name in wide]].round(1).to_string(na_rep="-"))

@@ -13,7 +13,6 @@ from slipgym.config.errors import unknown
 from slipgym.envs import observation as layout
 from slipgym.envs.actions import COMMANDS, PLACES, Actions
 from slipgym.envs.load_part import LOAD
-from slipgym.envs.sensor_part import LAYOUTS
 from slipgym.tasks import configure, find
 
 State: TypeAlias = np.ndarray | tuple[np.ndarray, ...]
@@ -43,7 +42,7 @@ class ObservationIndex:
         self._at = {column.name: k for k, column in enumerate(columns)}
         self._others = [
             {name: k for k, name in enumerate((*(reading.name for reading in readings), *tail))}
-            for readings in LAYOUTS.values()
+            for readings in layout.LAYOUTS.values()
         ]
 
     def __getitem__(self, name: str) -> int:

@@ -12,6 +12,7 @@ from slipgym.envs.actions import ACTION_MODES
 from slipgym.envs.estimates import merged_mu_c, merged_mu_s, weighted_mean
 from slipgym.envs.load_part import LOAD, write_load
 from slipgym.envs.readings import Reading, choice_reader, row_writer
+from slipgym.envs.sensor_part import LAYOUTS as LAYOUTS
 from slipgym.envs.sensor_part import SENSORS, read_owned, sensor_readings
 from slipgym.tasks.task import Column, Task
 
