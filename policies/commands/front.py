@@ -26,6 +26,8 @@ COMMANDS = {
     "leaderboard": "Rank the estimators on the same records.",
     "policy-leaderboard": "Rank policies on the same episodes.",
     "estimate": "Run an estimator on a record of your gripper.",
+    "map": "Propose which columns of a log are what.",
+    "live": "Estimate, and command a grip, while a gripper runs.",
     "record": "Write what a finger's sensors read in an episode.",
     "validate": "Check the physics against its acceptance figures.",
     "benchmark": "Measure the speed of the environments.",
