@@ -21,12 +21,14 @@ Public modules:
     slipgym.contact      friction of one pad on its own
     slipgym.config       configuration, presets, randomization
     slipgym.tasks        the tasks; what a task of your own is made of
-    tests.vector_checker  a checker of vector environments
     slipgym.synthetic    records of one finger without a simulator
+    slipgym.policies     controllers, learned policies, training: the package `policies`
+    slipgym.estimator    the estimators alone: the package `estimator`
 """
 
 from typing import TYPE_CHECKING, Any
 
+from slipgym.beside import refuse_hidden
 from slipgym.registration import register
 from slipgym.version import __version__
 
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = ["__version__", "register_task"]
 
+refuse_hidden("estimator")
 register()
 
 

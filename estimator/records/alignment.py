@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,33 @@ from estimator.records.record import Array, Record, seconds, twist_at
 
 GAP_PERIODS = 5.0
 """Sample periods without a sample that make a gap."""
+
+
+class Limits(NamedTuple):
+    """Longest times without a sample that are no gap."""
+
+    force: float
+    """[s]."""
+    velocity: float
+    """[s]."""
+
+    @classmethod
+    def of(cls, force_period: float, velocity_period: float) -> Self:
+        """By the usual times between two samples [s]."""
+        return cls(max(GAP_PERIODS * force_period, velocity_period), GAP_PERIODS * velocity_period)
+
+
+class Pairs(NamedTuple):
+    """The velocity samples that have a force, and what separates them."""
+
+    kept: NDArray[np.int64]
+    """Their places among the velocities, (k,)."""
+    at: NDArray[np.int64]
+    """Places of their forces, (k,)."""
+    gaps: NDArray[np.int64]
+    """Gaps in the forces before each force, (n,)."""
+    fresh: NDArray[np.bool_]
+    """Where an estimator starts afresh, (k,)."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +72,26 @@ def newest(force_t: Array, t: Array) -> NDArray[np.int64]:
     return np.searchsorted(force_t, t, side="right") - 1
 
 
+def pair(force_t: Array, twist_t: Array, limits: Limits, last: tuple[float, int] | None = None) -> Pairs:
+    """Pairs velocities with the newest force: the whole of a record, or the next piece of a stream.
+
+    Args:
+        force_t: Increasing, (n,) [s], n > 0.
+        twist_t: Increasing, (m,) [s].
+        limits: What is a gap.
+        last: Of the sample before, the time [s] and the gaps before its force; None: there is none.
+    """
+    at = newest(force_t, twist_t)
+    kept = np.flatnonzero((at >= 0) & (twist_t - force_t[at] <= limits.force))
+    gaps, at = np.zeros(len(force_t), np.int64), at[kept]
+    np.cumsum(force_t[1:] - force_t[:-1] > limits.force, out=gaps[1:])
+    t, before, fresh = twist_t[kept], gaps[at], np.zeros(len(kept), bool)
+    fresh[1:] = (t[1:] - t[:-1] > limits.velocity) | (before[1:] > before[:-1])
+    if last and len(t):
+        fresh[0] = t[0] - last[0] > limits.velocity or before[0] > last[1]
+    return Pairs(kept, at, gaps, fresh)
+
+
 def align(record: Record, allow_gaps: bool = False) -> Samples:
     """Resamples the forces at the times of the velocities.
 
@@ -54,29 +102,24 @@ def align(record: Record, allow_gaps: bool = False) -> Samples:
     Raises:
         ValueError: There is a gap, or fewer than 2 velocity samples have a force.
     """
-    velocity_limit = GAP_PERIODS * period(record.twist_t)
-    force_limit = max(GAP_PERIODS * period(record.force_t), period(record.twist_t))
+    limits = Limits.of(*(record.periods or (period(record.force_t), period(record.twist_t))))
     if not allow_gaps:
-        _refuse_gaps(record.name, "velocity", record.twist_t, velocity_limit)
-        _refuse_gaps(record.name, "force", record.force_t, force_limit)
-    at = newest(record.force_t, record.twist_t)
-    kept = np.flatnonzero((at >= 0) & (record.twist_t - record.force_t[at] <= force_limit))
+        _refuse_gaps(record.name, "velocity", record.twist_t, limits.velocity)
+        _refuse_gaps(record.name, "force", record.force_t, limits.force)
+    kept, at, _, fresh = pair(record.force_t, record.twist_t, limits)
     if len(kept) < 2:
         raise ValueError(
             f"{record.name}: {len(kept)} velocity samples have a force at or before them; "
             f"at least 2 are needed. Forces {_span(record.force_t)}, "
             f"velocities {_span(record.twist_t)}: on one clock?"
         )
-    t, at = record.twist_t[kept], at[kept]
-    force_gaps = np.cumsum(np.diff(record.force_t, prepend=record.force_t[0]) > force_limit)
-    breaks = (np.diff(t) > velocity_limit) | (np.diff(force_gaps[at]) > 0)
     twist = record.twist[kept]
     return Samples(
-        t=t,
+        t=record.twist_t[kept],
         wrench=record.wrench[at],
         twist=twist if record.cop is None else twist_at(twist, record.cop[at]),
         truth=None if record.truth is None else record.truth[at],
-        segment=np.concatenate(([0], np.cumsum(breaks))),
+        segment=np.cumsum(fresh, dtype=np.int64),
         left_out=len(record.twist_t) - len(kept),
     )
 

@@ -35,6 +35,8 @@ class Record:
     """mu_s, mu_c, r by force sample, (n, 3) [-, -, m], NaN where unknown; None: the record has none."""
     hold: float | None = None
     """Time for which the file repeats each velocity, of which the record has one [s]; None: it does not."""
+    periods: tuple[float, float] | None = None
+    """Usual times between two forces and two velocities, where they are known [s]; None: the medians."""
 
 
 def seconds(t: Any) -> str:

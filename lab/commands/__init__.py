@@ -12,6 +12,7 @@ COMMANDS = {
     "fuzz": "Print errors of estimators in independent worlds.",
     "imperfections": "Print what each imperfection of the sensors costs.",
     "jumps": "Print how soon mu_c is right after friction jumps.",
+    "live-bars": "Measure `slipgym live` under faults of sensors and networks.",
     "pushes": "Compare the estimators on real pushes of a block.",
     "rank": "Compare the order of returns with that of success.",
     "reproduce": "Reproduce the paper's analyses.",
@@ -20,5 +21,6 @@ COMMANDS = {
     "torture": "Attack the public interface for some hours.",
     "train-estimator": 'Train the network of the estimator "gru".',
     "validate-parts": "Check steps, engines, patches, tilt and soft pads.",
+    "validate-real": "Compare surfaces and estimators with real data.",
 }
 """Name of each sub-command and its line of help."""

@@ -1,8 +1,8 @@
-"""Configuration models of the two sensors of each finger."""
+"""Configuration models of the sensors: those of each finger, of a wrist, a gripper's motor, and markers."""
 
-from typing import Annotated
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from slipgym.config.base import Frozen
 
@@ -99,8 +99,71 @@ class SlipConfig(Frozen):
     )
 
 
-class SensorsConfig(Frozen):
-    """The sensors of each finger."""
+class MotorConfig(Frozen):
+    """What a gripper without sensors in its fingers knows: its motor's load and its opening."""
 
+    gain_error: float = Field(
+        default=0.0, ge=0.0, le=0.9, description="Largest relative error of the force, per episode [-]"
+    )
+    friction: float = Field(
+        default=0.0, ge=0.0, le=0.9,
+        description="Load of a motor that closes over the force on the object, less 1; opening the same less",
+    )  # fmt: skip
+    backlash: float = Field(
+        default=0.0, ge=0.0, le=100.0, description="Change of force in which that friction turns over [N]"
+    )
+    noise: float = Field(default=0.0, ge=0.0, le=100.0, description="White noise of the force, sd [N]")
+    resolution: float = Field(
+        default=0.0, ge=0.0, le=100.0, description="Quantisation of the force; 0: continuous [N]"
+    )
+    opening_noise: float = Field(
+        default=0.0, ge=0.0, le=0.1, description="White noise of the opening, sd [m]"
+    )
+
+
+class MarkersConfig(Frozen):
+    """Markers in a gel in front of a camera: a field of shear, from which the forces along the pad come."""
+
+    compliance: float = Field(
+        ge=1e-8, le=1.0, description="Displacement of a marker over the force on its part of the pad [m/N]"
+    )
+    noise: float = Field(ge=0.0, le=0.01, description="Noise of a marker per axis and frame, sd [m]")
+    latency_frames: int = Field(ge=0, le=3, description="Latency of a frame [frames]")
+    gain_error: float = Field(
+        ge=0.0, le=0.9, description="Largest relative error of the gel's compliance, per episode [-]"
+    )
+    normal_error: float = Field(
+        ge=0.0, le=0.9, description="Largest relative error of the normal force, per episode [-]"
+    )
+    observed: bool = Field(
+        default=False, description="Whether observations have the field, 252 columns: true or false"
+    )
+
+
+class SensorsConfig(Frozen):
+    """The sensors of each finger, or of the gripper as a whole."""
+
+    place: Literal["fingers", "wrist", "motor"] = Field(
+        default="fingers",
+        description="Where forces are measured: in both fingers, at the wrist, or nowhere but in the motor",
+    )
+    interval: int = Field(default=1, ge=1, le=100, description="Control steps between two readings [-]")
     force_torque: ForceTorqueConfig = Field(description="Force/torque sensor")
     slip: SlipConfig = Field(description="Slip-velocity sensor")
+    motor: MotorConfig = Field(
+        default=MotorConfig(), description="Load and opening of the gripper's motor, unless in fingers"
+    )
+    markers: MarkersConfig | None = Field(
+        default=None, description="Markers in the pads; null: force/torque sensors behind them"
+    )
+
+    @model_validator(mode="after")
+    def _markers_need_fingers(self) -> Self:
+        if self.markers is not None and self.place != "fingers":
+            raise ValueError(f'markers are in the pads: place must be "fingers", got "{self.place}"')
+        return self
+
+    @property
+    def usual(self) -> bool:
+        """Whether each finger has a force/torque and a slip-velocity sensor, read in every control step."""
+        return self.place == "fingers" and self.markers is None and self.interval == 1

@@ -29,6 +29,7 @@ PUBLIC = (
 """Public modules, with all below them; of `slipgym.envs` those that are listed."""
 INNER = {
     "policies/evaluation/sensor_record.py": "keeps raw sensor samples",
+    "policies/live.py": "makes observations of the readings of a real gripper",
     "policies/play/watch.py": "makes an environment of a class",
     "policies/training/adapter.py": "wraps the vector environment",
     "policies/training/checkpoint_io.py": "writes the state of environments",

@@ -1,0 +1,133 @@
+"""Estimates friction while a gripper runs, and commands its grip."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from estimator import DEFAULT
+from policies.commands.several import taking_several
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym live
+  slipgym live --policy hold --log run.jsonl
+  slipgym live --policy hold_scratch --column time_left=4 --set r_max=0.02
+  slipgym live --door ros2 --clocks arrival
+\n
+The door udp takes JSON lines, {"finger": 1, "t": 0.001, "wrench": [f_x, f_y, f_n, tau]} or "twist": [v_x,
+v_y, omega], and answers with estimates and commands. docs/live.md describes them, and examples/live/ has
+clients in Python and C.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG, cls=taking_several("--set", "--column"))
+def main(
+    policy: Annotated[
+        str | None,
+        typer.Option(
+            help="Name of a policy, or its folder; without one nothing is commanded.", show_default=False
+        ),
+    ] = None,
+    task: Annotated[
+        str | None, typer.Option(help="For a controller of every task: its observations.", show_default=False)
+    ] = None,
+    column: Annotated[
+        list[str] | None, typer.Option(metavar="NAME=VALUE", help="Of the observation; messages change it.")
+    ] = None,
+    firm: Annotated[
+        float | None, typer.Option(help="Grip when data stop [N]; the gripper's largest.", show_default=False)
+    ] = None,
+    timeout: Annotated[float, typer.Option(help="Silence after which the grip is firm [s].")] = 0.1,
+    estimator: Annotated[str, typer.Option(help="Name of the estimator.")] = DEFAULT,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Its parameters; repeatable.")
+    ] = None,
+    fingers: Annotated[int, typer.Option(min=1, max=2, help="With sensors.")] = 2,
+    force_rate: Annotated[float, typer.Option(help="Of each force sensor [Hz].")] = 1000.0,
+    velocity_rate: Annotated[float, typer.Option(help="Of each slip-velocity sensor [Hz].")] = 120.0,
+    lateness: Annotated[float, typer.Option(help="How late a reading may be [s].")] = 0.002,
+    clocks: Annotated[str, typer.Option(help="stamps: one clock. arrival: each sensor its own.")] = "stamps",
+    log: Annotated[
+        Path | None, typer.Option(help="JSON lines to append all that passes to.", show_default=False)
+    ] = None,
+    mcap: Annotated[
+        Path | None, typer.Option(help="At the end, the log as MCAP.", show_default=False)
+    ] = None,
+    door: Annotated[str, typer.Option(help="udp, ros2 or rosbridge.")] = "udp",
+    host: Annotated[
+        str, typer.Option(help="Address to listen at, or of the rosbridge; 0.0.0.0: the network.")
+    ] = "127.0.0.1",
+    port: Annotated[int | None, typer.Option(min=0, max=65535, help="7741; rosbridge: 9090.")] = None,
+    seconds: Annotated[float | None, typer.Option(help="End by itself.", show_default=False)] = None,
+) -> None:
+    """Estimate friction from the readings of a running gripper, and command its grip."""
+    from estimator.live import Live, Log
+    from estimator.live.session import Session
+    from estimator.records import parse_settings
+
+    if door not in ("udp", "ros2", "rosbridge"):
+        raise typer.BadParameter(f"{door!r}: expected udp, ros2 or rosbridge", param_hint="--door")
+    if mcap is not None and log is None:
+        raise typer.BadParameter("--mcap converts the log: give --log")
+    book = None
+    try:
+        columns, pilot = parse_settings(column or (), "--column"), None
+        if columns and policy is None:
+            raise ValueError("--column is for a --policy")
+        book = None if log is None else Log(log)
+        rates = force_rate, velocity_rate
+        live = Live(estimator, fingers, rates, lateness, clocks, book, **parse_settings(set_ or ()))
+        if policy is not None:
+            from policies.live import PolicyPilot
+
+            pilot = PolicyPilot(policy, live, task, columns, firm, timeout)
+        session = Session(live, pilot, book)
+        _serve(session, door, host, port, fingers, seconds)
+    except (ValueError, OSError, ModuleNotFoundError) as error:
+        raise typer.BadParameter(str(error)) from error
+    finally:
+        if book is not None:
+            book.close()
+    typer.echo(session.report())
+    if mcap is not None and log is not None:
+        _convert(log, mcap)
+
+
+def _serve(session: Any, door: str, host: str, port: int | None, fingers: int, seconds: float | None) -> None:
+    import time
+
+    end = None if seconds is None else time.monotonic() + seconds
+
+    def going() -> bool:
+        return end is None or time.monotonic() < end
+
+    from estimator.live import ros, udp
+
+    try:
+        if door == "udp":
+            with udp.opened(host, udp.PORT if port is None else port) as socket:
+                address = "{}:{}".format(*socket.getsockname())
+                typer.echo(f"listening at {address} (UDP); Ctrl-C ends", err=True)
+                if host != "127.0.0.1":
+                    typer.echo("Warning: whoever reaches this address can move the grip", err=True)
+                udp.serve(session, socket, going)
+        elif door == "ros2":
+            ros.serve_ros2(session, fingers, going)
+        else:
+            ros.serve_rosbridge(session, fingers, host, 9090 if port is None else port, going)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        session.live.flush()
+
+
+def _convert(log: Path, target: Path) -> None:
+    from estimator.live.mcap import convert
+
+    try:
+        typer.echo(f"{convert(log, target)} messages: {target}")
+    except (ModuleNotFoundError, OSError, ValueError) as error:
+        raise typer.BadParameter(str(error), param_hint="--mcap") from error
