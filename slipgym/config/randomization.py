@@ -84,6 +84,9 @@ class Ranges(PadRanges):
     force_gain: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
         default=None, description="Actuator force over the commanded, for each finger"
     )
+    stiction: Annotated[Distribution | None, within(0.0, 10.0)] = Field(
+        default=None, description="Stiction of each finger's actuator [N]"
+    )
     noise_scale: Annotated[Distribution | None, within(0.0, 10.0)] = Field(
         default=None, description="White noise of all sensors over the configured"
     )

@@ -28,6 +28,8 @@ from slipgym.envs.sampling_kernels import (
 from slipgym.envs.values import FIXED_BY, FRICTION, NAMES, PLACES, SIZE, VALUES, flat, labels, nominal_values
 from slipgym.tasks.options import EpisodeOptions
 
+SPARE = {"stiction": "dead_time"}
+"""Field -> a number before it, of whose two random numbers it takes the second: it moves no other's."""
 UNIFORMS = 8
 """Number of uniform random numbers per disturbance, the most that any kind needs."""
 
@@ -142,6 +144,9 @@ class Randomizer:
                 field = Distribution(choices=tuple(float(indices[name].index(each)) for each in field))
             for number in own:
                 _describe(number, field, choices)
+            if SPARE.get(name) in self.drawn:
+                own["at"] = numbers[PLACES[SPARE[name]]]["at"] + 1
+                continue
             own["at"] = count + np.arange(len(own))
             count += max(2, len(own))  # a single number leaves one for its gate
         disturbances = np.zeros(len(self.kinds), DISTURBANCE)

@@ -144,6 +144,7 @@ def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
             fingers[i, f].lag, fingers[i, f].gain = value.finger_lag[f] * value.lag, value.force_gain[f]
             if own.randomized:
                 randomize_pad(pad, value)
+                fingers[i, f].stiction = value.stiction
                 fingers[i, f].dead_ticks = np.int64(np.rint(value.dead_time * own.clock))
                 slip_sensors[i, f].noise = value.noise_scale * own.slip_noise
                 slip_sensors[i, f].least_delay = np.int64(value.slip_latency)

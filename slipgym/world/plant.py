@@ -163,7 +163,7 @@ def _fingers(config: Config, n: int) -> np.ndarray:
     gripper = config.gripper
     fingers = np.zeros((n, 2), FINGER)
     fingers["lag"] = gripper.lag * np.array(gripper.finger_lag)
-    fingers["gain"] = gripper.force_gain
+    fingers["gain"], fingers["stiction"] = gripper.force_gain, gripper.stiction
     fingers["dead_ticks"] = dead_ticks(config, gripper.dead_time)
     fingers["force_limit"] = gripper.force_limit
     fingers["open_below"] = gripper.open_below
