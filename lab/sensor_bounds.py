@@ -1,10 +1,9 @@
-"""Computes what each sensor preset tells of mu_c after a slip of 1 mm, and what an estimator makes of it.
+"""Computes what each sensor preset shows of mu_c after a slip of 1 mm, and what an estimator makes of it.
 
 An object hangs in the grip, which is lowered until it has slipped by a millimetre, and then closes. The bound
 is that of a batch smoother which knows the whole record, the equations of the simulator and the commands, but
 not friction, mass, the gain of the actuator, and the zero and scale errors of its sensors: the Bayesian
 Cramér-Rao bound, from the record's derivatives by finite differences. Nothing estimates better in the mean.
-Run it as `python -m lab.sensor_bounds --episodes 40`.
 """
 
 from __future__ import annotations
@@ -179,7 +178,3 @@ def main(
         )
         cells = (f"{100.0 * value:.1f}" for value in figures)
         typer.echo("{:10} {:>8} {:>17} {:>14} {:>8}".format(name, *cells))
-
-
-if __name__ == "__main__":
-    typer.run(main)

@@ -2,7 +2,6 @@
 
 Every policy plays the same episodes with every preset. A policy that needs more than a preset measures has
 no figure. `--policy` enters learned policies, see `slipgym train --set environment.sensors=wrist`.
-Run it as `python -m lab.sensor_costs --episodes 200`.
 """
 
 from __future__ import annotations
@@ -71,7 +70,3 @@ def main(
     whole = pd.concat(rows)
     wide = whole.pivot_table(index=["task", "policy"], columns="sensors", values="solved [%]", sort=False)
     typer.echo(wide[[name for name in PRESETS if name in wide]].round(1).to_string(na_rep="-"))
-
-
-if __name__ == "__main__":
-    typer.run(main)

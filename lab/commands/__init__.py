@@ -16,6 +16,8 @@ COMMANDS = {
     "pushes": "Compare the estimators on real pushes of a block.",
     "rank": "Compare the order of returns with that of success.",
     "reproduce": "Reproduce the paper's analyses.",
+    "sensor-bounds": "Print what the sensors of a gripper can say of friction.",
+    "sensor-costs": "Print what the sensors of a gripper cost controllers.",
     "ship": "Add trained policies to the pretrained ones.",
     "study-report": "Write the report of a study as one page.",
     "torture": "Attack the public interface for some hours.",

@@ -28,7 +28,9 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    log: Annotated[Path, typer.Argument(help="csv, parquet, xlsx, npz, HDF5, mat, mcap or ROS bag.", show_default=False)],
+    log: Annotated[
+        Path, typer.Argument(help="csv, parquet, xlsx, npz, HDF5, mat, mcap or ROS bag.", show_default=False)
+    ],
     columns: Annotated[
         Path | None, typer.Option(help="YAML: which column is what, its unit and sign.", show_default=False)
     ] = None,

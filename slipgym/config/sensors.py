@@ -103,22 +103,18 @@ class MotorConfig(Frozen):
     """What a gripper without sensors in its fingers knows: its motor's load and its opening."""
 
     gain_error: float = Field(
-        default=0.0, ge=0.0, le=0.9, description="Largest relative error of the force, per episode [-]"
+        ge=0.0, le=0.9, description="Largest relative error of the force, per episode [-]"
     )
     friction: float = Field(
-        default=0.0, ge=0.0, le=0.9,
-        description="Load of a motor that closes over the force on the object, less 1; opening the same less",
+        ge=0.0, le=0.9,
+        description="Load of a motor that closes over the force on the object, less 1; opening the same less [-]",
     )  # fmt: skip
     backlash: float = Field(
-        default=0.0, ge=0.0, le=100.0, description="Change of force in which that friction turns over [N]"
+        ge=0.0, le=100.0, description="Change of force in which that friction turns over [N]"
     )
-    noise: float = Field(default=0.0, ge=0.0, le=100.0, description="White noise of the force, sd [N]")
-    resolution: float = Field(
-        default=0.0, ge=0.0, le=100.0, description="Quantisation of the force; 0: continuous [N]"
-    )
-    opening_noise: float = Field(
-        default=0.0, ge=0.0, le=0.1, description="White noise of the opening, sd [m]"
-    )
+    noise: float = Field(ge=0.0, le=100.0, description="White noise of the force, sd [N]")
+    resolution: float = Field(ge=0.0, le=100.0, description="Quantisation of the force; 0: continuous [N]")
+    opening_noise: float = Field(ge=0.0, le=0.1, description="White noise of the opening, sd [m]")
 
 
 class MarkersConfig(Frozen):
@@ -135,26 +131,21 @@ class MarkersConfig(Frozen):
     normal_error: float = Field(
         ge=0.0, le=0.9, description="Largest relative error of the normal force, per episode [-]"
     )
-    observed: bool = Field(
-        default=False, description="Whether observations have the field, 252 columns: true or false"
-    )
+    observed: bool = Field(description="Whether observations have the field, 252 columns: true or false")
 
 
 class SensorsConfig(Frozen):
     """The sensors of each finger, or of the gripper as a whole."""
 
     place: Literal["fingers", "wrist", "motor"] = Field(
-        default="fingers",
-        description="Where forces are measured: in both fingers, at the wrist, or nowhere but in the motor",
+        description="Where forces are measured: both fingers, the wrist, or the motor alone",
     )
-    interval: int = Field(default=1, ge=1, le=100, description="Control steps between two readings [-]")
+    interval: int = Field(ge=1, le=100, description="Control steps between two readings [-]")
     force_torque: ForceTorqueConfig = Field(description="Force/torque sensor")
     slip: SlipConfig = Field(description="Slip-velocity sensor")
-    motor: MotorConfig = Field(
-        default=MotorConfig(), description="Load and opening of the gripper's motor, unless in fingers"
-    )
+    motor: MotorConfig = Field(description="Load and opening of the gripper's motor, unless in fingers")
     markers: MarkersConfig | None = Field(
-        default=None, description="Markers in the pads; null: force/torque sensors behind them"
+        description="Markers in the pads; null: force/torque sensors behind them"
     )
 
     @model_validator(mode="after")

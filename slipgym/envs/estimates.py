@@ -17,14 +17,14 @@ from slipgym.sensors.markers import COUNT
 
 LATENCY = "velocity_delay"
 """Parameter of an estimator: the latency of the slip velocity."""
-TOLD = (LATENCY, "unmeasured", "sd_force", "sd_normal", "sd_torque", "sd_gain", "sd_zero", "nominal_delay")
-"""Parameters that a preset of the sensors may tell an estimator."""
+STATED = (LATENCY, "unmeasured", "sd_force", "sd_normal", "sd_torque", "sd_gain", "sd_zero", "nominal_delay")
+"""Parameters that a preset of the sensors states for an estimator."""
 
 
 def chosen_estimator(choice: str | Mapping[str, Any] | None) -> dict[str, Any] | None:
     """Return the estimator's name and parameters; None for none.
 
-    Those of TOLD are left out unless the user gave them.
+    Those of STATED are left out unless the user gave them.
     """
     if choice is None:
         return None
@@ -38,7 +38,7 @@ def chosen_estimator(choice: str | Mapping[str, Any] | None) -> dict[str, Any] |
     given = dict(choice)
     name = given.pop("name")
     parameters = asdict(specification(name).parameters.create(**given))
-    return {"name": name, **{key: parameters[key] for key in parameters if key in given or key not in TOLD}}
+    return {"name": name, **{key: parameters[key] for key in parameters if key in given or key not in STATED}}
 
 
 def informed(choice: dict[str, Any], config: Config) -> dict[str, Any]:
@@ -47,8 +47,8 @@ def informed(choice: dict[str, Any], config: Config) -> dict[str, Any]:
     Of grippers as labs own them it knows the data sheet, too. It does not know what an episode samples.
     """
     known = {field.name for field in fields(specification(choice["name"]).parameters)}
-    told = {LATENCY: config.sensors.slip.latency_samples, **_data_sheet(config.sensors)}
-    return {**{name: value for name, value in told.items() if name in known}, **choice}
+    stated = {LATENCY: config.sensors.slip.latency_samples, **_data_sheet(config.sensors)}
+    return {**{name: value for name, value in stated.items() if name in known}, **choice}
 
 
 def _data_sheet(sensors: SensorsConfig) -> dict[str, float]:
@@ -65,12 +65,12 @@ def _data_sheet(sensors: SensorsConfig) -> dict[str, float]:
             "sd_gain": math.hypot(motor.gain_error / math.sqrt(3.0), motor.friction),
             "sd_zero": max(force.bias_tangential, 1e-3),
         }
-    told = {"sd_normal": max(force.noise_normal, 1e-3), "nominal_delay": sensors.slip.latency_samples}
+    stated = {"sd_normal": max(force.noise_normal, 1e-3), "nominal_delay": sensors.slip.latency_samples}
     if markers is None:
-        return told
-    told["sd_force"] = max(math.sqrt(COUNT) * markers.noise / markers.compliance, 1e-3)
-    told["sd_gain"] = math.hypot(markers.gain_error, markers.normal_error) / math.sqrt(3.0)
-    return told
+        return stated
+    stated["sd_force"] = max(math.sqrt(COUNT) * markers.noise / markers.compliance, 1e-3)
+    stated["sd_gain"] = math.hypot(markers.gain_error, markers.normal_error) / math.sqrt(3.0)
+    return stated
 
 
 def make_estimators(choice: dict[str, Any] | None, config: Config, n: int) -> estimators.BatchEstimator:
