@@ -86,7 +86,7 @@ class SlipConfig(Frozen):
         ge=0, description="Largest latency on top of that, sampled per episode [samples]"
     )
     own_latency: bool = Field(
-        default=False, description="Whether each finger's sensor samples its own latency: true or false"
+        description="Whether each finger's sensor samples its own latency: true or false"
     )
     jitter: Probability = Field(description="Probability that a reading is one sample older [-]")
     dropout: Probability = Field(description="Probability that a reading is the last one again [-]")

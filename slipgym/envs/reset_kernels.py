@@ -83,6 +83,7 @@ randomize_pad = generate(
     ("pad", "value"),
     [
         "pad.stribeck_velocity, pad.sigma_0 = value.stribeck_velocity, value.sigma_0",
+        "pad.speed_slope = value.speed_slope",
         *(f"pad.{CONFIGURED.get(name, name)} = value.{name}" for name in EFFECTS if name != "anisotropy"),
         "pad.axes[0], pad.axes[1] = friction_axes(value.anisotropy)",
     ],

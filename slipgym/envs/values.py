@@ -70,6 +70,7 @@ NAMES = ("materials", "pressure")
 _NUMBERS = (
     "friction_drift",
     "stribeck_velocity",
+    "speed_slope",
     "sigma_0",
     "radius_scale",
     "mass_scale",
@@ -113,6 +114,7 @@ def nominal_values(config: Config) -> np.ndarray:
     values = np.zeros(1, VALUES)
     nominal = {
         "stribeck_velocity": contact.stribeck_velocity,
+        "speed_slope": contact.speed_slope,
         "sigma_0": contact.sigma_0,
         "radius_scale": 1.0,
         "mass_scale": 1.0,

@@ -130,7 +130,7 @@ def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
 
 def _pads(config: Config, n: int) -> np.ndarray:
     contact = config.contact
-    fields = "stribeck_velocity", "stribeck_exponent", "sigma_0", "sigma_1", "sigma_2"
+    fields = "stribeck_velocity", "stribeck_exponent", "speed_slope", "sigma_0", "sigma_1", "sigma_2"
     array = pads((n, 2), **{field: getattr(contact, field) for field in fields})
     array["r"] = config.contact_radius * np.array(contact.finger_radius)
     array["cop"] = contact.cop_offset
