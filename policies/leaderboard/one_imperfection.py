@@ -15,6 +15,7 @@ IMPERFECTIONS = {
     "tilt": {"force_torque": ("tilt",)},
     "cross-talk": {"force_torque": ("crosstalk",)},
     "off centre": {"force_torque": ("off_centre",)},
+    "fingertip": {"force_torque": ("tip_mass", "tip_mass_spread")},
     "late force": {"force_torque": ("latency_spread",)},
     "late velocity": {"slip": ("latency_samples", "latency_spread", "own_latency", "jitter")},
     "scale": {"slip": ("scale_error",)},

@@ -51,6 +51,12 @@ class ForceTorqueConfig(Frozen):
     latency_spread: float = Field(
         ge=0.0, le=10.0, description="Largest latency on top of that, sampled per episode [s]"
     )
+    tip_mass: float = Field(
+        ge=0.0, le=1.0, description="Smallest mass of the fingertip in front of the sensor [kg]"
+    )
+    tip_mass_spread: float = Field(
+        ge=0.0, le=1.0, description="Largest mass on top of that, sampled per episode and finger [kg]"
+    )
     dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
     tilt: float = Field(
         ge=0.0, le=0.5, description="Largest tilt of the frame about x and y, per episode [rad]"

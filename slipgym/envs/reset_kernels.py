@@ -15,6 +15,7 @@ from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
 from slipgym.sensors.unloaded import READINGS, read_unloaded
 from slipgym.tasks.disturbance import bear
+from slipgym.world.fingertip import weigh_tip
 from slipgym.world.placing import PATCHES_OF_WORLDS, place_world
 
 WARM_UP_STEPS = 6
@@ -182,6 +183,7 @@ def show_open_gripper(update, state, force_torque, i):
     readings, twists = np.empty((2, READINGS, 4)), np.zeros((2, 3))
     wrenches = np.empty((2, 4))
     for f in range(2):
+        weigh_tip(force_torque[i, f], state.worlds[i])
         read_unloaded(force_torque[i, f], readings[f])
     pair = slice(2 * i, 2 * i + 2)
     own = pair if state.parameters.shape[0] > 1 else slice(0, 1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.sensors.misalignment import LATENCY, about, mount, share
+from slipgym.sensors.misalignment import LATENCY, TIP, about, mount, share
 from slipgym.sensors.slip_velocity import AXES
 
 KEYS = 3
@@ -46,6 +46,7 @@ def start_sensors(
         wrench.key, wrench.drift_key, slip.key = keys[0, i], keys[1, i], keys[2, i]
         # the fingers' sensors share a bus, and with it the latency, unless the chips have a USB port each
         wrench.delay = wrench.least_delay + among(keys[1, 0], LATENCY, wrench.delay_spread)
+        wrench.tip_mass = wrench.least_tip + wrench.tip_spread * share(wrench.drift_key, TIP)
         if wrench.misaligned:
             mount(wrench)
         late = keys[2, i if slip.own_delay else 0]

@@ -190,6 +190,7 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     array["delay"] = array["least_delay"] = round(sensor.latency * tick_rate)
     array["delay_spread"] = round(sensor.latency_spread * tick_rate)
     _take_over(sensor, array)
+    array["least_tip"], array["tip_spread"] = sensor.tip_mass, sensor.tip_mass_spread
     array["misaligned"] = misaligned
     array["kept"] = kept
     array["mirror"] = MIRROR
