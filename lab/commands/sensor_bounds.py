@@ -3,5 +3,11 @@
 from lab.commands.options import application
 from lab.sensor_bounds import main
 
+EPILOG = """
+Examples:\n
+\b
+  slipgym sensor-bounds
+  slipgym sensor-bounds --episodes 10
+"""
 app = application()
-app.command()(main)
+app.command(epilog=EPILOG)(main)

@@ -3,5 +3,11 @@
 from lab.commands.options import application
 from lab.sensor_costs import main
 
+EPILOG = """
+Examples:\n
+\b
+  slipgym sensor-costs --episodes 200
+  slipgym sensor-costs --task Hold --preset wrist
+"""
 app = application()
-app.command()(main)
+app.command(epilog=EPILOG)(main)

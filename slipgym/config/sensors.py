@@ -113,7 +113,7 @@ class MotorConfig(Frozen):
     )
     friction: float = Field(
         ge=0.0, le=0.9,
-        description="Load of a motor that closes over the force on the object, less 1; opening the same less [-]",
+        description="Motor load over force while it closes, less 1; while it opens, 1 less it [-]",
     )  # fmt: skip
     backlash: float = Field(
         ge=0.0, le=100.0, description="Change of force in which that friction turns over [N]"
