@@ -96,6 +96,14 @@ class SlipConfig(Frozen):
     )
     jitter: Probability = Field(description="Probability that a reading is one sample older [-]")
     dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
+    rest_after: float = Field(
+        ge=0.0, le=1000.0, description="Time without a count after which the chips rest [s]"
+    )
+    rest_period: float = Field(
+        ge=0.0,
+        le=1.0,
+        description="Longest time between two looks of resting chips, sampled per episode; 0: none rests [s]",
+    )
     scale_error: float = Field(
         ge=0.0, le=0.5, description="Largest relative error of the counts, per episode [-]"
     )

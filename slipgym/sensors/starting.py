@@ -10,8 +10,8 @@ from slipgym.sensors.slip_velocity import AXES
 
 KEYS = 3
 """Keys that the noise of a finger's sensors needs."""
-SCALE, FAILS, WHICH, SLIP_LATENCY = range(1 << 20, (1 << 20) + 4)
-"""Numbers of `share` beyond those of the readings: scale, whether a chip fails, which one, latency."""
+SCALE, FAILS, WHICH, SLIP_LATENCY, REST, PHASE = range(1 << 20, (1 << 20) + 6)
+"""Numbers of `share` beyond those of the readings: scale, whether a chip fails, which one, latency, rest."""
 
 
 def draw_sensors(n: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -52,6 +52,8 @@ def start_sensors(
         late = keys[2, i if slip.own_delay else 0]
         slip.delay = slip.least_delay + among(late, SLIP_LATENCY, slip.delay_spread)
         slip.scale = 1.0 + about(slip.key, SCALE, slip.scale_spread)
+        slip.rest_samples, slip.still = among(slip.key, REST, slip.rest_most), 0
+        slip.rest_phase = among(slip.key, PHASE, max(slip.rest_samples - 1, 0))
         slip.failed, slip.delivered = -1, -1
         if share(slip.key, FAILS) < slip.chip_failure:
             slip.failed = among(slip.key, WHICH, slip.chips - 1)

@@ -1,8 +1,8 @@
 """Reads the force/torque sensors of the open gripper, before the grasp: an estimator can zero them.
 
 Zero error, noise, drift, quantisation and lost readings are those of the episode. There is no load but the
-weight of the fingertip in the pose of the grasp, and a late reading is like any other. Random numbers are taken from the
-sensor's keys, at indices that no later reading uses.
+weight of the fingertip in the pose of the grasp, and a late reading is like any other. Random numbers are
+taken from the sensor's keys, at indices that no later reading uses.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Adds to a force/torque sensor's load the weight and inertia of the fingertip in front of it.
 
-Such a sensor reads m (g - a) beside the load on the pad, with m the mass between it and the object, g gravity and
-a the acceleration of the pad centre, where the mass is taken to be (for tools at a wrist: Shaker & Erden,
+Such a sensor reads m (g - a) beside the load on the pad, with m the mass between it and the object, g gravity
+and a the acceleration of the pad centre, where the mass is taken to be (for tools at a wrist: Shaker & Erden,
 arXiv 2604.23696). Only the part in the contact plane counts; it turns with the wrist's pitch.
 """
 

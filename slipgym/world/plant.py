@@ -215,6 +215,8 @@ def _slip_sensors(config: Config, n: int) -> np.ndarray:
     slip_sensors["range"] = sensor.speed_max / sensor.rate
     slip_sensors["delay"] = slip_sensors["least_delay"] = sensor.latency_samples
     slip_sensors["own_delay"] = sensor.own_latency
+    slip_sensors["rest_after"] = max(1, round(sensor.rest_after * sensor.rate))
+    slip_sensors["rest_most"] = round(sensor.rest_period * sensor.rate)
     slip_sensors["delay_spread"], slip_sensors["scale_spread"] = sensor.latency_spread, sensor.scale_error
     slip_sensors["scale"], slip_sensors["failed"], slip_sensors["delivered"] = 1.0, -1, -1
     slip_sensors["at"] = positions

@@ -192,3 +192,27 @@ def test_nobody_is_told(estimator):
             np.testing.assert_array_equal(alone.estimates, learner.estimates)
         assert len(told) == 1
         assert len(sampled) == 5
+
+
+def test_resting_chips_count_late_and_lose_nothing():
+    """Against counting by hand: at a look a chip counts all that has moved."""
+    looks = set()
+    rng, rest = (
+        np.random.default_rng(2),
+        {"rest_after": 0.1, "rest_period": 0.05, "counts": True, "count": 1e-5},
+    )
+    motions = np.where(np.arange(200) // 25 % 2, rng.uniform(0.0, 1e-3, 200), 0.0)
+    for seed in range(60):
+        sensor = started(seed, slip=rest)[1][0]
+        period, phase, carry = sensor["rest_samples"], sensor["rest_phase"], sensor["carry"][0:6:2].copy()
+        counts, still = np.zeros(3), 0
+        looks.add(int(period))
+        for k in range(len(motions)):
+            accumulate_slip(sensor, np.array([motions[k], 0.0, 0.0]))
+            sample_slip(sensor)
+            if period <= 1 or still < 12 or k % period == phase:
+                new = np.maximum(np.trunc((carry + motions[: k + 1].sum()) / 1e-5), 0.0)
+                still = 0 if (new != counts).any() else still + 1
+                counts = new
+            np.testing.assert_allclose(sensor["travel"][:3], counts * 1e-5, rtol=1e-9)
+    assert looks == set(range(7))
