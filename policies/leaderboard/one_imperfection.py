@@ -18,7 +18,7 @@ IMPERFECTIONS = {
     "fingertip": {"force_torque": ("tip_mass", "tip_mass_spread")},
     "late force": {"force_torque": ("latency_spread",)},
     "late velocity": {"slip": ("latency_samples", "latency_spread", "own_latency", "jitter")},
-    "resting chips": {"slip": ("rest_after", "rest_period")},
+    "resting chips": {"slip": ("rest_after", "rest_period", "speed_max")},
     "scale": {"slip": ("scale_error",)},
     "lost chip": {"slip": ("chip_failure",)},
     "lost readings": {"force_torque": ("dropout",), "slip": ("dropout",)},
