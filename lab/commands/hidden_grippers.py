@@ -15,9 +15,7 @@ app = application()
 
 
 @app.command(epilog=EPILOG)
-def main(
-    grippers: Annotated[int, typer.Option(min=1, help="Hidden grippers.")] = 20, seed: Seed = 0
-) -> None:
+def main(grippers: Annotated[int, typer.Option(min=1, help="Hidden grippers.")] = 20, seed: Seed = 0) -> None:
     """Identify hidden grippers, simulated by another patch and rate: about a minute each."""
     from lab.hidden_grippers import rows
 

@@ -25,8 +25,12 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 @app.command(epilog=EPILOG)
 def main(
     log: Annotated[Path, typer.Argument(help="csv, csv.gz or parquet.", show_default=False)],
-    output: Annotated[Path, typer.Option(help="New folder for gripper.yaml and report.")] = Path("identified"),
-    contact: Annotated[str, typer.Option(help="Friction model: distributed, disc, ellipsoid.")] = "distributed",
+    output: Annotated[Path, typer.Option(help="New folder for gripper.yaml and report.")] = Path(
+        "identified"
+    ),
+    contact: Annotated[
+        str, typer.Option(help="Friction model: distributed, disc, ellipsoid.")
+    ] = "distributed",
     seed: Annotated[int, typer.Option(min=0, help="Of the starts of the fit.")] = 0,
     simulate: Annotated[
         int | None,

@@ -1,7 +1,7 @@
 """Fits the parameters to a log: damped Gauss-Newton steps over rollouts, with what the log does not show.
 
-The estimate is the most probable point under the priors, with Huber's weights on the residuals over the noise,
-which the residuals themselves give. Its covariance is the sandwich over blocks of time: residuals that
+The estimate is the most probable point under the priors, with Huber's weights on the residuals over the noise
+that they show themselves. Its covariance is the sandwich over blocks of time: residuals that
 correlate within a block widen it as far as they do. An error of the model that each block repeats would not:
 the shift of the estimate under each of `ALTERNATIVES`, to first order, is added to the variance.
 """
@@ -109,7 +109,7 @@ def identify(log: Log, contact: str = "distributed", seed: int = 0) -> Result:
     if np.ptp(log.readings[:, :4], axis=0).max() == 0.0:
         raise ValueError("the log's wrench never changes: nothing in it can be identified")
     block = (np.arange(len(log.command)) / (BLOCK * log.rate)).astype(int)
-    problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, ~np.isnan(log.readings).any(axis=0))
+    problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, np.isfinite(log.readings).all(axis=0))
     rng = np.random.default_rng(seed)
     starts = START + DEVIATION * np.vstack([np.zeros(len(START)), rng.normal(size=(STARTS - 1, len(START)))])
     residuals = problem.residuals(problem.predict(starts))
@@ -118,7 +118,9 @@ def identify(log: Log, contact: str = "distributed", seed: int = 0) -> Result:
     best = [starts[k] for k in np.argsort(costs)[:KEPT]]
     fits = [_minimised(problem, start, scale, EARLY) for start in best]
     # one scale for all, or they could not be compared
-    costs = [_cost(problem, point, problem.residuals(problem.predict(point[None])[0]), scale) for point in fits]
+    costs = [
+        _cost(problem, point, problem.residuals(problem.predict(point[None])[0]), scale) for point in fits
+    ]
     point = fits[int(np.argmin(costs))]
     for _ in range(2):
         scale = problem.noise(problem.residuals(problem.predict(point[None])[0]))
@@ -169,7 +171,9 @@ def _minimised(
         steps = np.array([np.linalg.solve(information + each * diagonal, score) for each in dampings])
         trials = point + np.clip(steps, -2.0 * DEVIATION, 2.0 * DEVIATION)
         predicted = problem.predict(trials)
-        costs = [_cost(problem, t, problem.residuals(p), scale) for t, p in zip(trials, predicted, strict=True)]
+        costs = [
+            _cost(problem, t, problem.residuals(p), scale) for t, p in zip(trials, predicted, strict=True)
+        ]
         k = int(np.argmin(costs))
         if not costs[k] < cost:
             damping = dampings[-1]

@@ -69,7 +69,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
 def _numbers(file: str, name: str, column: object) -> np.ndarray:
     import pandas
 
-    numbers = pandas.to_numeric(column, errors="coerce").to_numpy(float)  # type: ignore[call-overload]
+    numbers: np.ndarray = pandas.to_numeric(column, errors="coerce").to_numpy(float)  # type: ignore[call-overload]
     bad = ~(np.abs(numbers) <= (np.inf if name == "t" else LARGEST)) | ~np.isfinite(numbers)
     if bad.any():
         row = int(np.argmax(bad))

@@ -18,7 +18,9 @@ def _sway(t: np.ndarray, amplitude: float, period: float) -> np.ndarray:
     return amplitude * np.sin(2.0 * np.pi * t / period)
 
 
-def _twist(t: np.ndarray, x: np.ndarray | float, y: np.ndarray | float, turn: np.ndarray | float) -> np.ndarray:
+def _twist(
+    t: np.ndarray, x: np.ndarray | float, y: np.ndarray | float, turn: np.ndarray | float
+) -> np.ndarray:
     return np.stack([np.broadcast_to(each, t.shape) for each in (x, y, turn)], axis=1).astype(float)
 
 

@@ -83,8 +83,7 @@ def summary(result: Result) -> str:
         f"# Identified gripper\n\n{table(result)}\n\n"
         f"Friction model: {result.contact}. A deviation above half of the prior's counts as not shown.\n\n"
         f"## Held-out part\n\nEvery fourth second, which the fit has not seen.\n\n" + "\n".join(fit) + "\n\n"
-        "A ratio well above 1 is an error of the model, which the intervals include as far as it differs from "
-        "second to second.\n\n![log and simulation](report.png)\n\n"
+        "A ratio well above 1 is an error of the model: trust the intervals less.\n\n![log and simulation](report.png)\n\n"
         f"## Record next\n\n20 s of **{ranked[0][0]}**.\n\n" + "\n".join(motions) + "\n"
     )
 
@@ -95,7 +94,7 @@ def write(result: Result, folder: Path) -> None:
 
     values = overrides(result)
     load(values)  # what the environments would refuse must not be written
-    text = "# Written by slipgym identify: gym.make(..., config=\"gripper.yaml\", material=\"identified\")\n"
+    text = '# Written by slipgym identify: gym.make(..., config="gripper.yaml", material="identified")\n'
     (folder / "gripper.yaml").write_text(text + yaml.safe_dump(values, sort_keys=False), encoding="utf-8")
     (folder / "report.md").write_text(summary(result), encoding="utf-8")
     draw(result, folder / "report.png")

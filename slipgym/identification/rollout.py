@@ -1,7 +1,7 @@
 """Rolls out many grippers along one log: grip command and motion in, readings out.
 
-Each is the force loop of `slipgym.world.actuator`, a soft pad with or without cells under the log's motion, and
-late sensors. Times need not be whole sub-steps: readings are smooth in all of them.
+Each is the force loop of `slipgym.world.actuator`, a soft pad with or without cells under the log's motion,
+and late sensors. Times need not be whole sub-steps: readings are smooth in all of them.
 """
 
 from __future__ import annotations
@@ -69,8 +69,8 @@ def roll(
         radius_exponent=column["radius exponent"],
         compliance=column["shear compliance"],
         shear_time=1e-3,
-        cop=np.stack([column["cop x"], column["cop y"]], axis=1),
     )
+    pad["cop"] = np.stack([column["cop x"], column["cop y"]], axis=1)
     names = ("force gain", "dead time", "lag", "wrench latency", "slip latency")
     times = np.stack([column[name] for name in names], axis=1)
     out = np.zeros((len(values), len(command), len(CHANNELS)))
@@ -108,7 +108,7 @@ def _roll(
         rest_cells(cells)
         for m in range(rows * substeps):
             due = m + 1 - dead * rate * substeps
-            before = int(math.floor(due))
+            before = math.floor(due)
             share = due - before
             now, last = command[max(before, 0) // substeps], command[max(before - 1, 0) // substeps]
             aim = gain * (share * now + (1.0 - share) * last)

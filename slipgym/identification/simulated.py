@@ -39,7 +39,11 @@ def draw_gripper(seed: int) -> HiddenGripper:
 
 
 def simulated_log(
-    gripper: HiddenGripper, seed: int = 0, rate: float = 120.0, pressure: PressureName = "hertz", names: tuple[str, ...] = tuple(MOTIONS)
+    gripper: HiddenGripper,
+    seed: int = 0,
+    rate: float = 120.0,
+    pressure: PressureName = "hertz",
+    names: tuple[str, ...] = tuple(MOTIONS),
 ) -> Log:
     """The log of a session of motions, five seconds each, with sensor noise.
 
