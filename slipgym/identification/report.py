@@ -83,7 +83,8 @@ def summary(result: Result) -> str:
         f"# Identified gripper\n\n{table(result)}\n\n"
         f"Friction model: {result.contact}. A deviation above half of the prior's counts as not shown.\n\n"
         f"## Held-out part\n\nEvery fourth second, which the fit has not seen.\n\n" + "\n".join(fit) + "\n\n"
-        "A ratio well above 1 is an error of the model: trust the intervals less.\n\n![log and simulation](report.png)\n\n"
+        "A ratio well above 1 is an error of the model: trust the intervals less.\n\n"
+        "![log and simulation](report.png)\n\n"
         f"## Record next\n\n20 s of **{ranked[0][0]}**.\n\n" + "\n".join(motions) + "\n"
     )
 
