@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from estimator.online import TWIST, WRENCH
-from estimator.records import checks
+from estimator.records import arrays, checks
 from estimator.records.columns import Columns
+from estimator.records.extras import extra
 from estimator.records.holding import held
 from estimator.records.record import Array, Record, Rows, cop_of_tilt, wrench_at
-from estimator.records.table import Table, of_one_finger, read_table
+from estimator.records.table import Table, named_columns, of_one_finger, read_table, table_of
 from estimator.records.units import COP, REQUIRED, TILT, TIME, TRUTH, VELOCITY_TIME
 from estimator.suggestions import brief
 
@@ -32,18 +34,71 @@ def load(
     empty in a row. In two files no cell is.
 
     Args:
-        log: csv, csv.gz or parquet with forces and, unless `velocity` is given, velocities.
+        log: csv, csv.gz, parquet, xlsx, npz, HDF5, mat, mcap, bag or the folder of a ROS 2 bag, with forces
+            and, unless `velocity` is given, velocities. A file of arrays may have velocities of another
+            length, if the mapping names their time `velocity_t`.
         columns: The mapping; None for the default.
         velocity: A file of its own for the velocities, on the same clock.
 
     Raises:
         FileNotFoundError: There is no such file.
         ValueError: The record cannot be what it should be; the message says where and what would do.
-        ModuleNotFoundError: The extra `slipgym[eval]` is not installed.
+        ModuleNotFoundError: The extra that reads it is not installed.
     """
     columns = columns or Columns()
+    if velocity is None and columns.given.get(VELOCITY_TIME) and Path(log).suffix.lower() in arrays.TYPES:
+        velocity = log
+    time = VELOCITY_TIME if columns.given.get(VELOCITY_TIME) else TIME
     forces = read_table(Path(log), columns)
-    if velocity is None:
+    return _record(forces, None if velocity is None else read_table(Path(velocity), columns, time), columns)
+
+
+def from_arrays(
+    forces: Mapping[str, Any] | Any,
+    velocities: Mapping[str, Any] | Any | None = None,
+    columns: Columns | None = None,
+    name: str = "arrays",
+) -> Record:
+    """The record of one finger from arrays or DataFrames, with the checks that a file gets.
+
+    Args:
+        forces: Name -> array (n,), or a pandas.DataFrame, with time and forces and, unless `velocities` is
+            given, velocities. Names, units and signs are as in a file: `t` [s], `f_x`, ... [N].
+        velocities: The same for velocities at times of their own, (m,).
+        columns: The mapping; None for the default.
+        name: What messages and reports call it.
+
+    Raises:
+        ValueError: As `load`; or arrays of one stream have different lengths.
+        ModuleNotFoundError: pandas is not installed.
+    """
+    columns = columns or Columns()
+    tables = [
+        None if given is None else table_of(name, _frame_of(given, name), columns)
+        for given in (forces, velocities)
+    ]
+    assert tables[0] is not None
+    return _record(tables[0], tables[1], columns)
+
+
+def _frame_of(given: Mapping[str, Any] | Any, name: str) -> Any:
+    pandas = extra("pandas")
+    if isinstance(given, pandas.DataFrame):
+        return named_columns(given)
+    if not isinstance(given, Mapping):
+        raise ValueError(
+            f"{name}: must be a mapping of names to arrays or a DataFrame, got {brief(type(given))}"
+        )
+    shapes = {str(key): np.shape(values) for key, values in given.items()}
+    if len(set(shapes.values())) > 1 or any(len(shape) != 1 for shape in shapes.values()):
+        listed = ", ".join(f"{brief(key)} {shape}" for key, shape in shapes.items())
+        raise ValueError(f"{name}: arrays must be of one shape (n,), got {listed}")
+    return named_columns(pandas.DataFrame({key: np.asarray(values) for key, values in given.items()}))
+
+
+def _record(forces: Table, velocities: Table | None, columns: Columns) -> Record:
+    together = velocities is None
+    if velocities is None:
         forces.require(REQUIRED)
         if columns.given.get(VELOCITY_TIME):
             raise ValueError(f"{forces.name}: {VELOCITY_TIME} is for a file of velocities; give --velocity")
@@ -51,12 +106,12 @@ def load(
         velocities, time = forces, TIME
     else:
         forces.require((TIME, *WRENCH))
-        forces, velocities = of_one_finger([forces, read_table(Path(velocity), columns)], columns)
+        forces, velocities = of_one_finger([forces, velocities], columns)
         time = VELOCITY_TIME if columns.given.get(VELOCITY_TIME) else TIME
         velocities.require((time, *TWIST))
     extra_keys = _cop_keys(forces)
-    force_t, wrench, at = _stream(forces, TIME, WRENCH, sparse=velocity is None, what="force")
-    twist_t, twist, twist_at = _stream(velocities, time, TWIST, sparse=velocity is None, what="velocity")
+    force_t, wrench, at = _stream(forces, TIME, WRENCH, sparse=together, what="force")
+    twist_t, twist, twist_at = _stream(velocities, time, TWIST, sparse=together, what="velocity")
     checks.check_wrench(forces.name, wrench, forces.rows(at))
     checks.check_twist(velocities.name, twist, velocities.rows(twist_at))
     cop = _cop(forces, extra_keys, wrench, at)

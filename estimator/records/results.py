@@ -24,7 +24,7 @@ def write(result: Result, folder: Path) -> None:
         folder: Where they go; it exists.
 
     Raises:
-        ModuleNotFoundError: The extra `slipgym[eval]` is not installed.
+        ModuleNotFoundError: The extra `slipgym[cli]` is not installed.
         OSError: A file cannot be written.
     """
     pandas, _ = extra("pandas"), extra("pyarrow")

@@ -10,15 +10,16 @@ from typing import Any
 
 import numpy as np
 
+from estimator.records import arrays, messages
 from estimator.records.cells import numbers, times
 from estimator.records.columns import Column, Columns
 from estimator.records.extras import extra
 from estimator.records.record import Array, Rows
 from estimator.records.separated import read_csv
-from estimator.records.units import ROWS, UNITS, unit_in
+from estimator.records.units import ROWS, TIME, UNITS, unit_in
 from estimator.suggestions import brief, guess, unknown
 
-TYPES = (".csv", ".csv.gz", ".parquet")
+TYPES = (".csv", ".csv.gz", ".parquet", ".xlsx", *arrays.TYPES, *messages.FILES)
 _UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]*)[\])]$")
 _SHOWN = 40
 """Most names of columns or values in a message."""
@@ -115,8 +116,8 @@ class Table:
         assert column is not None
         if not column.assumed:
             return column
-        said, in_name = self.units.get(column.column, ""), _UNIT_IN_NAME.search(column.column)
-        unit = unit_in(key, said) or (unit_in(key, in_name[1]) if in_name else None)
+        said = self.units.get(column.column, "")
+        unit = unit_in(key, said) or unit_in_name(key, column.column)
         if unit is not None:
             return replace(column, unit=unit, factor=column.factor * UNITS[key][unit], assumed=False)
         if re.search(r"\w", said):
@@ -135,41 +136,101 @@ class Table:
             raise ValueError(f"{self.name}: {brief(error, 300)}") from error
 
 
-def read_table(path: Path, columns: Columns) -> Table:
+def read_table(path: Path, columns: Columns, time: str = TIME) -> Table:
     """Reads a file.
 
     Args:
-        path: A file of one of `TYPES`, in any case.
+        path: A file of one of `TYPES`, in any case, or the folder of a ROS 2 bag.
         columns: The mapping.
+        time: Key of the time of what is to be read; an array of another length than that is left out.
 
     Raises:
         FileNotFoundError: There is no such file.
         ValueError: It is of another type, cannot be read as what its name says, or has a column twice.
+        ModuleNotFoundError: What reads it is not installed.
     """
-    if not path.name.lower().endswith(TYPES):
+    if not path.name.lower().endswith(TYPES) and not messages.is_bag(path):
         raise ValueError(
-            f"{path.name}: unknown file type; records are {', '.join(TYPES)}; "
+            f"{path.name}: unknown file type; records are {', '.join(TYPES)} and folders of ROS 2 bags; "
             "a table in another text file, once it is unpacked, may be renamed to .csv"
         )
-    extra("estimator.plain_files").check_regular(path)
-    pandas, units, comma = extra("pandas"), {}, False
-    parquet = path.suffix.lower() == ".parquet"
-    if parquet:
-        extra("pyarrow")
+    if not messages.is_bag(path):
+        extra("estimator.plain_files").check_regular(path)
     mapped = [column.column for key in UNITS if (column := columns[key])]
+    at = columns[time]
     try:
-        if parquet:
-            frame = pandas.read_parquet(path, engine="pyarrow", page_checksum_verification=True)
-            if not isinstance(frame.index, pandas.RangeIndex) or frame.index.name is not None:
-                frame = frame.reset_index(allow_duplicates=True)
-            frame.columns = [str(name).strip() for name in frame.columns]
-        else:
-            frame, units, comma = read_csv(path, {*mapped, *columns.rows})
+        frame, units, comma = _frame(path, {*mapped, *columns.rows}, at.column if at else time)
+    except ModuleNotFoundError:
+        raise
     except Exception as error:  # a damaged file makes its readers raise anything
         raise ValueError(f"{path.name}: cannot be read: {brief(error, 300)}") from error
-    frame.index = pandas.RangeIndex(len(frame))
-    _refuse_repeated(path.name, list(frame.columns), [*mapped, *columns.rows])
-    return Table(path.name, frame, columns, units, comma)
+    return table_of(path.name, frame, columns, units, comma)
+
+
+def table_of(
+    name: str, frame: Any, columns: Columns, units: Mapping[str, str] | None = None, comma: bool = False
+) -> Table:
+    """A table of a pandas.DataFrame.
+
+    Raises:
+        ValueError: It has a column twice.
+    """
+    mapped = [column.column for key in UNITS if (column := columns[key])]
+    frame = frame.set_axis(extra("pandas").RangeIndex(len(frame)))
+    _refuse_repeated(name, list(frame.columns), [*mapped, *columns.rows])
+    return Table(name, frame, columns, units or {}, comma)
+
+
+def _frame(path: Path, wanted: set[str], time: str) -> tuple[Any, Mapping[str, str], bool]:
+    """Its pandas.DataFrame; column -> unit that the file says; whether its numbers have decimal commas."""
+    kind, pandas = path.suffix.lower(), extra("pandas")
+    if kind in messages.FILES or path.is_dir():
+        return messages.read_messages(path, wanted), {}, False
+    if kind in arrays.TYPES:
+        return arrays.frame_of(arrays.read_arrays(path), time), {}, False
+    if kind == ".xlsx":
+        extra("openpyxl", "records")
+        frame = pandas.read_excel(path, engine="openpyxl")
+    elif kind == ".parquet":
+        extra("pyarrow", "records")
+        frame = pandas.read_parquet(path, engine="pyarrow", page_checksum_verification=True)
+    else:
+        return read_csv(path, wanted)
+    return named_columns(frame), {}, False
+
+
+def read_columns(path: Path) -> Mapping[str, Any]:
+    """All columns of a file, by name; those of a file of arrays may have different lengths.
+
+    Raises:
+        FileNotFoundError, ValueError, ModuleNotFoundError: As `read_table`.
+    """
+    several = path.suffix.lower() in (*arrays.TYPES, *messages.FILES)
+    if not several and not messages.is_bag(path):
+        return read_table(path, Columns()).frame
+    if several:
+        extra("estimator.plain_files").check_regular(path)
+    try:
+        if path.suffix.lower() in arrays.TYPES:
+            return arrays.read_arrays(path)
+        return messages.read_messages(path, None)
+    except ModuleNotFoundError:
+        raise
+    except Exception as error:
+        raise ValueError(f"{path.name}: cannot be read: {brief(error, 300)}") from error
+
+
+def unit_in_name(key: str, name: str) -> str | None:
+    """The unit that the name of a column ends with, such as "Fx [N]"; None: none of the key's."""
+    said = _UNIT_IN_NAME.search(name)
+    return unit_in(key, said[1]) if said else None
+
+
+def named_columns(frame: Any) -> Any:
+    """A pandas.DataFrame with texts as names; its index is a column if it does not count rows."""
+    if not isinstance(frame.index, extra("pandas").RangeIndex) or frame.index.name is not None:
+        frame = frame.reset_index(allow_duplicates=True)
+    return frame.set_axis([str(name).strip() for name in frame.columns], axis=1)
 
 
 def of_one_finger(tables: Sequence[Table], columns: Columns) -> list[Table]:

@@ -8,7 +8,7 @@ try:
 
     from estimator import DEFAULT
 except ModuleNotFoundError as error:
-    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
 
 EPILOG = """
 Examples:\n
@@ -28,7 +28,9 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    log: Annotated[Path, typer.Argument(help="csv, csv.gz or parquet.", show_default=False)],
+    log: Annotated[
+        Path, typer.Argument(help="csv, parquet, xlsx, npz, HDF5, mat, mcap or ROS bag.", show_default=False)
+    ],
     columns: Annotated[
         Path | None, typer.Option(help="YAML: which column is what, its unit and sign.", show_default=False)
     ] = None,
@@ -61,7 +63,7 @@ def main(
         with new_folder(path) as folder:
             records.write(result, folder)
     except ModuleNotFoundError as error:
-        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
     except (ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
     typer.echo(f"{records.report(result)}\n\nLook at:")

@@ -27,7 +27,7 @@ def main(
         list[str],
         typer.Argument(
             metavar="[POLICY] RECORD",
-            help="csv, csv.gz or parquet to write; a policy before it is the same as --policy.",
+            help="csv, csv.gz, parquet or h5 to write; a policy before it is the same as --policy.",
             show_default=False,
         ),
     ],

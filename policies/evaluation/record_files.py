@@ -7,9 +7,12 @@ from typing import Any
 
 import pandas as pd
 
-from estimator.records.table import TYPES
+from estimator.records.extras import extra
 from policies.evaluation.sensor_record import TWIST
 from slipgym.atomic_io import check_file, new_file
+
+WRITTEN = (".csv", ".csv.gz", ".parquet", ".h5", ".hdf5")
+"""Types of files that can be written; `estimator.records.load` reads them all, and more."""
 
 
 def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -> None:
@@ -17,7 +20,7 @@ def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -
 
     Args:
         frame: From `record_sensors`.
-        path: Its type is in its name: one of `TYPES`.
+        path: Its type is in its name: one of `WRITTEN`.
         velocity: A file of its own for the velocities; None keeps all in one.
 
     Raises:
@@ -42,8 +45,8 @@ def check_targets(path: Path, velocity: Path | None = None) -> None:
         OSError: One cannot be written.
     """
     for target in (path, *([] if velocity is None else [velocity])):
-        if not target.name.endswith(TYPES):
-            raise ValueError(f"{target.name}: unknown file type; records are {', '.join(TYPES)}")
+        if not target.name.endswith(WRITTEN):
+            raise ValueError(f"{target.name}: unknown file type; records are {', '.join(WRITTEN)}")
         check_file(target)
 
 
@@ -51,6 +54,10 @@ def _write(frame: pd.DataFrame, path: Path) -> None:
     with new_file(path) as partial:
         if path.suffix == ".parquet":
             frame.to_parquet(partial, index=False)
+        elif path.suffix in (".h5", ".hdf5"):
+            with extra("h5py", "records").File(partial, "w") as file:
+                for name, values in frame.items():
+                    file[str(name)] = values.to_numpy()
         else:
             packing: Any = {"method": "gzip", "mtime": 0} if path.suffix == ".gz" else None
             frame.to_csv(partial, index=False, float_format="%.7g", compression=packing)

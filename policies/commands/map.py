@@ -1,0 +1,64 @@
+"""Proposes which columns of a foreign log are what, with their units and signs, and writes the mapping."""
+
+from pathlib import Path
+from typing import Annotated
+
+try:
+    import typer
+except ModuleNotFoundError as error:
+    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
+
+EPILOG = """
+Examples:\n
+\b
+  slipgym map log.csv
+  slipgym map run.mcap --output mapping.yaml --plot columns.png
+  slipgym estimate run.mcap --columns mapping.yaml
+\n
+The names of the columns decide what they are, their magnitudes the units, and the normal force in contact
+its sign. Look at every line: a name can mislead, and no magnitude shows the direction of an axis.
+docs/records.md has the frames.
+"""
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+
+
+@app.command(epilog=EPILOG)
+def main(
+    log: Annotated[Path, typer.Argument(help="A log, or the folder of a ROS 2 bag.", show_default=False)],
+    output: Annotated[
+        Path | None, typer.Option(help="YAML file to write the mapping to.", show_default=False)
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(help="png to draw the proposed columns to.", show_default=False)
+    ] = None,
+) -> None:
+    """Propose a mapping of the columns of a log, for slipgym estimate --columns."""
+    try:
+        from estimator.records import load, load_columns, proposal
+        from slipgym.atomic_io import new_file, write
+
+        found, left = proposal.propose(log)
+        text = proposal.mapping_text(found)
+        if output is not None:
+            write(output, text.encode())
+        if plot is not None and found:
+            with new_file(plot) as part:
+                proposal.plot(found, part)
+    except (ModuleNotFoundError, ValueError, OSError) as error:
+        raise typer.BadParameter(str(error)) from error
+    typer.echo(text + (f"\nnot used: {proposal.columns_left(left)}" if left else ""))
+    for path in (output, plot):
+        if path is not None:
+            typer.echo(f"written: {path}")
+    if output is None:
+        return
+    try:
+        record = load(log, load_columns(output))
+    except ValueError as error:
+        typer.echo(f"\nslipgym estimate does not take it yet:\n{error}")
+    else:
+        rates = [1.0 / ((t[-1] - t[0]) / max(len(t) - 1, 1)) for t in (record.force_t, record.twist_t)]
+        typer.echo(
+            f"\nreadable: {record.force_t[-1] - record.force_t[0]:.1f} s, forces at {rates[0]:.0f} Hz, "
+            f"velocities at {rates[1]:.0f} Hz; go on with\n  slipgym estimate {log} --columns {output}"
+        )
