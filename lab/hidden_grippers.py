@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from slipgym.identification import draw_gripper, identify, simulated_log
+from lab.simulated_gripper import draw_gripper, simulated_log
+from slipgym.identification import identify
 from slipgym.identification.parameters import NAMES
 
 
@@ -28,9 +29,10 @@ def rows(seeds: range) -> Iterator[str]:
         missed = [name for name, out in zip(NAMES, ~holds & result.shown, strict=True) if out]
         shown, inside = shown + result.shown.sum(), inside + (holds & result.shown).sum()
         ratios.append(result.held_out / gripper.noise)
+        fits = "does not fit" if result.misfits() else "fits"
         yield (
             f"{seed:4d} {pressure:8s} {took:5.1f} s  shown {result.shown.sum():2d}  "
-            f"held out over noise {np.round(ratios[-1], 2)}  outside: {', '.join(missed) or 'none'}"
+            f"held out over noise {np.round(ratios[-1], 2)}  {fits}  outside: {', '.join(missed) or 'none'}"
         )
     yield (
         f"{inside} of {shown} ({100 * inside / max(shown, 1):.1f} %) inside their 90 % intervals; held-out "

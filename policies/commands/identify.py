@@ -6,13 +6,12 @@ from typing import Annotated
 try:
     import typer
 except ModuleNotFoundError as error:
-    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
 
 EPILOG = """
 Examples:\n
 \b
   slipgym identify log.csv --output my_gripper
-  slipgym identify hidden.csv --simulate 1
 \n
 A log holds t [s], the grip command force [N], the motion of the object against the gripper motion_x,
 motion_y, motion_omega [m/s, m/s, rad/s], and the readings f_x, f_y, f_n, tau [N, N, N, N m] and v_x, v_y,
@@ -32,10 +31,6 @@ def main(
         str, typer.Option(help="Friction model: distributed, disc, ellipsoid.")
     ] = "distributed",
     seed: Annotated[int, typer.Option(min=0, help="Of the starts of the fit.")] = 0,
-    simulate: Annotated[
-        int | None,
-        typer.Option(min=0, help="Write the log of a hidden gripper of this seed.", show_default=False),
-    ] = None,
 ) -> None:
     """Identify a gripper from a log of its sensors.
 
@@ -45,22 +40,17 @@ def main(
     """
     try:
         from slipgym import identification
-        from slipgym.atomic_io import check_folder, new_file, new_folder
+        from slipgym.atomic_io import check_folder, new_folder
 
-        if simulate is not None:
-            with new_file(log) as path:
-                gripper = identification.draw_gripper(simulate)
-                identification.write_log(identification.simulated_log(gripper, simulate), path)
-            typer.echo(f"Wrote {log}")
-            return
         check_folder(output)
         result = identification.identify(identification.read_log(log), contact, seed)
         with new_folder(output.expanduser().resolve()) as folder:
             identification.write(result, folder)
     except ModuleNotFoundError as error:
-        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
     except (ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
     typer.echo(f"{identification.table(result)}\n\nLook at:")
     for name in ("report.md", "report.png", "gripper.yaml"):
         typer.echo(f"  {output / name}")
+    typer.echo(f"\n{identification.verdict(result)}")

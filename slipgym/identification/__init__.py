@@ -11,22 +11,15 @@ then that of the wrist, which robots know well, and no model of the object is ne
 
 from slipgym.identification.fit import Result, identify
 from slipgym.identification.log import Log, read_log
-from slipgym.identification.motions import MOTIONS, session
-from slipgym.identification.report import overrides, table, write
-from slipgym.identification.simulated import HiddenGripper, draw_gripper, simulated_log, write_log
+from slipgym.identification.report import overrides, table, verdict, write
 
 __all__ = [
-    "MOTIONS",
-    "HiddenGripper",
     "Log",
     "Result",
-    "draw_gripper",
     "identify",
     "overrides",
     "read_log",
-    "session",
-    "simulated_log",
     "table",
+    "verdict",
     "write",
-    "write_log",
 ]

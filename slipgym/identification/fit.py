@@ -8,15 +8,15 @@ the shift of the estimate under each of `ALTERNATIVES`, to first order, is added
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from slipgym.config.errors import unknown
 from slipgym.identification.log import Log
-from slipgym.identification.parameters import DEVIATION, NAMES, START, values_of
-from slipgym.identification.rollout import SUBSTEP, SURFACES, roll
+from slipgym.identification.parameters import DEVIATION, START, values_of
+from slipgym.identification.rollout import CHANNELS, SUBSTEP, SURFACES, roll
 
 HUBER = 2.0
 """Residual over the noise from which its weight falls [-]."""
@@ -25,12 +25,14 @@ BLOCK = 1.0
 HELD_OUT = 4
 SHOWN = 0.5
 """Largest deviation over the prior's with which a parameter counts as shown."""
-STARTS, KEPT = 24, 2
-"""Points sampled from the prior, and those from which a fit begins."""
+STARTS, KEPT = 64, 6
+"""Points sampled from the prior, and those from which a fit of a pad without cells begins."""
+FAR = 3.0
+"""Held-out residual over the noise from which the model does not fit the log [-]."""
 STEP = 1e-3
 """Of the finite differences, over the prior's deviation [-]."""
-EARLY, ITERATIONS = 8, 15
-"""Most steps of a fit from a start, and of the last ones."""
+ITERATIONS = 15
+"""Most steps of a fit."""
 ALTERNATIVES = ({"pressure": "hertz"}, {"substep": 0.5 * SUBSTEP}, {"contact": "disc"})
 """Models that a log may as well come from: the pressure of the patch and the sub-step are choices."""
 
@@ -49,13 +51,13 @@ class Result:
     shown: np.ndarray
     """Whether the log shows the parameter, (p,)."""
     noise: np.ndarray
-    """Standard deviation of each reading's noise, (7,); NaN where it is absent."""
+    """`Log.noise`: standard deviation of each reading's noise, (7,); NaN where it is absent."""
     held_out: np.ndarray
-    """Root mean square of each reading's residual on the held-out part, (7,)."""
+    """Root mean square of the residual of `after` on the held-out part, (7,)."""
     before: np.ndarray
     """Readings that the prior predicts, (n, 7)."""
     after: np.ndarray
-    """Readings that the estimate predicts, (n, 7)."""
+    """Readings that `point` predicts, (n, 7)."""
     information: np.ndarray
     """Of the transformed parameters, priors included, (p, p)."""
 
@@ -63,6 +65,11 @@ class Result:
         """Lower and upper end of the 90 % interval of each value, (p, 2)."""
         ends = self.point + 1.645 * self.deviation * np.array([[-1.0], [1.0]])
         return values_of(ends).T
+
+    def misfits(self) -> dict[str, float]:
+        """Held-out residual over the noise, of the readings where it is above `FAR`."""
+        ratios = self.held_out / self.noise
+        return {name: float(each) for name, each in zip(CHANNELS, ratios, strict=True) if each > FAR}
 
 
 @dataclass(frozen=True)
@@ -88,9 +95,18 @@ class _Problem:
         return np.maximum(1.4826 * np.median(np.abs(part - np.median(part, axis=0)), axis=0), 1e-9)
 
     def slopes(self, point: np.ndarray) -> np.ndarray:
-        """Derivative of the readings by the transformed parameters, (p, n, channels): one batch."""
-        ends = self.predict(np.vstack([point + np.diag(STEP * DEVIATION), point]))
-        return (ends[:-1] - ends[-1]) / (STEP * DEVIATION)[:, None, None]
+        """Derivative of the readings by the transformed parameters, (p, n, present channels)."""
+        log = self.log
+        return slopes(point, self.contact, log.rate, log.command, log.motion)[:, :, self.present]
+
+
+def slopes(
+    point: np.ndarray, contact: str, rate: float, command: np.ndarray, motion: np.ndarray
+) -> np.ndarray:
+    """Derivative of the readings by the transformed parameters, (p, n, 7), in one batch of rollouts."""
+    points = np.vstack([point + np.diag(STEP * DEVIATION), point])
+    ends = roll(values_of(points), rate, command, motion, contact)
+    return (ends[:-1] - ends[-1]) / (STEP * DEVIATION)[:, None, None]
 
 
 def identify(log: Log, contact: str = "distributed", seed: int = 0) -> Result:
@@ -109,27 +125,27 @@ def identify(log: Log, contact: str = "distributed", seed: int = 0) -> Result:
     if np.ptp(log.readings[:, :4], axis=0).max() == 0.0:
         raise ValueError("the log's wrench never changes: nothing in it can be identified")
     block = (np.arange(len(log.command)) / (BLOCK * log.rate)).astype(int)
-    problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, np.isfinite(log.readings).all(axis=0))
-    rng = np.random.default_rng(seed)
-    starts = START + DEVIATION * np.vstack([np.zeros(len(START)), rng.normal(size=(STARTS - 1, len(START)))])
-    residuals = problem.residuals(problem.predict(starts))
-    scale = np.min([problem.noise(each) for each in residuals], axis=0)
-    costs = [_cost(problem, start, each, scale) for start, each in zip(starts, residuals, strict=True)]
-    best = [starts[k] for k in np.argsort(costs)[:KEPT]]
-    fits = [_minimised(problem, start, scale, EARLY) for start in best]
-    # one scale for all, or they could not be compared
-    costs = [
-        _cost(problem, point, problem.residuals(problem.predict(point[None])[0]), scale) for point in fits
-    ]
-    point = fits[int(np.argmin(costs))]
+    problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, ~np.isnan(log.readings[0]))
+    point = _start(problem, np.random.default_rng(seed))
     for _ in range(2):
         scale = problem.noise(problem.residuals(problem.predict(point[None])[0]))
         point = _minimised(problem, point, scale)
     return _result(problem, point, scale, block)
 
 
-def _weights(residual: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    return 1.0 / np.maximum(np.abs(residual) / (HUBER * scale), 1.0)
+def _start(problem: _Problem, rng: np.random.Generator) -> np.ndarray:
+    """The best of several fits of a disc, which costs a twentieth of a pad with cells and ends near it."""
+    problem = replace(problem, contact="disc" if problem.contact == "distributed" else problem.contact)
+    starts = START + DEVIATION * np.vstack([np.zeros(len(START)), rng.normal(size=(STARTS - 1, len(START)))])
+    residuals = problem.residuals(problem.predict(starts))
+    # one scale for all, or they could not be compared
+    scale = np.min([problem.noise(each) for each in residuals], axis=0)
+    costs = [_cost(problem, start, each, scale) for start, each in zip(starts, residuals, strict=True)]
+    fits = np.array([_minimised(problem, starts[k], scale) for k in np.argsort(costs)[:KEPT]])
+    scale = np.min([problem.noise(each) for each in problem.residuals(problem.predict(fits))], axis=0)
+    fits = np.array([_minimised(problem, fit, scale) for fit in fits])
+    residuals = problem.residuals(problem.predict(fits))
+    return fits[np.argmin([_cost(problem, *each, scale) for each in zip(fits, residuals, strict=True)])]
 
 
 def _cost(problem: _Problem, point: np.ndarray, residual: np.ndarray, scale: np.ndarray) -> float:
@@ -139,88 +155,71 @@ def _cost(problem: _Problem, point: np.ndarray, residual: np.ndarray, scale: np.
 
 
 def _normal_equations(
-    problem: _Problem, point: np.ndarray, scale: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Information (p, p), score (p,), and the score of each row (p, n)."""
-    residual = problem.residuals(problem.predict(point[None])[0])
-    weights = np.where(problem.fitted[:, None], _weights(residual, scale), 0.0)
-    slopes = problem.slopes(point) / scale
-    rows = (slopes * (weights * residual / scale)).sum(axis=2)
+    problem: _Problem, slopes: np.ndarray, residual: np.ndarray, scale: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Information with the prior's (p, p), and the score of each row (p, n)."""
+    weights = problem.fitted[:, None] / np.maximum(np.abs(residual) / (HUBER * scale), 1.0)
+    slopes = slopes / scale
     information = np.einsum("anc,nc,bnc->ab", slopes, weights, slopes, optimize=True)
-    score = rows.sum(axis=1) - (point - START) / DEVIATION**2
-    return information + np.diag(DEVIATION**-2.0), score, rows
+    return information + np.diag(DEVIATION**-2.0), (slopes * (weights * residual / scale)).sum(axis=2)
 
 
-def _score(problem: _Problem, point: np.ndarray, scale: np.ndarray, other: dict[str, Any]) -> np.ndarray:
-    """Score of the data (p,) if another model predicts the readings."""
-    residual = problem.residuals(problem.predict(point[None], **other)[0])
-    weights = np.where(problem.fitted[:, None], _weights(residual, scale), 0.0)
-    return np.einsum("anc,nc->a", problem.slopes(point) / scale, weights * residual / scale)
-
-
-def _minimised(
-    problem: _Problem, point: np.ndarray, scale: np.ndarray, iterations: int = ITERATIONS
-) -> np.ndarray:
+def _minimised(problem: _Problem, point: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """Levenberg and Marquardt's steps; five dampings are tried in one batch."""
-    cost = _cost(problem, point, problem.residuals(problem.predict(point[None])[0]), scale)
-    damping = 1e-3
-    for _ in range(iterations):
-        information, score, _ = _normal_equations(problem, point, scale)
+    residual = problem.residuals(problem.predict(point[None])[0])
+    cost = _cost(problem, point, residual, scale)
+    damping, moved = 1e-3, True
+    information = score = np.zeros(0)
+    for _ in range(ITERATIONS):
+        if moved:
+            information, rows = _normal_equations(problem, problem.slopes(point), residual, scale)
+            score = rows.sum(axis=1) - (point - START) / DEVIATION**2
         dampings = damping * 10.0 ** np.arange(-1.0, 4.0)
         diagonal = np.diag(np.diag(information))
         steps = np.array([np.linalg.solve(information + each * diagonal, score) for each in dampings])
         trials = point + np.clip(steps, -2.0 * DEVIATION, 2.0 * DEVIATION)
-        predicted = problem.predict(trials)
-        costs = [
-            _cost(problem, t, problem.residuals(p), scale) for t, p in zip(trials, predicted, strict=True)
-        ]
+        residuals = problem.residuals(problem.predict(trials))
+        costs = [_cost(problem, *each, scale) for each in zip(trials, residuals, strict=True)]
         k = int(np.argmin(costs))
-        if not costs[k] < cost:
+        moved = costs[k] < cost
+        if not moved:
             damping = dampings[-1]
             if damping > 1e6:
                 break
             continue
-        gain, cost, point, damping = cost - costs[k], costs[k], trials[k], dampings[k]
+        gain, cost, point, damping, residual = cost - costs[k], costs[k], trials[k], dampings[k], residuals[k]
         if gain < 1e-3:
             break
     return point
 
 
 def _result(problem: _Problem, point: np.ndarray, scale: np.ndarray, block: np.ndarray) -> Result:
-    information, _, rows = _normal_equations(problem, point, scale)
+    models: tuple[dict[str, Any], ...] = ({}, *ALTERNATIVES)
+    residuals = [problem.residuals(problem.predict(point[None], **model)[0]) for model in models]
+    slopes = problem.slopes(point)
+    (information, rows), *others = [_normal_equations(problem, slopes, each, scale) for each in residuals]
     # priors are information of their own; each block's score counts whole, so what correlates in it adds up
     sums = np.array([np.bincount(block, weights=row) for row in rows])[:, np.unique(block[problem.fitted])]
     blocks = sums.shape[1]
     meat = sums @ sums.T * blocks / max(blocks - 1, 1) + np.diag(DEVIATION**-2.0)
     inverse = np.linalg.inv(information)
-    sandwich = inverse @ meat @ inverse
-    deviation = np.sqrt(np.maximum(np.diag(sandwich), np.diag(inverse)))
-    shifts = np.array([inverse @ _score(problem, point, scale, other) for other in ALTERNATIVES])
-    shifts -= inverse @ _score(problem, point, scale, {})
-    deviation = np.sqrt(deviation**2 + (shifts**2).sum(axis=0))
+    variance = np.maximum(np.diag(inverse @ meat @ inverse), np.diag(inverse))
+    shifts = np.array([inverse @ (other - rows).sum(axis=1) for _, other in others])
+    deviation = np.sqrt(variance + (shifts**2).sum(axis=0))
     shown = deviation < SHOWN * DEVIATION
-    after = problem.predict(point[None])[0]
-    residual = problem.residuals(after)
-    full = np.full((2, problem.log.readings.shape[1]), np.nan)
-    full[:, problem.present] = scale, np.sqrt((residual[~problem.fitted] ** 2).mean(axis=0))
-    log = problem.log
-    before, found = roll(
-        values_of(np.stack([START, point])), log.rate, log.command, log.motion, problem.contact
+    log, written = problem.log, np.where(shown, point, START)
+    before, after = roll(
+        values_of(np.stack([START, written])), log.rate, log.command, log.motion, problem.contact
     )
     return Result(
         log=log,
         contact=problem.contact,
-        point=np.where(shown, point, START),
+        point=written,
         deviation=np.where(shown, deviation, DEVIATION),
         shown=shown,
-        noise=full[0],
-        held_out=full[1],
+        noise=log.noise(),
+        held_out=np.sqrt(((log.readings - after)[~problem.fitted] ** 2).mean(axis=0)),
         before=before,
-        after=found,
+        after=after,
         information=information,
     )
-
-
-def value(result: Result, name: str) -> float:
-    """The estimate of a parameter, or its prior's median."""
-    return float(values_of(result.point)[NAMES.index(name)])

@@ -14,6 +14,8 @@ COMMAND = "force"
 MOTION = ("motion_x", "motion_y", "motion_omega")
 COLUMNS = ("t", COMMAND, *MOTION, *CHANNELS)
 """Columns of a log: time [s], grip command [N], motion and readings in SI units."""
+LEAST_NOISE = np.array([1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5, 1e-4])
+"""Of each reading, in its SI unit: no sensor is more exact, whatever a log shows."""
 SHORTEST, LARGEST = 5.0, 1e4  # [s], in SI units
 RATES = (20.0, 2000.0)  # [Hz]
 ROWS_MAX = 200_000
@@ -21,7 +23,11 @@ ROWS_MAX = 200_000
 
 @dataclass(frozen=True)
 class Log:
-    """A log of one finger on one clock, n rows in equal steps of time."""
+    """A log of one finger on one clock, n rows in equal steps of time.
+
+    Raises:
+        ValueError: A shape, the rate, the length or a number is out of range.
+    """
 
     rate: float
     """Rows per second [Hz]."""
@@ -31,6 +37,36 @@ class Log:
     """Twist of the object against the gripper, (n, 3) [m/s, m/s, rad/s]."""
     readings: np.ndarray
     """Wrench at the pad's centre and slip twist, (n, 7), see `CHANNELS`; NaN: that sensor is absent."""
+
+    def __post_init__(self) -> None:
+        n = len(self.command)
+        shapes = (self.command.shape, self.motion.shape, self.readings.shape)
+        if shapes != ((n,), (n, 3), (n, len(CHANNELS))):
+            raise ValueError(
+                f"command, motion and readings have shapes {shapes}; must be (n,), (n, 3), (n, 7)"
+            )
+        slip_absent = np.isnan(self.readings[:, 4:]).all()
+        numbers = np.hstack([self.command[:, None], self.motion, self.readings[:, : 4 if slip_absent else 7]])
+        if not np.isfinite(numbers).all():
+            raise ValueError(
+                "command, motion and readings must be finite; all three slip readings may be NaN"
+            )
+        if not RATES[0] <= self.rate <= RATES[1]:
+            raise ValueError(f"{self.rate:g} rows per second; must be {RATES[0]:g} to {RATES[1]:g}")
+        if n / self.rate < SHORTEST:
+            raise ValueError(f"the log is {n / self.rate:.3g} s long; must be at least {SHORTEST:g} s")
+        if (negative := self.command < 0.0).any():
+            raise ValueError(f"row {int(np.argmax(negative)) + 1}: {COMMAND} must be >= 0 N")
+
+    def noise(self) -> np.ndarray:
+        """Standard deviation of each reading's white noise, whatever moves, (7,); NaN where it is absent.
+
+        From the median of third differences, in which smooth motion vanishes, and the steps of the converter.
+        """
+        spread = 1.4826 * np.median(np.abs(np.diff(self.readings, 3, axis=0)), axis=0) / np.sqrt(20.0)
+        steps = [np.diff(np.unique(each)).min(initial=np.inf) for each in self.readings.T]
+        rounding = np.where(np.isfinite(steps), steps, 0.0) / np.sqrt(12.0)
+        return np.maximum(np.maximum(spread, rounding), LEAST_NOISE)
 
 
 def read_log(path: str | os.PathLike[str]) -> Log:
@@ -51,7 +87,9 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     try:
         frame = pandas.read_parquet(path) if path.suffix == ".parquet" else pandas.read_csv(path)
     except Exception as error:  # pandas and its engines have many
-        raise ValueError(f"{path.name}: cannot be read as a table: {str(error).splitlines()[0]}") from None
+        raise ValueError(
+            f"{path.name}: cannot be read as a table: {str(error).partition(chr(10))[0]}"
+        ) from None
     slip = [name for name in CHANNELS[4:] if name in frame.columns]
     needed = COLUMNS if slip else COLUMNS[: -len(CHANNELS[4:])]
     if missing := [name for name in needed if name not in frame.columns]:
@@ -61,9 +99,10 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     n = len(columns[0])
     readings = np.full((n, len(CHANNELS)), np.nan)
     readings[:, : len(columns) - 5] = np.stack(columns[5:], axis=1)
-    if (negative := columns[1] < 0.0).any():
-        raise ValueError(f"{path.name}: row {int(np.argmax(negative)) + 1}: {COMMAND} must be >= 0 N")
-    return Log(rate, columns[1], np.stack(columns[2:5], axis=1), readings)
+    try:
+        return Log(rate, columns[1], np.stack(columns[2:5], axis=1), readings)
+    except ValueError as error:
+        raise ValueError(f"{path.name}: {error}") from None
 
 
 def _numbers(file: str, name: str, column: object) -> np.ndarray:
@@ -87,9 +126,4 @@ def _rate(file: str, t: np.ndarray) -> float:
     if not step > 0.0 or off.any():
         row = int(np.argmax(off)) + 1
         raise ValueError(f"{file}: row {row}: t must rise in equal steps; resample onto one clock first")
-    rate = 1.0 / step
-    if not RATES[0] <= rate <= RATES[1]:
-        raise ValueError(f"{file}: {rate:g} rows per second; must be {RATES[0]:g} to {RATES[1]:g}")
-    if step * len(t) < SHORTEST:
-        raise ValueError(f"{file}: is {step * len(t):.3g} s long; must be at least {SHORTEST:g} s")
-    return rate
+    return float(1.0 / step)

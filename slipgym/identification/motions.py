@@ -36,16 +36,3 @@ MOTIONS: dict[str, Motion] = {
     ),
 }
 """The motions, in the order of a session; each begins at rest."""
-
-
-def session(rate: float = 120.0, length: float = 10.0, names: tuple[str, ...] = tuple(MOTIONS)) -> tuple:
-    """Grip command (n,) [N] and twist (n, 3) of motions after each other.
-
-    Args:
-        rate: Rows per second [Hz].
-        length: Of each motion [s].
-        names: Of `MOTIONS`.
-    """
-    t = np.arange(round(length * rate)) / rate
-    parts = [MOTIONS[name](t) for name in names]
-    return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])

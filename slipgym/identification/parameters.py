@@ -32,15 +32,6 @@ class Parameter:
     high: float = np.inf
     """Largest value of the configuration."""
 
-    @property
-    def start(self) -> float:
-        """Transformed median of the prior."""
-        return float(np.log(self.prior)) if self.log else self.prior
-
-    def value(self, transformed: float) -> float:
-        """The value of a transformed one, within the configuration's range."""
-        return float(np.clip(np.exp(transformed) if self.log else transformed, self.low, self.high))
-
 
 _PAD = "contact.pad."
 PARAMETERS = (
@@ -67,8 +58,9 @@ PARAMETERS = (
 )
 """Every parameter, in the order of the columns of a rollout's input."""
 NAMES = tuple(each.name for each in PARAMETERS)
-START = np.array([each.start for each in PARAMETERS])
+START = np.array([np.log(each.prior) if each.log else each.prior for each in PARAMETERS])
 DEVIATION = np.array([each.deviation for each in PARAMETERS])
+"""Transformed medians and standard deviations of the priors, (p,)."""
 
 
 def values_of(points: np.ndarray) -> np.ndarray:

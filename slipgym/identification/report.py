@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from slipgym.config import load
-from slipgym.identification.fit import Result
+from slipgym.identification.fit import FAR, Result
 from slipgym.identification.next_motion import gains
 from slipgym.identification.parameters import NAMES, PARAMETERS, values_of
 from slipgym.identification.picture import draw
@@ -70,6 +70,17 @@ def table(result: Result) -> str:
     return "\n".join(lines)
 
 
+def verdict(result: Result) -> str:
+    """Whether the model fits the log, in a sentence or two."""
+    if not (misfits := result.misfits()):
+        return f"The model fits this log: every held-out residual is within {FAR:g} times the noise."
+    far = ", ".join(f"{name} {ratio:.1f}" for name, ratio in misfits.items())
+    return (
+        f"The model does not fit this log: held-out residuals over the noise are {far}. "
+        "Trust neither the parameters nor their intervals."
+    )
+
+
 def summary(result: Result) -> str:
     """The report, as Markdown."""
     fit = ["| reading | noise | held-out residual | over the noise |", "|---|---|---|---|"]
@@ -80,10 +91,9 @@ def summary(result: Result) -> str:
     motions = ["| motion, 20 s | sum of what deviations shrink by [%] | most for |", "|---|---|---|"]
     motions += [f"| {name} | {100 * total:.0f} | {most} |" for name, total, most in ranked]
     return (
-        f"# Identified gripper\n\n{table(result)}\n\n"
+        f"# Identified gripper\n\n**{verdict(result)}**\n\n{table(result)}\n\n"
         f"Friction model: {result.contact}. A deviation above half of the prior's counts as not shown.\n\n"
         f"## Held-out part\n\nEvery fourth second, which the fit has not seen.\n\n" + "\n".join(fit) + "\n\n"
-        "A ratio well above 1 is an error of the model: trust the intervals less.\n\n"
         "![log and simulation](report.png)\n\n"
         f"## Record next\n\n20 s of **{ranked[0][0]}**.\n\n" + "\n".join(motions) + "\n"
     )
@@ -96,6 +106,7 @@ def write(result: Result, folder: Path) -> None:
     values = overrides(result)
     load(values)  # what the environments would refuse must not be written
     text = '# Written by slipgym identify: gym.make(..., config="gripper.yaml", material="identified")\n'
+    text += f"# {verdict(result)}\n"
     (folder / "gripper.yaml").write_text(text + yaml.safe_dump(values, sort_keys=False), encoding="utf-8")
     (folder / "report.md").write_text(summary(result), encoding="utf-8")
     draw(result, folder / "report.png")

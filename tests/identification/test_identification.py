@@ -1,5 +1,7 @@
 """Logs of hidden grippers give their parameters back, and say what they do not show."""
 
+from dataclasses import replace
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -7,16 +9,18 @@ import yaml
 from typer.testing import CliRunner
 
 import slipgym  # noqa: F401
+from lab.simulated_gripper import draw_gripper, simulated_log, write_log
 from policies.commands.front import application
 from slipgym import identification
-from slipgym.identification import draw_gripper, identify, read_log, simulated_log, write_log
-from slipgym.identification.fit import value
-from slipgym.identification.parameters import NAMES, START
+from slipgym.identification import Log, identify, read_log
+from slipgym.identification.parameters import NAMES, START, values_of
+
+GRIPPER = draw_gripper(0)
 
 
 @pytest.fixture(scope="module")
 def log():
-    return simulated_log(draw_gripper(0), names=("press", "slide x", "slide y"))
+    return simulated_log(GRIPPER, names=("press", "slide x"))
 
 
 @pytest.fixture(scope="module")
@@ -24,12 +28,24 @@ def result(log):
     return identify(log)
 
 
+@pytest.fixture(scope="module")
+def folder(result, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("identified")
+    identification.write(result, folder)
+    return folder
+
+
+def found(result):
+    return dict(zip(NAMES, values_of(result.point).tolist(), strict=True))
+
+
 def test_known_parameters_are_recovered(result):
-    truth = draw_gripper(0).values
     for name, tolerance in (("mu_c", 0.03), ("force gain", 0.01), ("lag", 0.1), ("shear compliance", 0.1)):
-        assert value(result, name) == pytest.approx(truth[name], rel=tolerance), name
-    assert value(result, "zero f_n") == pytest.approx(truth["zero f_n"], abs=0.02)
-    np.testing.assert_allclose(result.noise, draw_gripper(0).noise, rtol=0.3)
+        assert result.shown[NAMES.index(name)], name
+        assert found(result)[name] == pytest.approx(GRIPPER.values[name], rel=tolerance), name
+    assert found(result)["zero f_n"] == pytest.approx(GRIPPER.values["zero f_n"], abs=0.02)
+    np.testing.assert_allclose(result.noise, GRIPPER.noise, rtol=0.3)
+    assert "The model fits this log" in identification.verdict(result)
 
 
 def test_what_is_not_shown_keeps_its_prior_and_is_told(result):
@@ -38,30 +54,69 @@ def test_what_is_not_shown_keeps_its_prior_and_is_told(result):
     assert result.point[k] == START[k]
     (line,) = (each for each in identification.table(result).splitlines() if "radius exponent" in each)
     assert "this log does not show it" in line
+    assert "this log does not show it" not in identification.table(result).splitlines()[2]  # mu_c
 
 
-def test_the_next_motion_is_one_that_turns(result, tmp_path):
-    identification.write(result, tmp_path)
-    report = (tmp_path / "report.md").read_text()
+def test_the_residual_is_that_of_the_configuration_written(result, log):
+    rows = (np.arange(len(log.command)) // log.rate).astype(int) % 4 == 3
+    residual = np.sqrt(((log.readings - result.after)[rows] ** 2).mean(axis=0))
+    np.testing.assert_allclose(result.held_out, residual)
+    assert (result.held_out[:4] < np.std(log.readings[:, :4], axis=0)).all()
+
+
+def test_the_report_asks_for_a_motion_that_turns(folder):
+    report = (folder / "report.md").read_text()
     assert "20 s of **turn**" in report or "20 s of **slide and squeeze**" in report
-    assert (tmp_path / "report.png").stat().st_size > 10_000
+    assert (folder / "report.png").stat().st_size > 10_000
 
 
-def test_an_environment_takes_the_configuration(result, tmp_path):
-    identification.write(result, tmp_path)
-    path = tmp_path / "gripper.yaml"
-    env = gym.make("slipgym/Hold-v0", config=str(path))
+def test_environments_take_the_configuration(result, folder):
+    config = str(folder / "gripper.yaml")
+    env = gym.make("slipgym/Hold-v0", config=config)
     env.reset(seed=0, options={"material": "identified"})
-    assert not np.isnan(env.step(env.action_space.sample())[1])
+    assert np.isfinite(float(env.step(env.action_space.sample())[1]))
     env.close()
-    assert yaml.safe_load(path.read_text())["materials"]["identified"]["mu_c"] == value(result, "mu_c")
+    envs = gym.make_vec("slipgym/Hold-v0", num_envs=2, config=config)
+    envs.reset(seed=0, options={"material": "identified"})
+    assert np.isfinite(envs.step(envs.action_space.sample())[1]).all()
+    envs.close()
+    written = yaml.safe_load((folder / "gripper.yaml").read_text())
+    assert written["materials"]["identified"]["mu_c"] == found(result)["mu_c"]
 
 
-def test_the_same_log_gives_the_same_bits():
-    log = simulated_log(draw_gripper(1), names=("press",))
-    result, again = identify(log), identify(log)
+def test_the_same_log_gives_the_same_bits(log):
+    result, again = identify(log, "disc"), identify(log, "disc")
     assert again.point.tobytes() == result.point.tobytes()
     assert again.deviation.tobytes() == result.deviation.tobytes()
+
+
+def test_a_model_that_does_not_fit_is_told(log, tmp_path):
+    readings = log.readings.copy()
+    readings[:, 1] += np.sin(3.0 * np.arange(len(readings)) / log.rate)  # no parameter does this
+    path = tmp_path / "log.csv"
+    write_log(replace(log, readings=readings), path)
+    arguments = [str(path), "--contact", "disc", "--output", str(tmp_path / "out")]
+    done = CliRunner().invoke(application("identify"), arguments)
+    assert done.exit_code == 0, done.output
+    told = "The model does not fit this log: held-out residuals over the noise are f_y"
+    assert done.output.rstrip().splitlines()[-1].startswith(told)
+    for name in ("report.md", "gripper.yaml"):
+        assert told in (tmp_path / "out" / name).read_text()
+
+
+def test_a_log_without_slip_sensor_leaves_its_latency_alone(log):
+    readings = log.readings.copy()
+    readings[:, 4:] = np.nan
+    result = identify(replace(log, readings=readings), "disc")
+    assert not result.shown[NAMES.index("slip latency")]
+    assert np.isnan(result.held_out[4:]).all()
+    assert "slip" not in identification.overrides(result)["sensors"]
+
+
+def test_noise_is_that_of_the_sensor_and_not_of_the_motion(log):
+    np.testing.assert_allclose(log.noise(), GRIPPER.noise, rtol=0.3)
+    readings = np.round(log.readings / 0.5) * 0.5
+    assert replace(log, readings=readings).noise()[0] >= 0.5 / np.sqrt(12.0)
 
 
 def test_a_log_is_read_as_it_was_written(log, tmp_path):
@@ -69,6 +124,17 @@ def test_a_log_is_read_as_it_was_written(log, tmp_path):
     read = read_log(tmp_path / "log.csv")
     assert read.rate == pytest.approx(log.rate)
     np.testing.assert_allclose(read.readings, log.readings, atol=1e-8)
+
+
+@pytest.mark.slow  # half a minute of log and all motions
+def test_a_whole_session_shows_most_parameters():
+    gripper = draw_gripper(2)
+    result = identify(simulated_log(gripper, 2))
+    truth = np.array([gripper.values[name] for name in NAMES])
+    low, high = result.interval().T
+    assert result.shown.sum() >= 15
+    assert (low <= truth)[result.shown].mean() >= 0.8
+    assert (truth <= high)[result.shown].mean() >= 0.8
 
 
 @pytest.mark.parametrize(
@@ -83,6 +149,7 @@ def test_a_log_is_read_as_it_was_written(log, tmp_path):
         (lambda f: f.iloc[:100], "must be at least 5 s"),
         (lambda f: f.assign(force=-1.0), "force must be >= 0"),
         (lambda f: f.iloc[:0], "rows"),
+        (lambda f: f[["t"]].iloc[:0].rename(columns={"t": "x"}), "column t is missing"),
     ],
 )
 def test_a_bad_log_is_refused(log, tmp_path, change, message):
@@ -100,3 +167,28 @@ def test_a_bad_log_is_refused(log, tmp_path, change, message):
 def test_a_wrong_contact_is_refused(log):
     with pytest.raises(ValueError, match="contact"):
         identify(log, "bristle")
+
+
+@pytest.mark.parametrize("rows", [0, 1, 10])
+def test_a_log_of_other_shapes_is_refused(log, rows):
+    with pytest.raises(ValueError, match="shapes"):
+        replace(log, command=log.command[:rows])
+
+
+def test_a_log_with_gaps_is_refused(log):
+    for column in (0, 5):
+        readings = log.readings.copy()
+        readings[7, column] = np.nan
+        with pytest.raises(ValueError, match="finite"):
+            Log(log.rate, log.command, log.motion, readings)
+
+
+@pytest.mark.parametrize(("rate", "message"), [(19.0, "rows per second"), (500.0, "at least 5 s")])
+def test_a_log_too_short_or_of_another_rate_is_refused(log, rate, message):
+    with pytest.raises(ValueError, match=message):
+        replace(log, rate=rate)
+
+
+def test_a_log_in_which_nothing_happens_is_refused(log):
+    with pytest.raises(ValueError, match="never changes"):
+        identify(replace(log, readings=np.zeros_like(log.readings)))

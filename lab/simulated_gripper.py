@@ -1,4 +1,4 @@
-"""Simulates logs of hidden grippers, by another pressure, more cells and a finer step than the fit's."""
+"""Simulates logs of grippers on a bench, by another pressure, more cells and a finer step than the fit's."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from slipgym.contact.distributed_kernel import prescribed_step
 from slipgym.contact.pressure import PressureName, patch_cells
 from slipgym.contact.records import pads, patch
 from slipgym.identification.log import COLUMNS, Log
-from slipgym.identification.motions import MOTIONS, session
+from slipgym.identification.motions import MOTIONS
 from slipgym.identification.parameters import DEVIATION, NAMES, START, values_of
 
 FINE = 2000.0
@@ -49,7 +49,8 @@ def simulated_log(
 
     The patch has another pressure and more cells than the fit's: its limit surface and break-away are others.
     """
-    command, motion = session(rate, 5.0, names)
+    parts = [MOTIONS[name](np.arange(round(5.0 * rate)) / rate) for name in names]
+    command, motion = (np.concatenate(each) for each in zip(*parts, strict=True))
     of = gripper.values
     steps = int(np.ceil(FINE / rate))
     h, n = 1.0 / (rate * steps), len(command)
