@@ -43,10 +43,10 @@ def overrides(result: Result) -> dict[str, Any]:
     for axes, name in (((0, 1), "tangential"), ((2,), "normal"), ((3,), "torque")):
         wrench[f"noise_{name}"] = float(np.sqrt(np.mean(result.noise[list(axes)] ** 2)))
         # the environments draw zero errors anew for each episode: as large as the ones found
-        zeros = [of[f"zero {CHANNELS[a]}"] if _shown(result, f"zero {CHANNELS[a]}") else 0.0 for a in axes]
+        zeros = [of[f"zero {CHANNELS[a]}"] for a in axes]
         wrench[f"bias_{name}"] = float(np.sqrt(np.mean(np.square(zeros))))
     slip = defaults.sensors.slip
-    if _shown(result, "slip latency"):
+    if result.shown[NAMES.index("slip latency")]:
         values["sensors"]["slip"] = {
             "latency_samples": round(of["slip latency"] * slip.rate),
             "latency_spread": 0,
@@ -54,10 +54,6 @@ def overrides(result: Result) -> dict[str, Any]:
             "noise": float(np.mean(result.noise[4:6]) / (slip.count * slip.rate) * math.sqrt(slip.chips)),
         }
     return values
-
-
-def _shown(result: Result, name: str) -> bool:
-    return bool(result.shown[NAMES.index(name)])
 
 
 def table(result: Result) -> str:

@@ -72,19 +72,20 @@ def test_the_report_asks_for_a_motion_that_turns(folder):
 
 def test_environments_take_the_configuration(result, folder):
     config = str(folder / "gripper.yaml")
-    env = gym.make("slipgym/Hold-v0", config=config)
-    env.reset(seed=0, options={"material": "identified"})
+    env = gym.make("slipgym/Hold-v0", config=config, material="identified")
+    env.reset(seed=0)
     assert np.isfinite(float(env.step(env.action_space.sample())[1]))
     env.close()
-    envs = gym.make_vec("slipgym/Hold-v0", num_envs=2, config=config)
-    envs.reset(seed=0, options={"material": "identified"})
+    envs = gym.make_vec("slipgym/Hold-v0", num_envs=2, config=config, material="identified")
+    envs.reset(seed=0)
     assert np.isfinite(envs.step(envs.action_space.sample())[1]).all()
     envs.close()
     written = yaml.safe_load((folder / "gripper.yaml").read_text())
     assert written["materials"]["identified"]["mu_c"] == found(result)["mu_c"]
 
 
-def test_the_same_log_gives_the_same_bits(log):
+def test_the_same_log_gives_the_same_bits():
+    log = simulated_log(GRIPPER, names=("slide x",))
     result, again = identify(log, "disc"), identify(log, "disc")
     assert again.point.tobytes() == result.point.tobytes()
     assert again.deviation.tobytes() == result.deviation.tobytes()
