@@ -13,7 +13,7 @@ COMMANDS = {
     "hidden-grippers": "Print how often the intervals of identify hold.",
     "imperfections": "Print what each imperfection of the sensors costs.",
     "jumps": "Print how soon mu_c is right after friction jumps.",
-    "live-bars": "Measure `slipgym live` under faults of sensors and networks.",
+    "live-bars": "Measure slipgym live under faults of its readings.",
     "pushes": "Compare the estimators on real pushes of a block.",
     "rank": "Compare the order of returns with that of success.",
     "reproduce": "Reproduce the paper's analyses.",
