@@ -11,22 +11,12 @@ from typing import Annotated
 import pandas as pd
 import typer
 
-import policies
 from policies.policy_leaderboard.entries import Member, best_constant, controllers, entered, remembering
 from policies.policy_leaderboard.run import kinds, outcomes
 from slipgym.tasks import find
 
 PRESETS = "realistic", "lab", "markers", "wrist", "motor"
 TASKS = "Hold", "FragileHold", "Carry"
-LIFTS = {"noise": 0.4, "guess": 0.6, "least": 1.5}
-WIDER = {
-    ("Hold", "markers"): {"doubt": 0.0, "exploration": None},
-    ("FragileHold", "markers"): {**LIFTS, "speed": 5e-3},
-    ("FragileHold", "wrist"): LIFTS,
-    ("Carry", "markers"): {**LIFTS, "speed": 5e-3},
-    ("Carry", "wrist"): LIFTS,
-}
-"""Gains of the controllers with thresholds above the noise of these sensors, found by a handful of tries."""
 SHOWN = "controller, estimated", "controller, none", "controller, memory of slips"
 
 
@@ -34,17 +24,11 @@ def members(task: str, arguments: dict[str, str], episodes: int, names: list[str
     """The best constant grip with these sensors, the task's controller with them, and the user's policies."""
     key = find(task).key
     own = [*controllers(key), remembering(key)]
-    mine = entered(names, "none")
-    if (find(task).name, arguments["sensors"]) in WIDER:
-        wider = policies.make(key, **WIDER[find(task).name, arguments["sensors"]])
-        mine.append(
-            Member(
-                "controller, wider thresholds",
-                wider,
-                {**policies.modes(wider), "friction_source": "estimated"},
-            )
-        )
-    return [best_constant(task, arguments, episodes), *(each for each in own if each.name in SHOWN), *mine]
+    return [
+        best_constant(task, arguments, episodes),
+        *(each for each in own if each.name in SHOWN),
+        *entered(names, "none"),
+    ]
 
 
 def main(
@@ -62,9 +46,7 @@ def main(
             for member in members(name, given, episodes, policy or []):
                 try:
                     table = outcomes(name, level, [member], episodes, {"sensors": chosen}, progress=False)
-                except (
-                    ValueError
-                ):  # these sensors do not measure what it needs, or not what it was trained on
+                except ValueError:  # it needs more than these sensors measure, or was trained on others
                     continue
                 rows.append(table.assign(sensors=chosen, policy=kinds(table)))
     whole = pd.concat(rows)

@@ -9,10 +9,11 @@ import numpy as np
 
 from slipgym.contact.distributed_kernel import prescribed_step
 from slipgym.contact.pressure import PressureName, patch_cells
-from slipgym.contact.records import pads, patch
+from slipgym.contact.records import patch
 from slipgym.identification.log import COLUMNS, Log
 from slipgym.identification.motions import MOTIONS
 from slipgym.identification.parameters import DEVIATION, NAMES, START, values_of
+from slipgym.identification.rollout import pads_of
 
 FINE = 2000.0
 """Least rate of the contact [Hz]."""
@@ -56,20 +57,7 @@ def simulated_log(
     h, n = 1.0 / (rate * steps), len(command)
     positions, loads = patch_cells(pressure, CELLS)
     radius = of["r"] / float(loads @ np.hypot(*positions.T))
-    pad = pads(
-        1,
-        r=radius,
-        mu_c=of["mu_c"],
-        mu_s=of["mu_c"] * (1.0 + of["static excess"]),
-        stribeck_velocity=of["v_s"],
-        sigma_0=1e6,
-        sigma_1=80.0,
-        sigma_2=of["sigma_2"],
-        load_exponent=of["load exponent"],
-        radius_exponent=of["radius exponent"],
-        compliance=of["shear compliance"],
-        shear_time=1e-3,
-    )
+    pad = pads_of(of, 1, radius)
     cells, x, y = patch(positions, loads), of["cop x"], of["cop y"]
     middle, ends = (np.arange(n * steps) + 0.5) / steps, (np.arange(n * steps) + 1.0) / steps
     twist = np.stack([np.interp(middle, np.arange(n), motion[:, a]) for a in range(3)], axis=1)

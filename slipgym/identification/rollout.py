@@ -7,6 +7,8 @@ and late sensors. Times need not be whole sub-steps: readings are smooth in all 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -55,21 +57,7 @@ def roll(
         positions, loads = patch_cells(pressure, CELLS)
         cells, unit = patch(positions, loads), 1.0 / float(loads @ np.hypot(*positions.T))
     column = dict(zip(NAMES, np.ascontiguousarray(values.T), strict=True))
-    pad = pads(
-        len(values),
-        surface=SURFACES[contact],
-        mu_c=column["mu_c"],
-        mu_s=column["mu_c"] * (1.0 + column["static excess"]),
-        stribeck_velocity=column["v_s"],
-        sigma_0=1e6,
-        sigma_1=80.0,
-        sigma_2=column["sigma_2"],
-        r=unit * column["r"],
-        load_exponent=column["load exponent"],
-        radius_exponent=column["radius exponent"],
-        compliance=column["shear compliance"],
-        shear_time=1e-3,
-    )
+    pad = pads_of(column, len(values), unit * column["r"], SURFACES[contact])
     pad["cop"] = np.stack([column["cop x"], column["cop y"]], axis=1)
     names = ("force gain", "dead time", "lag", "wrench latency", "slip latency")
     times = np.stack([column[name] for name in names], axis=1)
@@ -83,6 +71,27 @@ def roll(
     for k, axis in enumerate(("f_x", "f_y", "f_n", "tau")):
         out[:, :, k] += column[f"zero {axis}"][:, None]
     return out
+
+
+def pads_of(
+    column: Mapping[str, Any], n: int, radius: Any, surface: int = SURFACES["distributed"]
+) -> np.ndarray:
+    """PAD (n,) of parameters by name, each a number or (n,); `radius` is that of its law [m]."""
+    return pads(
+        n,
+        surface=surface,
+        mu_c=column["mu_c"],
+        mu_s=column["mu_c"] * (1.0 + column["static excess"]),
+        stribeck_velocity=column["v_s"],
+        sigma_0=1e6,
+        sigma_1=80.0,
+        sigma_2=column["sigma_2"],
+        r=radius,
+        load_exponent=column["load exponent"],
+        radius_exponent=column["radius exponent"],
+        compliance=column["shear compliance"],
+        shear_time=1e-3,
+    )
 
 
 @compiled
