@@ -6,12 +6,13 @@
     result = records.estimate(record)
     print(records.report(result))
 
-pandas, PyYAML and matplotlib are imported when a function needs them: the extra `slipgym[eval]`.
+`from_arrays` takes arrays and DataFrames. pandas, matplotlib and the libraries of file types are imported
+when a function needs them: the extra `slipgym[records]`, and for more types those that docs/records.md lists.
 """
 
 from estimator.records.calibration import Calibration, Found
 from estimator.records.columns import Column, Columns, load_columns
-from estimator.records.reading import load
+from estimator.records.reading import from_arrays, load
 from estimator.records.record import Record
 from estimator.records.results import write
 from estimator.records.run import Result, estimate
@@ -26,6 +27,7 @@ __all__ = [
     "Record",
     "Result",
     "estimate",
+    "from_arrays",
     "load",
     "load_columns",
     "parse_settings",

@@ -5,9 +5,12 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
+_EXTRAS = {"h5py": "hdf5", "scipy": "mat", "openpyxl": "excel", "mcap": "mcap", "rosbags": "rosbag"}
+"""Library -> the extra that installs it; all others come with `records`."""
+
 
 def extra(module: str) -> Any:
-    """Imports a module that the extra `slipgym[eval]` installs.
+    """Imports a module that one of the extras for records installs.
 
     Args:
         module: Its full name.
@@ -18,5 +21,6 @@ def extra(module: str) -> Any:
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
-        message = f"records need {error.name}, which is not installed: pip install 'slipgym[eval]'"
+        name = _EXTRAS.get(module.partition(".")[0], "records")
+        message = f"records need {error.name}, which is not installed: pip install 'slipgym[{name}]'"
         raise ModuleNotFoundError(message, name=error.name) from error

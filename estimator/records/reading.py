@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +12,15 @@ import numpy as np
 
 from estimator.online import TWIST, WRENCH
 from estimator.records import checks
-from estimator.records.columns import Columns
+from estimator.records.alignment import GAP_PERIODS
+from estimator.records.columns import Columns, Wanted
+from estimator.records.extras import extra
 from estimator.records.holding import held
 from estimator.records.record import Array, Record, Rows, cop_of_tilt, wrench_at
-from estimator.records.table import Table, of_one_finger, read_table
-from estimator.records.units import COP, REQUIRED, TILT, TIME, TRUTH, VELOCITY_TIME
+from estimator.records.sources import Source, columns_of, from_columns, of_frame, read_sources
+from estimator.records.streams import of_one_finger, read_tables, stream
+from estimator.records.table import Table, listed
+from estimator.records.units import COP, GRIP, REQUIRED, TILT, TIME, TRUTH, VELOCITY_TIME
 from estimator.suggestions import brief
 
 CONTACT = 0.2
@@ -28,35 +34,80 @@ def load(
 ) -> Record:
     """Reads and checks the record of one finger.
 
-    In one file a cell is empty where its stream has no sample: force cells, velocity cells, or neither are
-    empty in a row. In two files no cell is.
+    In one table a cell is empty where its stream has no sample: force cells, velocity cells, or neither are
+    empty in a row. Where forces and velocities are in two files, topics or groups of arrays, no cell is.
 
     Args:
-        log: csv, csv.gz or parquet with forces and, unless `velocity` is given, velocities.
+        log: A file of one of `TYPES`, with forces and, unless `velocity` is given, velocities.
         columns: The mapping; None for the default.
         velocity: A file of its own for the velocities, on the same clock.
 
     Raises:
         FileNotFoundError: There is no such file.
         ValueError: The record cannot be what it should be; the message says where and what would do.
-        ModuleNotFoundError: The extra `slipgym[eval]` is not installed.
+        ModuleNotFoundError: An extra is not installed.
     """
     columns = columns or Columns()
-    forces = read_table(Path(log), columns)
-    if velocity is None:
-        forces.require(REQUIRED)
-        if columns.given.get(VELOCITY_TIME):
-            raise ValueError(f"{forces.name}: {VELOCITY_TIME} is for a file of velocities; give --velocity")
-        (forces,) = of_one_finger([forces], columns)
-        velocities, time = forces, TIME
-    else:
-        forces.require((TIME, *WRENCH))
-        forces, velocities = of_one_finger([forces, read_table(Path(velocity), columns)], columns)
-        time = VELOCITY_TIME if columns.given.get(VELOCITY_TIME) else TIME
-        velocities.require((time, *TWIST))
+    files = [Path(each) for each in (log, velocity) if each is not None]
+    found = [read_tables(path.name, columns, partial(read_sources, path)) for path in files]
+    return _record(found, columns)
+
+
+def from_arrays(
+    log: Any, columns: Columns | None = None, velocity: Any = None, name: str = "arrays"
+) -> Record:
+    """Checks a record of one finger that is in memory; the same run as from a file.
+
+    Args:
+        log: A pandas.DataFrame, or name -> array, with forces and, unless `velocity` is given, velocities.
+            Arrays may be of two lengths, one for each stream; those with two axes have columns `name[0]`,
+            `name[1]` and so on. They are copied.
+        columns: The mapping; None for the default.
+        velocity: As `log`, for the velocities alone.
+        name: What messages and summaries call it.
+
+    Raises:
+        ValueError: As `load`.
+        ModuleNotFoundError: pandas is not installed.
+    """
+    columns = columns or Columns()
+    given = [each for each in (log, velocity) if each is not None]
+    return _record([read_tables(name, columns, partial(_of_memory, each, name)) for each in given], columns)
+
+
+def _of_memory(log: Any, name: str, wanted: Wanted) -> list[Source]:
+    """The columns of a DataFrame, whose index may be the time, or of arrays."""
+    if isinstance(log, extra("pandas").DataFrame):
+        return [of_frame(log)]
+    if not isinstance(log, Mapping):
+        raise ValueError(f"{name}: {brief(type(log).__name__)} must be a DataFrame or a dict of arrays")
+    try:
+        arrays = {str(key): np.asarray(value) for key, value in log.items()}
+    except ValueError as error:
+        raise ValueError(f"{name}: cannot be read: {brief(error, 300)}") from error
+    return from_columns((each for key in arrays for each in columns_of(key, arrays[key])), wanted, {})
+
+
+def _record(files: list[list[Table]], columns: Columns) -> Record:
+    """A record of the tables of one file, or of one for the forces and one for the velocities."""
+    if columns.fingers:
+        names = list(columns.fingers)
+        raise ValueError(
+            f"{files[0][0].name}: the mapping is of the fingers {', '.join(names)}; a record is of one; "
+            f"its mapping is `columns.fingers[{names[0]!r}]`"
+        )
+    tables, count = of_one_finger([table for tables in files for table in tables], columns), len(files[0])
+    place, forces = stream(tables[:count], WRENCH, (*WRENCH, *COP, *TILT, GRIP, *TRUTH))
+    of_twists = (place, forces) if len(tables) == 1 else stream(tables[count:] or tables, TWIST)
+    sparse, velocities = len(files) == 1 and of_twists[0] == place, of_twists[1]
+    time = _time_of_velocities(velocities, TIME if sparse else None)
+    if sparse:
+        forces.require(tuple(dict.fromkeys((*REQUIRED, time))))
+    forces.require((TIME, *WRENCH))
+    velocities.require((time, *TWIST))
     extra_keys = _cop_keys(forces)
-    force_t, wrench, at = _stream(forces, TIME, WRENCH, sparse=velocity is None, what="force")
-    twist_t, twist, twist_at = _stream(velocities, time, TWIST, sparse=velocity is None, what="velocity")
+    force_t, wrench, at = _stream(forces, TIME, WRENCH, sparse, what="force")
+    twist_t, twist, twist_at, hold = _velocities(velocities, time, sparse)
     checks.check_wrench(forces.name, wrench, forces.rows(at))
     checks.check_twist(velocities.name, twist, velocities.rows(twist_at))
     cop = _cop(forces, extra_keys, wrench, at)
@@ -64,11 +115,45 @@ def load(
         checks.check_cop(forces.name, cop)
         wrench = wrench_at(wrench, cop)
     checks.check_torque(forces.name, wrench)
-    truth, hold = _truth(forces, at), None
-    if (once := held(twist_t, twist)) is not None:
+    grip = forces.numbers([GRIP])[at, 0] if forces.has(GRIP) else None
+    return Record(forces.name, force_t, wrench, cop, twist_t, twist, _truth(forces, at), hold, grip=grip)
+
+
+def _time_of_velocities(table: Table, default: str | None) -> str:
+    """The key of their time: their own if the mapping has it, or if the table has it and no other."""
+    own, there = table.columns[VELOCITY_TIME], table.frame.columns
+    if VELOCITY_TIME in table.columns.given and own is not None:
+        if default and own.column not in there:
+            raise ValueError(
+                f"{table.name}: {VELOCITY_TIME}: no column {brief(repr(own.column))}; it has: "
+                f"{listed(table.names)}; for a file of velocities, give --velocity"
+            )
+        return VELOCITY_TIME
+    time = table.columns[TIME]
+    other = default is None and own is not None and own.column in there
+    return VELOCITY_TIME if other and (time is None or time.column not in there) else TIME
+
+
+def _velocities(table: Table, time: str, sparse: bool) -> tuple[Array, Array, Rows, float | None]:
+    """Time (m,), velocities (m, 3), places in the table, and for how long the file repeats each.
+
+    A velocity of positions is their difference over the time between two samples, at the later one: without
+    a sample before it, or after a gap, there is none.
+    """
+    t, twist, at = _stream(table, time, TWIST, sparse, what="velocity")
+    counted = [k for k, key in enumerate(TWIST) if (column := table.columns[key]) and column.position]
+    for k in set(counted) & {TWIST.index("omega")}:
+        twist[:, k] = np.unwrap(twist[:, k])
+    hold = None
+    if (once := held(t, twist)) is not None:
         delivered, hold = once
-        twist_t, twist = twist_t[delivered], twist[delivered]
-    return Record(forces.name, force_t, wrench, cop, twist_t, twist, truth, hold)
+        t, twist, at = t[delivered], twist[delivered], at[delivered]
+    if counted:
+        step = np.diff(t)
+        twist[1:, counted] = np.diff(twist[:, counted], axis=0) / step[:, None]
+        local = np.flatnonzero(step <= GAP_PERIODS * np.median(step)) + 1
+        t, twist, at = t[local], twist[local], at[local]
+    return t, twist, at, hold
 
 
 def _stream(

@@ -37,6 +37,8 @@ class Record:
     """Time for which the file repeats each velocity, of which the record has one [s]; None: it does not."""
     periods: tuple[float, float] | None = None
     """Usual times between two forces and two velocities, where they are known [s]; None: the medians."""
+    grip: Array | None = None
+    """Force of the gripper itself by force sample, (n,) [N], NaN where unknown; None: the record has none."""
 
 
 def seconds(t: Any) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +18,14 @@ from estimator.records.units import TRUTH
 
 
 def write(result: Result, folder: Path) -> None:
-    """Writes estimates.csv, estimates.parquet, summary.md and estimates.png.
+    """Writes estimates.csv, estimates.parquet, summary.md and, where matplotlib is installed, estimates.png.
 
     Args:
         result: From `estimate`.
         folder: Where they go; it exists.
 
     Raises:
-        ModuleNotFoundError: The extra `slipgym[eval]` is not installed.
+        ModuleNotFoundError: The extra `slipgym[records]` is not installed.
         OSError: A file cannot be written.
     """
     pandas, _ = extra("pandas"), extra("pyarrow")
@@ -32,7 +33,8 @@ def write(result: Result, folder: Path) -> None:
     frame.to_parquet(folder / "estimates.parquet", index=False)
     frame.to_csv(folder / "estimates.csv", index=False, float_format="%.9g")
     (folder / "summary.md").write_text(markdown(result), encoding="utf-8")
-    plot(result).savefig(folder / "estimates.png", dpi=150)
+    if find_spec("matplotlib") is not None:
+        plot(result).savefig(folder / "estimates.png", dpi=150)
 
 
 def table(result: Result) -> dict[str, NDArray[Any]]:

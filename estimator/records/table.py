@@ -1,24 +1,20 @@
-"""Reads files as columns of numbers."""
+"""Reads columns of numbers, by the mapping."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from estimator.records.cells import numbers, times
 from estimator.records.columns import Column, Columns
-from estimator.records.extras import extra
 from estimator.records.record import Array, Rows
-from estimator.records.separated import read_csv
-from estimator.records.units import ROWS, UNITS, unit_in
+from estimator.records.units import UNITS, unit_in, units_of
 from estimator.suggestions import brief, guess, unknown
 
-TYPES = (".csv", ".csv.gz", ".parquet")
 _UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]*)[\])]$")
 _SHOWN = 40
 """Most names of columns or values in a message."""
@@ -31,13 +27,15 @@ class Table:
     name: str
     """Name of the file."""
     frame: Any
-    """Its pandas.DataFrame; the index counts the rows of the file from 0."""
+    """The columns that the mapping may mean, a pandas.DataFrame; the index counts the rows from 0."""
     columns: Columns
     """The mapping."""
     units: Mapping[str, str] = field(default_factory=dict)
     """Column -> unit, where the file has a row of units."""
     comma: bool = False
     """Whether its numbers have decimal commas."""
+    names: Sequence[str] = ()
+    """All columns of the file."""
 
     def has(self, key: str) -> bool:
         """Whether it holds what a key means; a column that the mapping names must be there.
@@ -60,15 +58,15 @@ class Table:
         Raises:
             ValueError: One line for each that is missing, then what is there and what a mapping may hold.
         """
-        there, lines = list(self.frame.columns), []
+        there, lines = self.names or list(self.frame.columns), []
         for key in keys:
             column = self.columns[key]
-            if column is not None and column.column not in there:
+            if column is not None and column.column not in self.frame.columns:
                 what = f"{key}: no column" if key != column.column else "no column"
                 line = f"{self.name}: {what} {brief(repr(column.column))}; {guess(column.column, there)}"
                 lines.append(line.rstrip("; "))
         if lines:
-            lines[-1] += f"{' ' if lines[-1].endswith('?') else '; '}it has: {_listed(there)}"
+            lines[-1] += f"{' ' if lines[-1].endswith('?') else '; '}it has: {listed(there)}"
             keys_of_mapping = f"map other names with --columns mapping.yaml; its keys: {', '.join(UNITS)}"
             raise ValueError("\n".join([*lines, keys_of_mapping]))
 
@@ -87,7 +85,10 @@ class Table:
         """
         found = np.empty((len(self.frame), len(keys)))
         for k, key in enumerate(keys):
-            found[:, k] = self._column(key).factor * self._read(numbers, key)
+            column = self.column(key)
+            np.multiply(column.factor, self._read(numbers, key), out=found[:, k])
+            if column.offset:
+                found[:, k] += column.offset
         return found
 
     def seconds(self, key: str) -> tuple[Array, Column | None]:
@@ -103,25 +104,28 @@ class Table:
             ValueError: As `numbers`.
         """
         own = self._read(times, key)
-        return (self.numbers([key])[:, 0], self._column(key)) if own is None else (own, None)
+        return (self.numbers([key])[:, 0], self.column(key)) if own is None else (own, None)
 
     def rows(self, at: Rows) -> Rows:
         """Rows of the file, counted from 1, at places of this table, (n,)."""
         return np.asarray(self.frame.index)[at] + 1
 
-    def _column(self, key: str) -> Column:
+    def column(self, key: str) -> Column:
         """The column of a key; the unit is that of the mapping, or else of the file, or else the default."""
         column = self.columns[key]
         assert column is not None
         if not column.assumed:
             return column
         said, in_name = self.units.get(column.column, ""), _UNIT_IN_NAME.search(column.column)
-        unit = unit_in(key, said) or (unit_in(key, in_name[1]) if in_name else None)
+        unit = unit_in(key, said, column.position)
+        unit = unit or (unit_in(key, in_name[1], column.position) if in_name else None)
+        units = units_of(key, column.position)
         if unit is not None:
-            return replace(column, unit=unit, factor=column.factor * UNITS[key][unit], assumed=False)
+            factor, offset = column.factor * units[unit], column.offset * units[unit]
+            return replace(column, unit=unit, factor=factor, offset=offset, assumed=False)
         if re.search(r"\w", said):
             raise ValueError(
-                f"{self.name}: {brief(column.column)}: {unknown('unknown unit', said, UNITS[key])}; "
+                f"{self.name}: {brief(column.column)}: {unknown('unknown unit', said, units)}; "
                 f"say it by `{key}: {{unit: …}}` in the mapping"
             )
         return column
@@ -135,77 +139,7 @@ class Table:
             raise ValueError(f"{self.name}: {brief(error, 300)}") from error
 
 
-def read_table(path: Path, columns: Columns) -> Table:
-    """Reads a file.
-
-    Args:
-        path: A file of one of `TYPES`, in any case.
-        columns: The mapping.
-
-    Raises:
-        FileNotFoundError: There is no such file.
-        ValueError: It is of another type, cannot be read as what its name says, or has a column twice.
-    """
-    if not path.name.lower().endswith(TYPES):
-        raise ValueError(
-            f"{path.name}: unknown file type; records are {', '.join(TYPES)}; "
-            "a table in another text file, once it is unpacked, may be renamed to .csv"
-        )
-    extra("estimator.plain_files").check_regular(path)
-    pandas, units, comma = extra("pandas"), {}, False
-    parquet = path.suffix.lower() == ".parquet"
-    if parquet:
-        extra("pyarrow")
-    mapped = [column.column for key in UNITS if (column := columns[key])]
-    try:
-        if parquet:
-            frame = pandas.read_parquet(path, engine="pyarrow", page_checksum_verification=True)
-            if not isinstance(frame.index, pandas.RangeIndex) or frame.index.name is not None:
-                frame = frame.reset_index(allow_duplicates=True)
-            frame.columns = [str(name).strip() for name in frame.columns]
-        else:
-            frame, units, comma = read_csv(path, {*mapped, *columns.rows})
-    except Exception as error:  # a damaged file makes its readers raise anything
-        raise ValueError(f"{path.name}: cannot be read: {brief(error, 300)}") from error
-    frame.index = pandas.RangeIndex(len(frame))
-    _refuse_repeated(path.name, list(frame.columns), [*mapped, *columns.rows])
-    return Table(path.name, frame, columns, units, comma)
-
-
-def of_one_finger(tables: Sequence[Table], columns: Columns) -> list[Table]:
-    """The rows that the mapping keeps, of each table that has its column.
-
-    Raises:
-        ValueError: No table has it, or no row has its value.
-    """
-    tables, number = list(tables), extra("pandas").to_numeric
-    for name, value in columns.rows.items():
-        having = [k for k, table in enumerate(tables) if name in table.frame.columns]
-        if not having:
-            there = _listed(tables[0].frame.columns)
-            raise ValueError(f"{tables[0].name}: {ROWS}: no column {brief(repr(name))}; it has: {there}")
-        for k in having:
-            text = tables[k].frame[name].astype(object).map(str).str.strip()
-            same = number(text, errors="coerce") == number(str(value), errors="coerce")
-            frame = tables[k].frame[np.asarray(same | (text == str(value).strip()), bool)]
-            if frame.empty:
-                found = f"no row has {brief(name)} = {brief(value)}; it has: {_listed(text.unique())}"
-                raise ValueError(f"{tables[k].name}: {found}")
-            tables[k] = replace(tables[k], frame=frame)
-    return tables
-
-
-def _listed(names: Sequence[Any]) -> str:
+def listed(names: Sequence[Any]) -> str:
+    """Names for a message, of which only the first may fit."""
     more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
     return ", ".join(brief(name) for name in names[:_SHOWN]) + more
-
-
-def _refuse_repeated(source: str, names: list[str], columns: Sequence[str]) -> None:
-    """Refuses a header that has a column twice that the mapping reads."""
-    for column in columns:
-        if names.count(column) > 1:
-            places = [str(k) for k, name in enumerate(names, start=1) if name == column]
-            raise ValueError(
-                f"{source}: {brief(repr(column))} is the name of columns {' and '.join(places[:5])}; "
-                "rename or remove all but one"
-            )

@@ -8,7 +8,7 @@ try:
 
     from estimator import DEFAULT
 except ModuleNotFoundError as error:
-    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[records]'") from error
 
 EPILOG = """
 Examples:\n
@@ -61,9 +61,12 @@ def main(
         with new_folder(path) as folder:
             records.write(result, folder)
     except ModuleNotFoundError as error:
-        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
+        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[records]'") from error
     except (ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
     typer.echo(f"{records.report(result)}\n\nLook at:")
     for name in ("estimates.png", "summary.md", "estimates.csv"):
-        typer.echo(f"  {path / name}")
+        if (path / name).exists():
+            typer.echo(f"  {path / name}")
+    if not (path / "estimates.png").exists():
+        typer.echo("There is no figure, because matplotlib is not installed: pip install matplotlib")

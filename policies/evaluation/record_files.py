@@ -7,9 +7,10 @@ from typing import Any
 
 import pandas as pd
 
-from estimator.records.table import TYPES
 from policies.evaluation.sensor_record import TWIST
 from slipgym.atomic_io import check_file, new_file
+
+TYPES = (".csv", ".csv.gz", ".parquet")
 
 
 def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -> None:
