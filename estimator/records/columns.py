@@ -114,7 +114,7 @@ def _column(source: str, key: Any, value: Any) -> Column | None:
         raise ValueError(f"{source}: {unknown('unknown key', key, (*UNITS, ROWS, FINGERS))}")
     if value is None and key in OPTIONAL:
         return None
-    given = value if isinstance(value, dict) else {"column": value}
+    given: dict[str, Any] = value if isinstance(value, dict) else {"column": value}
     for name in given:
         if name not in _SAYS:
             raise ValueError(f"{source}: {key}: {unknown('unknown key', name, _SAYS)}")

@@ -22,5 +22,5 @@ def extra(module: str) -> Any:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
         name = _EXTRAS.get(module.partition(".")[0], "records")
-        message = f"records need {error.name}, which is not installed: pip install 'slipgym[{name}]'"
+        message = f"{error.name} is not installed: pip install 'slipgym[{name}]'"
         raise ModuleNotFoundError(message, name=error.name) from error

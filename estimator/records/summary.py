@@ -10,6 +10,7 @@ from estimator.estimate import Estimate
 from estimator.reasons import COUNTS, Doubts, reasons
 from estimator.records.alignment import period
 from estimator.records.calibration import calibration_rows
+from estimator.records.faults import fault_warnings
 from estimator.records.plausibility import warnings
 from estimator.records.reading import CONTACT
 from estimator.records.readings import reading_warnings
@@ -77,7 +78,9 @@ def final_rows(result: Result) -> list[list[str]]:
 
 def findings(result: Result) -> list[str]:
     """Warnings, then a line for each value that was not observable; "Everything was observed" if none."""
-    lines = [*reading_warnings(result.record, result.samples), *warnings(result), *not_observable(result)]
+    record, samples = result.record, result.samples
+    faults = [*reading_warnings(record, samples), *fault_warnings(record, samples)]
+    lines = [*faults, *warnings(result), *not_observable(result)]
     return lines or ["Everything was observed."]
 
 

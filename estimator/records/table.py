@@ -104,7 +104,9 @@ class Table:
             ValueError: As `numbers`.
         """
         own = self._read(times, key)
-        return (self.numbers([key])[:, 0], self.column(key)) if own is None else (own, None)
+        if own is None:
+            return self.numbers([key])[:, 0], self.column(key)
+        return own + self.column(key).offset, None
 
     def rows(self, at: Rows) -> Rows:
         """Rows of the file, counted from 1, at places of this table, (n,)."""
