@@ -27,6 +27,7 @@ COMMANDS = {
     "policy-leaderboard": "Rank policies on the same episodes.",
     "estimate": "Run an estimator on a record of your gripper.",
     "live": "Estimate, and command a grip, while a gripper runs.",
+    "map": "Propose which column of your log is what.",
     "record": "Write what a finger's sensors read in an episode.",
     "validate": "Check the physics against its acceptance figures.",
     "benchmark": "Measure the speed of the environments.",
