@@ -2,7 +2,7 @@
 
 docs/adaptive.md describes the model; `estimator.window` is the code, in the order of a sample's way:
 `unloaded` (zero errors), `timing` (delay), `intervals` (motion and rest), `sticks` and `window` (entries),
-`slide` and `stick` (residuals), `fit`, `change`, `published`.
+`slide` and `stick` (residuals), `fit`, `change`, `published`; without a slip velocity `drops` alone.
 """
 
 from typing import Any
@@ -14,6 +14,7 @@ from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
 from estimator.registry import FilterMatrices, Specification
 from estimator.sample import norm, publish, readable
+from estimator.window.drops import learn_drop
 from estimator.window.intervals import add_sample, lose_contact
 from estimator.window.layout import MU, SAMPLES, STATE, R, initial_states
 from estimator.window.parameters import AdaptiveParameters
@@ -42,6 +43,10 @@ def _touch(state, p, wrench, f_n, twist):
         state.wrenches[at, j] = wrench[j] if j != 2 else f_n
     for j in range(3):
         state.twists[at, j] = twist[j]
+    if p.unmeasured > 0:
+        if p.unmeasured == 1:
+            learn_drop(state, p)
+        return
     correlate(state, p, elapsed)
     add_sample(state, p, elapsed)
     publish_fit(state, p, f_n)

@@ -25,6 +25,13 @@ NEEDS = {
 """The motion that shows a value."""
 
 
+BLIND = {
+    1: "these sensors measure no slip velocity, so that a slip shows in a sudden fall of the load alone",
+    2: "these sensors measure neither slip nor tangential force: nothing in them depends on friction",
+}
+"""What is not measured -> why no motion shows the value."""
+
+
 class Doubts(NamedTuple):
     """What speaks against an estimate beside its own fields, as far as the estimator keeps it."""
 
@@ -32,6 +39,8 @@ class Doubts(NamedTuple):
     """Mean squared normalised residual."""
     at_bound: float = 0.0
     """1 while r is at its upper bound."""
+    unmeasured: float = 0.0
+    """Of the readings: 0 all are measured, 1 no slip velocity, 2 no tangential force either."""
 
 
 def doubts(state: np.void) -> Doubts:
@@ -40,13 +49,16 @@ def doubts(state: np.void) -> Doubts:
     return Doubts(**{name: float(state[name]) for name in Doubts._fields if name in kept})
 
 
-def reasons(estimate: Estimate, misfit: float = 1.0, at_bound: float = 0.0) -> dict[str, str]:
+def reasons(
+    estimate: Estimate, misfit: float = 1.0, at_bound: float = 0.0, unmeasured: float = 0.0
+) -> dict[str, str]:
     """Why values have little confidence.
 
     Args:
         estimate: What an estimator published.
         misfit: Mean squared normalised residual, if the estimator keeps it: the state `misfit` of "adaptive".
         at_bound: See `Doubts`.
+        unmeasured: See `Doubts`.
 
     Returns:
         Of "mu_s", "mu_c" and "r" those with a confidence below one half, each with the reason, and with the
@@ -56,11 +68,11 @@ def reasons(estimate: Estimate, misfit: float = 1.0, at_bound: float = 0.0) -> d
     for name, whys in causes(estimate, misfit, at_bound).items():
         if getattr(estimate, f"confidence_{name}") >= CONFIDENT:
             continue
-        data = int(getattr(estimate, COUNTS[name]))
+        data, needs = int(getattr(estimate, COUNTS[name])), BLIND.get(int(unmeasured), NEEDS[name])
         if not data:
-            found[name] = f"{whys[0]}: this is the start value; {NEEDS[name]}"
+            found[name] = f"{whys[0]}: this is the start value; {needs}"
         else:
-            found[name] = f"{', '.join(whys) or f'little data ({data})'}: be cautious; {NEEDS[name]}"
+            found[name] = f"{', '.join(whys) or f'little data ({data})'}: be cautious; {needs}"
     return found
 
 

@@ -17,6 +17,8 @@ from slipgym.config.errors import unknown
 from slipgym.envs import observation as layout
 from slipgym.envs.actions import COMMANDS, COMPONENT, PLACES, Actions, interpret
 from slipgym.envs.load_part import LOAD
+from slipgym.sensors.markers import MARKERS
+from slipgym.sensors.owned import GRIPPER
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks import configure, find
 from slipgym.tasks.episode import EPISODE
@@ -205,8 +207,9 @@ class PolicyPilot:
         friction = np.zeros((1, len(layout.FRICTION) + len(layout.DEVIATIONS)))
         layout.combine(self._estimates, np.zeros((1, 2, 3)), friction)
         layout.observe(
-            self._wrench, self._twist, self._slip, self._episode, self._task_part, self._worlds, wrist,
-            friction, low, high, load, out,
+            self._wrench, self._twist, self._slip, self._episode, np.zeros(1, GRIPPER),
+            np.zeros((0, 2), MARKERS), self._task_part, self._worlds, wrist, friction, low, high, load, out,
+            np.zeros(0, np.int64),
         )  # fmt: skip
         at = len(layout.SENSORS)
         given = np.array(list(self._given.values()))

@@ -10,9 +10,9 @@ from typing import Any
 
 
 def refuse_hidden(name: str) -> None:
-    """Raise ImportError if a file of somebody else has the name of a package that is installed beside slipgym.
+    """Raise ImportError if a file of somebody else has the name of a package beside slipgym.
 
-    Python takes the first package of a name on its path, and the folder of a script comes before the installed
+    Python takes the first package of a name on its path, and a script's folder comes before the installed
     ones.
     """
     spec = find_spec(name)
@@ -22,7 +22,7 @@ def refuse_hidden(name: str) -> None:
     own = Path(__file__).resolve().parent.parent / name
     if not Path(found).resolve().is_relative_to(own):
         raise ImportError(
-            f"{found} hides the package {name!r} that comes with slipgym: rename it, or start Python elsewhere"
+            f"{found} hides the package {name!r} of slipgym: rename it, or start Python in another folder"
         )
 
 

@@ -6,8 +6,8 @@
     result = records.estimate(record)
     print(records.report(result))
 
-`from_arrays` takes arrays and DataFrames. pandas, matplotlib and the libraries of file types are imported
-when a function needs them: the extra `slipgym[records]`, and for more types those that docs/records.md lists.
+`from_arrays` takes arrays and DataFrames. pandas, PyYAML and matplotlib are imported when a function needs
+them: the extra `slipgym[cli]`; what reads other files than csv comes with `slipgym[records]`.
 """
 
 from estimator.records.calibration import Calibration, Found

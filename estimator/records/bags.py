@@ -15,6 +15,8 @@ from estimator.records.messages import Layout, decoded, definitions, layout
 from estimator.records.sources import LARGEST, Source
 from estimator.suggestions import brief
 
+_STAMPS = "header.stamp", "stamp"
+"""Fields that are the time of a message, where they are filled in."""
 _AT_ONCE = 2**15
 """Messages that are decoded together."""
 
@@ -76,20 +78,22 @@ class _Topic:
         self._flush()
         pandas = extra("pandas")
         if not self._pieces:
-            return Source(pandas.DataFrame(), [*self._names])
+            return Source(pandas.DataFrame(), ["t", "t_log", *self._names])
         frame = pandas.concat([pandas.DataFrame(piece) for piece in self._pieces], ignore_index=True)
         self._pieces = []
-        logged, stamp = frame.pop(""), frame.get("header.stamp")
+        logged = frame.pop("")
+        stamp = next((frame[path] for path in _STAMPS if path in frame), None)
         frame.columns = [f"{self._name}.{path}" for path in frame.columns]
-        frame["t"] = logged if stamp is None or not (stamp != 0.0).all() else stamp
+        frame["t"] = logged if stamp is None or not (stamp > 0.0).all() else stamp
+        frame["t_log"] = logged
         if not frame["t"].is_monotonic_increasing:
             frame = frame.sort_values("t", kind="stable", ignore_index=True)
-        return Source(frame, [*self._names, "t"])
+        return Source(frame, ["t", "t_log", *self._names])
 
     def _asks(self, path: str) -> bool:
         full = f"{self._name}.{path}"
         self._names[full] = None
-        return path == "header.stamp" or is_wanted(full, self._wanted)
+        return path in _STAMPS or is_wanted(full, self._wanted)
 
     def _flush(self) -> None:
         if self._raws:
@@ -177,6 +181,7 @@ def _of_mcap(path: Path) -> _Messages:
 
 
 def _of_rosbag(path: Path) -> _Messages:
+    extra("rosbags.typesys")
     one = path.suffix.lower() == ".bag"
     with extra("rosbags.rosbag1" if one else "rosbags.rosbag2").Reader(path) as reader:
         kinds = {each.id: _of_connection(each, "ros1" if one else "cdr") for each in reader.connections}

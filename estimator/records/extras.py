@@ -5,12 +5,12 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-_EXTRAS = {"h5py": "hdf5", "scipy": "mat", "openpyxl": "excel", "mcap": "mcap", "rosbags": "rosbag"}
-"""Library -> the extra that installs it; all others come with `records`."""
+_OF_RECORDS = ("h5py", "mcap", "openpyxl", "pyarrow", "rosbags", "scipy")
+"""What the extra `records` installs; all else comes with `cli`."""
 
 
 def extra(module: str) -> Any:
-    """Imports a module that one of the extras for records installs.
+    """Imports a module that an extra of slipgym installs.
 
     Args:
         module: Its full name.
@@ -21,6 +21,6 @@ def extra(module: str) -> Any:
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
-        name = _EXTRAS.get(module.partition(".")[0], "records")
+        name = "records" if module.partition(".")[0] in _OF_RECORDS else "cli"
         message = f"{error.name} is not installed: pip install 'slipgym[{name}]'"
         raise ModuleNotFoundError(message, name=error.name) from error

@@ -44,7 +44,7 @@ def plot(result: Result) -> Any:
         A matplotlib.figure.Figure.
 
     Raises:
-        ModuleNotFoundError: The extra `slipgym[records]` is not installed.
+        ModuleNotFoundError: The extra `slipgym[cli]` is not installed.
     """
     matplotlib = extra("matplotlib")
     result, clock = _near_zero(result)

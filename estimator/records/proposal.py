@@ -1,131 +1,280 @@
-"""Shows a proposed mapping as YAML, as a table and as a picture, and tries it on the record."""
+"""Proposes a mapping for a file of unknown columns: by their names, and units and signs by magnitudes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from estimator.records.alignment import align
-from estimator.records.columns import parse_columns
+from estimator.records.cells import numbers, times
 from estimator.records.extras import extra
-from estimator.records.faults import fault_warnings
-from estimator.records.reading import load
-from estimator.records.readings import reading_warnings
 from estimator.records.record import Array
-from estimator.records.table import listed
-from estimator.records.units import units_of
+from estimator.records.sources import read_columns
+from estimator.records.table import unit_in_name
+from estimator.records.units import FINGERS, POSITIONS, REQUIRED, TIME, TRUTH, UNITS, VELOCITY_TIME, units_of
 
-
-@dataclass(frozen=True)
-class Proposed:
-    """What a column may be."""
-
-    key: str
-    """Key of a mapping."""
-    column: str
-    """Its name."""
-    unit: str
-    """Its unit; empty for dates, which need none."""
-    sign: int
-    """1 or -1."""
-    position: bool
-    """Whether it counts displacement."""
-    why: str
-    """Where the unit comes from: said by the file, or guessed."""
-    values: Array = field(repr=False)
-    """In SI and slipgym's sign, (n,), NaN where there is none."""
+_AXES = {"x": ("x", "0"), "y": ("y", "1"), "z": ("z", "2")}
+_WORDS = {
+    "f": "f|force|ft|wrench|forces|load",
+    "m": "m|t|torque|tau|moment|torques",
+    "v": "v|vel|velocity|slip|linear|slip_velocity|slip_vel|twist",
+    "w": "w|omega|angular|rate|slip_rate|rot|rotation",
+}
+_WHOLE = {
+    TIME: r"((ft|f|force|wrench|header)_)?(t|time|stamp|time_?stamp|secs?|seconds|ms|elapsed|t_s|t_ms)",
+    VELOCITY_TIME: r"velocity_t|(slip|vel|velocity|twist|v)_?(t|time|stamp)",
+    "f_n": r"f_?n|normal(_force)?|pressure_force|grip(_force)?",
+    "tau": r"tau(_?[nz])?|mz|tz|torsion|(ft|wrench)\[5\]",
+    "omega": r"omega(_?[nz])?|wz|yaw_?rate|slip_?rate|slip_omega|slip\[2\]",
+    "cop_x": r"cop_?x|cop\[0\]",
+    "cop_y": r"cop_?y|cop\[1\]",
+    "true_mu_s": "true_mu_s|mu_s",
+    "true_mu_c": "true_mu_c|mu_c|mu_k",
+    "true_r": "true_r",
+}
+_COMPONENT = {
+    "f_x": "fx", "f_y": "fy", "f_n": "fz", "tau_x": "mx", "tau_y": "my", "tau": "mz",
+    "v_x": "vx", "v_y": "vy", "omega": "wz",
+}  # fmt: skip
+_PLACES = {
+    "v_x": r"((pos|position|disp|displacement|p|s)[._]?)?(x|\[0\])",
+    "v_y": r"((pos|position|disp|displacement|p|s)[._]?)?(y|\[1\])",
+    "omega": r"angle|theta|phi|yaw|(pos|position)_?angle",
+}
+"""Columns that count displacement, by the velocity."""
+_SPANS = {"v_x": 0.3, "v_y": 0.3, "omega": 30.0}
+"""Longest likely way in a record [m, m, rad]."""
+_SIDE = re.compile(
+    r"(?<![a-z0-9\[])(left|right|l|r|finger_?[12]|[12])(?![a-z0-9\]])|(?<=[a-z_])[12]$", re.IGNORECASE
+)
+_UNIT = re.compile(r"\s*[\[(][^\[\]()]*[a-zA-Z%°µμ][^\[\]()]*[\])]$")
+RATES = 20.0, 25_000.0
+"""Likely sample rates [Hz]."""
+LIKELY = {"f": 200.0, "arm": 0.08, "v": 1.5, "omega": 60.0}
+"""Most that 99 % of a fingertip's readings are: force [N], torque over force [m], slip [m/s, rad/s]."""
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """A proposed mapping."""
+    """One line of a mapping."""
 
-    fingers: Mapping[str, Sequence[Proposed]]
-    """Name of a finger, empty if there is one, -> its columns."""
-    missing: Sequence[str]
-    """Required keys for which no column was found."""
-    rest: Sequence[str]
-    """Columns that are not used."""
-
-    def text(self) -> str:
-        """The YAML of the mapping; keys without a column are comments."""
-        lines = ["# Proposed by `slipgym map`: check every line, units above all."]
-        for name, found in self.fingers.items():
-            if name and len(lines) == 1:
-                lines.append("fingers:")
-            lines += [f"  {name}:"] if name else []
-            lines += [f"{'    ' if name else ''}{_line(each)}" for each in found]
-        lines += [f"# {key}: no column was found; write `{key}: NAME`" for key in self.missing]
-        return "\n".join(lines) + "\n"
+    key: str
+    column: str
+    unit: str
+    sign: int
+    why: str
+    """Reason for unit and sign."""
+    position: bool
+    """Whether it counts displacement."""
+    values: Array
+    """In SI units with the sign, NaN where a cell is empty."""
 
 
-def _line(each: Proposed) -> str:
-    quoted = "'" + each.column.replace("'", "''") + "'"
-    parts = [f"{'position' if each.position else 'column'}: {quoted}"]
-    parts += [f"unit: {each.unit}"] if each.unit else []
-    parts += ["sign: -1"] if each.sign < 0 else []
-    return f"{each.key}: {{{', '.join(parts)}}}"
+def propose(path: Path) -> tuple[list[Proposal], list[str]]:
+    """Proposes what the columns of a file are.
 
-
-def table(proposal: Proposal) -> list[str]:
-    """Lines of a table for a terminal: what each column may be, and what is left."""
-    rows = [["key", "column", "unit", "sign", "from", "to (SI)", "unit is"]]
-    for name, found in proposal.fingers.items():
-        for each in found:
-            there = each.values[np.isfinite(each.values)]
-            low, high = f"{there.min():.4g}", f"{there.max():.4g}"
-            kind = f"{each.column}{' (position)' if each.position else ''}"
-            key = f"{name} {each.key}".strip()
-            rows.append([key, kind, each.unit or "–", "−" if each.sign < 0 else "", low, high, each.why])
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    lines = ["  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
-    lines.insert(1, "-" * max(map(len, lines)))
-    lines += [f"{key}: no column was found" for key in proposal.missing]
-    return [*lines, *([f"not used: {listed(proposal.rest)}"] if proposal.rest else [])]
-
-
-def tried(path: Path, proposal: Proposal) -> tuple[str, list[str]]:
-    """Reads the record with the proposal.
+    Args:
+        path: A file that `load` reads, or the folder of a ROS 2 bag.
 
     Returns:
-        Why that fails, empty if it does not; warnings about the readings.
-    """
-    told: dict[str, None] = {}
-    try:
-        columns = parse_columns(proposal.text(), "the mapping")
-        for own in (columns.fingers or {"": columns}).values():
-            record = load(path, own)
-            samples = align(record, allow_gaps=True)
-            told |= dict.fromkeys([*reading_warnings(record, samples), *fault_warnings(record, samples)])
-    except ValueError as error:
-        return str(error), []
-    return "", list(told)
-
-
-def picture(proposal: Proposal, title: str) -> Any:
-    """A panel for each column over its rows, in the proposed units and signs.
+        The proposals, in the order of `UNITS`; the columns that nothing was found for.
 
     Raises:
-        ModuleNotFoundError: matplotlib is not installed.
+        FileNotFoundError, ValueError, ModuleNotFoundError: As `load`.
     """
-    shown = [(name, each) for name, found in proposal.fingers.items() for each in found]
-    figure = extra("matplotlib.figure").Figure(
-        figsize=(10.0, 1.6 * (len(shown) + 2) // 2), layout="constrained"
-    )
-    panels = list(figure.subplots((len(shown) + 2) // 2, 2, squeeze=False).flat)
-    for axes in panels[len(shown) :]:
-        axes.axis("off")
-    for axes, (name, each) in zip(panels, shown, strict=False):
-        there = np.flatnonzero(np.isfinite(each.values))
-        axes.plot(there, each.values[there], linewidth=0.7, color="#0072B2")
-        first = next(iter(units_of(each.key, each.position)))
-        axes.set_title(
-            f"{name} {each.key} [{first}] = {each.column} [{each.unit or 'date'}]".strip(), fontsize=8
-        )
-        axes.tick_params(labelsize=7)
-    figure.suptitle(f"{title}: what slipgym takes its columns for, over the rows", fontsize=9)
-    return figure
+    frame = read_columns(path)
+    found = _proposed(frame)
+    used = [each.column for each in found]
+    return found, [name for name in frame if name not in used]
+
+
+def propose_fingers(path: Path) -> tuple[dict[str, list[Proposal]], list[str]]:
+    """The same for each finger, if the names of the forces say that there are two.
+
+    Returns:
+        Name of the finger -> its proposals, a single empty name if there is one finger; the rest.
+    """
+    frame, found = read_columns(path), {}
+    sides = {name: _side(name) for name in frame}
+    for side in sorted({side for side in sides.values() if side}):
+        names = {_SIDE.sub("", name).strip("_. "): name for name in frame if sides[name] in ("", side)}
+        own = _proposed({short: frame[name] for short, name in names.items()})
+        own = [replace(each, column=names[each.column]) for each in own]
+        if {"f_x", "f_n"} <= {each.key for each in own if sides[each.column] == side}:
+            found[f"finger_{side}" if side.isdigit() else side] = own
+    if len(found) < 2:
+        found = {"": _proposed(frame)}
+    used = {each.column for own in found.values() for each in own}
+    return found, [name for name in frame if name not in used]
+
+
+def _side(name: str) -> str:
+    """left, right, 1 or 2, if a name has it."""
+    match = _SIDE.search(name)
+    side = match[0].lower().replace("finger", "").strip("_") if match else ""
+    return {"l": "left", "r": "right"}.get(side, side)
+
+
+def _proposed(frame: Mapping[str, Any]) -> list[Proposal]:
+    numeric: dict[str, tuple[Array, bool]] = {}
+    for name, cells in frame.items():
+        series = extra("pandas").Series(cells, name=name)
+        for read in (times, numbers):
+            try:
+                values = read(series)
+            except (ValueError, TypeError, OverflowError):
+                continue
+            if values is not None and np.isfinite(values).any():
+                numeric[name] = values, read is times
+                break
+    chosen = _by_name({name: len(values) for name, (values, _) in numeric.items()})
+    places = _places([name for name in numeric if name not in chosen.values()], chosen)
+    found: dict[str, Proposal] = {}
+    for key in (key for key in UNITS if key in chosen):
+        values, dated = numeric[chosen[key]]
+        alike = [numeric[chosen[other]][0] for other in chosen if UNITS[other] is UNITS[key]]
+        unit, sign, why = ("s", 1, "dates") if dated else _unit(key, chosen[key], values, alike, found)
+        found[key] = Proposal(key, chosen[key], unit, sign, why, False, sign * UNITS[key][unit] * values)
+    spans = {
+        key: float(np.ptp(numeric[name][0][np.isfinite(numeric[name][0])])) for key, name in places.items()
+    }
+    for key, name in places.items():
+        units = units_of(key, position=True)
+        span = max(spans[other] for other in places if POSITIONS[other] == POSITIONS[key])
+        likely = [unit for unit, factor in units.items() if span * factor <= _SPANS[key]]
+        unit = unit_in_name(key, name, position=True) or (likely or list(units))[0]
+        why = f"a way of up to {span * units[unit]:.3g} {next(iter(units))}"
+        found[key] = Proposal(key, name, unit, 1, why, True, units[unit] * numeric[name][0])
+    return list(found.values())
+
+
+def _places(free: list[str], chosen: dict[str, str]) -> dict[str, str]:
+    """Velocity -> column of the displacement, where there is no column of the velocity."""
+    found: dict[str, str] = {}
+    for key, pattern in _PLACES.items():
+        plain = {name: re.split(r"[/]", _UNIT.sub("", name).strip().lower())[-1] for name in free}
+        hits = [name for name in free if re.fullmatch(pattern, plain[name])]
+        if key not in chosen and hits:
+            found[key] = hits[0]
+    return found
+
+
+def mapping_text(proposals: list[Proposal], indent: str = "") -> str:
+    """The mapping as YAML, with the reason of each line as a comment."""
+    lines = ["# Proposed by slipgym map: look at every line. docs/records.md lists keys, units and frames."]
+    lines = [] if indent else lines
+    for each in proposals:
+        column = each.column.replace("'", "''")
+        sign, kind = ", sign: -1" if each.sign < 0 else "", "position" if each.position else "column"
+        lines.append(f"{each.key}: {{{kind}: '{column}', unit: '{each.unit}'{sign}}}  # {each.why}")
+    given = {each.key for each in proposals}
+    lines += [f"# {key}: ?  nothing looks like it" for key in REQUIRED if key not in given]
+    return "".join(f"{indent}{line}\n" for line in lines)
+
+
+def text_of_fingers(found: Mapping[str, list[Proposal]]) -> str:
+    """The mapping of one finger, or of each of several."""
+    if "" in found:
+        return mapping_text(found[""])
+    parts = [f"  {name}:\n{mapping_text(own, '    ')}" for name, own in found.items()]
+    return "".join([mapping_text([]).splitlines(keepends=True)[0], f"{FINGERS}:\n", *parts])
+
+
+def _by_name(lengths: Mapping[str, int]) -> dict[str, str]:
+    """Key -> column; the streams' times are those of as many values."""
+    chosen: dict[str, str] = {}
+    for key in UNITS:
+        free = [name for name in lengths if name not in chosen.values()]
+        hits = [(score, name) for name in free if (score := _score(key, name))]
+        if hits:
+            best = max(score for score, _ in hits)
+            chosen[key] = min((name for score, name in hits if score == best), key=len)
+    for time, first in ((TIME, "f_n"), (VELOCITY_TIME, "v_x")):
+        if first in chosen:
+            n = lengths[chosen[first]]
+            clocks = [name for name in lengths if _score(TIME, name) and lengths[name] == n]
+            if time in chosen and lengths[chosen[time]] != n:
+                del chosen[time]
+            if time not in chosen and clocks and clocks[0] not in chosen.values():
+                chosen[time] = clocks[0]
+    if (
+        VELOCITY_TIME in chosen
+        and chosen.get(TIME)
+        and lengths[chosen[TIME]] == lengths[chosen[VELOCITY_TIME]]
+    ):
+        del chosen[VELOCITY_TIME]
+    return {key: chosen[key] for key in UNITS if key in chosen}
+
+
+def _score(key: str, name: str) -> int:
+    """How well a name says that a column is what a key means: 4 its key, 3 whole, 2 its end, 1 an axis."""
+    plain = _UNIT.sub("", name).strip().lower().replace(" ", "_").replace("-", "_")
+    if plain == key:
+        return 4
+    last = re.split(r"[./]", plain)[-1]
+    if key in _WHOLE and re.fullmatch(_WHOLE[key], plain):
+        return 3
+    if key in _WHOLE and key not in TRUTH and re.fullmatch(_WHOLE[key], last):
+        return 2
+    if key in _COMPONENT:
+        kind, axis = _COMPONENT[key]
+        at = "|".join(_AXES[axis])
+        if re.search(rf"(^|[./_])({_WORDS[kind]})([./_]?({axis})|\[({at})\])$", plain):
+            return 1
+    return int(key == "tau" and last in ("ft[3]", "wrench[3]"))  # of four columns
+
+
+def _unit(
+    key: str, name: str, values: Array, alike: list[Array], found: Mapping[str, Proposal]
+) -> tuple[str, int, str]:
+    """Unit, sign and their reason; the largest of the columns of a kind decides the unit of all."""
+    stated, units = unit_in_name(key, name), UNITS[key]
+    x = values[np.isfinite(values)]
+    if key in (TIME, VELOCITY_TIME):
+        step = float(np.median(np.abs(np.diff(np.unique(x))))) if len(x) > 1 else 0.0
+        rates = {unit: 1.0 / (step * factor) for unit, factor in units.items()} if step else {}
+        likely = [unit for unit, rate in rates.items() if RATES[0] <= rate <= RATES[1]]
+        unit = stated or (likely[0] if likely else "s")
+        return unit, 1, f"{rates[unit]:.4g} Hz" if rates else "one time"
+    size = max(float(np.nanpercentile(np.abs(each), 99)) for each in alike)
+    most = LIKELY["omega"] if key == "omega" else LIKELY["v"] if key in ("v_x", "v_y") else np.inf
+    if key.startswith("f_"):
+        most = LIKELY["f"]
+    elif key.startswith("tau") and "f_n" in found:
+        most = LIKELY["arm"] * float(np.nanpercentile(np.abs(found["f_n"].values), 99))
+    fits = [unit for unit, factor in units.items() if size * factor <= most]
+    unit = stated or (fits[0] if fits else next(iter(units)))
+    sign, why = 1, "unit in its name" if stated else f"up to {size * units[unit]:.3g} {next(iter(units))}"
+    pressed = x[np.abs(x) > 0.5 * np.max(np.abs(x))]
+    if key == "f_n" and len(pressed) and float(np.median(pressed)) < 0.0:
+        sign, why = -1, f"{why}; negative in contact"
+    return unit, sign, why
+
+
+def plot(proposals: list[Proposal], path: Path) -> None:
+    """Draws every proposed column over the time of its stream, as a png."""
+    pyplot = extra("matplotlib.pyplot")
+    shown = [each for each in proposals if each.key not in (TIME, VELOCITY_TIME)]
+    clocks = {each.key: each.values for each in proposals if each.key in (TIME, VELOCITY_TIME)}
+    rows = max(len(shown), 1)
+    figure, axes = pyplot.subplots(rows, 1, sharex=True, figsize=(9, 1.3 * rows), squeeze=False)
+    for ax, each in zip(axes[:, 0], shown, strict=False):
+        t = next((t for t in clocks.values() if len(t) == len(each.values)), np.arange(len(each.values)))
+        there = np.isfinite(each.values)
+        ax.plot((t - np.nanmin(t))[there], each.values[there], linewidth=0.8)
+        ax.set_title(f"{each.key} = {each.column}", loc="left", fontsize=9)
+        ax.set_ylabel(f"[{next(iter(units_of(each.key, each.position)))}]")
+    axes[-1, 0].set_xlabel("time [s]")
+    figure.tight_layout()
+    figure.savefig(path, dpi=100)
+    pyplot.close(figure)
+
+
+def columns_left(names: list[Any], most: int = 12) -> str:
+    """Names of columns that have no place, shortened."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(str(name) for name in names[:most]) + more

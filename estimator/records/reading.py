@@ -17,7 +17,7 @@ from estimator.records.columns import Columns, Wanted
 from estimator.records.extras import extra
 from estimator.records.holding import held
 from estimator.records.record import Array, Record, Rows, cop_of_tilt, wrench_at
-from estimator.records.sources import Source, columns_of, from_columns, of_frame, read_sources
+from estimator.records.sources import Source, of_frame, read_sources
 from estimator.records.streams import of_one_finger, read_tables, stream
 from estimator.records.table import Table, listed
 from estimator.records.units import COP, GRIP, REQUIRED, TILT, TIME, TRUTH, VELOCITY_TIME
@@ -54,38 +54,46 @@ def load(
 
 
 def from_arrays(
-    log: Any, columns: Columns | None = None, velocity: Any = None, name: str = "arrays"
+    forces: Mapping[str, Any] | Any,
+    velocities: Mapping[str, Any] | Any | None = None,
+    columns: Columns | None = None,
+    name: str = "arrays",
 ) -> Record:
-    """Checks a record of one finger that is in memory; the same run as from a file.
+    """The record of one finger from arrays or DataFrames, with the checks that a file gets.
 
     Args:
-        log: A pandas.DataFrame, or name -> array, with forces and, unless `velocity` is given, velocities.
-            Arrays may be of two lengths, one for each stream; those with two axes have columns `name[0]`,
-            `name[1]` and so on. They are copied.
+        forces: Name -> array (n,), or a pandas.DataFrame, with time and forces and, unless `velocities` is
+            given, velocities. Names, units and signs are as in a file: `t` [s], `f_x`, ... [N].
+        velocities: The same for velocities at times of their own, (m,).
         columns: The mapping; None for the default.
-        velocity: As `log`, for the velocities alone.
-        name: What messages and summaries call it.
+        name: What messages and reports call it.
 
     Raises:
-        ValueError: As `load`.
+        ValueError: As `load`; or arrays of one stream have different lengths.
         ModuleNotFoundError: pandas is not installed.
     """
     columns = columns or Columns()
-    given = [each for each in (log, velocity) if each is not None]
+    given = [each for each in (forces, velocities) if each is not None]
     return _record([read_tables(name, columns, partial(_of_memory, each, name)) for each in given], columns)
 
 
-def _of_memory(log: Any, name: str, wanted: Wanted) -> list[Source]:
-    """The columns of a DataFrame, whose index may be the time, or of arrays."""
-    if isinstance(log, extra("pandas").DataFrame):
-        return [of_frame(log)]
-    if not isinstance(log, Mapping):
-        raise ValueError(f"{name}: {brief(type(log).__name__)} must be a DataFrame or a dict of arrays")
+def _of_memory(given: Mapping[str, Any] | Any, name: str, wanted: Wanted) -> list[Source]:
+    """The columns of a DataFrame, or of a mapping of names to arrays (n,)."""
+    pandas = extra("pandas")
+    if isinstance(given, pandas.DataFrame):
+        return [of_frame(given)]
+    if not isinstance(given, Mapping):
+        kind = brief(type(given).__name__)
+        raise ValueError(f"{name}: must be a mapping of names to arrays or a DataFrame, got {kind}")
     try:
-        arrays = {str(key): np.asarray(value) for key, value in log.items()}
+        arrays = {str(key): np.asarray(values) for key, values in given.items()}
     except ValueError as error:
         raise ValueError(f"{name}: cannot be read: {brief(error, 300)}") from error
-    return from_columns((each for key in arrays for each in columns_of(key, arrays[key])), wanted, {})
+    shapes = {key: values.shape for key, values in arrays.items()}
+    if len(set(shapes.values())) > 1 or any(len(shape) != 1 for shape in shapes.values()):
+        listing = ", ".join(f"{brief(key)} {shape}" for key, shape in shapes.items())
+        raise ValueError(f"{name}: arrays must be of one shape (n,), got {listing}")
+    return [of_frame(pandas.DataFrame(arrays))]
 
 
 def _record(files: list[list[Table]], columns: Columns) -> Record:

@@ -18,23 +18,22 @@ from estimator.records.units import TRUTH
 
 
 def write(result: Result, folder: Path) -> None:
-    """Writes estimates.csv, estimates.parquet, summary.md and, where matplotlib is installed, estimates.png.
+    """Writes estimates.csv, summary.md, estimates.png and, where pyarrow is installed, estimates.parquet.
 
     Args:
         result: From `estimate`.
         folder: Where they go; it exists.
 
     Raises:
-        ModuleNotFoundError: The extra `slipgym[records]` is not installed.
+        ModuleNotFoundError: The extra `slipgym[cli]` is not installed.
         OSError: A file cannot be written.
     """
-    pandas, _ = extra("pandas"), extra("pyarrow")
-    frame = pandas.DataFrame(table(result))
-    frame.to_parquet(folder / "estimates.parquet", index=False)
+    frame = extra("pandas").DataFrame(table(result))
+    if find_spec("pyarrow") is not None:
+        frame.to_parquet(folder / "estimates.parquet", index=False)
     frame.to_csv(folder / "estimates.csv", index=False, float_format="%.9g")
     (folder / "summary.md").write_text(markdown(result), encoding="utf-8")
-    if find_spec("matplotlib") is not None:
-        plot(result).savefig(folder / "estimates.png", dpi=150)
+    plot(result).savefig(folder / "estimates.png", dpi=150)
 
 
 def table(result: Result) -> dict[str, NDArray[Any]]:

@@ -15,6 +15,8 @@ from estimator.records.extras import extra
 from estimator.records.separated import read_cells, read_csv
 from estimator.suggestions import brief
 
+BYTES = 4 * 10**9
+"""Most bytes that are read of a file, uncompressed."""
 LARGEST = 4096
 """Most columns of an array or message; one with more is a picture, and is left out."""
 
@@ -74,6 +76,19 @@ def of_frame(frame: Any) -> Source:
     return Source(frame.set_axis(names, axis=1), names)
 
 
+def read_columns(path: Path) -> dict[str, Any]:
+    """All columns of a file, by name; those of different topics or arrays may have different lengths.
+
+    Raises:
+        FileNotFoundError, ValueError, ModuleNotFoundError: As `read_sources`.
+    """
+    found: dict[str, Any] = {}
+    for source in read_sources(path, None):
+        for name in source.frame.columns:
+            found.setdefault(name, source.frame[name])
+    return found
+
+
 def from_columns(
     columns: Iterable[tuple[str, int, Callable[[], Any]]], wanted: Wanted, units: Mapping[str, str]
 ) -> list[Source]:
@@ -90,6 +105,7 @@ def from_columns(
         names.setdefault(length, []).append(name)
         found = loaded.setdefault(length, {})
         if is_wanted(name, wanted):
+            _refuse_large(8 * length * (1 + sum(map(len, loaded.values()))))
             found[name] = load()
     pandas = extra("pandas")
     return [
@@ -172,8 +188,24 @@ def _parquet(path: Path, wanted: Wanted) -> list[Source]:
 def _npz(path: Path, wanted: Wanted) -> list[Source]:
     with path.open("rb") as file:
         arrays = np.load(file, allow_pickle=False)
-        columns = (column for name in arrays.files for column in columns_of(name, arrays[name]))
-        return from_columns(columns, wanted, {})
+        _refuse_large(*(each.file_size for each in arrays.zip.infolist()))
+        return from_columns((each for name in arrays.files for each in _of_npz(name, arrays)), wanted, {})
+
+
+def _of_npz(name: str, arrays: Any) -> Iterable[Any]:
+    try:
+        array = arrays[name]
+    except ValueError as error:
+        if "pickle" not in str(error):
+            raise
+        return  # an array of objects would have to be executed
+    yield from columns_of(name, array)
+
+
+def _refuse_large(*sizes: int) -> None:
+    """Refuses a file that says that it has terabytes, of zeros for example."""
+    if sum(sizes) > BYTES:
+        raise ValueError(f"what is read has {sum(sizes):.2g} bytes, more than {BYTES:.0e}")
 
 
 def _hdf5(path: Path, wanted: Wanted, matlab: bool = False) -> list[Source]:

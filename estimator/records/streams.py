@@ -84,7 +84,7 @@ def stream(tables: Sequence[Table], keys: Sequence[str], others: Sequence[str] =
     Raises:
         ValueError: Two tables have the same number of them.
     """
-    there = [name for table in tables for name in table.names]
+    there = list(dict.fromkeys(name for table in tables for name in table.names))
     names = {key: column.column for key in keys if (column := tables[0].columns[key])}
     counts = [sum(name in table.frame.columns for name in names.values()) for table in tables]
     alike = [table for table, count in zip(tables, counts, strict=True) if count == max(counts)]
@@ -92,7 +92,8 @@ def stream(tables: Sequence[Table], keys: Sequence[str], others: Sequence[str] =
         key, short = next((k, n) for k, n in names.items() if n in alike[0].frame.columns)
         full = [next(each for each in t.names if is_wanted(each, (short,))) for t in alike]
         raise ValueError(
-            f"{tables[0].name}: {key} may be {listed(full)}; the mapping says which, as `{key}: {full[0]}`"
+            f"{tables[0].name}: {key} may be {listed(full)}; the mapping says which, as `{key}: {full[0]}`; "
+            f"it has: {listed(there)}"
         )
     place = counts.index(max(counts))
     table = replace(tables[place], names=there)

@@ -118,9 +118,8 @@ class Table:
         assert column is not None
         if not column.assumed:
             return column
-        said, in_name = self.units.get(column.column, ""), _UNIT_IN_NAME.search(column.column)
-        unit = unit_in(key, said, column.position)
-        unit = unit or (unit_in(key, in_name[1], column.position) if in_name else None)
+        said = self.units.get(column.column, "")
+        unit = unit_in(key, said, column.position) or unit_in_name(key, column.column, column.position)
         units = units_of(key, column.position)
         if unit is not None:
             factor, offset = column.factor * units[unit], column.offset * units[unit]
@@ -139,6 +138,12 @@ class Table:
             return reader(self.frame[column.column], self.comma)
         except (ValueError, TypeError, OverflowError) as error:
             raise ValueError(f"{self.name}: {brief(error, 300)}") from error
+
+
+def unit_in_name(key: str, name: str, position: bool = False) -> str | None:
+    """The unit that the name of a column ends with, such as "Fx [N]"; None: none of the key's."""
+    said = _UNIT_IN_NAME.search(name)
+    return unit_in(key, said[1], position) if said else None
 
 
 def listed(names: Sequence[Any]) -> str:

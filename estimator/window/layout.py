@@ -45,7 +45,8 @@ STATE = np.dtype(
         *_numbers("in_a_row delay interval run repeated quiet first entry fits", np.int64),
         *_numbers("touched learned fitted", np.bool_),
         *_numbers("elapsed timing sign power stored unloaded variance_normal noise spring slip_time changed"),
-        *_numbers("split reference misfit at_bound load look_time fit_time springs sd_lever"),
+        *_numbers("split reference misfit at_bound unmeasured load look_time fit_time springs sd_lever"),
+        *_numbers("drops drop_mean drop_static drop_largest"),
         ("products", np.float64, (CANDIDATES,)),
         ("energies", np.float64, (2,)),
         ("zeros", np.float64, (4,)),
@@ -75,7 +76,9 @@ stick; `stored`: instants of the stretch that its entry has; `slip_time`: time o
 slip time of the newest change of friction, 0 for none; `split`: slip time before which an entry is an old
 one; `entry`: number of the next one; `fitted`: whether there was a fit since the last look; `reference`: ln
 of the normal force at which ln mu_c and ln r are; `mean`, `variance`: of the states without any slip;
-`misfit`: mean squared normalised residual; `at_bound`: 1 if r is at its bound; `load`: normal force of the
+`misfit`: mean squared normalised residual; `at_bound`: 1 if r is at its bound; `unmeasured`: the
+parameter; `drops`: weight of the falls of the load, `drop_mean`, `drop_static`: ln mu_c and ln mu_s of
+them, `drop_largest`: largest load over normal force that held; `load`: normal force of the
 published values [N], found at `look_time`; `fit_time`: time of the last fit [s]; `springs`: share of
 the entries that may be springs of the pad."""
 
@@ -114,7 +117,7 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
         states["covariance"][:, at, at] = states["variance"][:, at]
     states["variance_normal"] = parameters["sd_zero"] ** 2
     states["delay"], states["spring"] = parameters["nominal_delay"], parameters["compliance_max"]
-    states["noise"] = 2e-4
+    states["noise"], states["unmeasured"] = 2e-4, parameters["unmeasured"]
     states["sign"] = states["misfit"] = 1.0
     states["sd_lever"] = 2**0.5 * states["mu_c"] * states["r"]
     return states

@@ -61,6 +61,9 @@ class AdaptiveParameters(Parameters):
         "m/N",
     )
     compliance_max: float = parameter(2.5e-4, "Largest shear compliance of a pad.", "(0, inf)", "m/N")
+    unmeasured: int = parameter(
+        0, "What the sensors lack: 0 nothing, 1 the slip velocity, 2 the tangential force, too.", "[0, 2]"
+    )
     memory: float = parameter(1.5, "Time of slip after which a stretch counts 1 / e.", "(0, inf)", "s")
 
     def __post_init__(self) -> None:

@@ -16,10 +16,13 @@ COMMANDS = {
     "pushes": "Compare the estimators on real pushes of a block.",
     "rank": "Compare the order of returns with that of success.",
     "reproduce": "Reproduce the paper's analyses.",
+    "sensor-bounds": "Print what the sensors of a gripper can say of friction.",
+    "sensor-costs": "Print what the sensors of a gripper cost controllers.",
     "ship": "Add trained policies to the pretrained ones.",
     "study-report": "Write the report of a study as one page.",
     "torture": "Attack the public interface for some hours.",
     "train-estimator": 'Train the network of the estimator "gru".',
     "validate-parts": "Check steps, engines, patches, tilt and soft pads.",
+    "validate-real": "Compare surfaces and estimators with real data.",
 }
 """Name of each sub-command and its line of help."""

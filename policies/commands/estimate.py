@@ -10,9 +10,9 @@ try:
 
     from estimator import DEFAULT
 except ModuleNotFoundError as error:
-    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[records]'") from error
+    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
 
-_INSTALL = "pip install 'slipgym[records]'"
+_INSTALL = "pip install 'slipgym[cli]'"
 EPILOG = """
 Examples:\n
 \b
@@ -87,8 +87,6 @@ def main(
     for found in sorted(path.rglob("*.*"), key=lambda each: (each.parent, each.suffix != ".png", each.name)):
         if found.suffix != ".parquet":
             typer.echo(f"  {found}")
-    if not any(path.rglob("*.png")):
-        typer.echo("There is no figure, because matplotlib is not installed: pip install matplotlib")
 
 
 @contextmanager

@@ -26,8 +26,9 @@ COMMANDS = {
     "leaderboard": "Rank the estimators on the same records.",
     "policy-leaderboard": "Rank policies on the same episodes.",
     "estimate": "Run an estimator on a record of your gripper.",
+    "map": "Propose which columns of a log are what.",
     "live": "Estimate, and command a grip, while a gripper runs.",
-    "map": "Propose which column of your log is what.",
+    "data": "List or fetch public data of real contacts.",
     "record": "Write what a finger's sensors read in an episode.",
     "validate": "Check the physics against its acceptance figures.",
     "benchmark": "Measure the speed of the environments.",
@@ -84,7 +85,10 @@ def _add(name: str, line: str) -> None:
     )
     def call(ctx: typer.Context) -> None:
         parent = ctx.parent.info_name if ctx.parent else "slipgym"
-        application(name)(args=ctx.args, prog_name=f"{parent} {name}")
+        called, arguments = name, ctx.args
+        if arguments and f"{name}-{arguments[0]}" in ALL:  # "validate real" is validate-real
+            called, arguments = f"{name}-{arguments[0]}", arguments[1:]
+        application(called)(args=arguments, prog_name=f"{parent} {called}")
 
 
 def _version(wanted: bool) -> None:
@@ -104,7 +108,9 @@ def front(
     """Slip-aware in-hand manipulation with a friction estimator in the loop."""
 
 
-for _name, _line in (COMMANDS | _of_the_clone()).items():
+ALL = COMMANDS | _of_the_clone()
+"""Sub-commands that this installation has."""
+for _name, _line in ALL.items():
     _add(_name, _line)
 
 

@@ -1,58 +1,70 @@
-"""Proposes the mapping of a log's columns, for `slipgym estimate`."""
+"""Proposes which columns of a foreign log are what, with their units and signs, and writes the mapping."""
 
 from pathlib import Path
 from typing import Annotated
 
-import typer
+try:
+    import typer
+except ModuleNotFoundError as error:
+    raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
 
 EPILOG = """
 Examples:\n
 \b
   slipgym map log.csv
-  slipgym map bag.mcap --output columns.yaml --plot columns.png
+  slipgym map run.mcap --output mapping.yaml --plot columns.png
+  slipgym estimate run.mcap --columns mapping.yaml
 \n
-Columns are found by their names; units that the file does not say are guessed by the size of the values.
-Check every line of the mapping before you use it. docs/records.md describes it.
+The names of the columns decide what they are, their magnitudes the units, and the normal force in contact
+its sign. Look at every line: a name can mislead, and no magnitude shows the direction of an axis.
+docs/records.md has the frames.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 @app.command(epilog=EPILOG)
 def main(
-    log: Annotated[
-        Path, typer.Argument(help="csv, parquet, npz, HDF5, mat, xlsx, mcap or a bag.", show_default=False)
-    ],
+    log: Annotated[Path, typer.Argument(help="A log, or the folder of a ROS 2 bag.", show_default=False)],
     output: Annotated[
-        Path | None, typer.Option(help="YAML to write; printed otherwise.", show_default=False)
+        Path | None, typer.Option(help="YAML file to write the mapping to.", show_default=False)
     ] = None,
     plot: Annotated[
-        Path | None, typer.Option(help="Picture of the columns to write, as png.", show_default=False)
+        Path | None, typer.Option(help="png to draw the proposed columns to.", show_default=False)
     ] = None,
 ) -> None:
-    """Propose which column is what, its unit and its sign, and try the mapping on the log."""
+    """Propose a mapping of the columns of a log, for slipgym estimate --columns."""
     try:
-        from estimator.records import guessing, proposal
-        from slipgym.atomic_io import check_file, new_file, write
+        from estimator.records import load, load_columns, proposal
+        from estimator.records.alignment import align
+        from estimator.records.summary import faults
+        from slipgym.atomic_io import new_file, write
 
-        for target in (output, plot):
-            if target is not None:
-                check_file(target)
-        proposed = guessing.propose(log)
-        if plot is not None:
-            with new_file(plot) as partial:
-                proposal.picture(proposed, log.name).savefig(partial, dpi=120)
+        found, left = proposal.propose_fingers(log)
+        text = proposal.text_of_fingers(found)
         if output is not None:
-            write(output, proposed.text().encode())
-        refused, told = proposal.tried(log, proposed)
-    except ModuleNotFoundError as error:
+            write(output, text.encode())
+        if plot is not None:
+            with new_file(plot) as part:
+                proposal.plot([each for own in found.values() for each in own], part)
+    except (ModuleNotFoundError, ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
-    except (ValueError, OSError) as error:
-        raise typer.BadParameter(str(error)) from error
-    typer.echo("\n".join(proposal.table(proposed)))
-    typer.echo(f"\n{proposed.text() if output is None else f'Mapping: {output}'}")
-    if refused:
-        typer.echo(f"\nWith it, slipgym estimate says:\n{refused}")
-        raise typer.Exit(1)
-    typer.echo(
-        "\n".join(["\nslipgym estimate reads the log with it. Check every unit that is guessed.", *told])
-    )
+    typer.echo(text + (f"\nnot used: {proposal.columns_left(left)}" if left else ""))
+    for path in (output, plot):
+        if path is not None:
+            typer.echo(f"written: {path}")
+    if output is None:
+        return
+    try:
+        columns = load_columns(output)
+        read = {name: load(log, own) for name, own in (columns.fingers or {"": columns}).items()}
+        told = [line for record in read.values() for line in faults(record, align(record, allow_gaps=True))]
+    except ValueError as error:
+        typer.echo(f"\nslipgym estimate does not take it yet:\n{error}")
+        return
+    for name, record in read.items():
+        rates = [1.0 / ((t[-1] - t[0]) / max(len(t) - 1, 1)) for t in (record.force_t, record.twist_t)]
+        typer.echo(
+            f"\n{name}{': ' * bool(name)}readable: {record.force_t[-1] - record.force_t[0]:.1f} s, forces at "
+            f"{rates[0]:.0f} Hz, velocities at {rates[1]:.0f} Hz"
+        )
+    typer.echo("\n".join([*dict.fromkeys(told), f"go on with\n  slipgym estimate {log} --columns {output}"]))

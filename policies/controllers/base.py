@@ -34,11 +34,16 @@ class ObservationIndex:
     def __init__(self, task_name: str | None, config: Config, action_mode: str | None = None) -> None:
         self.task_name, self.action_mode = task_name, action_mode
         if task_name is None:
-            columns = layout.sensor_columns(config)
+            columns, tail = layout.sensor_columns(config), ()
         else:
             self.action_mode = action_mode or find(task_name).action_mode
             columns = layout.columns(config, find(task_name), "true", self.action_mode, "deviations")
+            tail = tuple(column.name for column in columns[len(layout.sensor_columns(config)) :])
         self._at = {column.name: k for k, column in enumerate(columns)}
+        self._others = [
+            {name: k for k, name in enumerate((*(reading.name for reading in readings), *tail))}
+            for readings in layout.LAYOUTS.values()
+        ]
 
     def __getitem__(self, name: str) -> int:
         if name not in self._at:
@@ -49,16 +54,28 @@ class ObservationIndex:
         """Where a column is; None if there is none."""
         return self._at.get(name)
 
-    def checked(self, observations: np.ndarray) -> np.ndarray:
-        """Observations (n, m) without the load part; those of another task or mode are refused.
+    def fitted(self, observations: np.ndarray) -> tuple[np.ndarray, Mapping[str, int]]:
+        """Observations (n, m) without the load part, and where each column is: the length shows the sensors.
+
+        No two kinds of sensors give a task observations of the same length.
 
         Raises:
             ValueError: No observation of the task has this length.
         """
+        for at in self._others:
+            longest, width = len(at), observations.shape[1]
+            full = longest - len(layout.DEVIATION_COLUMNS)
+            widths = longest, full, full - len(layout.FRICTION_COLUMNS)
+            if self.task_name is not None and len(at) != len(self._at) and width in widths:
+                return observations, at
+        if self.task_name is None and observations.shape[1] < len(self._at):
+            return observations, min(self._others, key=len)
+        return self._checked(observations), self._at
+
+    def _checked(self, observations: np.ndarray) -> np.ndarray:
+        """Observations (n, m) without the load part; those of another task or mode are refused."""
         width, loaded = observations.shape[1], observations.shape[1] - len(LOAD)
         longest = len(self._at)
-        if self.task_name is None and width < longest:
-            raise ValueError(f"observation has {width} columns; every task has at least {longest}")
         full = longest - len(layout.DEVIATION_COLUMNS)
         bare = full - len(layout.FRICTION_COLUMNS)
         if self.task_name is None or width in (longest, full, bare):
@@ -71,19 +88,30 @@ class ObservationIndex:
         return observations[:, :loaded]
 
 
+_WHOLE = {
+    "f_x": ("wrist_f_x", 0.5),
+    "f_y": ("wrist_f_y", 0.5),
+    "tau": ("wrist_tau", 0.0),  # the lever from wrist to pad makes noise of it, as large as what pads hold
+    "f_n": ("motor_force", 1.0),
+}
+"""Column of a finger -> the gripper's, and the part of it that stands for one finger."""
+
+
 class Columns:
     """A batch of observations whose columns are read by name.
 
     Args:
         observations: (n, m).
         index: Where each column is.
+        needs_slip: Whether columns of the slip are errors where no sensor measures it; otherwise they are 0.
 
     Raises:
         ValueError: m does not fit the index.
     """
 
-    def __init__(self, observations: np.ndarray, index: ObservationIndex) -> None:
-        self._observations, self._index = index.checked(observations), index
+    def __init__(self, observations: np.ndarray, index: ObservationIndex, needs_slip: bool = True) -> None:
+        self._observations, self._at = index.fitted(observations)
+        self._needs_slip = needs_slip
 
     def __len__(self) -> int:
         return len(self._observations)
@@ -94,7 +122,9 @@ class Columns:
         Raises:
             ValueError: The task has no such column, or the environment leaves the friction part out.
         """
-        at = self._index[name]
+        at = self._at.get(name)
+        if at is None:
+            return self._unmeasured(name)
         if at >= self._observations.shape[1]:
             raise ValueError(
                 f"the policy needs the column {name!r}, which friction_source='none' and "
@@ -105,7 +135,28 @@ class Columns:
 
     def has(self, name: str) -> bool:
         """Whether the environment shows a column of the task."""
-        return self._index[name] < self._observations.shape[1]
+        return self._at.get(name, np.inf) < self._observations.shape[1]
+
+    def _unmeasured(self, name: str) -> np.ndarray:
+        """A column that these sensors do not have: from those of wrist and motor, or 0, (n,) float64.
+
+        Raises:
+            ValueError: Nothing stands for it, or the task has no such column.
+        """
+        stem = name.rpartition("_")[0]
+        whole, part = _WHOLE.get(stem, ("", 0.0))
+        if whole in self._at:
+            return part * self[whole]
+        slip = stem in ("v_x", "v_y", "omega", "measured_slip")
+        if not slip and stem not in _WHOLE:
+            raise ValueError(unknown("observation column", name, self._at))
+        if slip and not self._needs_slip:
+            return np.zeros(len(self))
+        what = "the slip" if slip else "forces along the pad"
+        raise ValueError(
+            f"the policy needs {what} ({name!r}), which these sensors do not measure; make the environment "
+            "with sensors='realistic', 'lab', 'ideal' or 'markers'"
+        )
 
 
 class ForcePolicy(ABC):
@@ -128,6 +179,8 @@ class ForcePolicy(ABC):
     """Action mode of the environments it acts in, one of `slipgym.envs.actions.ACTION_MODES`."""
     acts_on_friction: ClassVar[bool] = False
     """Whether it cannot act without the friction part of the observation."""
+    needs_slip: ClassVar[bool] = True
+    """Whether it cannot act without a sensor of slip."""
     without_friction: ClassVar[Mapping[str, Any]] = {}
     """Arguments of the controller without friction information (`policies.controllers.no_friction_info`)."""
 
@@ -190,7 +243,7 @@ class ForcePolicy(ABC):
         observations = np.asarray(observation)
         if observations.ndim not in (1, 2):
             raise ValueError(f"observation must have shape (m,) or (n, m), got {observations.shape}")
-        columns = Columns(np.atleast_2d(observations), self.index)
+        columns = Columns(np.atleast_2d(observations), self.index, self.needs_slip)
         commands, state = self.control(columns, self._memory(state, episode_start, len(columns)))
         actions = self._action(commands, columns)
         return (actions if observations.ndim == 2 else actions[0]), state
@@ -222,7 +275,8 @@ class ForcePolicy(ABC):
         wanted = np.zeros((n, len(PLACES)))
         wanted[:, : min(given.shape[1], own)] = given[:, :own]
         wanted[:, own + 1 :][:, : max(given.shape[1] - own, 0)] = given[:, own:]
-        wanted[:, own] = given[:, 0] - columns["commanded_force"]
+        if own in table["command"]:
+            wanted[:, own] = given[:, 0] - columns["commanded_force"]
         wanted[:, -1] = np.log(np.maximum(given[:, 0], 1e-6))  # ln_grip_force
         low, high = table["low"], table["high"]
         scaled = 2.0 * (wanted[:, table["command"]] - low) / (high - low) - 1.0

@@ -85,6 +85,7 @@ class HoldPolicy(GainPolicy[HoldGains]):
 
     task = "Hold"
     Gains = HoldGains
+    needs_slip = False
     without_friction: ClassVar[Mapping[str, Any]] = {"exploration": None}
 
     def __init__(

@@ -79,7 +79,7 @@ class LiftingPolicy(GainPolicy[L]):
     of its variance. Without friction in the observation the former alone is a memory of slips.
     """
 
-    remembers_slips = True
+    remembers_slips, needs_slip = True, False
 
     def _prepare(self, config: Overrides | None) -> None:
         settings: Any = self.settings

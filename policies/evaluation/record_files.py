@@ -13,9 +13,10 @@ from estimator.records.units import UNITS
 from policies.evaluation.sensor_record import TWIST
 from slipgym.atomic_io import check_file, new_file
 
-TYPES = (".csv", ".csv.gz", ".parquet", ".h5", ".mcap")
-_BOTH = {".h5": "hdf5", ".mcap": "mcap"}
-"""Types that hold both streams as tables of their own -> the extra that they need."""
+WRITTEN = (".csv", ".csv.gz", ".parquet", ".h5", ".hdf5", ".mcap")
+"""Types of files that can be written; `estimator.records.load` reads them all, and more."""
+_BOTH = {".h5": "h5py", ".hdf5": "h5py", ".mcap": "mcap.writer"}
+"""Types that hold both streams as tables of their own -> what writes them."""
 
 
 def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -> None:
@@ -23,7 +24,7 @@ def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -
 
     Args:
         frame: From `record_sensors`.
-        path: Its type is in its name: one of `TYPES`.
+        path: Its type is in its name: one of `WRITTEN`.
         velocity: A file of its own for the velocities; None keeps all in one.
 
     Raises:
@@ -38,7 +39,7 @@ def save_record(frame: pd.DataFrame, path: Path, velocity: Path | None = None) -
         _write(twists, velocity)
     elif path.suffix in _BOTH:
         with new_file(path) as partial:
-            (_write_hdf5 if path.suffix == ".h5" else _write_mcap)(
+            (_write_mcap if path.suffix == ".mcap" else _write_hdf5)(
                 {"wrench": forces, "slip": twists}, partial
             )
     else:
@@ -54,12 +55,12 @@ def check_targets(path: Path, velocity: Path | None = None) -> None:
         OSError: One cannot be written.
     """
     for target in (path, *([] if velocity is None else [velocity])):
-        if not target.name.endswith(TYPES):
-            raise ValueError(f"{target.name}: unknown file type; records are {', '.join(TYPES)}")
+        if not target.name.endswith(WRITTEN):
+            raise ValueError(f"{target.name}: unknown file type; records are {', '.join(WRITTEN)}")
         if target.suffix in _BOTH:
             if velocity is not None:
                 raise ValueError(f"{target.name}: holds both streams already; leave --velocity out")
-            extra({".h5": "h5py", ".mcap": "mcap.writer"}[target.suffix])
+            extra(_BOTH[target.suffix])
         check_file(target)
 
 

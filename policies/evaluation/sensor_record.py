@@ -81,6 +81,11 @@ class _Tap:
 
     def __init__(self, simulation: BulletSimulation, finger: int) -> None:
         self.simulation, self._finger = simulation, finger
+        if not simulation.config.sensors.usual:
+            raise ValueError(
+                "a record holds the force/torque and slip-velocity sensor of a finger, which these sensors "
+                'are not; valid: "ideal", "lab", "realistic"'
+            )
         self._start = int(simulation.plant.world["tick"][0])
         force, world = simulation.plant.force_torque[0, finger], simulation.plant.world[0]
         needed = int((world["control_ticks"] + force["delay"]) // force["period"]) + 2

@@ -1,8 +1,8 @@
-"""Configuration models of the two sensors of each finger."""
+"""Configuration models of the sensors: those of each finger, of a wrist, a gripper's motor, and markers."""
 
-from typing import Annotated
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from slipgym.config.base import Frozen
 
@@ -96,8 +96,62 @@ class SlipConfig(Frozen):
     )
 
 
-class SensorsConfig(Frozen):
-    """The sensors of each finger."""
+class MotorConfig(Frozen):
+    """What a gripper without sensors in its fingers knows: its motor's load and its opening."""
 
+    gain_error: float = Field(
+        ge=0.0, le=0.9, description="Largest relative error of the force, per episode [-]"
+    )
+    friction: float = Field(
+        ge=0.0, le=0.9,
+        description="Motor load over force while it closes, less 1; while it opens, 1 less it [-]",
+    )  # fmt: skip
+    backlash: float = Field(
+        ge=0.0, le=100.0, description="Change of force in which that friction turns over [N]"
+    )
+    noise: float = Field(ge=0.0, le=100.0, description="White noise of the force, sd [N]")
+    resolution: float = Field(ge=0.0, le=100.0, description="Quantisation of the force; 0: continuous [N]")
+    opening_noise: float = Field(ge=0.0, le=0.1, description="White noise of the opening, sd [m]")
+
+
+class MarkersConfig(Frozen):
+    """Markers in a gel in front of a camera: a field of shear, from which the forces along the pad come."""
+
+    compliance: float = Field(
+        ge=1e-8, le=1.0, description="Displacement of a marker over the force on its part of the pad [m/N]"
+    )
+    noise: float = Field(ge=0.0, le=0.01, description="Noise of a marker per axis and frame, sd [m]")
+    latency_frames: int = Field(ge=0, le=3, description="Latency of a frame [frames]")
+    gain_error: float = Field(
+        ge=0.0, le=0.9, description="Largest relative error of the gel's compliance, per episode [-]"
+    )
+    normal_error: float = Field(
+        ge=0.0, le=0.9, description="Largest relative error of the normal force, per episode [-]"
+    )
+    observed: bool = Field(description="Whether observations have the field, 252 columns: true or false")
+
+
+class SensorsConfig(Frozen):
+    """The sensors of each finger, or of the gripper as a whole."""
+
+    place: Literal["fingers", "wrist", "motor"] = Field(
+        description="Where forces are measured: both fingers, the wrist, or the motor alone",
+    )
+    interval: int = Field(ge=1, le=100, description="Control steps between two readings [-]")
     force_torque: ForceTorqueConfig = Field(description="Force/torque sensor")
     slip: SlipConfig = Field(description="Slip-velocity sensor")
+    motor: MotorConfig = Field(description="Load and opening of the gripper's motor, unless in fingers")
+    markers: MarkersConfig | None = Field(
+        description="Markers in the pads; null: force/torque sensors behind them"
+    )
+
+    @model_validator(mode="after")
+    def _markers_need_fingers(self) -> Self:
+        if self.markers is not None and self.place != "fingers":
+            raise ValueError(f'markers are in the pads: place must be "fingers", got "{self.place}"')
+        return self
+
+    @property
+    def usual(self) -> bool:
+        """Whether each finger has a force/torque and a slip-velocity sensor, read in every control step."""
+        return self.place == "fingers" and self.markers is None and self.interval == 1

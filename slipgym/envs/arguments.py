@@ -78,7 +78,14 @@ class CommonArguments(TypedDict, total=False):
     contact: Annotated[
         ContactModel, Argument("ellipsoid", "friction model of the pads (see docs/contact.md)")
     ]
-    sensors: Annotated[str, Argument("realistic", 'sensor preset: `"realistic"`, `"ideal"` or `"lab"`')]
+    sensors: Annotated[
+        str,
+        Argument(
+            "realistic",
+            'sensor preset: `"realistic"`, `"ideal"`, `"lab"`, or what a gripper has: `"wrist"`, `"motor"`, '
+            '`"markers"` (see docs/sensors.md)',
+        ),
+    ]
     material: Annotated[
         str, Argument("random", 'name of a material, or `"random"` for another in every episode')
     ]

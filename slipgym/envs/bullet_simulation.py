@@ -49,7 +49,7 @@ def _begin(fixed, action, fresh):
 
     Args:
         fixed: `Fixed` pointers to the stages, `BatchState`, FORCE_TORQUE (1, 2), where observations and infos
-            are written, and rows of the guard.
+            are written, rows of the guard, and `slipgym.world.plant.Plant.cells`.
         action: Actions, their meaning and flags, as in `slipgym.envs.control_step.begin`; `Fixed`, so that
             its arrays are not taken apart at each call.
         fresh: Whether the reward terms start at 0.
@@ -57,7 +57,7 @@ def _begin(fixed, action, fresh):
     Returns:
         Mass of the object [kg].
     """
-    stages, state, _, _, infos, _ = opened(fixed)
+    stages, state, _, _, infos, _, _ = opened(fixed)
     if fresh:
         infos.terms[:] = 0.0
     stages.begin(stages.script_wrist, state, opened(action), 0, 1)
@@ -80,9 +80,9 @@ def _finish(fixed, pose, wrist, normals, at):
     Returns:
         As `slipgym.envs.nan_guard.note`.
     """
-    stages, state, force_torque, buffers, infos, kept = opened(fixed)
+    stages, state, force_torque, buffers, infos, kept, cells = opened(fixed)
     read_engine(state.worlds, state.fingers, pose, wrist, normals)
-    stages.measure(state, force_torque, 0, 1)
+    stages.measure(state, cells, force_torque, 0, 1)
     if at < 0:
         return 0
     stages.estimate(stages.update, state, 0, 1)
@@ -97,14 +97,14 @@ def _finish(fixed, pose, wrist, normals, at):
 @compiled
 def _equip(fixed, starts, values, hardware, patches, cells):
     """Prepare an episode, see `slipgym.envs.reset_kernels.equip_rows`; `fixed` as in `_begin`."""
-    stages, state, force_torque, _, _, _ = opened(fixed)
+    stages, state, force_torque, _, _, _, _ = opened(fixed)
     stages.equip(starts, values, hardware, patches, state, cells, force_torque)
 
 
 @compiled
 def _open(fixed, starts, fresh):
     """Begin an episode of a world that has settled, see `slipgym.envs.reset_kernels.open_episodes`."""
-    stages, state, force_torque, _, infos, _ = opened(fixed)
+    stages, state, force_torque, _, infos, _, _ = opened(fixed)
     stages.open(stages.update, starts, fresh, state, force_torque, infos.terms)
     stages.evaluate(stages.evaluate_step, state, 0, 1)
     stages.report(state, infos.numbers, infos.flags, 0, 1)
@@ -116,7 +116,7 @@ def _compiled_step(
 ) -> tuple[Any, Any, dict[str, Any]]:
     """Pointers to the stages, the type of what is fixed, and the four programs of this file by name."""
     stages = compiled_stages(task, update, force_torque, cells)
-    kind = types.Tuple([stages.kind, STATE, array(force_torque, 2), BUFFERS, INFOS, F2])
+    kind = types.Tuple([stages.kind, STATE, array(force_torque, 2), BUFFERS, INFOS, F2, cells_type(cells)])
     starts = array(START)
     arguments = {
         _begin: (FixedType(ACTION), types.boolean),
@@ -168,7 +168,7 @@ class BulletSimulation(Simulation):
         m = len(SENSORS) + len(task.columns)
         low, high = np.full((2, m), [[-np.inf], [np.inf]], dtype=np.float32)
         out, none = np.zeros((1, m), dtype=np.float32), np.zeros(0, dtype=np.int64)
-        self._bind(ObservationBuffers(none, self.estimated, low, high, none, out))
+        self._bind(ObservationBuffers(none, self.estimated, low, high, none, out, none))
 
     def step(
         self,
@@ -255,7 +255,7 @@ class BulletSimulation(Simulation):
     def _bind(self, buffers: ObservationBuffers) -> None:
         """Have control steps write the observations to these buffers."""
         linked, kind, programs = _compiled_step(*self._kinds)
-        own = self.state, self.plant.force_torque, buffers, self.infos, self._guard.rows
+        own = self.state, self.plant.force_torque, buffers, self.infos, self._guard.rows, self.plant.cells
         fixed = Fixed((linked, *own), kind)
         self._buffers = buffers
         self._calls = SimpleNamespace(**{name: partial(each, fixed) for name, each in programs.items()})

@@ -18,6 +18,7 @@ from slipgym.envs.actions import interpret
 from slipgym.envs.infos import write_infos
 from slipgym.envs.observation import combine, guess, observe
 from slipgym.sensors.measure import measure
+from slipgym.sensors.owned import measure_owned
 from slipgym.tasks.disturbance import disturb
 from slipgym.tasks.episode import begin_step
 
@@ -36,6 +37,10 @@ class BatchState(NamedTuple):
     """FINGER (n, 2): actuators."""
     slip_sensors: np.ndarray
     """SLIP_SENSOR (n, 2): sensors."""
+    grippers: np.ndarray
+    """GRIPPER (n,): where sensors are, and the motor."""
+    markers: np.ndarray
+    """MARKERS (n, 2), or (0, 2) for none."""
     parameters: np.ndarray
     """Bytes of the estimators' parameters, (2 n, p), or (1, p) for all."""
     estimator_states: np.ndarray
@@ -80,20 +85,24 @@ def begin(script_wrist, state, action, lo, hi):
 
 
 @pointed
-def measure_rows(state, force_torque, lo, hi):
+def measure_rows(state, cells, force_torque, lo, hi):
     """Read the sensors of rows lo to hi.
 
     Args:
         state: `BatchState`.
+        cells: As `slipgym.world.plant.Plant.cells`.
         force_torque: FORCE_TORQUE (n, 2).
         lo: First row.
         hi: Row after the last.
     """
-    rows, (state, force_torque) = slice(lo, hi), lent((state, force_torque))
-    measure(
-        state.worlds[rows], force_torque[rows], state.slip_sensors[rows], state.wrenches[rows],
-        state.twists[rows],
-    )  # fmt: skip
+    rows, (state, cells, force_torque) = slice(lo, hi), lent((state, cells, force_torque))
+    if state.grippers[lo].usual:
+        measure(
+            state.worlds[rows], force_torque[rows], state.slip_sensors[rows], state.wrenches[rows],
+            state.twists[rows],
+        )  # fmt: skip
+    else:
+        measure_owned(state, cells, force_torque, lo, hi)
 
 
 @pointed
@@ -149,11 +158,12 @@ def look(state, buffers, lo, hi):
         hi: Row after the last.
     """
     rows = slice(lo, hi)
-    wrist, friction, low, high, load, out = buffers
+    wrist, friction, low, high, load, out, sensors = buffers
+    marked = rows if state.markers.shape[0] > 0 else slice(0, 0)
     observe(
         state.wrenches[rows], state.twists[rows], state.slip_sensors[rows], state.episodes[rows],
-        state.task_part[rows], state.worlds[rows], wrist, friction[rows], low, high, load,
-        out[rows],
+        state.grippers[rows], state.markers[marked], state.task_part[rows], state.worlds[rows], wrist,
+        friction[rows], low, high, load, out[rows], sensors,
     )  # fmt: skip
 
 

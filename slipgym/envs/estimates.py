@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, fields
 from typing import Any
@@ -10,16 +11,20 @@ import estimator as estimators
 from estimator.registry import specification
 from slipgym._numba.compiled import compiled
 from slipgym.config import Config
+from slipgym.config.sensors import SensorsConfig
 from slipgym.envs import no_estimator
+from slipgym.sensors.markers import COUNT
 
 LATENCY = "velocity_delay"
 """Parameter of an estimator: the latency of the slip velocity."""
+STATED = (LATENCY, "unmeasured", "sd_force", "sd_normal", "sd_torque", "sd_gain", "sd_zero", "nominal_delay")
+"""Parameters that a preset of the sensors states for an estimator."""
 
 
 def chosen_estimator(choice: str | Mapping[str, Any] | None) -> dict[str, Any] | None:
     """Return the estimator's name and parameters; None for none.
 
-    `velocity_delay` is left out unless the user gave it.
+    Those of STATED are left out unless the user gave them.
     """
     if choice is None:
         return None
@@ -33,18 +38,39 @@ def chosen_estimator(choice: str | Mapping[str, Any] | None) -> dict[str, Any] |
     given = dict(choice)
     name = given.pop("name")
     parameters = asdict(specification(name).parameters.create(**given))
-    if LATENCY not in given:
-        parameters.pop(LATENCY, None)
-    return {"name": name, **parameters}
+    return {"name": name, **{key: parameters[key] for key in parameters if key in given or key not in STATED}}
 
 
 def informed(choice: dict[str, Any], config: Config) -> dict[str, Any]:
     """The choice with what an estimator knows of the sensors: the latency that the preset states.
 
-    It does not know what an episode samples on top.
+    Of grippers as labs own them it knows the data sheet, too. It does not know what an episode samples.
     """
     known = {field.name for field in fields(specification(choice["name"]).parameters)}
-    return {LATENCY: config.sensors.slip.latency_samples, **choice} if LATENCY in known else choice
+    stated = {LATENCY: config.sensors.slip.latency_samples, **_data_sheet(config.sensors)}
+    return {**{name: value for name, value in stated.items() if name in known}, **choice}
+
+
+def _data_sheet(sensors: SensorsConfig) -> dict[str, float]:
+    """What is not measured, and deviations, of sensors other than those in each finger."""
+    force, motor, markers = sensors.force_torque, sensors.motor, sensors.markers
+    if sensors.usual:
+        return {}
+    if sensors.place != "fingers":
+        return {
+            "unmeasured": 1 if sensors.place == "wrist" else 2,
+            "sd_force": max(force.noise_tangential, 1e-3),
+            "sd_normal": max(math.hypot(motor.noise, motor.resolution), 1e-3),
+            "sd_torque": max(force.noise_torque, 1e-5),
+            "sd_gain": math.hypot(motor.gain_error / math.sqrt(3.0), motor.friction),
+            "sd_zero": max(force.bias_tangential, 1e-3),
+        }
+    stated = {"sd_normal": max(force.noise_normal, 1e-3), "nominal_delay": sensors.slip.latency_samples}
+    if markers is None:
+        return stated
+    stated["sd_force"] = max(math.sqrt(COUNT) * markers.noise / markers.compliance, 1e-3)
+    stated["sd_gain"] = math.hypot(markers.gain_error, markers.normal_error) / math.sqrt(3.0)
+    return stated
 
 
 def make_estimators(choice: dict[str, Any] | None, config: Config, n: int) -> estimators.BatchEstimator:

@@ -12,75 +12,9 @@ from slipgym.envs.actions import ACTION_MODES
 from slipgym.envs.estimates import merged_mu_c, merged_mu_s, weighted_mean
 from slipgym.envs.load_part import LOAD, write_load
 from slipgym.envs.readings import Reading, choice_reader, row_writer
+from slipgym.envs.sensor_part import LAYOUTS as LAYOUTS
+from slipgym.envs.sensor_part import SENSORS, read_owned, sensor_readings
 from slipgym.tasks.task import Column, Task
-
-
-def _tangential(config: Config) -> tuple[float, float]:
-    limit = config.sensors.force_torque.force_range
-    return -limit, limit
-
-
-def _normal(config: Config) -> tuple[float, float]:
-    limit = config.sensors.force_torque.normal_range
-    return -limit, limit
-
-
-def _torque(config: Config) -> tuple[float, float]:
-    limit = config.sensors.force_torque.torque_range
-    return -limit, limit
-
-
-def _slip_velocity(config: Config) -> tuple[float, float]:
-    limit = 2 * config.sensors.slip.speed_max
-    return -limit, limit
-
-
-def _slip_rate(config: Config) -> tuple[float, float]:
-    limit = 2.0 * config.sensors.slip.speed_max / config.sensors.slip.chip_radius
-    return -limit, limit
-
-
-def _grip_force(config: Config) -> tuple[float, float]:
-    return 0.0, config.gripper.force_limit
-
-
-def _finger(f: int) -> tuple[Reading, ...]:
-    """Measurements of finger 1 or 2."""
-    wrench, twist = f"wrenches[i, {f - 1}, ", f"twists[i, {f - 1}, "
-    return (
-        Reading(f"f_x_{f}", _tangential, "N", f"tangential force on finger {f}", f"{wrench}0]"),
-        Reading(f"f_y_{f}", _tangential, "N", f"tangential force on finger {f}", f"{wrench}1]"),
-        Reading(f"f_n_{f}", _normal, "N", f"normal force of finger {f}", f"{wrench}2]"),
-        Reading(f"tau_{f}", _torque, "N m", f"torque at finger {f}'s CoP", f"{wrench}3]"),
-        Reading(f"v_x_{f}", _slip_velocity, "m/s", f"slip velocity at finger {f}'s CoP", f"{twist}0]"),
-        Reading(f"v_y_{f}", _slip_velocity, "m/s", f"slip velocity at finger {f}'s CoP", f"{twist}1]"),
-        Reading(
-            f"omega_{f}", _slip_rate, "rad/s", f"slip rate about the grip axis at finger {f}", f"{twist}2]"
-        ),
-    )
-
-
-def _mean_slip(axis: int) -> str:
-    return " + ".join(f"slip_sensors[i, {f}].measured_slip[{axis}]" for f in (0, 1)).join(("0.5 * (", ")"))
-
-
-SENSORS = (
-    *_finger(1),
-    *_finger(2),
-    Reading(
-        "measured_slip_x",
-        (-1.0, 1.0),
-        "m",
-        "slip displacement, summed from the counts of both fingers",
-        _mean_slip(0),
-    ),
-    Reading("measured_slip_y", (-1.0, 1.0), "m", "the same along the pad's y axis", _mean_slip(1)),
-    Reading("measured_slip_theta", (-10.0, 10.0), "rad", "the same about the grip axis", _mean_slip(2)),
-    Reading(
-        "commanded_force", _grip_force, "N", "grip force commanded in the last step", "episodes[i].command"
-    ),
-)
-"""Sensor part: wrench and twist of both fingers, measured slip, commanded force."""
 
 WRIST = (
     Reading(
@@ -169,6 +103,8 @@ class ObservationBuffers(NamedTuple):
     """Rows of `LOAD` in the load part, (l,): all or none."""
     out: np.ndarray
     """The observations, (n, m) float32."""
+    sensors: np.ndarray
+    """Rows of `slipgym.envs.sensor_part.OWNED` in the sensor part; none: `SENSORS`, (k,)."""
 
 
 def wrist_part(task: Task, action_mode: str) -> tuple[int, ...]:
@@ -181,8 +117,8 @@ def wrist_part(task: Task, action_mode: str) -> tuple[int, ...]:
 
 
 def sensor_columns(config: Config) -> tuple[Column, ...]:
-    """The sensor part, with the limits of a configuration."""
-    return tuple(reading.column(config) for reading in SENSORS)
+    """The sensor part, with the limits of a configuration: what its sensors measure."""
+    return tuple(reading.column(config) for reading in sensor_readings(config))
 
 
 def columns(
@@ -262,7 +198,8 @@ def guess(friction, episodes):
 
 @compiled
 def observe(
-    wrenches, twists, slip_sensors, episodes, task_part, worlds, wrist, friction, low, high, load, out
+    wrenches, twists, slip_sensors, episodes, grippers, markers, task_part, worlds, wrist, friction, low,
+    high, load, out, sensors,
 ):  # fmt: skip
     """Write the observation, clipped to its bounds.
 
@@ -271,6 +208,8 @@ def observe(
         twists: Measured slip twists (n, 2, 3) [m/s, m/s, rad/s].
         slip_sensors: SLIP_SENSOR (n, 2), for the measured slip.
         episodes: EPISODE (n,), for the commanded force.
+        grippers: GRIPPER (n,), for the opening.
+        markers: MARKERS (n, 2), or (0, 2) for none.
         task_part: (n, k).
         worlds: WORLD (n,), for the wrist.
         wrist: Rows of `WRIST` in the wrist part, (w,).
@@ -280,10 +219,18 @@ def observe(
         high: Upper bounds (m,).
         load: Rows of `LOAD` in the load part, (l,).
         out: Output (n, m), float32.
+        sensors: As in `ObservationBuffers`.
     """
     for i in range(out.shape[0]):
-        _write_sensors(out[i], i, wrenches, twists, slip_sensors, episodes)
         at = _SENSORS
+        if sensors.shape[0] == 0:
+            _write_sensors(out[i], i, wrenches, twists, slip_sensors, episodes)
+        else:
+            at = sensors.shape[0]
+            for k in range(at):
+                out[i, k] = read_owned(
+                    sensors[k], i, wrenches, twists, slip_sensors, episodes, grippers, markers
+                )
         for k in range(task_part.shape[1]):
             out[i, at + k] = task_part[i, k]
         at += task_part.shape[1]

@@ -11,6 +11,7 @@ from slipgym._numba.fixed import Fixed
 from slipgym.envs.load_part import LOAD
 from slipgym.envs.observation import DEVIATIONS, ObservationBuffers, columns, wrist_part
 from slipgym.envs.privileged import privileged_columns, write_privileged
+from slipgym.envs.sensor_part import sensor_rows
 from slipgym.envs.simulation import Simulation
 from slipgym.envs.stages import STATE
 from slipgym.tasks.task import Column
@@ -56,7 +57,8 @@ class Observer:
         friction = _friction_part(simulation, friction_source)
         settings = wrist, friction, low, high, np.arange(len(LOAD) if load_columns else 0)
         out = np.zeros((simulation.n, len(self.columns)), dtype=np.float32)
-        self.buffers, self._first = ObservationBuffers(*settings, out), out[0]
+        self.buffers = ObservationBuffers(*settings, out, sensor_rows(simulation.config))
+        self._first = out[0]
         if history:  # the newest observation comes last
             self._frames = np.zeros((simulation.n, history + 1, len(self.columns)), dtype=np.float32)
         policy = gym.spaces.Box(np.tile(low, history + 1), np.tile(high, history + 1))

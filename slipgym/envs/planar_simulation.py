@@ -110,7 +110,7 @@ def _drive(fixed, buffers, action, results, skip, lo, hi):
         for _ in range(skip):
             stages.begin(stages.script_wrist, state, action, start, stop)
             move(state, cells, force_torque, start, stop)
-            stages.measure(state, force_torque, start, stop)
+            stages.measure(state, cells, force_torque, start, stop)
             stages.estimate(stages.update, state, start, stop)
             stages.evaluate(stages.evaluate_step, state, start, stop)
             over = False
@@ -161,7 +161,7 @@ def _start(fixed, starts, values, begun, infos):
         state.commands[i, 0] = starts[k].force
         for _ in range(WARM_UP_STEPS):
             move(state, cells, force_torque, i, i + 1)
-            stages.measure(state, force_torque, i, i + 1)
+            stages.measure(state, cells, force_torque, i, i + 1)
     stages.open(stages.update, starts, fresh, state, force_torque, infos.terms)
     for k in range(starts.shape[0]):
         i = starts[k].row

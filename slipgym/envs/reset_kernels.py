@@ -9,6 +9,8 @@ from slipgym._numba.generate import generate
 from slipgym.config.pad import EFFECTS
 from slipgym.contact.anisotropy import friction_axes, stretch
 from slipgym.contact.records import CONFIGURED
+from slipgym.sensors.markers import start_markers
+from slipgym.sensors.owned import join_open, start_gripper
 from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
 from slipgym.sensors.unloaded import READINGS, read_unloaded
@@ -156,6 +158,9 @@ def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
         ground_truth[i, 2] = 0.5 * (first.r + second.r)
         note_pads(state.episodes[i], pads[i])
         start_sensors(force_torque[i], slip_sensors[i], start.keys, start.shares)
+        start_gripper(state.grippers[i], start.keys[1, 1])
+        for f in range(2 if state.markers.shape[0] > 0 else 0):
+            start_markers(state.markers[i, f], start.keys[0, f])
     if own.randomized:
         set_patches(starts, patches, pads, cells)
 
@@ -182,6 +187,7 @@ def show_open_gripper(update, state, force_torque, i):
         for f in range(2):
             for a in range(4):
                 wrenches[f, a] = readings[f, k, a]
+        join_open(state.grippers[i], k, wrenches)
         time = (k + 1 - READINGS - CLOSING_STEPS) * state.episodes[i].step_time
         update(
             state.estimator_states[pair, 0], state.parameters[own, 0], time, wrenches, twists,

@@ -12,6 +12,7 @@ from slipgym.config.level import load_level
 from slipgym.envs.actions import ACTION_MODES, GUESS, Actions
 from slipgym.envs.arguments import CommonArguments, fields, friction_part, one_of
 from slipgym.envs.observer import Observer
+from slipgym.envs.sensor_part import LOADED, layout_of
 from slipgym.envs.simulation import Simulation
 from slipgym.tasks import TASKS, Task, configure
 from slipgym.tasks.configure import recorded
@@ -46,6 +47,10 @@ class Setup:
         level = load_level(values["level"], task.key)
         given = values["config"], values["sensors"], values["contact"]
         self.config, self.settings = configure(task, *given, level)
+        if values["load_columns"] and layout_of(self.config) not in LOADED:
+            raise ValueError(
+                f"load_columns = True: sensors = {values['sensors']!r} has no force sensor in each finger"
+            )
         warn_if_slow(self.config, values["frame_skip"])
         keys = [each.key for each in TASKS.values()]
         randomization = load_randomization(values["randomization"], keys)

@@ -30,8 +30,7 @@ from slipgym.world.plant import build
 class Simulation(ABC):
     """Simulation of n environments that advances by control steps, independent of Gymnasium.
 
-    Arrays have a leading batch axis, for the compiled functions that step many worlds. A subclass for each
-    engine moves the bodies.
+    Arrays have a leading batch axis. A subclass for each engine moves the bodies.
 
     Args:
         config: Configuration.
@@ -96,6 +95,8 @@ class Simulation(ABC):
             pads=plant.pads,
             fingers=plant.fingers,
             slip_sensors=plant.slip_sensors,
+            grippers=plant.grippers,
+            markers=plant.markers,
             parameters=_bytes(learned.parameters_array),
             estimator_states=_bytes(learned.states),
             estimates=learned.estimates,

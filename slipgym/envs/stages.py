@@ -24,6 +24,8 @@ from slipgym.envs.nan_guard import note
 from slipgym.envs.observation import ObservationBuffers
 from slipgym.envs.reset_kernels import HARDWARE, START, equip_rows, open_episodes
 from slipgym.envs.values import VALUES
+from slipgym.sensors.markers import MARKERS
+from slipgym.sensors.owned import GRIPPER
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks.episode import EPISODE
 from slipgym.tasks.typing_errors import explained
@@ -43,6 +45,8 @@ _TYPES: Any = BatchState(
     pads=array(PAD, 2),
     fingers=array(FINGER, 2),
     slip_sensors=array(SLIP_SENSOR, 2),
+    grippers=array(GRIPPER),
+    markers=array(MARKERS, 2),
     parameters=BYTES,
     estimator_states=BYTES,
     estimates=array(ESTIMATE),
@@ -59,7 +63,7 @@ STATE = types.NamedTuple([*_TYPES], BatchState)
 """Type of a `BatchState`."""
 ACTION = types.Tuple([F2, array(COMPONENT), FLAGS])
 """Type of actions, their meaning, and which rows are active."""
-_LOOK = [WHOLES, F2, _SINGLE, _SINGLE, WHOLES, array(types.float32, 2)]
+_LOOK = [WHOLES, F2, _SINGLE, _SINGLE, WHOLES, array(types.float32, 2), WHOLES]
 BUFFERS = types.NamedTuple(_LOOK, ObservationBuffers)
 """Type of `ObservationBuffers`."""
 INFOS = types.NamedTuple([F2, array(types.boolean, 2), F2], InfoBuffer)
@@ -163,7 +167,7 @@ class Stages:
         void = types.void
         signatures = {
             "begin": (control_step.begin, void(wrist, STATE, ACTION, *rows)),
-            "measure": (control_step.measure_rows, void(STATE, sensors, *rows)),
+            "measure": (control_step.measure_rows, void(STATE, cells_type(cells), sensors, *rows)),
             "estimate": (control_step.estimate, void(learn, STATE, *rows)),
             "evaluate": (control_step.evaluate, void(judge, STATE, *rows)),
             "look": (control_step.look, void(STATE, BUFFERS, *rows)),

@@ -85,7 +85,7 @@ def _causes(simulation: Source, row: int, name: str) -> tuple[str, ...]:
     batch = simulation.estimator
     fingers = range(2 * row, 2 * row + 2)
     best = max(fingers, key=lambda finger: batch.estimates[f"confidence_{name}"][finger])
-    return causes(Estimate._make(batch.estimates[best].item()), *doubts(batch.states[best]))[name]
+    return causes(Estimate._make(batch.estimates[best].item()), *doubts(batch.states[best])[:2])[name]
 
 
 def _last_change(history: History, column: str, change: float) -> int:

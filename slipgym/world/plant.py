@@ -14,6 +14,8 @@ from slipgym.contact.pressure import OUTER_RADII, patch_cells
 from slipgym.contact.records import CONFIGURED, DISC, ELLIPSOID, pads, patch, rest
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.force_torque import force_torque
+from slipgym.sensors.markers import COLUMNS, MARKERS, ROWS
+from slipgym.sensors.owned import GRIPPER, PLACES
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
 from slipgym.sensors.slip_velocity import SLIP_SENSOR, chip_positions
 from slipgym.world.actuator import FINGER_DAMPING
@@ -41,6 +43,10 @@ class Plant:
     """FORCE_TORQUE (n, 2)."""
     slip_sensors: np.ndarray
     """SLIP_SENSOR (n, 2)."""
+    grippers: np.ndarray
+    """GRIPPER (n,)."""
+    markers: np.ndarray
+    """MARKERS (n, 2); without markers (0, 2)."""
     tilt: np.ndarray | None = None
     """TILT (n,); None without `physics.tilt`."""
 
@@ -48,7 +54,7 @@ class Plant:
         """Copy rows (n,) bool of every array of another plant of the same size into this one."""
         for field in fields(self):
             array = getattr(self, field.name)
-            if array is not None:
+            if array is not None and len(array):
                 array[rows] = getattr(other, field.name)[rows]
 
 
@@ -62,6 +68,8 @@ def build(config: Config, n: int = 1) -> Plant:
         fingers=_fingers(config, n),
         force_torque=_force_torque(config, n, tick_rate),
         slip_sensors=_slip_sensors(config, n),
+        grippers=_grippers(config, n),
+        markers=_markers(config, n),
         tilt=_tilt(config, n),
     )
 
@@ -210,6 +218,27 @@ def _slip_sensors(config: Config, n: int) -> np.ndarray:
     slip_sensors["at"] = positions
     slip_sensors["spread"] = np.sum(positions**2)
     return slip_sensors
+
+
+def _grippers(config: Config, n: int) -> np.ndarray:
+    sensors, grippers = config.sensors, np.zeros(n, GRIPPER)
+    _take_over(sensors.motor, grippers)
+    grippers["usual"], grippers["interval"] = sensors.usual, sensors.interval
+    grippers["place"], grippers["gain"] = PLACES.index(sensors.place), 1.0
+    grippers["softness"] = 2.0 / config.contact.normal_stiffness
+    return grippers
+
+
+def _markers(config: Config, n: int) -> np.ndarray:
+    own = config.sensors.markers
+    if own is None:
+        return np.zeros((0, 2), MARKERS)
+    markers = np.zeros((n, 2), MARKERS)
+    _take_over(own, markers)
+    markers["latency"] = own.latency_frames
+    markers["spacing"] = 2.0 * config.gripper.pad_radius / np.array((COLUMNS, ROWS))
+    markers["gain"] = markers["normal_gain"] = 1.0
+    return markers
 
 
 def _take_over(config: BaseModel, array: np.ndarray) -> None:

@@ -29,7 +29,7 @@ def test_presets_differ_in_what_they_say_they_do():
 
 def test_names():
     assert config.names("materials") == ("cardboard", "case", "plastic", "wood")
-    assert config.names("sensors") == ("ideal", "lab", "realistic")
+    assert config.names("sensors") == ("ideal", "lab", "markers", "motor", "realistic", "wrist")
     assert config.names("randomization") == ("eval_ood", "lab", "none", "train")
     with pytest.raises(ValueError, match="materials, randomization, sensors"):
         config.names("colours")
@@ -37,7 +37,7 @@ def test_names():
 
 @pytest.mark.parametrize("name", ["reallistic", ["ideal"], None])
 def test_unknown_preset_names_the_known(name):
-    with pytest.raises(ValueError, match="ideal, lab, realistic"):
+    with pytest.raises(ValueError, match="ideal, lab, markers, motor, realistic, wrist"):
         config.load(sensors=name)
 
 

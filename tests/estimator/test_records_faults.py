@@ -18,7 +18,7 @@ SHIPPED = Path(__file__).parents[2] / "examples" / "linear_slip_wood.csv.gz"
 
 
 def told(frame, columns=None):
-    record = records.from_arrays(frame, columns)
+    record = records.from_arrays(frame, None, columns)
     return "\n".join(fault_warnings(record, align(record, allow_gaps=True)))
 
 
@@ -41,7 +41,7 @@ def test_a_normal_force_zeroed_in_the_grip_is_not_turned(table, mapping):
     ) as told_:
         records.from_arrays(zeroed)
     assert "sign: -1" not in str(told_.value)
-    right = records.from_arrays(zeroed, mapping("f_n: {offset: 8}"))
+    right = records.from_arrays(zeroed, None, mapping("f_n: {offset: 8}"))
     np.testing.assert_allclose(right.wrench[:, 2], records.from_arrays(lifted(table)).wrench[:, 2], atol=1e-9)
 
 
@@ -63,7 +63,7 @@ def test_more_friction_than_there_can_be_is_told(table):
 def test_the_grippers_own_force(table, mapping):
     own = table.assign(motor=1.1e3 * table["f_n"])
     columns = mapping("grip: {column: motor, unit: mN}")
-    record = records.from_arrays(own, columns)
+    record = records.from_arrays(own, None, columns)
     np.testing.assert_allclose(record.grip, 1.1 * record.wrench[:, 2])
     assert records.from_arrays(own).grip is None
     assert told(own, columns) == ""
@@ -72,20 +72,22 @@ def test_the_grippers_own_force(table, mapping):
     assert told(slow, columns) == ""
 
 
-def test_the_grippers_own_force_may_be_of_another_rate(table, mapping):
+def test_the_grippers_own_force_may_be_of_another_rate(table, mapping, tmp_path):
     forces, twists = table.dropna(subset="f_n"), table.dropna(subset="omega")
     arrays = {f"ft/{name}": forces[name].to_numpy() for name in ("t", "f_x", "f_y", "tau")}
     arrays |= {f"slip/{name}": twists[name].to_numpy() for name in ("t", "v_x", "v_y", "omega")}
     motor = forces.iloc[20::33]
     arrays |= {"motor/t": motor["t"].to_numpy(), "motor/load": motor["f_n"].to_numpy()}
-    record = records.from_arrays(arrays, mapping("f_n: motor/load"))
+    np.savez(tmp_path / "log.npz", **arrays)
+    record = records.load(tmp_path / "log.npz", mapping("f_n: motor/load"))
     first = motor["t"].iloc[0]
     assert record.force_t[0] == first
     assert len(record.force_t) == (forces["t"] >= first).sum()
     at = np.searchsorted(motor["t"], record.force_t, side="right") - 1
     np.testing.assert_array_equal(record.wrench[:, 2], motor["f_n"].to_numpy()[at])
     stopped = arrays | {name: arrays[name][:20] for name in ("motor/t", "motor/load")}
-    ends = records.from_arrays(stopped, mapping("f_n: motor/load")).force_t[-1] - motor["t"].iloc[19]
+    np.savez(tmp_path / "log.npz", **stopped)
+    ends = records.load(tmp_path / "log.npz", mapping("f_n: motor/load")).force_t[-1] - motor["t"].iloc[19]
     assert 0.16 < ends <= 0.166
 
 

@@ -1,4 +1,4 @@
-"""`slipgym map` finds columns by their names, guesses units and signs, and writes what `estimate` takes."""
+"""`slipgym map` finds two fingers, displacements and the columns of a wrench, and tells of faults."""
 
 import numpy as np
 import pandas as pd
@@ -6,112 +6,70 @@ import pytest
 from typer.testing import CliRunner
 
 from estimator import records
-from estimator.records.columns import parse_columns
-from estimator.records.guessing import propose
 from policies.commands.map import app
 
 FORCE, TWIST = ["f_x", "f_y", "f_n", "tau"], ["v_x", "v_y", "omega"]
-LOGGER = {
-    "t": ("stamp", 1e3),
-    "f_x": ("Fx", 1.0),
-    "f_y": ("Fy", 1.0),
-    "f_n": ("Fz", -1.0),
-    "tau": ("Mz", 1e3),
-    "v_x": ("slip_x", 1e3),
-    "v_y": ("slip_y", 1e3),
-    "omega": ("slip_rate", 1.0),
-}
-FIELDS = {
-    "t": ("time [us]", 1e6),
-    "f_x": ("/left/wrench.force.x", 1e3),
-    "f_y": ("/left/wrench.force.y", 1e3),
-    "f_n": ("/left/wrench.force.z", 1e3),
-    "tau": ("/left/wrench.torque.z", 1.0),
-    "v_x": ("twist.linear.x", 1.0),
-    "v_y": ("twist.linear.y", 1.0),
-    "omega": ("twist.angular.z (deg/s)", 180.0 / np.pi),
-}
-AUTHORS = {
-    "t": ("timestamp", 1e9),
-    **{key: (key.replace("_", ""), 1.0) for key in FORCE},
-    "v_x": ("vx", 1e6),
-    "v_y": ("vy", 1e6),
-    "omega": ("omega", 1.0),
-}
 
 
-def renamed(table, names):
-    return pd.DataFrame({name: table[key] * factor for key, (name, factor) in names.items()})
+def mapped(path, tmp_path):
+    """What the command prints, and the mapping that it writes."""
+    output = tmp_path / "mapping.yaml"
+    done = CliRunner().invoke(app, [str(path), "--output", str(output), "--plot", str(tmp_path / "m.png")])
+    assert done.exit_code == 0, done.output
+    return done.output, records.load_columns(output)
 
 
-@pytest.mark.parametrize("names", [LOGGER, FIELDS, AUTHORS])
-def test_the_proposal_reads_the_record(table, save, names):
-    path = save(renamed(table, names), "log.csv")
-    read = records.load(path, parse_columns(propose(path).text(), "proposed"))
-    plain = records.load(save(table, "plain.csv"))
-    np.testing.assert_allclose(read.wrench, plain.wrench, rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(read.twist, plain.twist, rtol=1e-9)
-    np.testing.assert_allclose(read.force_t, plain.force_t, rtol=1e-9)
+@pytest.mark.parametrize("names", ["left_{}", "{}_R", "/finger_1/{}", "{}2"])
+def test_two_fingers_and_positions(table, save, tmp_path, names):
+    other = {"left_{}": "right_{}", "{}_R": "{}_l", "/finger_1/{}": "/finger_2/{}", "{}2": "{}1"}[names]
+    frame = table[["t"]].copy()
+    for name, turn in ((names, 1.0), (other, -1.0)):
+        for key in FORCE:
+            frame[name.format(key)] = table[key] * (turn if key == "f_y" else 1.0)
+    frame["pos_x"], frame["pos_y"] = table["v_x"] * 0.0, 1e3 * table["v_y"] * table["t"]
+    frame["angle"], frame["joint_1"] = table["omega"] * table["t"], 0.3
+    output, columns = mapped(save(frame, "log.csv"), tmp_path)
+    assert len(columns.fingers) == 2
+    first, second = (records.load(tmp_path / "log.csv", each) for each in columns.fingers.values())
+    np.testing.assert_array_equal(first.wrench[:, 1], -second.wrench[:, 1])
+    np.testing.assert_allclose(first.twist[:, 1], 0.02, rtol=1e-6)
+    assert "not used: joint_1" in output
+    with pytest.raises(ValueError, match=r"the mapping is of the fingers \w+, \w+; a record is of one"):
+        records.load(tmp_path / "log.csv", columns)
 
 
-def test_matrices_of_two_lengths(table, tmp_path):
+def test_the_columns_of_a_wrench(table, tmp_path):
     forces, twists = table.dropna(subset="f_n"), table.dropna(subset="omega")
     zero = 0.0 * forces["t"]
     wrench = np.stack([forces["f_x"], forces["f_y"], forces["f_n"], zero, zero, forces["tau"]], axis=1)
-    slip = twists[TWIST].to_numpy()
     path = tmp_path / "log.npz"
+    slip = twists[TWIST].to_numpy()
     np.savez(path, wrench=wrench, wrench_time=forces["t"], slip=slip, slip_time=twists["t"])
-    read = records.load(path, parse_columns(propose(path).text(), "proposed"))
+    _, columns = mapped(path, tmp_path)
+    read = records.load(path, columns)
     np.testing.assert_array_equal(read.wrench, forces[FORCE])
     np.testing.assert_array_equal(read.twist_t, twists["t"])
 
 
-def test_two_fingers_and_positions(table, save):
-    frame = renamed(table, {"t": ("t", 1.0)})
-    for side, turn in (("left", 1.0), ("right", -1.0)):
-        for key in FORCE:
-            frame[f"{side}_{key}"] = table[key] * (turn if key == "f_y" else 1.0)
-    frame["pos_x"], frame["pos_y"] = table["v_x"] * 0.0, 1e3 * table["v_y"] * table["t"]
-    frame["angle"] = table["omega"] * table["t"]
-    frame["gripper_force"] = table["f_n"]
-    path = save(frame, "log.csv")
-    columns = parse_columns(propose(path).text(), "proposed")
-    assert list(columns.fingers) == ["left", "right"]
-    left, right = (records.load(path, each) for each in columns.fingers.values())
-    np.testing.assert_array_equal(left.wrench[:, 1], -right.wrench[:, 1])
-    np.testing.assert_allclose(left.twist[:, 1], 0.02, rtol=1e-6)
-    assert left.grip is not None
-    with pytest.raises(ValueError, match=r"the mapping is of the fingers left, right"):
-        records.load(path, columns)
-
-
-def test_the_command_writes_a_mapping_and_a_picture(table, save, tmp_path):
-    path = save(renamed(table, LOGGER), "log.csv")
-    mapping, picture = tmp_path / "columns.yaml", tmp_path / "columns.png"
-    done = CliRunner().invoke(app, [str(path), "--output", str(mapping), "--plot", str(picture)])
-    assert done.exit_code == 0, done.output
-    assert "f_n: {column: 'Fz', unit: N, sign: -1}" in mapping.read_text()
-    assert "guessed: samples are 1 apart" in done.output
-    assert picture.read_bytes().startswith(b"\x89PNG")
-    records.load(path, records.load_columns(mapping))
-
-
-def test_what_is_missing_is_said(table, save, tmp_path):
-    path = save(renamed(table, LOGGER).drop(columns="Fz").rename(columns={"Fx": "channel 3"}), "log.csv")
-    done = CliRunner().invoke(app, [str(path), "--output", str(tmp_path / "columns.yaml")])
-    assert done.exit_code == 1
-    for words in (
-        "f_x: no column was found",
-        "f_n: no column was found",
-        "not used: channel 3",
-        "no column 'f_n'",
-    ):
-        assert words in done.output
-    assert "# f_n: no column was found" in (tmp_path / "columns.yaml").read_text()
-    done = CliRunner().invoke(
-        app, [str(save(pd.DataFrame({"a": [1.0, 2.0]}), "no.csv")), "--plot", str(tmp_path / "p.png")]
+def test_faults_are_told(save, tmp_path):
+    frame = pd.read_csv("examples/linear_slip_wood.csv.gz")
+    forces = frame.dropna(subset="f_n")[["t", *FORCE]]
+    twists = frame.dropna(subset="omega")[["t", *TWIST]]
+    np.savez(
+        tmp_path / "log.npz",
+        **{name: forces[name] for name in forces},
+        **{name: twists[name] for name in TWIST},
+        slip_time=twists["t"] + 0.1,
     )
-    assert done.exit_code == 1
-    done = CliRunner().invoke(app, [str(tmp_path / "nowhere.csv")])
-    assert done.exit_code == 2
-    assert "no such file" in done.output
+    output, _ = mapped(tmp_path / "log.npz", tmp_path)
+    assert "two clocks" in output
+
+
+def test_columns_that_mean_nothing(save, tmp_path):
+    log = save(pd.DataFrame({"a": [1.0, 2.0]}), "log.csv")
+    done = CliRunner().invoke(
+        app, [str(log), "--output", str(tmp_path / "m.yaml"), "--plot", str(tmp_path / "m.png")]
+    )
+    assert done.exit_code == 0, done.output
+    assert "slipgym estimate does not take it yet" in done.output
+    assert (tmp_path / "m.png").exists()

@@ -30,7 +30,7 @@ omega: {{position: angle, unit: deg}}
 
 def test_a_velocity_is_the_difference_over_the_time_before_it(table, mapping):
     turned = table.assign(omega=table["omega"] * 4)
-    record = records.from_arrays(counted(turned), mapping(MAPPING))
+    record = records.from_arrays(counted(turned), None, mapping(MAPPING))
     plain = records.from_arrays(turned)
     np.testing.assert_array_equal(record.twist_t, plain.twist_t[1:])
     np.testing.assert_allclose(record.twist[:, 1], 0.02, atol=1.01 * COUNT * 120)
@@ -43,7 +43,7 @@ def test_a_velocity_is_the_difference_over_the_time_before_it(table, mapping):
 def test_nothing_is_differentiated_across_a_gap(table, mapping):
     cut = counted(table).loc[(table["t"] < 0.8) | (table["t"] > 1.2)]
     jump = cut.assign(y=cut["y"] + 1e4 * (cut["t"] > 1.0))  # the sensor was lifted
-    record = records.from_arrays(jump, mapping(MAPPING))
+    record = records.from_arrays(jump, None, mapping(MAPPING))
     assert record.twist[:, 1].max() < 0.03
     assert len(record.twist_t) == cut["y"].notna().sum() - 2
 
@@ -57,7 +57,7 @@ def test_positions_that_a_log_holds_are_differentiated_between_samples(table, ma
     now = np.floor(t * 120).astype(int)
     held = {"t": t, "f_x": 0 * t, "f_y": 2 + 0 * t, "f_n": 5 + np.sin(t), "tau": 0.01 * t}
     held |= {"x": 0 * t, "y": y[now], "angle": 0 * t}
-    record = records.from_arrays(held, mapping(MAPPING.replace(str(COUNT), "1")))
+    record = records.from_arrays(held, None, mapping(MAPPING.replace(str(COUNT), "1")))
     assert record.hold == pytest.approx(1 / 120, rel=0.01)
     assert record.twist[:, 1].min() > 0.005
     assert record.twist[:, 1].max() < 0.04
@@ -65,20 +65,20 @@ def test_positions_that_a_log_holds_are_differentiated_between_samples(table, ma
 
 def test_a_position_without_motion_is_a_velocity_of_zero(table, mapping):
     still = counted(table.assign(omega=table["omega"] * 0.0)).assign(y=lambda frame: frame["x"] + 7.0)
-    assert (records.from_arrays(still, mapping(MAPPING)).twist == 0.0).all()
+    assert (records.from_arrays(still, None, mapping(MAPPING)).twist == 0.0).all()
 
 
 def test_scale_and_offset(table, mapping):
     raw = table.assign(f_n=(table["f_n"] - 3.0) * 100.0, t=table["t"] * 1e3)
     columns = mapping("f_n: {scale: 10, unit: mN, offset: 3000}\nt: {unit: ms, offset: 500}")
-    record, plain = records.from_arrays(raw, columns), records.from_arrays(table)
+    record, plain = records.from_arrays(raw, None, columns), records.from_arrays(table)
     np.testing.assert_allclose(record.wrench[:, 2], plain.wrench[:, 2], rtol=1e-12)
     np.testing.assert_allclose(record.force_t, plain.force_t + 0.5, rtol=1e-12)
 
 
 def test_velocities_may_have_a_clock_of_their_own_in_one_file(table, mapping):
     late = mapping("velocity_t: {column: t, offset: -0.05}")
-    record, plain = records.from_arrays(table, late), records.from_arrays(table)
+    record, plain = records.from_arrays(table, None, late), records.from_arrays(table)
     np.testing.assert_allclose(record.twist_t, plain.twist_t - 0.05, rtol=1e-12)
     np.testing.assert_array_equal(record.force_t, plain.force_t)
 
@@ -88,8 +88,8 @@ def test_the_unit_of_a_position_may_be_in_its_name(table, mapping):
         "v_y: {position: y, scale: 7.94e-06}", "v_y: {position: 'y [mm]', scale: 7.94e-03}"
     )
     frame = counted(table).rename(columns={"y": "y [mm]"})
-    expected = records.from_arrays(counted(table), mapping(MAPPING)).twist
-    np.testing.assert_allclose(records.from_arrays(frame, mapping(text)).twist, expected, rtol=1e-12)
+    expected = records.from_arrays(counted(table), None, mapping(MAPPING)).twist
+    np.testing.assert_allclose(records.from_arrays(frame, None, mapping(text)).twist, expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -121,11 +121,11 @@ def test_clocks_that_do_not_meet(table, save):
 
 
 def test_unknown_file_types_and_files(tmp_path):
-    (tmp_path / "log.xls").touch()
+    (tmp_path / "log.docx").touch()
     (tmp_path / "log.parquet").write_text("no parquet")
     (tmp_path / "log.csv").touch()
     with pytest.raises(ValueError, match=r"unknown file type; records are \.csv, \.csv\.gz, \.parquet"):
-        records.load(tmp_path / "log.xls")
+        records.load(tmp_path / "log.docx")
     for name in ("log.parquet", "log.csv"):
         with pytest.raises(ValueError, match=f"{name}: cannot be read"):
             records.load(tmp_path / name)
@@ -180,5 +180,5 @@ def test_settings_are_numbers_where_they_can_be():
 def test_a_missing_extra_says_how_to_install_it(table, save, monkeypatch):
     path = save(table)
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ModuleNotFoundError, match=r"pip install 'slipgym\[records\]'"):
+    with pytest.raises(ModuleNotFoundError, match=r"pip install 'slipgym\[cli\]'"):
         records.load(path)

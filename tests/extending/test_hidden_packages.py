@@ -43,7 +43,8 @@ def test_a_file_that_hides_a_package_is_named(tmp_path: Path, name: str, kind: s
     done = run(tmp_path, "-m", "slipgym", "--help")
     assert done.returncode == 1
     last = done.stderr.strip().splitlines()[-1]
-    assert str(file) in last and "rename it" in last, done.stderr
+    assert str(file) in last, done.stderr
+    assert "rename it" in last
 
 
 def test_a_folder_of_data_hides_nothing(tmp_path: Path) -> None:

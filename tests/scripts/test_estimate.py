@@ -69,7 +69,7 @@ def test_a_missing_extra_says_how_to_install_it(tmp_path, missing):
     (tmp_path / f"{missing}.py").write_text(f"raise ModuleNotFoundError('none', name={missing!r})")
     done = call(tmp_path, "estimate.py", SHIPPED, path=f"{tmp_path}{os.pathsep}{ROOT}")
     assert done.returncode != 0
-    assert f"{missing} is not installed: pip install 'slipgym[records]'" in " ".join(done.stderr.split())
+    assert f"{missing} is not installed: pip install 'slipgym[cli]'" in " ".join(done.stderr.split())
     assert "Traceback" not in done.stderr
 
 

@@ -6,6 +6,7 @@ import pytest
 
 import policies
 from estimator import records
+from policies.evaluation.record_files import check_targets, save_record
 from policies.evaluation.sensor_record import TWIST, record_sensors
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR
 
@@ -27,11 +28,18 @@ def test_every_sample_within_its_steps_is_kept(policy_folder, tmp_path):
     assert 4 * (steps - 1) < samples <= 4 * steps
     assert frame[list(TWIST)].notna().all(axis=1).sum() == samples
 
-    frame.to_parquet(tmp_path / "log.parquet")
-    ours = records.estimate(records.load(tmp_path / "log.parquet"), DEFAULT_ESTIMATOR).estimates[-1]
-    np.testing.assert_allclose(
-        [ours[name] for name in ("mu_s", "mu_c", "r")], info["estimated_per_finger"][1], rtol=1e-9
-    )
+    for name in ("log.parquet", "log.h5"):
+        save_record(frame, tmp_path / name)
+        ours = records.estimate(records.load(tmp_path / name), DEFAULT_ESTIMATOR).estimates[-1]
+        np.testing.assert_allclose(
+            [ours[name] for name in ("mu_s", "mu_c", "r")], info["estimated_per_finger"][1], rtol=1e-9
+        )
+
+
+@pytest.mark.parametrize("name", ["log.xlsx", "log.npz", "log.mcap", "log"])
+def test_a_type_that_cannot_be_written_is_refused_before_the_episode(tmp_path, name):
+    with pytest.raises(ValueError, match=rf"{name}: unknown file type; records are \.csv, .*\.h5"):
+        check_targets(tmp_path / name)
 
 
 @pytest.mark.slow  # it compiles for a sensor with more samples
