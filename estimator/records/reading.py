@@ -123,7 +123,7 @@ def _record(files: list[list[Table]], columns: Columns) -> Record:
         checks.check_cop(forces.name, cop)
         wrench = wrench_at(wrench, cop)
     checks.check_torque(forces.name, wrench)
-    grip = forces.numbers([GRIP])[at, 0] if forces.has(GRIP) else None
+    grip = forces.numbers([GRIP], at)[:, 0] if forces.has(GRIP) else None
     return Record(forces.name, force_t, wrench, cop, twist_t, twist, _truth(forces, at), hold, grip=grip)
 
 
@@ -168,17 +168,17 @@ def _stream(
     table: Table, time: str, keys: tuple[str, ...], sparse: bool, what: str
 ) -> tuple[Array, Array, Rows]:
     """Time (n,), values (n, len(keys)) and places in the table (n,) of one stream."""
-    (t, column), values = table.seconds(time), table.numbers(keys)
+    at = table.filled(keys) if sparse else np.arange(len(table.frame))
+    (t, column), values = table.seconds(time, at), table.numbers(keys, at)
     empty = np.isnan(values)
-    at: Any = np.flatnonzero(~empty.all(axis=1)) if sparse else np.arange(len(t))
-    for k in at[empty[at].any(axis=1)][:1]:
-        lacking = table.columns[keys[int(np.argmax(empty[k]))]]
-        assert lacking is not None
+    if empty.any():
+        k = int(np.argmax(empty.any(axis=1)))
+        lacking = table.column(keys[int(np.argmax(empty[k]))]).column
         rest = "; a row holds all of a stream or none" if sparse else ""
-        raise ValueError(f"{table.name}: row {table.rows(k)}: {brief(lacking.column)} is empty or NaN{rest}")
-    checks.check_time(table.name, t[at], table.rows(at), what)
-    checks.check_rate(table.name, t[at], what, time, column)
-    return t[at], values[at], at
+        raise ValueError(f"{table.name}: row {table.rows(at)[k]}: {brief(lacking)} is empty or NaN{rest}")
+    checks.check_time(table.name, t, table.rows(at), what)
+    checks.check_rate(table.name, t, what, time, column)
+    return t, values, at
 
 
 def _cop_keys(table: Table) -> tuple[str, ...]:
@@ -202,7 +202,7 @@ def _cop(table: Table, keys: tuple[str, ...], wrench: Array, at: Rows) -> Array 
     """Centre of pressure by force sample (n, 2) [m]; out of contact, the origin."""
     if not keys:
         return None
-    values, f_n = table.numbers(keys)[at], wrench[:, 2]
+    values, f_n = table.numbers(keys, at), wrench[:, 2]
     missing: Any = np.isnan(values).any(axis=1)
     lost = missing & (f_n >= CONTACT)
     if lost.any():
@@ -220,5 +220,5 @@ def _truth(table: Table, at: Rows) -> Array | None:
     if not keys:
         return None
     truth = np.full((len(at), len(TRUTH)), np.nan)
-    truth[:, [TRUTH.index(key) for key in keys]] = table.numbers(keys)[at]
+    truth[:, [TRUTH.index(key) for key in keys]] = table.numbers(keys, at)
     return truth

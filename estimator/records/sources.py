@@ -176,11 +176,13 @@ def _below(title: str, source: Source) -> Source:
 
 
 def _parquet(path: Path, wanted: Wanted) -> list[Source]:
-    pandas, names = extra("pandas"), extra("pyarrow.parquet").read_schema(path, memory_map=False).names
+    parquet = extra("pyarrow.parquet")
+    names = parquet.read_schema(path).names
     columns = None if wanted is None else [name for name in names if is_wanted(name.strip(), wanted)]
-    source = of_frame(
-        pandas.read_parquet(path, engine="pyarrow", columns=columns, page_checksum_verification=True)
+    table = parquet.read_table(
+        path, columns=columns, use_pandas_metadata=True, page_checksum_verification=True, partitioning=None
     )
+    source = of_frame(table.to_pandas(split_blocks=True, self_destruct=True))  # two copies at no time
     there = dict.fromkeys([*source.names, *map(str.strip, names)])
     return [Source(source.frame, [name for name in there if not name.startswith("__index_level_")])]
 

@@ -70,42 +70,51 @@ class Table:
             keys_of_mapping = f"map other names with --columns mapping.yaml; its keys: {', '.join(UNITS)}"
             raise ValueError("\n".join([*lines, keys_of_mapping]))
 
-    def numbers(self, keys: Sequence[str]) -> Array:
+    def filled(self, keys: Sequence[str]) -> Rows:
+        """Places of the rows that have a cell of any of these keys, (n,); `require` them first."""
+        there = np.zeros(len(self.frame), bool)
+        for key in keys:
+            there |= np.asarray(self.frame[self.column(key).column].notna(), bool)
+        return np.flatnonzero(there)
+
+    def numbers(self, keys: Sequence[str], at: Rows | None = None) -> Array:
         """Columns in SI units and slipgym's signs; NaN where a cell is empty.
 
         Args:
             keys: What to read; `require` them first.
+            at: Places of the rows to read, (n,); None: all.
 
         Returns:
-            (rows, len(keys)).
+            (n, len(keys)).
 
         Raises:
             ValueError: A column is of a type that is no number, its unit is unknown, or a cell is not a
                 finite number.
         """
-        found = np.empty((len(self.frame), len(keys)))
+        found = np.empty((len(self.frame) if at is None else len(at), len(keys)))
         for k, key in enumerate(keys):
             column = self.column(key)
-            np.multiply(column.factor, self._read(numbers, key), out=found[:, k])
+            np.multiply(column.factor, self._read(numbers, key, at), out=found[:, k])
             if column.offset:
                 found[:, k] += column.offset
         return found
 
-    def seconds(self, key: str) -> tuple[Array, Column | None]:
+    def seconds(self, key: str, at: Rows | None = None) -> tuple[Array, Column | None]:
         """A time in seconds; dates and durations have a unit of their own.
 
         Args:
             key: The time of forces or velocities.
+            at: As for `numbers`.
 
         Returns:
-            (rows,) [s], NaN where it is missing; its column, None if its type decided the unit.
+            (n,) [s], NaN where it is missing; its column, None if its type decided the unit.
 
         Raises:
             ValueError: As `numbers`.
         """
-        own = self._read(times, key)
+        own = self._read(times, key, at)
         if own is None:
-            return self.numbers([key])[:, 0], self.column(key)
+            return self.numbers([key], at)[:, 0], self.column(key)
         return own + self.column(key).offset, None
 
     def rows(self, at: Rows) -> Rows:
@@ -131,11 +140,12 @@ class Table:
             )
         return column
 
-    def _read(self, reader: Any, key: str) -> Any:
+    def _read(self, reader: Any, key: str, at: Rows | None) -> Any:
         column = self.columns[key]
         assert column is not None
         try:
-            return reader(self.frame[column.column], self.comma)
+            cells = self.frame[column.column]
+            return reader(cells if at is None else cells.iloc[at], self.comma)
         except (ValueError, TypeError, OverflowError) as error:
             raise ValueError(f"{self.name}: {brief(error, 300)}") from error
 
