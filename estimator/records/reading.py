@@ -16,7 +16,7 @@ from estimator.records.alignment import GAP_PERIODS
 from estimator.records.columns import Columns, Wanted
 from estimator.records.extras import extra
 from estimator.records.holding import held
-from estimator.records.record import Array, Record, Rows, cop_of_tilt, wrench_at
+from estimator.records.record import Array, Record, Rows, cop_of_tilt, move_torque
 from estimator.records.sources import Source, of_frame, read_sources
 from estimator.records.streams import of_one_finger, read_tables, stream
 from estimator.records.table import Table, listed
@@ -121,7 +121,7 @@ def _record(files: list[list[Table]], columns: Columns) -> Record:
     cop = _cop(forces, extra_keys, wrench, at)
     if cop is not None:
         checks.check_cop(forces.name, cop)
-        wrench = wrench_at(wrench, cop)
+        move_torque(wrench, cop)
     checks.check_torque(forces.name, wrench)
     grip = forces.numbers([GRIP], at)[:, 0] if forces.has(GRIP) else None
     return Record(forces.name, force_t, wrench, cop, twist_t, twist, _truth(forces, at), hold, grip=grip)
@@ -208,7 +208,7 @@ def _cop(table: Table, keys: tuple[str, ...], wrench: Array, at: Rows) -> Array 
     if lost.any():
         row = table.rows(at)[np.argmax(lost)]
         raise ValueError(f"{table.name}: row {row}: {' or '.join(keys)} is empty or NaN")
-    values = np.where(missing[:, None], 0.0, values)
+    values[missing] = 0.0
     if keys == TILT:
         return cop_of_tilt(values, f_n, CONTACT)
     return values * (f_n >= CONTACT)[:, None]

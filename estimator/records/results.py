@@ -28,7 +28,7 @@ def write(result: Result, folder: Path) -> None:
         ModuleNotFoundError: The extra `slipgym[cli]` is not installed.
         OSError: A file cannot be written.
     """
-    frame = extra("pandas").DataFrame(table(result))
+    frame = extra("pandas").DataFrame(table(result), copy=False)
     if find_spec("pyarrow") is not None:
         frame.to_parquet(folder / "estimates.parquet", index=False)
     frame.to_csv(folder / "estimates.csv", index=False, float_format="%.9g")

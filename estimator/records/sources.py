@@ -182,7 +182,9 @@ def _parquet(path: Path, wanted: Wanted) -> list[Source]:
     table = parquet.read_table(
         path, columns=columns, use_pandas_metadata=True, page_checksum_verification=True, partitioning=None
     )
-    source = of_frame(table.to_pandas(split_blocks=True, self_destruct=True))  # two copies at no time
+    source = of_frame(table.to_pandas(split_blocks=True, self_destruct=True))  # column by column, to save memory
+    del table
+    extra("pyarrow").default_memory_pool().release_unused()
     there = dict.fromkeys([*source.names, *map(str.strip, names)])
     return [Source(source.frame, [name for name in there if not name.startswith("__index_level_")])]
 
