@@ -10,6 +10,7 @@ COMMANDS = {
     "delays": 'Print "adaptive" in stick-slip with late velocities.',
     "estimator-costs": "Print what an update of each estimator costs.",
     "fuzz": "Print errors of estimators in independent worlds.",
+    "hidden-grippers": "Print how often the intervals of identify hold.",
     "imperfections": "Print what each imperfection of the sensors costs.",
     "jumps": "Print how soon mu_c is right after friction jumps.",
     "live-bars": "Measure `slipgym live` under faults of sensors and networks.",

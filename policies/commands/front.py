@@ -28,6 +28,7 @@ COMMANDS = {
     "estimate": "Run an estimator on a record of your gripper.",
     "map": "Propose which columns of a log are what.",
     "live": "Estimate, and command a grip, while a gripper runs.",
+    "identify": "Fit the simulator to a log of your gripper.",
     "data": "List or fetch public data of real contacts.",
     "record": "Write what a finger's sensors read in an episode.",
     "validate": "Check the physics against its acceptance figures.",

@@ -38,6 +38,11 @@ class GripperConfig(Frozen):
     finger_lag: Factors = Field(description="Time constant of each finger's force loop over lag [-]")
     dead_time: float = Field(ge=0.0, le=1.0, description="Dead time of the force loop, before its lag [s]")
     force_gain: Factors = Field(description="Force of each finger's actuator over the commanded [-]")
+    stiction: float = Field(
+        ge=0.0,
+        le=100.0,
+        description="Change of the command that friction or backlash swallows, either way from the force [N]",
+    )
     force_step: float = Field(
         ge=1e-6,
         le=1000.0,

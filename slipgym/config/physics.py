@@ -77,6 +77,9 @@ class ContactConfig(Frozen):
     stribeck_exponent: float = Field(
         ge=0.1, le=10.0, description="Exponent of that decay; published ones are 0.5 to 2 [-]"
     )
+    speed_slope: float = Field(
+        ge=-0.2, le=0.2, description="Growth of mu_c with the logarithm of the slip speed over 10 mm/s [-]"
+    )
     radius: Annotated[float, Field(ge=1e-4, le=0.2)] | None = Field(
         description="Radius r of the equivalent rim contact; null: that of the pressure on the whole pad [m]"
     )

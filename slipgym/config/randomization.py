@@ -42,6 +42,9 @@ class Ranges(PadRanges):
     stribeck_velocity: Annotated[Distribution | None, within(1e-5, 0.1)] = Field(
         default=None, description="Slip speed at which mu_s has decayed to mu_c [m/s]"
     )
+    speed_slope: Annotated[Distribution | None, within(-0.2, 0.2)] = Field(
+        default=None, description="Growth of mu_c with the logarithm of the slip speed"
+    )
     sigma_0: Annotated[Distribution | None, within(1e5, 1e8)] = Field(
         default=None, description="Bristle stiffness [1/m]"
     )
@@ -83,6 +86,9 @@ class Ranges(PadRanges):
     )
     force_gain: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
         default=None, description="Actuator force over the commanded, for each finger"
+    )
+    stiction: Annotated[Distribution | None, within(0.0, 10.0)] = Field(
+        default=None, description="Stiction of each finger's actuator [N]"
     )
     noise_scale: Annotated[Distribution | None, within(0.0, 10.0)] = Field(
         default=None, description="White noise of all sensors over the configured"

@@ -51,6 +51,12 @@ class ForceTorqueConfig(Frozen):
     latency_spread: float = Field(
         ge=0.0, le=10.0, description="Largest latency on top of that, sampled per episode [s]"
     )
+    tip_mass: float = Field(
+        ge=0.0, le=1.0, description="Smallest mass of the fingertip in front of the sensor [kg]"
+    )
+    tip_mass_spread: float = Field(
+        ge=0.0, le=1.0, description="Largest mass on top of that, sampled per episode and finger [kg]"
+    )
     dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
     tilt: float = Field(
         ge=0.0, le=0.5, description="Largest tilt of the frame about x and y, per episode [rad]"
@@ -85,8 +91,19 @@ class SlipConfig(Frozen):
     latency_spread: int = Field(
         ge=0, description="Largest latency on top of that, sampled per episode [samples]"
     )
+    own_latency: bool = Field(
+        description="Whether each finger's sensor samples its own latency: true or false"
+    )
     jitter: Probability = Field(description="Probability that a reading is one sample older [-]")
     dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
+    rest_after: float = Field(
+        ge=0.0, le=1000.0, description="Time without a count after which the chips rest [s]"
+    )
+    rest_period: float = Field(
+        ge=0.0,
+        le=1.0,
+        description="Longest time between two looks of resting chips, sampled per episode; 0: none rests [s]",
+    )
     scale_error: float = Field(
         ge=0.0, le=0.5, description="Largest relative error of the counts, per episode [-]"
     )

@@ -90,7 +90,11 @@ def set_friction_levels(pad: Pad, cells: Cells, twist: Vector) -> float:
     load, z_x, z_y = cells[LOAD], cells[Z_X], cells[Z_Y]
     limit, kept = cells[ELASTIC_LIMIT], cells[RETENTION]
     compliance, mean = 1.0 / pad.sigma_0, 0.0
-    if write_speeds(pad, cells, twist) == 0:
+    slow = write_speeds(pad, cells, twist)
+    if pad.speed_slope != 0.0:
+        for i in range(cells.shape[1]):
+            limit[i] = stribeck.level_at(pad, limit[i] * pad.stribeck_velocity)
+    elif slow == 0:
         limit[:] = stribeck.levels(pad)[0]
     elif pad.stribeck_exponent == 2.0:
         write_levels(pad, cells, 2.0)  # a loop of its own, without a power: several cells at once
@@ -124,7 +128,7 @@ def update_friction_levels(pad: Pad, cells: Cells, delta: Vector, h: float, leve
     flat = stribeck.flat_speed(pad.stribeck_exponent) * pad.stribeck_velocity
     mu_c, _ = stribeck.levels(pad)
     low = level - mu_c < stribeck.LEVEL_TOLERANCE * mu_c
-    fast = low and math.hypot(found[0], found[1]) > flat
+    fast = low and pad.speed_slope == 0.0 and math.hypot(found[0], found[1]) > flat
     if fast or stribeck.level_unchanged(pad, away):
         return level  # without a look at the cells
     mean = set_friction_levels(pad, cells, found)

@@ -30,6 +30,7 @@ PAD_EPISODE = np.dtype(
         ("mu_c", "f8"),  # Coulomb friction, at the reference force [-]
         ("mu_s", "f8"),  # static friction, at the reference force and just after a slip [-]
         ("stribeck_velocity", "f8"),  # v_s [m/s]
+        ("speed_slope", "f8"),  # growth of mu_c per e-fold of the slip speed [-]
         ("sigma_0", "f8"),  # bristle stiffness per normal force [1/m]
         ("r", "f8"),  # radius of the equivalent rim contact, at the reference force [m]
         ("cop", "f8", 2),  # centre of pressure in the pad frame, without tangential load [m]

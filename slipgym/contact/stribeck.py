@@ -2,6 +2,13 @@
 
     g(v) = mu_c + (mu_s - mu_c) exp(-(v / v_s)^gamma)
 
+Friction of rubber moreover rises with the logarithm of the speed, and falls with it where aging prevails:
+Schallamach, A theory of dynamic rubber friction, Wear 6, 1963; Xu & Persson, arXiv 2505.16943; Braun &
+Peyrard, arXiv 1104.5652. Once the contact slides, mu_c is that at the speed v_0 = `REFERENCE`:
+
+    mu_c(v) = mu_c (1 + a ln(v / v_0)),    v within `SLOWEST` and `FASTEST`
+    g(v)    = mu_c(v) + (mu_s - mu_c(v)) exp(-(v / v_s)^gamma)
+
 Both contact models read g here, and the shortcuts of their solvers read here what they need to know of its
 shape. Another curve is another `decayed` and what follows from it: `steepest_slope`, `flat_speed` and
 `vanishing_speed`. All take the scaled slip speed s = v / v_s and the exponent gamma.
@@ -17,6 +24,12 @@ from slipgym.contact.records import Pad
 
 LEVEL_TOLERANCE = 1e-3
 """Difference of the friction level, over itself, between what was expected and what was found [-]."""
+REFERENCE = 0.01
+"""Slip speed at which mu_c holds [m/s]; silicones slid on PLA at this speed in the data set tolstoys19."""
+SLOWEST, FASTEST = 1e-2 * REFERENCE, 1e2 * REFERENCE
+"""Slip speeds beyond which friction no longer changes with the logarithm of the speed [m/s]."""
+WIDEST = math.log(FASTEST / REFERENCE)
+"""Largest |ln(v / v_0)| [-]."""
 FLAT = 9.0
 """s^gamma from which the solver takes the curve for flat: exp(-9) of mu_s - mu_c is left."""
 
@@ -75,6 +88,8 @@ def levels(pad: Pad) -> tuple[float, float]:
 def level_at(pad: Pad, slip_speed: float) -> float:
     """Friction level g of a pad at a slip speed [m/s]."""
     mu_c, mu_s = levels(pad)
+    if pad.speed_slope != 0.0:
+        mu_c *= 1.0 + pad.speed_slope * math.log(min(max(slip_speed, SLOWEST), FASTEST) / REFERENCE)
     return friction_level(mu_c, mu_s, slip_speed / pad.stribeck_velocity, pad.stribeck_exponent)
 
 
@@ -88,4 +103,6 @@ def level_unchanged(pad: Pad, speed_change: float) -> bool:
     if slope == math.inf:
         return False
     change = pad.static_gain * (pad.mu_s - pad.mu_c) * abs(speed_change) * slope
+    if pad.speed_slope != 0.0:  # |d/ds of a ln(v / v_0) (1 - decayed)| <= |a| (1 + |ln(v / v_0)| slope)
+        change += abs(pad.speed_slope) * pad.mu_c * abs(speed_change) * (1.0 + WIDEST * slope)
     return change <= LEVEL_TOLERANCE * pad.mu_c * pad.stribeck_velocity

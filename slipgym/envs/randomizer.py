@@ -22,6 +22,7 @@ from slipgym.envs.sampling_kernels import (
     KINDS,
     NUMBER,
     PLAIN,
+    SPARE,
     sample_values,
     schedule,
 )
@@ -133,8 +134,7 @@ class Randomizer:
         choices: list[float] = []
         indices = dict(zip(NAMES, (materials, list(self.variants)), strict=True))
         numbers = np.zeros(SIZE, NUMBER)
-        numbers["at"], numbers["nominal"] = -1, flat(self._nominal)[0]
-        count = 0
+        count, numbers["at"], numbers["nominal"] = 0, -1, flat(self._nominal)[0]
         for name in self.drawn:
             field, own = getattr(self._ranges, name), numbers[PLACES[name]]
             own["rule"] = PLAIN if name in FRICTION else GATED if name in NAMES else BLENDED
@@ -142,8 +142,9 @@ class Randomizer:
                 field = Distribution(choices=tuple(float(indices[name].index(each)) for each in field))
             for number in own:
                 _describe(number, field, choices)
-            own["at"] = count + np.arange(len(own))
-            count += max(2, len(own))  # a single number leaves one for its gate
+            spare = SPARE.get(name) in self.drawn
+            own["at"] = numbers[PLACES[SPARE[name]]]["at"] + 1 if spare else count + np.arange(len(own))
+            count += 0 if spare else max(2, len(own))  # a single number leaves one for its gate
         disturbances = np.zeros(len(self.kinds), DISTURBANCE)
         distributions = np.zeros((len(self.kinds), max(map(len, KINDS.values()))), NUMBER)
         for j, disturbance in enumerate(self._ranges.disturbances):

@@ -15,6 +15,7 @@ from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
 from slipgym.sensors.unloaded import READINGS, read_unloaded
 from slipgym.tasks.disturbance import bear
+from slipgym.world.fingertip import weigh_tip
 from slipgym.world.placing import PATCHES_OF_WORLDS, place_world
 
 WARM_UP_STEPS = 6
@@ -83,6 +84,7 @@ randomize_pad = generate(
     ("pad", "value"),
     [
         "pad.stribeck_velocity, pad.sigma_0 = value.stribeck_velocity, value.sigma_0",
+        "pad.speed_slope = value.speed_slope",
         *(f"pad.{CONFIGURED.get(name, name)} = value.{name}" for name in EFFECTS if name != "anisotropy"),
         "pad.axes[0], pad.axes[1] = friction_axes(value.anisotropy)",
     ],
@@ -144,6 +146,7 @@ def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
             fingers[i, f].lag, fingers[i, f].gain = value.finger_lag[f] * value.lag, value.force_gain[f]
             if own.randomized:
                 randomize_pad(pad, value)
+                fingers[i, f].stiction = value.stiction
                 fingers[i, f].dead_ticks = np.int64(np.rint(value.dead_time * own.clock))
                 slip_sensors[i, f].noise = value.noise_scale * own.slip_noise
                 slip_sensors[i, f].least_delay = np.int64(value.slip_latency)
@@ -180,6 +183,7 @@ def show_open_gripper(update, state, force_torque, i):
     readings, twists = np.empty((2, READINGS, 4)), np.zeros((2, 3))
     wrenches = np.empty((2, 4))
     for f in range(2):
+        weigh_tip(force_torque[i, f], state.worlds[i])
         read_unloaded(force_torque[i, f], readings[f])
     pair = slice(2 * i, 2 * i + 2)
     own = pair if state.parameters.shape[0] > 1 else slice(0, 1)

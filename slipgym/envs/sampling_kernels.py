@@ -13,6 +13,8 @@ from slipgym.tasks.episode import whole_steps
 BLENDED, PLAIN, GATED = range(3)
 """What becomes of a sampled number: interpolated from the nominal one by the scale; taken as it is; or taken
 with the scale as probability, else the nominal one."""
+SPARE = {"speed_slope": "stribeck_velocity", "stiction": "dead_time"}
+"""Field -> a number before it whose second random number it takes: it moves no other's."""
 NUMBER = np.dtype(
     [
         ("at", "i8"),  # place of its uniform random number; -1: not sampled

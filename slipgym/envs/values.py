@@ -70,6 +70,7 @@ NAMES = ("materials", "pressure")
 _NUMBERS = (
     "friction_drift",
     "stribeck_velocity",
+    "speed_slope",
     "sigma_0",
     "radius_scale",
     "mass_scale",
@@ -78,6 +79,7 @@ _NUMBERS = (
     "com_z",
     "lag",
     "dead_time",
+    "stiction",
     "noise_scale",
     "bias_scale",
     "slip_latency",
@@ -112,12 +114,14 @@ def nominal_values(config: Config) -> np.ndarray:
     values = np.zeros(1, VALUES)
     nominal = {
         "stribeck_velocity": contact.stribeck_velocity,
+        "speed_slope": contact.speed_slope,
         "sigma_0": contact.sigma_0,
         "radius_scale": 1.0,
         "mass_scale": 1.0,
         "size_scale": 1.0,
         "lag": gripper.lag,
         "dead_time": gripper.dead_time,
+        "stiction": gripper.stiction,
         "noise_scale": 1.0,
         "slip_latency": config.sensors.slip.latency_samples,
         "materials": -1.0,

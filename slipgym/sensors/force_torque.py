@@ -38,6 +38,8 @@ FORCE_TORQUE_FIXED = np.dtype(
         ("crosstalk", "f8"),  # largest part of an axis's load that another axis reads [-]
         ("least_delay", "i8"),  # in ticks
         ("delay_spread", "i8"),  # what may be added, in ticks
+        ("least_tip", "f8"),  # smallest mass of the fingertip in front of the sensor [kg]
+        ("tip_spread", "f8"),  # what may be added [kg]
     ]
 )
 """Fields of FORCE_TORQUE that the configuration fixes for all episodes."""
@@ -54,6 +56,8 @@ def force_torque(kept: int, misaligned: bool = False) -> np.dtype:
     episode = np.dtype(
         [
             ("delay", "i8"),  # latency in ticks
+            ("tip_mass", "f8"),  # [kg]
+            ("tip_load", "f8", 2),  # its weight and inertia along the pad's x and y, newest [N]
             ("noise", "f8", 6),  # standard deviation per sample [N, N m]
             ("bias", "f8", 6),
             ("last", "f8", 6),  # reading

@@ -14,7 +14,7 @@ from slipgym.sensors.noise import uniform
 
 LOAD_AXES = 6
 """Of a force/torque sensor."""
-OFF_CENTRE, TILT, CROSSTALK, LATENCY = 0, 2, 4, 64
+OFF_CENTRE, TILT, CROSSTALK, LATENCY, TIP = 0, 2, 4, 64, 65
 """First of the numbers that each takes from `share`."""
 _START = 1 << 40
 """Index of the first of them; the noise of a sensor uses smaller ones."""

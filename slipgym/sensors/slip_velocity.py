@@ -5,6 +5,9 @@ control step the counts of the averaging window, divided by its length, give the
 (v_x, v_y, omega) at the pad centre by least squares over all axes (gripper paper,
 arXiv 2410.19660). No count, no velocity: the twist is then exactly 0. A chip that counts nothing
 while the others count is left out; two chips determine the twist.
+
+Chips that counted nothing for a while look at the surface less often (rest mode). What moves in between is
+counted late, at the next look, and what exceeds the range of a sample is lost.
 """
 
 from __future__ import annotations
@@ -34,9 +37,12 @@ SLIP_SENSOR_FIXED = np.dtype(
         ("range", "f8"),  # largest displacement per axis and sample [m]
         ("window", "i8"),  # samples averaged
         ("delay_spread", "i8"),  # what an episode may add to the latency, in samples
+        ("own_delay", "i8"),  # 1 if it samples that by itself, 0 if it shares finger 1's
         ("jitter", "f8"),  # probability that a reading is a sample older [-]
         ("dropout", "f8"),  # probability that a reading is the last one again [-]
         ("scale_spread", "f8"),  # largest relative error of an episode's counts [-]
+        ("rest_after", "i8"),  # samples without a count before the chips rest
+        ("rest_most", "i8"),  # largest number of samples from one look of resting chips to the next
         ("chip_failure", "f8"),  # probability that one chip counts nothing in an episode [-]
         ("chips", "i8"),  # how many
         ("at", "f8", (CHIPS_MAX, 2)),  # where, from the pad centre, in the finger's frame [m]
@@ -51,6 +57,9 @@ SLIP_SENSOR_EPISODE = np.dtype(
         ("delay", "i8"),  # latency in samples
         ("scale", "f8"),  # counted over true motion [-]
         ("failed", "i8"),  # chip that counts nothing; -1 for none
+        ("rest_samples", "i8"),  # from one look of resting chips to the next; 0 or 1: they never rest
+        ("rest_phase", "i8"),  # number of the first of them, counting from 0
+        ("still", "i8"),  # samples since the chips last counted
         ("delivered", "i8"),  # newest sample delivered, counting from 0
         ("last", "f8", 3),  # reading
         ("key", "u8"),  # of the noise
@@ -97,9 +106,15 @@ def sample_slip(sensor: Any) -> None:
     Counting truncates towards zero and keeps the remainder, so a surface that vibrates by less
     than one count gives none.
     """
+    row = sensor.history[sensor.taken % HISTORY]
+    if resting(sensor):
+        row[0], row[1], row[2] = 0.0, 0.0, 0.0
+        sensor.taken += 1
+        return
     scale = sensor.scale
     x, y, theta = scale * sensor.moved[0], scale * sensor.moved[1], scale * sensor.mirror * sensor.moved[2]
     sensor.moved[:] = 0.0
+    sensor.still += 1
     for a in range(2 * sensor.chips):
         at = sensor.at[a // 2]
         seen = sensor.carry[a] + (x - theta * at[1] if a % 2 == 0 else y + theta * at[0])
@@ -110,9 +125,18 @@ def sample_slip(sensor: Any) -> None:
         sensor.carry[a] = seen - counted
         sensor.counted[a] = counted
         sensor.travel[a // 2] += abs(counted)
-    row = sensor.history[sensor.taken % HISTORY]
+        if counted != 0.0:
+            sensor.still = 0
     row[0], row[1], row[2] = displacement(sensor)
     sensor.taken += 1
+
+
+@compiled
+def resting(sensor: Any) -> bool:
+    """Whether the chips do not look at the surface in the sample that is due."""
+    if sensor.rest_samples <= 1 or sensor.still < sensor.rest_after:
+        return False
+    return sensor.taken % sensor.rest_samples != sensor.rest_phase
 
 
 @compiled

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.sensors.misalignment import LATENCY, about, mount, share
+from slipgym.sensors.misalignment import LATENCY, TIP, about, mount, share
 from slipgym.sensors.slip_velocity import AXES
 
 KEYS = 3
 """Keys that the noise of a finger's sensors needs."""
-SCALE, FAILS, WHICH, SLIP_LATENCY = range(1 << 20, (1 << 20) + 4)
-"""Numbers of `share` beyond those of the readings: scale, whether a chip fails, which one, latency."""
+SCALE, FAILS, WHICH, SLIP_LATENCY, REST, PHASE = range(1 << 20, (1 << 20) + 6)
+"""Numbers of `share` beyond those of the readings: scale, whether a chip fails, which one, latency, rest."""
 
 
 def draw_sensors(n: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -44,12 +44,16 @@ def start_sensors(
                 wrench.history[k, a] = 0.0
         wrench.read = 0
         wrench.key, wrench.drift_key, slip.key = keys[0, i], keys[1, i], keys[2, i]
-        # the fingers' sensors share a bus, and with it the latency
+        # the fingers' sensors share a bus, and with it the latency, unless the chips have a USB port each
         wrench.delay = wrench.least_delay + among(keys[1, 0], LATENCY, wrench.delay_spread)
+        wrench.tip_mass = wrench.least_tip + wrench.tip_spread * share(wrench.drift_key, TIP)
         if wrench.misaligned:
             mount(wrench)
-        slip.delay = slip.least_delay + among(keys[2, 0], SLIP_LATENCY, slip.delay_spread)
+        late = keys[2, i if slip.own_delay else 0]
+        slip.delay = slip.least_delay + among(late, SLIP_LATENCY, slip.delay_spread)
         slip.scale = 1.0 + about(slip.key, SCALE, slip.scale_spread)
+        slip.rest_samples, slip.still = among(slip.key, REST, slip.rest_most), 0
+        slip.rest_phase = among(slip.key, PHASE, max(slip.rest_samples - 1, 0))
         slip.failed, slip.delivered = -1, -1
         if share(slip.key, FAILS) < slip.chip_failure:
             slip.failed = among(slip.key, WHICH, slip.chips - 1)

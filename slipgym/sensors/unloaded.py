@@ -1,8 +1,8 @@
 """Reads the force/torque sensors of the open gripper, before the grasp: an estimator can zero them.
 
-Zero error, noise, drift, quantisation and lost readings are those of the episode; there is no load, so tilt
-and cross-talk have nothing to act on, and a late reading is like any other. Random numbers are taken from the
-sensor's keys, at indices that no later reading uses.
+Zero error, noise, drift, quantisation and lost readings are those of the episode. There is no load but the
+weight of the fingertip in the pose of the grasp, and a late reading is like any other. Random numbers are
+taken from the sensor's keys, at indices that no later reading uses.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.sensors.force_torque import resolve_at_cop
 from slipgym.sensors.measure import CONTACT_THRESHOLD
-from slipgym.sensors.misalignment import share
+from slipgym.sensors.misalignment import mixed, share
 from slipgym.sensors.noise import standard_normal
 
 READINGS = 24
@@ -38,13 +38,16 @@ def read_unloaded(sensor: Any, wrenches: np.ndarray) -> None:
     """The readings of a sensor before the grasp; its bias drifts to what it is at the grasp.
 
     Args:
-        sensor: FORCE_TORQUE record at the start of an episode.
+        sensor: FORCE_TORQUE record at the start of an episode; `tip_load` is the weight of its fingertip.
         wrenches: Output (READINGS, 4): (f_x, f_y, f_n, tau) at the measured centre of pressure, as
             `slipgym.sensors.measure.measure` has it [N, N, N, N m].
     """
-    bias, reading, cop = np.empty(6), np.empty(6), np.empty(2)
+    bias, reading, cop, load = np.empty(6), np.empty(6), np.empty(2), np.zeros(6)
+    load[0], load[1] = sensor.tip_load[0], sensor.tip_load[1]
     for a in range(6):
         bias[a] = sensor.bias[a]
+        if sensor.tip_mass > 0.0:
+            bias[a] += mixed(sensor, load, a) if sensor.misaligned else load[a]
         for k in range(READINGS):
             bias[a] -= _step_of_bias(sensor, k, a)
     for k in range(READINGS):

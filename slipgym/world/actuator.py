@@ -1,7 +1,11 @@
-"""Simulates the force loop of a finger: dead time, first-order lag, limits (arXiv 2410.19660).
+"""Simulates the force loop of a finger: dead time, stiction, first-order lag, limits (arXiv 2410.19660).
 
 The jaws are coupled, as a parallel gripper's are: what presses on either pad is the mean of both fingers'
 forces. Unequal forces on an object at rest along the grip axis are impossible.
+
+Static friction F in the transmission holds the force until the command has left it by F: Prandtl's play,
+whose loops obey Masing's rule (Brokate & Sprekels, Hysteresis and Phase Transitions, Springer 1996, ch. 2).
+A backlash b in front of a transmission of stiffness k is the same with F = k b / 2.
 """
 
 from __future__ import annotations
@@ -22,12 +26,19 @@ def actuator_force(finger: Finger, force: float) -> float:
 
 @compiled
 def queue_command(finger: Finger, tick: int, force: float) -> None:
-    """Queue a force command [N]; it takes effect one dead time after `tick`."""
+    """Queue a force command [N]; it takes effect one dead time after `tick`.
+
+    Stiction leaves no force when the force loop opens.
+    """
     if force < finger.open_below:
         force = 0.0
+    settled = actuator_force(finger, force)
+    if finger.stiction > 0.0 and force > 0.0:
+        settled = min(max(finger.settled, settled - finger.stiction), settled + finger.stiction)
+    finger.settled = settled
     slot = finger.queued % QUEUE
     finger.queue_tick[slot] = tick + finger.dead_ticks
-    finger.queue_force[slot] = actuator_force(finger, force)
+    finger.queue_force[slot] = settled
     finger.queued += 1
 
 

@@ -64,7 +64,7 @@ def place_world(
     for f in range(2):
         finger = fingers[i, f]
         finger.queued = finger.served = 0
-        finger.command = finger.force = actuator_force(finger, force)
+        finger.settled = finger.command = finger.force = actuator_force(finger, force)
     normal = mean_force(fingers[i])
     for f in range(2):
         finger = fingers[i, f]

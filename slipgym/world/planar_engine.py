@@ -13,7 +13,7 @@ from slipgym._numba.rows import row_of
 from slipgym.contact.kinds import PATCHES, set_normal
 from slipgym.contact.records import Pad, Pair, copy_patch_state, same_pads, same_patches
 from slipgym.contact.soft_pad import load_pad
-from slipgym.sensors.force_torque import next_sample_read, sample_force_torque
+from slipgym.sensors.force_torque import next_sample_read
 from slipgym.world.actuator import (
     advance_fingers_through_commands,
     apply_due_commands,
@@ -21,6 +21,7 @@ from slipgym.world.actuator import (
     queue_command,
     ticks_to_next_command,
 )
+from slipgym.world.fingertip import sample_finger
 from slipgym.world.object_motion import wrench_at_rest
 from slipgym.world.records import Records, World, copy_finger_state, same_fingers
 from slipgym.world.substep import HOLDING, advance_object, resolved_ticks, update_slip
@@ -146,7 +147,7 @@ def advance_substeps(
         done += 1
         if world.tick == sample:
             for f in range(2):
-                sample_force_torque(force_torque[f], pads[min(f, len(pads) - 1)], sample)
+                sample_finger(force_torque[f], pads[min(f, len(pads) - 1)], world)
             sample = next_sample_read(force_torque[0], sample, world.control_ticks)
     normal = normal_force_of(mean_force(fingers))
     for f in range(len(pads)):

@@ -130,7 +130,7 @@ def _world(config: Config, n: int, tick_rate: int) -> np.ndarray:
 
 def _pads(config: Config, n: int) -> np.ndarray:
     contact = config.contact
-    fields = "stribeck_velocity", "stribeck_exponent", "sigma_0", "sigma_1", "sigma_2"
+    fields = "stribeck_velocity", "stribeck_exponent", "speed_slope", "sigma_0", "sigma_1", "sigma_2"
     array = pads((n, 2), **{field: getattr(contact, field) for field in fields})
     array["r"] = config.contact_radius * np.array(contact.finger_radius)
     array["cop"] = contact.cop_offset
@@ -163,7 +163,7 @@ def _fingers(config: Config, n: int) -> np.ndarray:
     gripper = config.gripper
     fingers = np.zeros((n, 2), FINGER)
     fingers["lag"] = gripper.lag * np.array(gripper.finger_lag)
-    fingers["gain"] = gripper.force_gain
+    fingers["gain"], fingers["stiction"] = gripper.force_gain, gripper.stiction
     fingers["dead_ticks"] = dead_ticks(config, gripper.dead_time)
     fingers["force_limit"] = gripper.force_limit
     fingers["open_below"] = gripper.open_below
@@ -190,6 +190,7 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     array["delay"] = array["least_delay"] = round(sensor.latency * tick_rate)
     array["delay_spread"] = round(sensor.latency_spread * tick_rate)
     _take_over(sensor, array)
+    array["least_tip"], array["tip_spread"] = sensor.tip_mass, sensor.tip_mass_spread
     array["misaligned"] = misaligned
     array["kept"] = kept
     array["mirror"] = MIRROR
@@ -213,6 +214,9 @@ def _slip_sensors(config: Config, n: int) -> np.ndarray:
     slip_sensors["noise"] = sensor.noise * sensor.count
     slip_sensors["range"] = sensor.speed_max / sensor.rate
     slip_sensors["delay"] = slip_sensors["least_delay"] = sensor.latency_samples
+    slip_sensors["own_delay"] = sensor.own_latency
+    slip_sensors["rest_after"] = max(1, round(sensor.rest_after * sensor.rate))
+    slip_sensors["rest_most"] = round(sensor.rest_period * sensor.rate)
     slip_sensors["delay_spread"], slip_sensors["scale_spread"] = sensor.latency_spread, sensor.scale_error
     slip_sensors["scale"], slip_sensors["failed"], slip_sensors["delivered"] = 1.0, -1, -1
     slip_sensors["at"] = positions

@@ -53,6 +53,7 @@ FINGER_EPISODE = np.dtype(
         ("lag", "f8"),  # time constant of the force loop [s]
         ("dead_ticks", "i8"),  # dead time in ticks
         ("gain", "f8"),  # actuator force over the commanded [-]
+        ("stiction", "f8"),  # change of the command, times gain, that friction swallows when it turns [N]
     ]
 )
 """Parameters that an episode may have of its own."""
@@ -61,7 +62,8 @@ FINGER_STATE = np.dtype(
     [
         ("queued", "i8"),  # commands ever queued
         ("served", "i8"),  # commands ever put into effect
-        ("command", "f8"),  # command in effect, times gain [N]
+        ("settled", "f8"),  # force at which the command queued last settles [N]
+        ("command", "f8"),  # command in effect, times gain and within stiction [N]
         ("force", "f8"),  # actuator force now [N]
         ("mean_force", "f8"),  # mean force of both actuators, mean over the engine step [N]
         ("contact_mean_force", "f8"),  # the same over the step of `contact_force` [N]

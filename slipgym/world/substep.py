@@ -20,9 +20,9 @@ from slipgym.contact.coupled import step_pads
 from slipgym.contact.kinds import set_normal
 from slipgym.contact.records import Pad
 from slipgym.contact.soft_pad import load_pad
-from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.slip_velocity import accumulate_slip
 from slipgym.world.actuator import advance_fingers, apply_due_commands, mean_force, ticks_to_next_command
+from slipgym.world.fingertip import sample_finger
 from slipgym.world.object_motion import (
     drift_on_pads,
     follow_pads,
@@ -78,7 +78,7 @@ def advance_engine_step(
         world.tick += ticks
         for f in range(2):
             if world.tick % force_torque[f].period == 0:
-                sample_force_torque(force_torque[f], pads[f], world.tick)
+                sample_finger(force_torque[f], pads[f], world)
 
 
 @compiled

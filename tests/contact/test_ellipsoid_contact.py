@@ -6,6 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from slipgym.contact import EllipsoidContact
+from slipgym.contact.records import pads
+from slipgym.contact.soft_kernel import prescribed_step
 
 DT = 1 / 480
 PARAMETERS = dict(r=0.012, mu_c=0.4, mu_s=0.55, stribeck_velocity=1e-3)  # noqa: C408
@@ -156,3 +158,21 @@ def test_the_friction_level_is_that_of_the_middle_of_a_step_however_uneven_steps
         level = 0.4 + 0.2 * math.exp(-((speed / 1e-3) ** 2)) + 0.2 * speed
         if k > 5:  # by then it has slipped for three steps
             assert f_x == pytest.approx(-normal * level, rel=1e-9)
+
+
+def test_what_anisotropy_does_to_viscous_friction():
+    """Axes 1 ± a stretch the slip before friction and the force after it: sigma_2 grows by (1 ± a)^2."""
+    slopes = {}
+    for axis, name in enumerate("xy"):
+        forces = []
+        for speed in (0.05, 0.15):
+            pad = pads(1, mu_c=0.4, mu_s=0.4, sigma_0=1e6, sigma_2=0.2, r=0.01, stribeck_velocity=1e-3)
+            pad["axes"], pad["normal"] = (1.1, 0.9), 5.0
+            velocity = speed * np.eye(3)[axis]
+            for _ in range(20):
+                prescribed_step(pad[0], velocity, 2e-6 / speed)
+            forces.append(-pad["wrench"][0, axis] / 5.0)
+        slopes[name] = (forces[1] - forces[0]) / 0.1
+    print({name: round(slope / 0.2, 3) for name, slope in slopes.items()})
+    assert slopes["x"] / 0.2 == pytest.approx(1.21, rel=1e-6)
+    assert slopes["y"] / 0.2 == pytest.approx(0.81, rel=1e-6)

@@ -89,3 +89,29 @@ def test_a_patchs_levels_are_those_of_the_speed_found(exponent, expected, found)
     level = cell_levels.set_friction_levels(pad[0], cells, (expected, 0.0, 0.0))
     new = cell_levels.update_friction_levels(pad[0], cells, (found * H, 0.0, 0.0), H, level)
     assert abs(new - curve(found, exponent)) <= 1.001 * stribeck.LEVEL_TOLERANCE * new
+
+
+@pytest.mark.parametrize("slope", [-0.1, 0.05, 0.2])
+def test_velocity_steps_follow_the_logarithm(slope):
+    """Steps up and down: on either limit surface friction is mu_c (1 + a ln(v / 10 mm/s)) beyond v_s."""
+    for contact in (EllipsoidContact(sigma_2=0.0), DistributedContact(sigma_2=0.0, cells=5)):
+        contact._pads["speed_slope"] = slope
+        for speed in (0.01, 0.1, 4e-3, 0.5, 2.0, 1e-3, 0.03):
+            for _ in range(20):
+                force = contact.step((speed, 0.0, 0.0), 5.0, 2e-6 / speed)
+            sliding = 0.4 * (1.0 + slope * np.log(min(speed, 1.0) / 0.01))
+            level = sliding + (0.55 - sliding) * np.exp(-((speed / 1e-3) ** 2))
+            assert -force[0] / 5.0 == pytest.approx(level, rel=1e-9), type(contact)
+
+
+@pytest.mark.parametrize("slope", [-0.2, 0.2])
+@pytest.mark.parametrize("exponent", [1.0, 2.0, 4.0])
+def test_shortcuts_keep_their_tolerance_with_the_logarithm(slope, exponent):
+    pad = pads(1, stribeck_exponent=exponent, normal=5.0, speed_slope=slope, **LAW)[0]
+    speeds = np.geomspace(1e-6, 2.0, 4001)
+    levels = np.array([stribeck.level_at(pad, speed) for speed in speeds])
+    for k in (1, 10, 100, 1000):
+        same = [stribeck.level_unchanged(pad, change) for change in speeds[k:] - speeds[:-k]]
+        assert np.abs(levels[k:] - levels[:-k])[same].max(initial=0.0) <= stribeck.LEVEL_TOLERANCE * 0.4
+    assert stribeck.level_unchanged(pad, 1e-7)
+    assert levels[0] == pytest.approx(0.55, rel=1e-2 if exponent == 1.0 else 1e-4)

@@ -14,8 +14,8 @@ KEYWORDS = [
     ({"estimator": {"name": "rls", "lambda_": 1}}, "unknown parameter lambda_", "forgetting"),
     ({"estimator": {"name": "rls", "forgetting": 2.0}}, "forgetting = 2.0", "1"),
     ({"contact": "point"}, "unknown contact 'point'", "ellipsoid"),
-    ({"sensors": "perfect"}, "unknown sensors 'perfect'", "ideal, lab, realistic"),
-    ({"sensors": 3}, "unknown sensors 3", "ideal, lab, realistic"),
+    ({"sensors": "perfect"}, "unknown sensors 'perfect'", "ideal, lab, markers, motor, realistic, wrist"),
+    ({"sensors": 3}, "unknown sensors 3", "ideal, lab, markers, motor, realistic, wrist"),
     ({"material": "glass"}, "unknown material 'glass'", "cardboard, case, plastic, random, wood"),
     (
         {"action_mode": "torque"},

@@ -111,3 +111,15 @@ def test_rows_of_a_batch_have_pads_of_their_own():
     batch.close()
     for env in singles:
         env.close()
+
+
+def test_fields_that_came_later_move_no_draw():
+    ranges, found = load_randomization("lab").model_dump(exclude_none=True), []
+    later = ("speed_slope", "stiction")
+    for choice in (ranges, {name: value for name, value in ranges.items() if name not in later}):
+        env = gym.make(f"slipgym:{LINEAR}", randomization=choice, engine="planar", disable_env_checker=True)
+        found.append(env.reset(seed=5)[1]["drawn"])
+        env.close()
+    drawn = [found[0].pop(name) for name in later]
+    assert 0.0 not in drawn
+    assert found[0] == found[1]

@@ -23,12 +23,15 @@ def test_every_key_and_its_units_are_documented(key):
     assert units
 
 
-def test_the_mapping_on_the_page_is_one(tmp_path):
-    found = re.findall(r"```yaml\n(.*?)```", PAGE, flags=re.DOTALL)
-    for mapping in reversed(found):
+def test_the_mappings_on_the_page_are_read(tmp_path):
+    wanted = {
+        "f_n": records.Column("Fz", "N", -1.0),
+        "v_y": records.Column("/slip.twist.linear.y", "m/s", -1.0),
+    }
+    mappings = re.findall(r"```yaml\n(.*?)```", PAGE, flags=re.DOTALL)
+    for mapping, (key, column) in zip(mappings, wanted.items(), strict=True):
         (tmp_path / "mapping.yaml").write_text(mapping)
-        columns = records.load_columns(tmp_path / "mapping.yaml")
-    assert columns["f_n"] == records.Column("Fz", "N", -1.0)
+        assert records.load_columns(tmp_path / "mapping.yaml")[key] == column
 
 
 def test_the_figures_on_the_page_are_those_of_the_shipped_record():

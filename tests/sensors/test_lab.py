@@ -105,6 +105,18 @@ def test_latencies_are_sampled_and_shared_by_the_fingers():
     assert np.abs(counts - 60).max() < 4 * (300 * 0.2 * 0.8) ** 0.5
 
 
+def test_each_finger_may_have_its_own_latency():
+    pairs, shared = [], []
+    for seed in range(400):
+        late = {"latency_samples": 1, "latency_spread": 4}
+        pairs.append(started(seed, slip=late | {"own_latency": True})[1]["delay"].copy())
+        shared.append(started(seed, slip=late)[1]["delay"].copy())
+    own = np.array(pairs)
+    np.testing.assert_array_equal(own[:, 0], np.array(shared)[:, 0])
+    together = np.bincount(5 * (own[:, 0] - 1) + own[:, 1] - 1, minlength=25)
+    assert ((together - 16) ** 2 / 16).sum() < 51.2, "independent: chi-square of 24 degrees, 0.1 %"
+
+
 def test_scale_and_a_failed_chip():
     failed, scales = 0, []
     for seed in range(200):
@@ -180,3 +192,27 @@ def test_nobody_is_told(estimator):
             np.testing.assert_array_equal(alone.estimates, learner.estimates)
         assert len(told) == 1
         assert len(sampled) == 5
+
+
+def test_resting_chips_count_late_and_lose_nothing():
+    """Against counting by hand: at a look a chip counts all that has moved."""
+    looks = set()
+    rng, rest = (
+        np.random.default_rng(2),
+        {"rest_after": 0.1, "rest_period": 0.05, "counts": True, "count": 1e-5},
+    )
+    motions = np.where(np.arange(200) // 25 % 2, rng.uniform(0.0, 1e-3, 200), 0.0)
+    for seed in range(60):
+        sensor = started(seed, slip=rest)[1][0]
+        period, phase, carry = sensor["rest_samples"], sensor["rest_phase"], sensor["carry"][0:6:2].copy()
+        counts, still = np.zeros(3), 0
+        looks.add(int(period))
+        for k in range(len(motions)):
+            accumulate_slip(sensor, np.array([motions[k], 0.0, 0.0]))
+            sample_slip(sensor)
+            if period <= 1 or still < 12 or k % period == phase:
+                new = np.maximum(np.trunc((carry + motions[: k + 1].sum()) / 1e-5), 0.0)
+                still = 0 if (new != counts).any() else still + 1
+                counts = new
+            np.testing.assert_allclose(sensor["travel"][:3], counts * 1e-5, rtol=1e-9)
+    assert looks == set(range(7))

@@ -64,3 +64,58 @@ def test_both_pads_press_with_the_grip_at_rest():
     for force in (0.6, 5.0, 25.0):
         with Bench({"physics": {"gravity": 0.0}}, force=force) as bench:
             np.testing.assert_allclose(bench.settle().normal[-1], force, rtol=1e-3)
+
+
+def masing(commands: np.ndarray, start: float, stiction: float) -> np.ndarray:
+    """Force of a friction element by Masing's rule, from the virgin curve through (start, start).
+
+    After a turn the curve is the virgin one, twice as large; a loop that closes is forgotten (Madelung).
+    """
+
+    def virgin(x: float) -> float:
+        return math.copysign(max(abs(x) - stiction, 0.0), x)
+
+    turns, last, way, forces = [], (start, start), 0.0, []
+    for command in commands.tolist():
+        now = math.copysign(1.0, command - last[0]) if command != last[0] else way
+        if way * now < 0.0:
+            turns.append(last)
+        way = now
+        while turns:
+            closing = turns[-2][0] if len(turns) > 1 else 2.0 * start - turns[0][0]
+            if (command - closing) * way < 0.0:
+                break
+            del turns[-2:]
+        u, f = turns[-1] if turns else (start, start)
+        force = f + 2.0 * virgin(0.5 * (command - u)) if turns else start + virgin(command - start)
+        last = command, force
+        forces.append(force)
+    return np.array(forces)
+
+
+@pytest.mark.parametrize("engine", ["planar", "bullet"])
+def test_stiction_obeys_masings_rule(engine):
+    overrides = {"gripper": {"stiction": 0.8, "lag": 0.0, "dead_time": 0.0}}
+    commands = np.random.default_rng(3).uniform(6.0, 14.0, 200)
+    with Bench(overrides, force=10.0, engine=engine) as bench:
+        trace = bench.run(199.5 / 120, force=lambda t: commands[round(120 * t)])
+    expected = masing(commands[: len(trace.force)], 10.0, 0.8)
+    np.testing.assert_allclose(trace.force, np.tile(expected[:, None], 2), rtol=1e-12)
+    assert np.abs(expected - commands[: len(expected)]).max() <= 0.8 + 1e-12
+
+
+def test_the_work_lost_in_a_loop_of_stiction():
+    """Between forces that differ by R, a loop loses 2 F (R - 2 F), however long it takes."""
+    commands = 8.0 + np.tile(np.concatenate([np.arange(60), np.arange(60, 0, -1)]), 2) / 10
+    overrides = {"gripper": {"stiction": 0.5, "lag": 0.0, "dead_time": 0.0}}
+    with Bench(overrides, force=8.0, engine="planar") as bench:
+        trace = bench.run(len(commands) / 120, force=lambda t: commands[round(120 * t)])
+    u, f = commands[119:], trace.force[119:, 0]
+    assert -np.trapezoid(f, u) == pytest.approx(2 * 0.5 * (6.0 - 1.0), rel=1e-9)
+
+
+def test_an_open_force_loop_leaves_no_force_to_stiction():
+    overrides = {"gripper": {"stiction": 0.4, "lag": 0.0}, "physics": {"gravity": 0.0}}
+    with Bench(overrides, force=5.0, engine="planar") as bench:
+        assert bench.run(0.1, force=lambda _: 0.0).force[-1].max() == 0.0
+        np.testing.assert_allclose(bench.run(0.1, force=lambda _: 3.0).force[-1], 2.6)

@@ -1,0 +1,225 @@
+"""Fits the parameters to a log: damped Gauss-Newton steps over rollouts, with what the log does not show.
+
+The estimate is the most probable point under the priors, with Huber's weights on the residuals over the noise
+that they show themselves. Its covariance is the sandwich over blocks of time: residuals that
+correlate within a block widen it as far as they do. An error of the model that each block repeats would not:
+the shift of the estimate under each of `ALTERNATIVES`, to first order, is added to the variance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from slipgym.config.errors import unknown
+from slipgym.identification.log import Log
+from slipgym.identification.parameters import DEVIATION, START, values_of
+from slipgym.identification.rollout import CHANNELS, SUBSTEP, SURFACES, roll
+
+HUBER = 2.0
+"""Residual over the noise from which its weight falls [-]."""
+BLOCK = 1.0
+"""Length of the blocks, of which every `HELD_OUT`th is held out [s]."""
+HELD_OUT = 4
+SHOWN = 0.5
+"""Largest deviation over the prior's with which a parameter counts as shown."""
+STARTS, KEPT = 64, 6
+"""Points sampled from the prior, and those from which a fit of a pad without cells begins."""
+FAR = 3.0
+"""Held-out residual over the noise from which the model does not fit the log [-]."""
+STEP = 1e-3
+"""Of the finite differences, over the prior's deviation [-]."""
+ITERATIONS = 15
+"""Most steps of a fit."""
+ALTERNATIVES = ({"pressure": "hertz"}, {"substep": 0.5 * SUBSTEP}, {"contact": "disc"})
+"""Models that a log may as well come from: the pressure of the patch and the sub-step are choices."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a log shows of a gripper; p parameters in the order of `PARAMETERS`."""
+
+    log: Log
+    contact: str
+    """Friction model of the fit."""
+    point: np.ndarray
+    """Transformed estimate, (p,); the prior's where the log does not show it."""
+    deviation: np.ndarray
+    """Its standard deviation, (p,)."""
+    shown: np.ndarray
+    """Whether the log shows the parameter, (p,)."""
+    noise: np.ndarray
+    """`Log.noise`: standard deviation of each reading's noise, (7,); NaN where it is absent."""
+    held_out: np.ndarray
+    """Root mean square of the residual of `after` on the held-out part, (7,)."""
+    before: np.ndarray
+    """Readings that the prior predicts, (n, 7)."""
+    after: np.ndarray
+    """Readings that `point` predicts, (n, 7)."""
+    information: np.ndarray
+    """Of the transformed parameters, priors included, (p, p)."""
+
+    def interval(self) -> np.ndarray:
+        """Lower and upper end of the 90 % interval of each value, (p, 2)."""
+        ends = self.point + 1.645 * self.deviation * np.array([[-1.0], [1.0]])
+        return values_of(ends).T
+
+    def misfits(self) -> dict[str, float]:
+        """Held-out residual over the noise, of the readings where it is above `FAR`."""
+        ratios = self.held_out / self.noise
+        return {name: float(each) for name, each in zip(CHANNELS, ratios, strict=True) if each > FAR}
+
+
+@dataclass(frozen=True)
+class _Problem:
+    log: Log
+    contact: str
+    fitted: np.ndarray  # (n,) rows that the fit uses
+    present: np.ndarray  # (7,)
+
+    def predict(self, points: np.ndarray, **other: Any) -> np.ndarray:
+        """Readings of transformed points (m, p), of another model if given: (m, n, present channels)."""
+        log, model = self.log, {"contact": self.contact, **other}
+        all_of = roll(values_of(points), log.rate, log.command, log.motion, **model)
+        return all_of[:, :, self.present]
+
+    def residuals(self, predicted: np.ndarray) -> np.ndarray:
+        """Log minus prediction in all rows."""
+        return self.log.readings[:, self.present] - predicted
+
+    def noise(self, residual: np.ndarray) -> np.ndarray:
+        """Robust standard deviation of each channel's residual in the fitted rows."""
+        part = residual[self.fitted]
+        return np.maximum(1.4826 * np.median(np.abs(part - np.median(part, axis=0)), axis=0), 1e-9)
+
+    def slopes(self, point: np.ndarray) -> np.ndarray:
+        """Derivative of the readings by the transformed parameters, (p, n, present channels)."""
+        log = self.log
+        return slopes(point, self.contact, log.rate, log.command, log.motion)[:, :, self.present]
+
+
+def slopes(
+    point: np.ndarray, contact: str, rate: float, command: np.ndarray, motion: np.ndarray
+) -> np.ndarray:
+    """Derivative of the readings by the transformed parameters, (p, n, 7), in one batch of rollouts."""
+    points = np.vstack([point + np.diag(STEP * DEVIATION), point])
+    ends = roll(values_of(points), rate, command, motion, contact)
+    return (ends[:-1] - ends[-1]) / (STEP * DEVIATION)[:, None, None]
+
+
+def identify(log: Log, contact: str = "distributed", seed: int = 0) -> Result:
+    """Fits all parameters to a log.
+
+    Args:
+        log: The log.
+        contact: Friction model of the pads, "distributed", "disc" or "ellipsoid".
+        seed: Of the points from which fits begin.
+
+    Raises:
+        ValueError: The contact is unknown, or nothing in the log moves or presses.
+    """
+    if contact not in SURFACES:
+        raise ValueError(unknown("contact", contact, SURFACES))
+    if np.ptp(log.readings[:, :4], axis=0).max() == 0.0:
+        raise ValueError("the log's wrench never changes: nothing in it can be identified")
+    block = (np.arange(len(log.command)) / (BLOCK * log.rate)).astype(int)
+    problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, ~np.isnan(log.readings[0]))
+    point = _start(problem, np.random.default_rng(seed))
+    for _ in range(2):
+        scale = problem.noise(problem.residuals(problem.predict(point[None])[0]))
+        point = _minimised(problem, point, scale)
+    return _result(problem, point, scale, block)
+
+
+def _start(problem: _Problem, rng: np.random.Generator) -> np.ndarray:
+    """The best of several fits of a disc, which costs a twentieth of a pad with cells and ends near it."""
+    problem = replace(problem, contact="disc" if problem.contact == "distributed" else problem.contact)
+    starts = START + DEVIATION * np.vstack([np.zeros(len(START)), rng.normal(size=(STARTS - 1, len(START)))])
+    residuals = problem.residuals(problem.predict(starts))
+    # one scale for all, or they could not be compared
+    scale = np.min([problem.noise(each) for each in residuals], axis=0)
+    costs = [_cost(problem, start, each, scale) for start, each in zip(starts, residuals, strict=True)]
+    fits = np.array([_minimised(problem, starts[k], scale) for k in np.argsort(costs)[:KEPT]])
+    scale = np.min([problem.noise(each) for each in problem.residuals(problem.predict(fits))], axis=0)
+    fits = np.array([_minimised(problem, fit, scale) for fit in fits])
+    residuals = problem.residuals(problem.predict(fits))
+    return fits[np.argmin([_cost(problem, *each, scale) for each in zip(fits, residuals, strict=True)])]
+
+
+def _cost(problem: _Problem, point: np.ndarray, residual: np.ndarray, scale: np.ndarray) -> float:
+    size = np.abs(residual[problem.fitted] / scale)
+    loss = np.where(size <= HUBER, 0.5 * size**2, HUBER * (size - 0.5 * HUBER)).sum()
+    return float(loss + 0.5 * (((point - START) / DEVIATION) ** 2).sum())
+
+
+def _normal_equations(
+    problem: _Problem, slopes: np.ndarray, residual: np.ndarray, scale: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Information with the prior's (p, p), and the score of each row (p, n)."""
+    weights = problem.fitted[:, None] / np.maximum(np.abs(residual) / (HUBER * scale), 1.0)
+    slopes = slopes / scale
+    information = np.einsum("anc,nc,bnc->ab", slopes, weights, slopes, optimize=True)
+    return information + np.diag(DEVIATION**-2.0), (slopes * (weights * residual / scale)).sum(axis=2)
+
+
+def _minimised(problem: _Problem, point: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Levenberg and Marquardt's steps; five dampings are tried in one batch."""
+    residual = problem.residuals(problem.predict(point[None])[0])
+    cost = _cost(problem, point, residual, scale)
+    damping, moved = 1e-3, True
+    information = score = np.zeros(0)
+    for _ in range(ITERATIONS):
+        if moved:
+            information, rows = _normal_equations(problem, problem.slopes(point), residual, scale)
+            score = rows.sum(axis=1) - (point - START) / DEVIATION**2
+        dampings = damping * 10.0 ** np.arange(-1.0, 4.0)
+        diagonal = np.diag(np.diag(information))
+        steps = np.array([np.linalg.solve(information + each * diagonal, score) for each in dampings])
+        trials = point + np.clip(steps, -2.0 * DEVIATION, 2.0 * DEVIATION)
+        residuals = problem.residuals(problem.predict(trials))
+        costs = [_cost(problem, *each, scale) for each in zip(trials, residuals, strict=True)]
+        k = int(np.argmin(costs))
+        moved = costs[k] < cost
+        if not moved:
+            damping = dampings[-1]
+            if damping > 1e6:
+                break
+            continue
+        gain, cost, point, damping, residual = cost - costs[k], costs[k], trials[k], dampings[k], residuals[k]
+        if gain < 1e-3:
+            break
+    return point
+
+
+def _result(problem: _Problem, point: np.ndarray, scale: np.ndarray, block: np.ndarray) -> Result:
+    models: tuple[dict[str, Any], ...] = ({}, *ALTERNATIVES)
+    residuals = [problem.residuals(problem.predict(point[None], **model)[0]) for model in models]
+    slopes = problem.slopes(point)
+    (information, rows), *others = [_normal_equations(problem, slopes, each, scale) for each in residuals]
+    # priors are information of their own; each block's score counts whole, so what correlates in it adds up
+    sums = np.array([np.bincount(block, weights=row) for row in rows])[:, np.unique(block[problem.fitted])]
+    blocks = sums.shape[1]
+    meat = sums @ sums.T * blocks / max(blocks - 1, 1) + np.diag(DEVIATION**-2.0)
+    inverse = np.linalg.inv(information)
+    variance = np.maximum(np.diag(inverse @ meat @ inverse), np.diag(inverse))
+    shifts = np.array([inverse @ (other - rows).sum(axis=1) for _, other in others])
+    deviation = np.sqrt(variance + (shifts**2).sum(axis=0))
+    shown = deviation < SHOWN * DEVIATION
+    log, written = problem.log, np.where(shown, point, START)
+    before, after = roll(
+        values_of(np.stack([START, written])), log.rate, log.command, log.motion, problem.contact
+    )
+    return Result(
+        log=log,
+        contact=problem.contact,
+        point=written,
+        deviation=np.where(shown, deviation, DEVIATION),
+        shown=shown,
+        noise=log.noise(),
+        held_out=np.sqrt(((log.readings - after)[~problem.fitted] ** 2).mean(axis=0)),
+        before=before,
+        after=after,
+        information=information,
+    )

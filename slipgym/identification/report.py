@@ -1,0 +1,108 @@
+"""Writes what a log shows: gripper.yaml, report.md and its picture."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from slipgym.config import load
+from slipgym.identification.fit import FAR, Result
+from slipgym.identification.next_motion import gains
+from slipgym.identification.parameters import NAMES, PARAMETERS, values_of
+from slipgym.identification.picture import draw
+from slipgym.identification.rollout import CHANNELS
+
+MATERIAL = "identified"
+"""Name of the material in gripper.yaml."""
+
+
+def overrides(result: Result) -> dict[str, Any]:
+    """Overrides of the configuration that the environments take as they are."""
+    of = dict(zip(NAMES, values_of(result.point).tolist(), strict=True))
+    values: dict[str, Any] = {}
+    for each in PARAMETERS:
+        if each.key:
+            *groups, last = each.key.split(".")
+            place = values
+            for group in groups:
+                place = place.setdefault(group, {})
+            place[last] = of[each.name]
+    defaults = load()
+    values["gripper"]["force_gain"] = [of["force gain"]] * 2
+    values["gripper"]["pad_radius"] = max(defaults.gripper.pad_radius, 1.5 * of["r"])
+    values["contact"]["model"] = result.contact
+    values["contact"]["cop_offset"] = [[of["cop x"], of["cop y"]]] * 2
+    mu_s = of["mu_c"] * (1.0 + of["static excess"])
+    values["materials"] = {MATERIAL: {"mu_c": of["mu_c"], "mu_s": min(mu_s, 10.0)}}
+    values["nominal"] = {**values["materials"][MATERIAL], "r": of["r"]}
+    wrench = values["sensors"]["force_torque"]
+    wrench["latency_spread"] = 0.0
+    for axes, name in (((0, 1), "tangential"), ((2,), "normal"), ((3,), "torque")):
+        wrench[f"noise_{name}"] = float(np.sqrt(np.mean(result.noise[list(axes)] ** 2)))
+        # the environments draw zero errors anew for each episode: as large as the ones found
+        zeros = [of[f"zero {CHANNELS[a]}"] for a in axes]
+        wrench[f"bias_{name}"] = float(np.sqrt(np.mean(np.square(zeros))))
+    slip = defaults.sensors.slip
+    if result.shown[NAMES.index("slip latency")]:
+        values["sensors"]["slip"] = {
+            "latency_samples": round(of["slip latency"] * slip.rate),
+            "latency_spread": 0,
+            # the mean over the chips is what the log's velocities show
+            "noise": float(np.mean(result.noise[4:6]) / (slip.count * slip.rate) * math.sqrt(slip.chips)),
+        }
+    return values
+
+
+def table(result: Result) -> str:
+    """The parameters with their 90 % intervals, as Markdown."""
+    lines = ["| parameter | value | 90 % interval | |", "|---|---|---|---|"]
+    values, interval = values_of(result.point), result.interval()
+    for each, v, (low, high), shown in zip(PARAMETERS, values, interval, result.shown, strict=True):
+        note = "" if shown else "this log does not show it: the prior"
+        lines.append(f"| {each.name} [{each.unit}] | {v:.4g} | {low:.4g} to {high:.4g} | {note} |")
+    return "\n".join(lines)
+
+
+def verdict(result: Result) -> str:
+    """Whether the model fits the log, in a sentence or two."""
+    if not (misfits := result.misfits()):
+        return f"The model fits this log: every held-out residual is within {FAR:g} times the noise."
+    far = ", ".join(f"{name} {ratio:.1f}" for name, ratio in misfits.items())
+    return (
+        f"The model does not fit this log: held-out residuals over the noise are {far}. "
+        "Trust neither the parameters nor their intervals."
+    )
+
+
+def summary(result: Result) -> str:
+    """The report, as Markdown."""
+    fit = ["| reading | noise | held-out residual | over the noise |", "|---|---|---|---|"]
+    for name, noise, held in zip(CHANNELS, result.noise, result.held_out, strict=True):
+        if not np.isnan(noise):
+            fit.append(f"| {name} | {noise:.3g} | {held:.3g} | {held / noise:.2f} |")
+    ranked = gains(result)
+    motions = ["| motion, 20 s | sum of what deviations shrink by [%] | most for |", "|---|---|---|"]
+    motions += [f"| {name} | {100 * total:.0f} | {most} |" for name, total, most in ranked]
+    return (
+        f"# Identified gripper\n\n**{verdict(result)}**\n\n{table(result)}\n\n"
+        f"Friction model: {result.contact}. A deviation above half of the prior's counts as not shown.\n\n"
+        f"## Held-out part\n\nEvery fourth second, which the fit has not seen.\n\n" + "\n".join(fit) + "\n\n"
+        "![log and simulation](report.png)\n\n"
+        f"## Record next\n\n20 s of **{ranked[0][0]}**.\n\n" + "\n".join(motions) + "\n"
+    )
+
+
+def write(result: Result, folder: Path) -> None:
+    """Writes gripper.yaml, report.md and report.png into a folder that exists."""
+    import yaml
+
+    values = overrides(result)
+    load(values)  # what the environments would refuse must not be written
+    text = '# Written by slipgym identify: gym.make(..., config="gripper.yaml", material="identified")\n'
+    text += f"# {verdict(result)}\n"
+    (folder / "gripper.yaml").write_text(text + yaml.safe_dump(values, sort_keys=False), encoding="utf-8")
+    (folder / "report.md").write_text(summary(result), encoding="utf-8")
+    draw(result, folder / "report.png")
