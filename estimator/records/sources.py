@@ -182,7 +182,9 @@ def _parquet(path: Path, wanted: Wanted) -> list[Source]:
     table = parquet.read_table(
         path, columns=columns, use_pandas_metadata=True, page_checksum_verification=True, partitioning=None
     )
-    source = of_frame(table.to_pandas(split_blocks=True, self_destruct=True))  # column by column, to save memory
+    source = of_frame(
+        table.to_pandas(split_blocks=True, self_destruct=True)
+    )  # column by column, to save memory
     del table
     extra("pyarrow").default_memory_pool().release_unused()
     there = dict.fromkeys([*source.names, *map(str.strip, names)])
@@ -268,7 +270,7 @@ _READERS: dict[str, tuple[Callable[..., list[Source]], tuple[str, ...]]] = {
     ".hdf5": (_hdf5, ("h5py",)),
     ".mat": (_mat, ()),
     ".xlsx": (_excel, ("openpyxl",)),
-    ".mcap": (_bag, ("mcap",)),
+    ".mcap": (_bag, ("mcap.reader",)),
     ".bag": (_bag, ("rosbags",)),
     ".db3": (_bag, ("rosbags",)),
 }
