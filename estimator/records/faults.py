@@ -127,7 +127,7 @@ def _two_clocks(record: Record) -> list[str]:
     lag = lags[best] * step
     return [
         f"the velocities change {1e3 * abs(lag):.0f} ms {'after' if lag > 0 else 'before'} the forces: are "
-        f"there two clocks? `velocity_t: {{offset: {-lag:+.3f}}}`, with its column and unit, corrects it."
+        f"there two clocks? `velocity_t: {{offset: {-lag:+.3f}}}` in seconds, with its column, corrects it."
     ]
 
 

@@ -22,7 +22,7 @@ _CODES = {"bool": "u1", "byte": "u1", "char": "u1", "octet": "u1", "float32": "f
 }
 _TIMES = ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration")
 _FIELD = re.compile(r"([A-Za-z][\w/]*)(?:<=\d+)?(\[(<?=?)(\d*)\])?\s+([A-Za-z]\w*)\s*(=?)")
-_DEPTH = 16
+_DEPTH, _MOST = 16, 16 * LARGEST  # nesting and values of a message
 
 Field = tuple[str, int | None, str]
 """Type; None: one value, -1: a sequence, or the length of an array; name."""
@@ -91,6 +91,7 @@ class _Walk:
         if cdr and (len(raw) < 4 or raw[0] or raw[1] > 1):
             raise ValueError(f"the encoding {brief(raw[:4].hex())} of a message is not plain CDR")
         self._defined, self._raw, self._cdr = defined, raw, cdr
+        self._values = 0
         self.layout = Layout(len(raw), ">" if cdr and raw[1] == 0 else "<")
         self._at = 4 if cdr else 0
 
@@ -117,7 +118,9 @@ class _Walk:
 
     def one(self, kind: str, path: str, depth: int = 0) -> None:
         """A value of any type but a text."""
-        places = self.layout.places
+        places, self._values = self.layout.places, self._values + 1
+        if self._values > _MOST:
+            raise ValueError(f"{brief(path)}: a message has more than {_MOST} values")
         if kind in _TIMES:
             places[path] = ("t", self._take(8, 4))
         elif kind in _CODES:
@@ -125,8 +128,8 @@ class _Walk:
             places[path] = (_CODES[kind], self._take(size, size))
         elif kind == "string":
             self._text(False)
-        elif depth > _DEPTH or len(places) > LARGEST:
-            raise ValueError(f"{brief(path)}: more than {LARGEST} values, or nested more than {_DEPTH} deep")
+        elif depth > _DEPTH:
+            raise ValueError(f"{brief(path)}: is nested more than {_DEPTH} deep")
         else:
             self._struct(kind, path, depth)
 
@@ -204,8 +207,9 @@ def decoded(
     lengths, left = np.array([len(raw) for raw in raws]), np.arange(len(raws))
     while len(left):
         one = find(raws[left[0]])
-        alike = left[lengths[left] == one.length]
+        of_length = np.flatnonzero(lengths[left] == one.length)
+        alike = left[of_length]
         block = np.frombuffer(b"".join([raws[k] for k in alike]), np.uint8).reshape(len(alike), one.length)
         same = (block[:, one.keys] == block[0, one.keys]).all(axis=1)
         yield alike[same], one.decode(block[same], wanted)
-        left = np.setdiff1d(left, alike[same], assume_unique=True)
+        left = np.delete(left, of_length[same])

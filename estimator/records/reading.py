@@ -105,7 +105,8 @@ def _record(files: list[list[Table]], columns: Columns) -> Record:
             f"its mapping is `columns.fingers[{names[0]!r}]`"
         )
     tables, count = of_one_finger([table for tables in files for table in tables], columns), len(files[0])
-    place, forces = stream(tables[:count], WRENCH, (*WRENCH, *COP, *TILT, GRIP, *TRUTH))
+    others = [key for key in (*WRENCH, *COP, *TILT, GRIP, *TRUTH) if columns.given.get(key)]
+    place, forces = stream(tables[:count], WRENCH, others)
     of_twists = (place, forces) if len(tables) == 1 else stream(tables[count:] or tables, TWIST)
     sparse, velocities = len(files) == 1 and of_twists[0] == place, of_twists[1]
     time = _time_of_velocities(velocities, TIME if sparse else None)
@@ -123,7 +124,8 @@ def _record(files: list[list[Table]], columns: Columns) -> Record:
         checks.check_cop(forces.name, cop)
         move_torque(wrench, cop)
     checks.check_torque(forces.name, wrench)
-    grip = forces.numbers([GRIP], at)[:, 0] if forces.has(GRIP) else None
+    own = columns.given.get(GRIP) and forces.has(GRIP)  # a column of that name may be anything
+    grip = forces.numbers([GRIP], at)[:, 0] if own else None
     return Record(forces.name, force_t, wrench, cop, twist_t, twist, _truth(forces, at), hold, grip=grip)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import zipfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -60,7 +61,11 @@ def read_sources(path: Path, wanted: Wanted) -> list[Source]:
     for library in ("pandas", *libraries):
         extra(library)
     try:
-        return reader(path, wanted)
+        if not (found := reader(path, wanted)):
+            raise ValueError(
+                "it has no columns of numbers; MATLAB arrays and structs are read, not tables"
+            )
+        return found
     except ModuleNotFoundError:
         raise
     except Exception as error:  # a damaged file makes its readers raise anything
@@ -123,6 +128,7 @@ def columns_of(name: str, array: Any) -> Iterable[tuple[str, int, Callable[[], A
     """
     shape, dtype = tuple(array.shape), array.dtype
     if dtype.names:
+        _refuse_large(array.nbytes)
         whole = array[...]
         for each in dtype.names:
             yield from columns_of(f"{name}.{each}", whole[each])
@@ -151,6 +157,8 @@ def _csv(path: Path, wanted: Wanted) -> list[Source]:
 
 def _excel(path: Path, wanted: Wanted) -> list[Source]:
     """Each sheet as a csv file."""
+    with zipfile.ZipFile(path) as file:
+        _refuse_large(*(each.file_size for each in file.infolist()))
     book = extra("openpyxl").load_workbook(path, read_only=True, data_only=True)
     try:
         sheets = {sheet.title: [list(row) for row in sheet.iter_rows(values_only=True)] for sheet in book}

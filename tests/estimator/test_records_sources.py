@@ -352,6 +352,7 @@ def test_a_message_that_its_definition_does_not_fit_is_refused(table, tmp_path, 
         records.load(write_mcap(tmp_path / "log.mcap", table), mapping(BAG))
 
 
+EMPTY = "lab/A[4000] a\n" + "=" * 80 + "\nMSG: lab/A\nlab/B[4000] b\n" + "=" * 80 + "\nMSG: lab/B\n"
 LOOPS = "lab/Loop[] again\n" + "=" * 80 + "\nMSG: lab/Loop\nlab/Loop inner\n"
 
 
@@ -363,6 +364,7 @@ LOOPS = "lab/Loop[] again\n" + "=" * 80 + "\nMSG: lab/Loop\nlab/Loop inner\n"
         ("string[] y", b"\0\1\0\0" + struct.pack("<I", 2**31)),
         ("lab/Nowhere x", b"\0\1\0\0" + bytes(8)),
         ("float64 x", b"\0\7\0\0" + bytes(8)),
+        (EMPTY, b"\0\1\0\0" + bytes(2**20)),
         ("wstring x", b"\0\1\0\0" + bytes(8)),
     ],
 )
@@ -392,3 +394,34 @@ def test_json_and_short_names(table, save, tmp_path):
                 out.add_message(channel, stamp, json.dumps(named).encode(), stamp)
         out.finish()
     same(records.load(tmp_path / "log.mcap"), records.load(save(table, "plain.parquet")))
+
+
+def test_what_has_no_columns_is_refused(tmp_path):
+    np.savez(tmp_path / "log.npz", text="a robot")
+    with pytest.raises(ValueError, match=r"log\.npz: cannot be read: it has no columns of numbers"):
+        records.load(tmp_path / "log.npz")
+
+
+def test_a_column_of_another_topic_is_taken_only_if_the_mapping_names_it(table, tmp_path, mapping):
+    forces, twists = two(table)
+    arrays = {f"left/{name}": values for name, values in forces.items()}
+    arrays |= {f"slip/{name}": values for name, values in twists.items()}
+    arrays |= {f"right/{name}": forces[name][::2] + 0.0 for name in ("t", "f_x", "f_n")}
+    arrays |= {f"right/{name}": 5.0 + 0.0 * forces["t"][::2] for name in ("tau_x", "tau_y", "grip")}
+    np.savez(tmp_path / "log.npz", **arrays)
+    assert records.load(tmp_path / "log.npz").cop is None
+    assert records.load(tmp_path / "log.npz").grip is None
+    named = records.load(tmp_path / "log.npz", mapping("grip: right/grip"))
+    assert (named.grip == 5.0).all()
+    assert records.from_arrays(table.assign(grip="open")).grip is None
+
+
+def test_topics_that_could_both_be_meant_are_named(table, tmp_path):
+    forces, twists = two(table)
+    arrays = {f"left/{name}": values for name, values in forces.items()}
+    arrays |= {f"right/{name}": values[::2] for name, values in forces.items()}
+    np.savez(tmp_path / "log.npz", **arrays, **{f"slip/{name}": values for name, values in twists.items()})
+    with pytest.raises(
+        ValueError, match=r"f_x may be left/f_x, right/f_x; .* as `f_x: left/f_x`"
+    ):
+        records.load(tmp_path / "log.npz")
