@@ -12,11 +12,11 @@ from slipgym.world.plant import build
     ("group", "array", "model", "units"),
     [
         ("force_torque", "force_torque", ForceTorqueConfig, set()),
-        ("slip", "slip_sensors", SlipConfig, {"count", "noise"}),
+        ("slip", "slip_sensors", SlipConfig, {"count", "noise", "rest_after", "rest_period"}),
     ],
 )
 def test_a_noise_term_reaches_the_record_by_its_name(group, array, model, units):
-    """Those of other units, whose sensor counts in them, are converted by hand."""
+    """Those of other units, in which the sensor counts, are converted by hand."""
     config = load(sensors="lab")
     fields = build(config).__dict__[array].dtype.names
     shared = [name for name in model.model_fields if name in fields and name not in units]
