@@ -35,7 +35,7 @@ _TOO_LONG = (
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?")
 
 
-def read_csv(path: Path, wanted: Wanted) -> tuple[Any, list[str], dict[str, str], bool]:
+def read_csv(path: Path, wanted: Wanted, only: bool = False) -> tuple[Any, list[str], dict[str, str], bool]:
     """Reads a csv file, packed by gzip or not.
 
     The header is the line that has most of the expected names, or else most texts, between one of
@@ -44,7 +44,8 @@ def read_csv(path: Path, wanted: Wanted) -> tuple[Any, list[str], dict[str, str]
 
     Args:
         path: The file.
-        wanted: The columns that are read; None: all.
+        wanted: The expected names.
+        only: Whether no other columns are read.
 
     Returns:
         Its pandas.DataFrame, whose names may occur twice; all names; column -> unit that the file says;
@@ -57,7 +58,7 @@ def read_csv(path: Path, wanted: Wanted) -> tuple[Any, list[str], dict[str, str]
         zlib.error: Its packing is damaged.
     """
     encoding = _encoding(path)
-    return _read(lambda: io.TextIOWrapper(_binary(path), encoding), wanted)
+    return _read(lambda: io.TextIOWrapper(_binary(path), encoding), wanted, only)
 
 
 def read_cells(rows: list[list[Any]], wanted: Wanted) -> tuple[Any, list[str], Any, bool]:
@@ -66,10 +67,10 @@ def read_cells(rows: list[list[Any]], wanted: Wanted) -> tuple[Any, list[str], A
     csv.writer(text, lineterminator="\n").writerows(
         [str(cell).replace("\n", " ") if isinstance(cell, str) else cell for cell in row] for row in rows
     )
-    return _read(lambda: io.StringIO(text.getvalue()), wanted)
+    return _read(lambda: io.StringIO(text.getvalue()), wanted, wanted is not None)
 
 
-def _read(open_text: Callable[[], Any], wanted: Wanted) -> tuple[Any, list[str], Any, bool]:
+def _read(open_text: Callable[[], Any], wanted: Wanted, only: bool) -> tuple[Any, list[str], Any, bool]:
     """Reads a text that can be opened more than once."""
     pandas, expected = extra("pandas"), wanted or ()
     with open_text() as text:
@@ -83,7 +84,7 @@ def _read(open_text: Callable[[], Any], wanted: Wanted) -> tuple[Any, list[str],
         units = dict(zip(names, rows.pop(0), strict=False))
     if rows and len(rows[0]) > len(names):  # pandas would take the first columns for an index
         raise ValueError(_TOO_LONG.format(len(names)))
-    asked = [k for k, name in enumerate(names) if wanted is None or is_wanted(name, wanted)]
+    asked = [k for k, name in enumerate(names) if is_wanted(name, wanted)]
     comma = separator != "," and any(
         _DECIMAL_COMMA.fullmatch(row[k]) for row in rows for k in asked if k < len(row)
     )
@@ -93,7 +94,7 @@ def _read(open_text: Callable[[], Any], wanted: Wanted) -> tuple[Any, list[str],
         "sep": separator,
         "header": None,
         "names": range(len(names)),
-        "usecols": asked,
+        "usecols": asked if only else None,
         "decimal": "," if comma else ".",
         "skipinitialspace": True,
         "low_memory": False,  # one type for all cells of a column

@@ -62,9 +62,7 @@ def read_sources(path: Path, wanted: Wanted) -> list[Source]:
         extra(library)
     try:
         if not (found := reader(path, wanted)):
-            raise ValueError(
-                "it has no columns of numbers; MATLAB arrays and structs are read, not tables"
-            )
+            raise ValueError("it has no columns of numbers; MATLAB arrays and structs are read, not tables")
         return found
     except ModuleNotFoundError:
         raise
@@ -152,7 +150,7 @@ def _plain(column: Any) -> Any:
 
 
 def _csv(path: Path, wanted: Wanted) -> list[Source]:
-    return [Source(*read_csv(path, wanted))]
+    return [Source(*read_csv(path, wanted, only=wanted is not None))]
 
 
 def _excel(path: Path, wanted: Wanted) -> list[Source]:

@@ -421,7 +421,5 @@ def test_topics_that_could_both_be_meant_are_named(table, tmp_path):
     arrays = {f"left/{name}": values for name, values in forces.items()}
     arrays |= {f"right/{name}": values[::2] for name, values in forces.items()}
     np.savez(tmp_path / "log.npz", **arrays, **{f"slip/{name}": values for name, values in twists.items()})
-    with pytest.raises(
-        ValueError, match=r"f_x may be left/f_x, right/f_x; .* as `f_x: left/f_x`"
-    ):
+    with pytest.raises(ValueError, match=r"f_x may be left/f_x, right/f_x; .* as `f_x: left/f_x`"):
         records.load(tmp_path / "log.npz")
