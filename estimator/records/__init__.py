@@ -6,7 +6,8 @@
     result = records.estimate(record)
     print(records.report(result))
 
-pandas, PyYAML and matplotlib are imported when a function needs them: the extra `slipgym[cli]`.
+`from_arrays` takes arrays and DataFrames. pandas, PyYAML and matplotlib are imported when a function needs
+them: the extra `slipgym[cli]`; what reads other files than csv comes with `slipgym[records]`.
 """
 
 from estimator.records.calibration import Calibration, Found

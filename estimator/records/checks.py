@@ -21,6 +21,7 @@ _SPEED_MAX = 5.0  # [m/s]
 _SPIN_MAX = 200.0  # [rad/s]
 _COP_MAX = 0.5  # median distance of the centre of pressure from the origin [m]
 _LEVER_MAX = 0.1  # torque at the centre of pressure over normal force [m]
+_RISES = 0.3  # correlation of friction with f_n that shows its sign
 _PERIODS = (1e-5, 1.0)  # [s]
 _USUAL_PERIODS = (4e-5, 0.105)
 """Sample periods, 10 Hz to 25 kHz, for which seconds need not be stated [s]."""
@@ -104,9 +105,17 @@ def check_wrench(source: str, wrench: Array, rows: Rows) -> None:
     f_n = wrench[:, WRENCH.index("f_n")]
     typical = np.median(f_n)
     if np.quantile(f_n, 0.99) < 0.0 or (typical < 0.0 and -f_n.min() > 10.0 * f_n.max()):
+        turn = "`f_n: {sign: -1}` in the mapping turns it"
+        f_t = np.hypot(wrench[:, 0], wrench[:, 1])
+        varies = min(f_t.std(), f_n.std()) > 0.01 * abs(typical)
+        if varies and np.corrcoef(f_t, f_n)[0, 1] > _RISES:  # friction rises with pressure, whatever its zero
+            turn = (
+                "friction rises with it, so that its sign is right and the sensor was zeroed in the grip: "
+                "zero it with the open gripper, or add the force that it had then, at least "
+                f"{-f_n.min():.3g} N, by `f_n: {{offset: {-f_n.min():.3g}}}`"
+            )
         raise ValueError(
-            f"{source}: f_n is negative throughout (median {typical:.4g} N), but pressure is positive; "
-            "`f_n: {sign: -1}` in the mapping turns it"
+            f"{source}: f_n is negative throughout (median {typical:.4g} N), but pressure is positive; {turn}"
         )
     for k, name in enumerate(WRENCH[:3]):
         if (typical := np.median(np.abs(wrench[:, k]))) > _FORCE_MAX:

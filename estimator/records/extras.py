@@ -5,13 +5,15 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
+_OF_RECORDS = ("h5py", "mcap", "openpyxl", "pyarrow", "rosbags", "scipy")
+"""What the extra `records` installs; all else comes with `cli`."""
 
-def extra(module: str, name: str = "cli") -> Any:
+
+def extra(module: str) -> Any:
     """Imports a module that an extra of slipgym installs.
 
     Args:
         module: Its full name.
-        name: The extra: "cli", or "records" for HDF5, MATLAB, Excel, parquet, MCAP and ROS bags.
 
     Raises:
         ModuleNotFoundError: It is not installed; the message says how to install it.
@@ -19,5 +21,6 @@ def extra(module: str, name: str = "cli") -> Any:
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
-        message = f"records need {error.name}, which is not installed: pip install 'slipgym[{name}]'"
+        name = "records" if module.partition(".")[0] in _OF_RECORDS else "cli"
+        message = f"{error.name} is not installed: pip install 'slipgym[{name}]'"
         raise ModuleNotFoundError(message, name=error.name) from error

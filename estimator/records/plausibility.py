@@ -29,8 +29,18 @@ def warnings(result: Result) -> list[str]:
             f"Warning: mu_s is not above mu_c = {last['mu_c']:.3g}: the stick-slip events show no more than "
             "Coulomb friction. Do not rely on mu_s."
         )
-    lines += _radius_warnings(result, seen)
+    lines += [*_radius_warnings(result, seen), *_viscosity_warnings(result)]
     return lines
+
+
+def _viscosity_warnings(result: Result) -> list[str]:
+    errors = () if result.calibration is None else result.calibration.errors
+    return [
+        f"Warning: sigma_2 = {error.value:.3g} s/m: friction falls as the speed rises, which is no "
+        "viscosity: check the signs of the velocities and the zeros of the forces."
+        for error in errors
+        if error.name == "sigma_2" and error.seen and error.value < -2.0 * error.sd
+    ]
 
 
 def _radius_warnings(result: Result, seen: dict[str, float]) -> list[str]:

@@ -31,6 +31,7 @@ _RC: Any = {
     "lines.linewidth": 1.4,
     "lines.solid_capstyle": "round",
 }
+_DOTS = 10_000  # parts of which the extremes are drawn
 _TOP_FRICTION = 1.0  # start values above it are cut off once data has taken over
 
 
@@ -131,9 +132,32 @@ def _estimate(axes: Any, result: Result, name: str, scale: float, colour: str) -
 
 
 def _line(axes: Any, t: Array, values: Array, **style: Any) -> None:
-    """Draws a line that breaks where the record has a gap."""
+    """Draws a line that breaks where the record has a gap; of a long one, the extremes."""
+    t, values = extremes(t, values)
     gaps = np.flatnonzero(np.diff(t) > GAP_PERIODS * period(t)) + 1
     axes.plot(np.insert(t, gaps, np.nan), np.insert(values, gaps, np.nan), **style)
+
+
+def extremes(t: Array, values: Array) -> tuple[Array, Array]:
+    """The smallest and the largest of neighbouring values, where there are more than a picture shows.
+
+    Args:
+        t: (n,) [s].
+        values: (n,); NaN where there is none.
+
+    Returns:
+        Some of both, in order, (k,).
+    """
+    size = len(t) // _DOTS
+    if size < 2:
+        return t, values
+    n = len(t) // size * size
+    parts = np.where(np.isnan(values[:n]), 0.0, values[:n]).reshape(-1, size)
+    starts = np.arange(0, n, size)
+    ends = starts + size - 1  # so that gaps stay where they are
+    at = np.stack((starts, starts + parts.argmin(axis=1), starts + parts.argmax(axis=1), ends))
+    at = np.unique(np.append(at, np.arange(n, len(t))))
+    return t[at], values[at]
 
 
 def _truth(axes: Any, result: Result, k: int, scale: float, colour: str) -> None:
@@ -149,10 +173,11 @@ def _truth(axes: Any, result: Result, k: int, scale: float, colour: str) -> None
 
 
 def _shade_halts(axes: Any, result: Result) -> None:
-    t, halted = result.samples.t, result.estimates["halted"]
+    t, halted = extremes(result.samples.t, result.estimates["halted"].astype(np.float64))
     inside = axes.get_xaxis_transform()
+    shaded = halted > 0.0
     axes.fill_between(
-        t, 0.0, 1.0, where=halted, step="post", color=_BAND, linewidth=0, transform=inside, zorder=0
+        t, 0.0, 1.0, where=shaded, step="post", color=_BAND, linewidth=0, transform=inside, zorder=0
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +13,13 @@ import numpy as np
 from estimator.records.cells import numbers, times
 from estimator.records.extras import extra
 from estimator.records.record import Array
-from estimator.records.table import read_columns, unit_in_name
-from estimator.records.units import REQUIRED, TIME, TRUTH, UNITS, VELOCITY_TIME
+from estimator.records.sources import read_columns
+from estimator.records.table import unit_in_name
+from estimator.records.units import FINGERS, POSITIONS, REQUIRED, TIME, TRUTH, UNITS, VELOCITY_TIME, units_of
 
 _AXES = {"x": ("x", "0"), "y": ("y", "1"), "z": ("z", "2")}
 _WORDS = {
-    "f": "f|force|ft|forces|load",
+    "f": "f|force|ft|wrench|forces|load",
     "m": "m|t|torque|tau|moment|torques",
     "v": "v|vel|velocity|slip|linear|slip_velocity|slip_vel|twist",
     "w": "w|omega|angular|rate|slip_rate|rot|rotation",
@@ -27,7 +28,7 @@ _WHOLE = {
     TIME: r"((ft|f|force|wrench|header)_)?(t|time|stamp|time_?stamp|secs?|seconds|ms|elapsed|t_s|t_ms)",
     VELOCITY_TIME: r"velocity_t|(slip|vel|velocity|twist|v)_?(t|time|stamp)",
     "f_n": r"f_?n|normal(_force)?|pressure_force|grip(_force)?",
-    "tau": r"tau(_?[nz])?|mz|tz|torsion|ft\[5\]",
+    "tau": r"tau(_?[nz])?|mz|tz|torsion|(ft|wrench)\[5\]",
     "omega": r"omega(_?[nz])?|wz|yaw_?rate|slip_?rate|slip_omega|slip\[2\]",
     "cop_x": r"cop_?x|cop\[0\]",
     "cop_y": r"cop_?y|cop\[1\]",
@@ -39,6 +40,17 @@ _COMPONENT = {
     "f_x": "fx", "f_y": "fy", "f_n": "fz", "tau_x": "mx", "tau_y": "my", "tau": "mz",
     "v_x": "vx", "v_y": "vy", "omega": "wz",
 }  # fmt: skip
+_PLACES = {
+    "v_x": r"((pos|position|disp|displacement|p|s)[._]?)?(x|\[0\])",
+    "v_y": r"((pos|position|disp|displacement|p|s)[._]?)?(y|\[1\])",
+    "omega": r"angle|theta|phi|yaw|(pos|position)_?angle",
+}
+"""Columns that count displacement, by the velocity."""
+_SPANS = {"v_x": 0.3, "v_y": 0.3, "omega": 30.0}
+"""Longest likely way in a record [m, m, rad]."""
+_SIDE = re.compile(
+    r"(?<![a-z0-9\[])(left|right|l|r|finger_?[12]|[12])(?![a-z0-9\]])|(?<=[a-z_])[12]$", re.IGNORECASE
+)
 _UNIT = re.compile(r"\s*[\[(][^\[\]()]*[a-zA-Z%°µμ][^\[\]()]*[\])]$")
 RATES = 20.0, 25_000.0
 """Likely sample rates [Hz]."""
@@ -56,6 +68,8 @@ class Proposal:
     sign: int
     why: str
     """Reason for unit and sign."""
+    position: bool
+    """Whether it counts displacement."""
     values: Array
     """In SI units with the sign, NaN where a cell is empty."""
 
@@ -72,7 +86,41 @@ def propose(path: Path) -> tuple[list[Proposal], list[str]]:
     Raises:
         FileNotFoundError, ValueError, ModuleNotFoundError: As `load`.
     """
-    frame, numeric = read_columns(path), {}
+    frame = read_columns(path)
+    found = _proposed(frame)
+    used = [each.column for each in found]
+    return found, [name for name in frame if name not in used]
+
+
+def propose_fingers(path: Path) -> tuple[dict[str, list[Proposal]], list[str]]:
+    """The same for each finger, if the names of the forces say that there are two.
+
+    Returns:
+        Name of the finger -> its proposals, a single empty name if there is one finger; the rest.
+    """
+    frame, found = read_columns(path), {}
+    sides = {name: _side(name) for name in frame}
+    for side in sorted({side for side in sides.values() if side}):
+        names = {_SIDE.sub("", name).strip("_. "): name for name in frame if sides[name] in ("", side)}
+        own = _proposed({short: frame[name] for short, name in names.items()})
+        own = [replace(each, column=names[each.column]) for each in own]
+        if {"f_x", "f_n"} <= {each.key for each in own if sides[each.column] == side}:
+            found[f"finger_{side}" if side.isdigit() else side] = own
+    if len(found) < 2:
+        found = {"": _proposed(frame)}
+    used = {each.column for own in found.values() for each in own}
+    return found, [name for name in frame if name not in used]
+
+
+def _side(name: str) -> str:
+    """left, right, 1 or 2, if a name has it."""
+    match = _SIDE.search(name)
+    side = match[0].lower().replace("finger", "").strip("_") if match else ""
+    return {"l": "left", "r": "right"}.get(side, side)
+
+
+def _proposed(frame: Mapping[str, Any]) -> list[Proposal]:
+    numeric: dict[str, tuple[Array, bool]] = {}
     for name, cells in frame.items():
         series = extra("pandas").Series(cells, name=name)
         for read in (times, numbers):
@@ -84,25 +132,56 @@ def propose(path: Path) -> tuple[list[Proposal], list[str]]:
                 numeric[name] = values, read is times
                 break
     chosen = _by_name({name: len(values) for name, (values, _) in numeric.items()})
+    places = _places([name for name in numeric if name not in chosen.values()], chosen)
     found: dict[str, Proposal] = {}
     for key in (key for key in UNITS if key in chosen):
         values, dated = numeric[chosen[key]]
         alike = [numeric[chosen[other]][0] for other in chosen if UNITS[other] is UNITS[key]]
         unit, sign, why = ("s", 1, "dates") if dated else _unit(key, chosen[key], values, alike, found)
-        found[key] = Proposal(key, chosen[key], unit, sign, why, sign * UNITS[key][unit] * values)
-    return list(found.values()), [name for name in frame if name not in chosen.values()]
+        found[key] = Proposal(key, chosen[key], unit, sign, why, False, sign * UNITS[key][unit] * values)
+    spans = {
+        key: float(np.ptp(numeric[name][0][np.isfinite(numeric[name][0])])) for key, name in places.items()
+    }
+    for key, name in places.items():
+        units = units_of(key, position=True)
+        span = max(spans[other] for other in places if POSITIONS[other] == POSITIONS[key])
+        likely = [unit for unit, factor in units.items() if span * factor <= _SPANS[key]]
+        unit = unit_in_name(key, name, position=True) or (likely or list(units))[0]
+        why = f"a way of up to {span * units[unit]:.3g} {next(iter(units))}"
+        found[key] = Proposal(key, name, unit, 1, why, True, units[unit] * numeric[name][0])
+    return list(found.values())
 
 
-def mapping_text(proposals: list[Proposal]) -> str:
+def _places(free: list[str], chosen: dict[str, str]) -> dict[str, str]:
+    """Velocity -> column of the displacement, where there is no column of the velocity."""
+    found: dict[str, str] = {}
+    for key, pattern in _PLACES.items():
+        plain = {name: re.split(r"[/]", _UNIT.sub("", name).strip().lower())[-1] for name in free}
+        hits = [name for name in free if re.fullmatch(pattern, plain[name])]
+        if key not in chosen and hits:
+            found[key] = hits[0]
+    return found
+
+
+def mapping_text(proposals: list[Proposal], indent: str = "") -> str:
     """The mapping as YAML, with the reason of each line as a comment."""
     lines = ["# Proposed by slipgym map: look at every line. docs/records.md lists keys, units and frames."]
+    lines = [] if indent else lines
     for each in proposals:
         column = each.column.replace("'", "''")
-        sign = ", sign: -1" if each.sign < 0 else ""
-        lines.append(f"{each.key}: {{column: '{column}', unit: '{each.unit}'{sign}}}  # {each.why}")
+        sign, kind = ", sign: -1" if each.sign < 0 else "", "position" if each.position else "column"
+        lines.append(f"{each.key}: {{{kind}: '{column}', unit: '{each.unit}'{sign}}}  # {each.why}")
     given = {each.key for each in proposals}
     lines += [f"# {key}: ?  nothing looks like it" for key in REQUIRED if key not in given]
-    return "\n".join(lines) + "\n"
+    return "".join(f"{indent}{line}\n" for line in lines)
+
+
+def text_of_fingers(found: Mapping[str, list[Proposal]]) -> str:
+    """The mapping of one finger, or of each of several."""
+    if "" in found:
+        return mapping_text(found[""])
+    parts = [f"  {name}:\n{mapping_text(own, '    ')}" for name, own in found.items()]
+    return "".join([mapping_text([]).splitlines(keepends=True)[0], f"{FINGERS}:\n", *parts])
 
 
 def _by_name(lengths: Mapping[str, int]) -> dict[str, str]:
@@ -146,7 +225,7 @@ def _score(key: str, name: str) -> int:
         at = "|".join(_AXES[axis])
         if re.search(rf"(^|[./_])({_WORDS[kind]})([./_]?({axis})|\[({at})\])$", plain):
             return 1
-    return int(key == "tau" and last == "ft[3]")  # of four columns
+    return int(key == "tau" and last in ("ft[3]", "wrench[3]"))  # of four columns
 
 
 def _unit(
@@ -181,13 +260,14 @@ def plot(proposals: list[Proposal], path: Path) -> None:
     pyplot = extra("matplotlib.pyplot")
     shown = [each for each in proposals if each.key not in (TIME, VELOCITY_TIME)]
     clocks = {each.key: each.values for each in proposals if each.key in (TIME, VELOCITY_TIME)}
-    figure, axes = pyplot.subplots(len(shown), 1, sharex=True, figsize=(9, 1.3 * len(shown)), squeeze=False)
-    for ax, each in zip(axes[:, 0], shown, strict=True):
+    rows = max(len(shown), 1)
+    figure, axes = pyplot.subplots(rows, 1, sharex=True, figsize=(9, 1.3 * rows), squeeze=False)
+    for ax, each in zip(axes[:, 0], shown, strict=False):
         t = next((t for t in clocks.values() if len(t) == len(each.values)), np.arange(len(each.values)))
         there = np.isfinite(each.values)
         ax.plot((t - np.nanmin(t))[there], each.values[there], linewidth=0.8)
         ax.set_title(f"{each.key} = {each.column}", loc="left", fontsize=9)
-        ax.set_ylabel(f"[{next(iter(UNITS[each.key]))}]")
+        ax.set_ylabel(f"[{next(iter(units_of(each.key, each.position)))}]")
     axes[-1, 0].set_xlabel("time [s]")
     figure.tight_layout()
     figure.savefig(path, dpi=100)

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from estimator.online import TWIST, WRENCH
-from estimator.records import arrays, checks
-from estimator.records.columns import Columns
+from estimator.records import checks
+from estimator.records.alignment import GAP_PERIODS
+from estimator.records.columns import Columns, Wanted
 from estimator.records.extras import extra
 from estimator.records.holding import held
-from estimator.records.record import Array, Record, Rows, cop_of_tilt, wrench_at
-from estimator.records.table import Table, named_columns, of_one_finger, read_table, table_of
-from estimator.records.units import COP, REQUIRED, TILT, TIME, TRUTH, VELOCITY_TIME
+from estimator.records.record import Array, Record, Rows, cop_of_tilt, move_torque
+from estimator.records.sources import Source, of_frame, read_sources
+from estimator.records.streams import of_one_finger, read_tables, stream
+from estimator.records.table import Table, listed
+from estimator.records.units import COP, GRIP, REQUIRED, TILT, TIME, TRUTH, VELOCITY_TIME
 from estimator.suggestions import brief
 
 CONTACT = 0.2
@@ -30,27 +34,23 @@ def load(
 ) -> Record:
     """Reads and checks the record of one finger.
 
-    In one file a cell is empty where its stream has no sample: force cells, velocity cells, or neither are
-    empty in a row. In two files no cell is.
+    In one table a cell is empty where its stream has no sample: force cells, velocity cells, or neither are
+    empty in a row. Where forces and velocities are in two files, topics or groups of arrays, no cell is.
 
     Args:
-        log: csv, csv.gz, parquet, xlsx, npz, HDF5, mat, mcap, bag or the folder of a ROS 2 bag, with forces
-            and, unless `velocity` is given, velocities. A file of arrays may have velocities of another
-            length, if the mapping names their time `velocity_t`.
+        log: A file of one of `TYPES`, with forces and, unless `velocity` is given, velocities.
         columns: The mapping; None for the default.
         velocity: A file of its own for the velocities, on the same clock.
 
     Raises:
         FileNotFoundError: There is no such file.
         ValueError: The record cannot be what it should be; the message says where and what would do.
-        ModuleNotFoundError: The extra that reads it is not installed.
+        ModuleNotFoundError: An extra is not installed.
     """
     columns = columns or Columns()
-    if velocity is None and columns.given.get(VELOCITY_TIME) and Path(log).suffix.lower() in arrays.TYPES:
-        velocity = log
-    time = VELOCITY_TIME if columns.given.get(VELOCITY_TIME) else TIME
-    forces = read_table(Path(log), columns)
-    return _record(forces, None if velocity is None else read_table(Path(velocity), columns, time), columns)
+    files = [Path(each) for each in (log, velocity) if each is not None]
+    found = [read_tables(path.name, columns, partial(read_sources, path)) for path in files]
+    return _record(found, columns)
 
 
 def from_arrays(
@@ -73,74 +73,114 @@ def from_arrays(
         ModuleNotFoundError: pandas is not installed.
     """
     columns = columns or Columns()
-    tables = [
-        None if given is None else table_of(name, _frame_of(given, name), columns)
-        for given in (forces, velocities)
-    ]
-    assert tables[0] is not None
-    return _record(tables[0], tables[1], columns)
+    given = [each for each in (forces, velocities) if each is not None]
+    return _record([read_tables(name, columns, partial(_of_memory, each, name)) for each in given], columns)
 
 
-def _frame_of(given: Mapping[str, Any] | Any, name: str) -> Any:
+def _of_memory(given: Mapping[str, Any] | Any, name: str, wanted: Wanted) -> list[Source]:
+    """The columns of a DataFrame, or of a mapping of names to arrays (n,)."""
     pandas = extra("pandas")
     if isinstance(given, pandas.DataFrame):
-        return named_columns(given)
+        return [of_frame(given)]
     if not isinstance(given, Mapping):
-        raise ValueError(
-            f"{name}: must be a mapping of names to arrays or a DataFrame, got {brief(type(given))}"
-        )
-    shapes = {str(key): np.shape(values) for key, values in given.items()}
+        kind = brief(type(given).__name__)
+        raise ValueError(f"{name}: must be a mapping of names to arrays or a DataFrame, got {kind}")
+    try:
+        arrays = {str(key): np.asarray(values) for key, values in given.items()}
+    except ValueError as error:
+        raise ValueError(f"{name}: cannot be read: {brief(error, 300)}") from error
+    shapes = {key: values.shape for key, values in arrays.items()}
     if len(set(shapes.values())) > 1 or any(len(shape) != 1 for shape in shapes.values()):
-        listed = ", ".join(f"{brief(key)} {shape}" for key, shape in shapes.items())
-        raise ValueError(f"{name}: arrays must be of one shape (n,), got {listed}")
-    return named_columns(pandas.DataFrame({key: np.asarray(values) for key, values in given.items()}))
+        listing = ", ".join(f"{brief(key)} {shape}" for key, shape in shapes.items())
+        raise ValueError(f"{name}: arrays must be of one shape (n,), got {listing}")
+    return [of_frame(pandas.DataFrame(arrays))]
 
 
-def _record(forces: Table, velocities: Table | None, columns: Columns) -> Record:
-    together = velocities is None
-    if velocities is None:
-        forces.require(REQUIRED)
-        if columns.given.get(VELOCITY_TIME):
-            raise ValueError(f"{forces.name}: {VELOCITY_TIME} is for a file of velocities; give --velocity")
-        (forces,) = of_one_finger([forces], columns)
-        velocities, time = forces, TIME
-    else:
-        forces.require((TIME, *WRENCH))
-        forces, velocities = of_one_finger([forces, velocities], columns)
-        time = VELOCITY_TIME if columns.given.get(VELOCITY_TIME) else TIME
-        velocities.require((time, *TWIST))
+def _record(files: list[list[Table]], columns: Columns) -> Record:
+    """A record of the tables of one file, or of one for the forces and one for the velocities."""
+    if columns.fingers:
+        names = list(columns.fingers)
+        raise ValueError(
+            f"{files[0][0].name}: the mapping is of the fingers {', '.join(names)}; a record is of one; "
+            f"its mapping is `columns.fingers[{names[0]!r}]`"
+        )
+    tables, count = of_one_finger([table for tables in files for table in tables], columns), len(files[0])
+    others = [key for key in (*WRENCH, *COP, *TILT, GRIP, *TRUTH) if columns.given.get(key)]
+    place, forces = stream(tables[:count], WRENCH, others)
+    of_twists = (place, forces) if len(tables) == 1 else stream(tables[count:] or tables, TWIST)
+    sparse, velocities = len(files) == 1 and of_twists[0] == place, of_twists[1]
+    time = _time_of_velocities(velocities, TIME if sparse else None)
+    if sparse:
+        forces.require(tuple(dict.fromkeys((*REQUIRED, time))))
+    forces.require((TIME, *WRENCH))
+    velocities.require((time, *TWIST))
     extra_keys = _cop_keys(forces)
-    force_t, wrench, at = _stream(forces, TIME, WRENCH, sparse=together, what="force")
-    twist_t, twist, twist_at = _stream(velocities, time, TWIST, sparse=together, what="velocity")
+    force_t, wrench, at = _stream(forces, TIME, WRENCH, sparse, what="force")
+    twist_t, twist, twist_at, hold = _velocities(velocities, time, sparse)
     checks.check_wrench(forces.name, wrench, forces.rows(at))
     checks.check_twist(velocities.name, twist, velocities.rows(twist_at))
     cop = _cop(forces, extra_keys, wrench, at)
     if cop is not None:
         checks.check_cop(forces.name, cop)
-        wrench = wrench_at(wrench, cop)
+        move_torque(wrench, cop)
     checks.check_torque(forces.name, wrench)
-    truth, hold = _truth(forces, at), None
-    if (once := held(twist_t, twist)) is not None:
+    own = columns.given.get(GRIP) and forces.has(GRIP)  # a column of that name may be anything
+    grip = forces.numbers([GRIP], at)[:, 0] if own else None
+    return Record(forces.name, force_t, wrench, cop, twist_t, twist, _truth(forces, at), hold, grip=grip)
+
+
+def _time_of_velocities(table: Table, default: str | None) -> str:
+    """The key of their time: their own if the mapping has it, or if the table has it and no other."""
+    own, there = table.columns[VELOCITY_TIME], table.frame.columns
+    if VELOCITY_TIME in table.columns.given and own is not None:
+        if default and own.column not in there:
+            raise ValueError(
+                f"{table.name}: {VELOCITY_TIME}: no column {brief(repr(own.column))}; it has: "
+                f"{listed(table.names)}; for a file of velocities, give --velocity"
+            )
+        return VELOCITY_TIME
+    time = table.columns[TIME]
+    other = default is None and own is not None and own.column in there
+    return VELOCITY_TIME if other and (time is None or time.column not in there) else TIME
+
+
+def _velocities(table: Table, time: str, sparse: bool) -> tuple[Array, Array, Rows, float | None]:
+    """Time (m,), velocities (m, 3), places in the table, and for how long the file repeats each.
+
+    A velocity of positions is their difference over the time between two samples, at the later one: without
+    a sample before it, or after a gap, there is none.
+    """
+    t, twist, at = _stream(table, time, TWIST, sparse, what="velocity")
+    counted = [k for k, key in enumerate(TWIST) if (column := table.columns[key]) and column.position]
+    for k in set(counted) & {TWIST.index("omega")}:
+        twist[:, k] = np.unwrap(twist[:, k])
+    hold = None
+    if (once := held(t, twist)) is not None:
         delivered, hold = once
-        twist_t, twist = twist_t[delivered], twist[delivered]
-    return Record(forces.name, force_t, wrench, cop, twist_t, twist, truth, hold)
+        t, twist, at = t[delivered], twist[delivered], at[delivered]
+    if counted:
+        step = np.diff(t)
+        twist[1:, counted] = np.diff(twist[:, counted], axis=0) / step[:, None]
+        local = np.flatnonzero(step <= GAP_PERIODS * np.median(step)) + 1
+        t, twist, at = t[local], twist[local], at[local]
+    return t, twist, at, hold
 
 
 def _stream(
     table: Table, time: str, keys: tuple[str, ...], sparse: bool, what: str
 ) -> tuple[Array, Array, Rows]:
     """Time (n,), values (n, len(keys)) and places in the table (n,) of one stream."""
-    (t, column), values = table.seconds(time), table.numbers(keys)
+    at = table.filled(keys) if sparse else np.arange(len(table.frame))
+    (t, column), values = table.seconds(time, at), table.numbers(keys, at)
     empty = np.isnan(values)
-    at: Any = np.flatnonzero(~empty.all(axis=1)) if sparse else np.arange(len(t))
-    for k in at[empty[at].any(axis=1)][:1]:
-        lacking = table.columns[keys[int(np.argmax(empty[k]))]]
-        assert lacking is not None
+    if empty.any():
+        k = int(np.argmax(empty.any(axis=1)))
+        lacking = table.column(keys[int(np.argmax(empty[k]))]).column
         rest = "; a row holds all of a stream or none" if sparse else ""
-        raise ValueError(f"{table.name}: row {table.rows(k)}: {brief(lacking.column)} is empty or NaN{rest}")
-    checks.check_time(table.name, t[at], table.rows(at), what)
-    checks.check_rate(table.name, t[at], what, time, column)
-    return t[at], values[at], at
+        raise ValueError(f"{table.name}: row {table.rows(at)[k]}: {brief(lacking)} is empty or NaN{rest}")
+    checks.check_time(table.name, t, table.rows(at), what)
+    checks.check_rate(table.name, t, what, time, column)
+    return t, values, at
 
 
 def _cop_keys(table: Table) -> tuple[str, ...]:
@@ -164,13 +204,13 @@ def _cop(table: Table, keys: tuple[str, ...], wrench: Array, at: Rows) -> Array 
     """Centre of pressure by force sample (n, 2) [m]; out of contact, the origin."""
     if not keys:
         return None
-    values, f_n = table.numbers(keys)[at], wrench[:, 2]
+    values, f_n = table.numbers(keys, at), wrench[:, 2]
     missing: Any = np.isnan(values).any(axis=1)
     lost = missing & (f_n >= CONTACT)
     if lost.any():
         row = table.rows(at)[np.argmax(lost)]
         raise ValueError(f"{table.name}: row {row}: {' or '.join(keys)} is empty or NaN")
-    values = np.where(missing[:, None], 0.0, values)
+    values[missing] = 0.0
     if keys == TILT:
         return cop_of_tilt(values, f_n, CONTACT)
     return values * (f_n >= CONTACT)[:, None]
@@ -182,5 +222,5 @@ def _truth(table: Table, at: Rows) -> Array | None:
     if not keys:
         return None
     truth = np.full((len(at), len(TRUTH)), np.nan)
-    truth[:, [TRUTH.index(key) for key in keys]] = table.numbers(keys)[at]
+    truth[:, [TRUTH.index(key) for key in keys]] = table.numbers(keys, at)
     return truth

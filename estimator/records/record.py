@@ -37,6 +37,8 @@ class Record:
     """Time for which the file repeats each velocity, of which the record has one [s]; None: it does not."""
     periods: tuple[float, float] | None = None
     """Usual times between two forces and two velocities, where they are known [s]; None: the medians."""
+    grip: Array | None = None
+    """Force of the gripper itself by force sample, (n,) [N], NaN where unknown; None: the record has none."""
 
 
 def seconds(t: Any) -> str:
@@ -55,8 +57,18 @@ def wrench_at(wrench: Array, cop: Array) -> Array:
         (n, 4), a new array.
     """
     moved = wrench.copy()
-    moved[:, 3] -= cop[:, 0] * wrench[:, 1] - cop[:, 1] * wrench[:, 0]
+    move_torque(moved, cop)
     return moved
+
+
+def move_torque(wrench: Array, cop: Array) -> None:
+    """Moves wrenches to the centre of pressure in their place, which a long record has memory for.
+
+    Args:
+        wrench: As for `wrench_at`; its torque is changed.
+        cop: (n, 2) [m].
+    """
+    wrench[:, 3] -= cop[:, 0] * wrench[:, 1] - cop[:, 1] * wrench[:, 0]
 
 
 def twist_at(twist: Array, cop: Array) -> Array:
@@ -87,5 +99,7 @@ def cop_of_tilt(tilt: Array, f_n: Array, threshold: float) -> Array:
         (n, 2) [m].
     """
     pressed = f_n >= threshold
-    load = np.where(pressed, f_n, 1.0)
-    return np.column_stack((-tilt[:, 1], tilt[:, 0])) / load[:, None] * pressed[:, None]
+    cop = np.stack((-tilt[:, 1], tilt[:, 0]), axis=1)
+    cop /= np.where(pressed, f_n, 1.0)[:, None]
+    cop *= pressed[:, None]
+    return cop

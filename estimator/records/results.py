@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from estimator.records.units import TRUTH
 
 
 def write(result: Result, folder: Path) -> None:
-    """Writes estimates.csv, estimates.parquet, summary.md and estimates.png.
+    """Writes estimates.csv, summary.md, estimates.png and, where pyarrow is installed, estimates.parquet.
 
     Args:
         result: From `estimate`.
@@ -27,9 +28,9 @@ def write(result: Result, folder: Path) -> None:
         ModuleNotFoundError: The extra `slipgym[cli]` is not installed.
         OSError: A file cannot be written.
     """
-    pandas, _ = extra("pandas"), extra("pyarrow")
-    frame = pandas.DataFrame(table(result))
-    frame.to_parquet(folder / "estimates.parquet", index=False)
+    frame = extra("pandas").DataFrame(table(result), copy=False)
+    if find_spec("pyarrow") is not None:
+        frame.to_parquet(folder / "estimates.parquet", index=False)
     frame.to_csv(folder / "estimates.csv", index=False, float_format="%.9g")
     (folder / "summary.md").write_text(markdown(result), encoding="utf-8")
     plot(result).savefig(folder / "estimates.png", dpi=150)

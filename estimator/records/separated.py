@@ -7,14 +7,17 @@ import csv
 import gzip
 import io
 import re
-from collections.abc import Collection
+from collections.abc import Callable, Collection
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from estimator.records.columns import Wanted, is_wanted
 from estimator.records.extras import extra
 
 SEPARATORS = (",", ";", "\t", r"\s+")
 _LOOKED_AT = 200  # lines in which the header and a decimal comma are looked for
+_PIECE = 2**18  # rows that are read at once
 _MARKS = {
     codecs.BOM_UTF8: "utf-8-sig",
     codecs.BOM_UTF32_LE: "utf-32",  # before UTF-16, whose mark it begins with
@@ -32,7 +35,7 @@ _TOO_LONG = (
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?")
 
 
-def read_csv(path: Path, expected: Collection[str]) -> tuple[Any, dict[str, str], bool]:
+def read_csv(path: Path, wanted: Wanted, only: bool = False) -> tuple[Any, list[str], dict[str, str], bool]:
     """Reads a csv file, packed by gzip or not.
 
     The header is the line that has most of the expected names, or else most texts, between one of
@@ -41,11 +44,12 @@ def read_csv(path: Path, expected: Collection[str]) -> tuple[Any, dict[str, str]
 
     Args:
         path: The file.
-        expected: The columns that may be read.
+        wanted: The expected names.
+        only: Whether no other columns are read.
 
     Returns:
-        Its pandas.DataFrame, whose names may occur twice; column -> unit that the file says; whether its
-        numbers have decimal commas.
+        Its pandas.DataFrame, whose names may occur twice; all names; column -> unit that the file says;
+        whether its numbers have decimal commas.
 
     Raises:
         ValueError: It is no text, has no header, or its rows have more cells than its header.
@@ -53,58 +57,136 @@ def read_csv(path: Path, expected: Collection[str]) -> tuple[Any, dict[str, str]
         EOFError: It is cut off.
         zlib.error: Its packing is damaged.
     """
-    pandas, text = extra("pandas"), _text(path)
-    at, separator, names = _header(text.split("\n", _LOOKED_AT)[:_LOOKED_AT], expected)
-    body = "".join(text.split("\n", at + 1)[at + 1 :])
-    if any(mark in body for mark in ("#", "%", "//")):
-        body = _COMMENTS.sub("", body)
-    lines = [line for line in body.split("\n", _LOOKED_AT)[:_LOOKED_AT] if line.strip()]
+    encoding = _encoding(path)
+    return _read(lambda: io.TextIOWrapper(_binary(path), encoding), wanted, only)
+
+
+def read_cells(rows: list[list[Any]], wanted: Wanted) -> tuple[Any, list[str], Any, bool]:
+    """Reads the cells of a sheet as those of a csv file; None is an empty one. As `read_csv`."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(
+        [str(cell).replace("\n", " ") if isinstance(cell, str) else cell for cell in row] for row in rows
+    )
+    return _read(lambda: io.StringIO(text.getvalue()), wanted, wanted is not None)
+
+
+def _read(open_text: Callable[[], Any], wanted: Wanted, only: bool) -> tuple[Any, list[str], Any, bool]:
+    """Reads a text that can be opened more than once."""
+    pandas, expected = extra("pandas"), wanted or ()
+    with open_text() as text:
+        head = [line.rstrip("\n") for line in islice(text, _LOOKED_AT)]
+    at, separator, names = _header(head, expected)
+    with open_text() as text:
+        body = _COMMENTS.sub("", "".join(islice(text, at + 1, at + 1 + _LOOKED_AT)))
+    lines = [line for line in body.split("\n") if line.strip()]
     rows, units = [_cells(line, separator) for line in lines], {}
     if rows and 1 < sum(map(bool, rows[0])) == _texts(rows[0]):
         units = dict(zip(names, rows.pop(0), strict=False))
-        body = body.replace(lines[0], "", 1)
     if rows and len(rows[0]) > len(names):  # pandas would take the first columns for an index
         raise ValueError(_TOO_LONG.format(len(names)))
-    read = [cell for row in rows for name, cell in zip(names, row, strict=False) if name in expected]
-    comma = separator != "," and any(map(_DECIMAL_COMMA.fullmatch, read))
+    asked = [k for k, name in enumerate(names) if is_wanted(name, wanted)]
+    comma = separator != "," and any(
+        _DECIMAL_COMMA.fullmatch(row[k]) for row in rows for k in asked if k < len(row)
+    )
     # Before pandas 3.1 the default loses last digits of a number.
     version = tuple(int(part) for part in pandas.__version__.split(".")[:2])
-    exactly = {} if version >= (3, 1) else {"float_precision": "round_trip"}
+    settings = {
+        "sep": separator,
+        "header": None,
+        "names": range(len(names)),
+        "usecols": asked if only else None,
+        "decimal": "," if comma else ".",
+        "skipinitialspace": True,
+        "low_memory": False,  # one type for all cells of a column
+        **({} if version >= (3, 1) else {"float_precision": "round_trip"}),
+    }
+    skipped = lines[0] if units else None
     try:
-        frame = pandas.read_csv(
-            io.BytesIO(body.encode()),
-            sep=separator,
-            header=None,
-            names=range(len(names)),
-            decimal="," if comma else ".",
-            skipinitialspace=True,
-            low_memory=False,  # one type for all cells of a column
-            **exactly,
-        )
+        frame = _in_pieces(lambda: _Body(open_text(), at + 1, skipped), settings)
     except pandas.errors.ParserError as error:
         longer = re.search(r"Expected \d+ fields", str(error))
         raise ValueError(_TOO_LONG.format(len(names)) if longer else str(error)) from error
-    frame.columns = names
-    return frame, units, comma
+    frame.columns = [names[k] for k in frame.columns]
+    return frame, names, units, comma
 
 
-def _text(path: Path) -> str:
-    """All of a file, unpacked, with line ends as Python has them; without a mark, UTF-8 or else Latin-1."""
-    data = path.read_bytes()
-    if data.startswith(b"\x1f\x8b"):
-        data = gzip.decompress(data)
-    encoding = next((name for mark, name in _MARKS.items() if data.startswith(mark)), "utf-8")
-    try:
-        text = data.decode(encoding)
-    except UnicodeDecodeError:
-        if encoding != "utf-8":
-            raise
-        text = data.decode("latin-1")
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    if (at := text.find("\0")) >= 0:
-        line = text.count("\n", 0, at) + 1
+def _in_pieces(open_body: Callable[[], Any], settings: dict[str, Any]) -> Any:
+    """Reads rows piece by piece, which needs less memory; at once, where a column changes its type."""
+    pandas = extra("pandas")
+    with open_body() as body, pandas.read_csv(body, chunksize=_PIECE, **settings) as pieces:
+        found = list(pieces)
+    if len({tuple(piece.dtypes) for piece in found}) == 1 or all(
+        dtype.kind in "if" for piece in found for dtype in piece.dtypes
+    ):
+        return pandas.concat(found, ignore_index=True)
+    with open_body() as body:
+        return pandas.read_csv(body, **settings)
+
+
+class _Body(io.TextIOBase):
+    """The lines below the header, without comments and the row of units.
+
+    Args:
+        text: The whole text.
+        at: Lines above them.
+        units: The row of units, if there is one.
+    """
+
+    def __init__(self, text: Any, at: int, units: str | None) -> None:
+        self._text, self._units = text, units
+        for _ in islice(text, at):
+            pass
+
+    def read(self, size: int | None = -1) -> str:
+        """Whole lines of about this length; an empty text at the end."""
+        while True:
+            lines = self._text.readlines(size if size and size > 0 else -1)
+            text = "".join(lines)
+            if any(mark in text for mark in ("#", "%", "//")):
+                text = _COMMENTS.sub("", text)
+            if self._units is not None and self._units in text:
+                text, self._units = text.replace(self._units, "", 1), None
+            if text or not lines:
+                return text
+
+    def __iter__(self) -> Any:
+        return iter(self._text)
+
+    def close(self) -> None:
+        """Closes the text, too."""
+        self._text.close()
+        super().close()
+
+
+def _binary(path: Path) -> Any:
+    """A file, unpacked if it is packed."""
+    with path.open("rb") as file:
+        packed = file.read(2) == b"\x1f\x8b"
+    return gzip.open(path) if packed else path.open("rb")
+
+
+def _encoding(path: Path) -> str:
+    """That of a text: by its mark, or else UTF-8, or else Latin-1."""
+    with _binary(path) as file:
+        begin = file.read(4)
+    marked = next((name for mark, name in _MARKS.items() if begin.startswith(mark)), None)
+    for encoding in (marked,) if marked else ("utf-8", "latin-1"):
+        line = 1
+        try:
+            with io.TextIOWrapper(_binary(path), encoding) as text:
+                while piece := text.read(2**20):
+                    if (at := piece.find("\0")) >= 0:
+                        line += piece.count("\n", 0, at)
+                        break
+                    line += piece.count("\n")
+                else:
+                    return encoding
+        except UnicodeDecodeError:
+            if encoding != "utf-8":
+                raise
+            continue
         raise ValueError(f"line {line} has a character 0: it is no text, or UTF-16 without a mark")
-    return text
+    raise AssertionError
 
 
 def _header(lines: list[str], expected: Collection[str]) -> tuple[int, str, list[str]]:

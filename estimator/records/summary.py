@@ -8,11 +8,13 @@ import numpy as np
 
 from estimator.estimate import Estimate
 from estimator.reasons import COUNTS, Doubts, reasons
-from estimator.records.alignment import period
+from estimator.records.alignment import Samples, period
 from estimator.records.calibration import calibration_rows
+from estimator.records.faults import fault_warnings
 from estimator.records.plausibility import warnings
 from estimator.records.reading import CONTACT
 from estimator.records.readings import reading_warnings
+from estimator.records.record import Record
 from estimator.records.run import Result
 
 _NAMES = ("mu_s", "mu_c", "r")
@@ -77,8 +79,13 @@ def final_rows(result: Result) -> list[list[str]]:
 
 def findings(result: Result) -> list[str]:
     """Warnings, then a line for each value that was not observable; "Everything was observed" if none."""
-    lines = [*reading_warnings(result.record, result.samples), *warnings(result), *not_observable(result)]
+    lines = [*faults(result.record, result.samples), *warnings(result), *not_observable(result)]
     return lines or ["Everything was observed."]
+
+
+def faults(record: Record, samples: Samples) -> list[str]:
+    """Warnings about the readings alone, whatever an estimator makes of them."""
+    return [*reading_warnings(record, samples), *fault_warnings(record, samples)]
 
 
 def not_observable(result: Result) -> list[str]:

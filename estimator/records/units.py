@@ -9,11 +9,12 @@ from estimator.online import TWIST, WRENCH
 TIME, VELOCITY_TIME = "t", "velocity_t"
 COP = ("cop_x", "cop_y")
 TILT = ("tau_x", "tau_y")
+GRIP = "grip"
 TRUTH = ("true_mu_s", "true_mu_c", "true_r")
 REQUIRED = (TIME, *WRENCH, *TWIST)
-ROWS = "rows"
-"""Key of a mapping that says which rows are those of the finger."""
-OPTIONAL = (*COP, *TILT, *TRUTH, VELOCITY_TIME)
+ROWS, FINGERS = "rows", "fingers"
+"""Keys of a mapping that say which rows are those of the finger, and what differs between fingers."""
+OPTIONAL = (*COP, *TILT, *TRUTH, VELOCITY_TIME, GRIP)
 
 _WRITTEN = str.maketrans({"µ": "u", "μ": "u", "°": "deg", **dict.fromkeys(" []()·*.")})
 _SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
@@ -27,7 +28,7 @@ _NUMBER = {"-": 1.0}
 UNITS: dict[str, dict[str, float]] = {
     TIME: _SECONDS,
     VELOCITY_TIME: _SECONDS,
-    **dict.fromkeys(("f_x", "f_y", "f_n"), _FORCE),
+    **dict.fromkeys(("f_x", "f_y", "f_n", GRIP), _FORCE),
     **dict.fromkeys(("tau", *TILT), _TORQUE),
     **dict.fromkeys(("v_x", "v_y"), _SPEED),
     "omega": _SPIN,
@@ -36,9 +37,24 @@ UNITS: dict[str, dict[str, float]] = {
     "true_r": _LENGTH,
 }
 """Key of a mapping -> unit -> factor to SI; the first unit is the default."""
+POSITIONS: dict[str, dict[str, float]] = {
+    **{key: {**_LENGTH, "um": 1e-6} for key in ("v_x", "v_y")},
+    "omega": {"rad": 1.0, "deg": math.pi / 180.0, "mrad": 1e-3},
+}
+"""Key of a velocity -> units of the displacement that may be given instead."""
 
 
-def unit_in(key: str, text: str) -> str | None:
+def units_of(key: str, position: bool = False) -> dict[str, float]:
+    """Unit -> factor to SI.
+
+    Args:
+        key: Of a mapping.
+        position: Whether the column counts displacement.
+    """
+    return (POSITIONS if position else UNITS)[key]
+
+
+def unit_in(key: str, text: str, position: bool = False) -> str | None:
     """The unit of a key that a text such as "[Nmm]", "(mm/s)" or "µs" means; None: none of its units."""
     written = text.translate(_WRITTEN)
-    return next((unit for unit in UNITS[key] if unit.translate(_WRITTEN) == written), None)
+    return next((unit for unit in units_of(key, position) if unit.translate(_WRITTEN) == written), None)

@@ -35,15 +35,17 @@ def main(
     """Propose a mapping of the columns of a log, for slipgym estimate --columns."""
     try:
         from estimator.records import load, load_columns, proposal
+        from estimator.records.alignment import align
+        from estimator.records.summary import faults
         from slipgym.atomic_io import new_file, write
 
-        found, left = proposal.propose(log)
-        text = proposal.mapping_text(found)
+        found, left = proposal.propose_fingers(log)
+        text = proposal.text_of_fingers(found)
         if output is not None:
             write(output, text.encode())
-        if plot is not None and found:
+        if plot is not None:
             with new_file(plot) as part:
-                proposal.plot(found, part)
+                proposal.plot([each for own in found.values() for each in own], part)
     except (ModuleNotFoundError, ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
     typer.echo(text + (f"\nnot used: {proposal.columns_left(left)}" if left else ""))
@@ -53,12 +55,16 @@ def main(
     if output is None:
         return
     try:
-        record = load(log, load_columns(output))
+        columns = load_columns(output)
+        read = {name: load(log, own) for name, own in (columns.fingers or {"": columns}).items()}
+        told = [line for record in read.values() for line in faults(record, align(record, allow_gaps=True))]
     except ValueError as error:
         typer.echo(f"\nslipgym estimate does not take it yet:\n{error}")
-    else:
+        return
+    for name, record in read.items():
         rates = [1.0 / ((t[-1] - t[0]) / max(len(t) - 1, 1)) for t in (record.force_t, record.twist_t)]
         typer.echo(
-            f"\nreadable: {record.force_t[-1] - record.force_t[0]:.1f} s, forces at {rates[0]:.0f} Hz, "
-            f"velocities at {rates[1]:.0f} Hz; go on with\n  slipgym estimate {log} --columns {output}"
+            f"\n{name}{': ' * bool(name)}readable: {record.force_t[-1] - record.force_t[0]:.1f} s, forces at "
+            f"{rates[0]:.0f} Hz, velocities at {rates[1]:.0f} Hz"
         )
+    typer.echo("\n".join([*dict.fromkeys(told), f"go on with\n  slipgym estimate {log} --columns {output}"]))

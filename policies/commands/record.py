@@ -12,7 +12,7 @@ Examples:\n
 \b
   slipgym record linear_slip slide.csv.gz --material wood --option duration=3
   slipgym record linear_slip forces.parquet --velocity velocities.parquet --finger 2
-  slipgym record hold hold.csv --policy constant_force
+  slipgym record hold hold.mcap --policy constant_force
 \n
 Forces come at 1000 Hz and velocities at 120 Hz, at the pad centre, with the true friction beside them;
 cells are empty where a sensor has no sample. docs/records.md describes the format.
@@ -27,7 +27,7 @@ def main(
         list[str],
         typer.Argument(
             metavar="[POLICY] RECORD",
-            help="csv, csv.gz, parquet or h5 to write; a policy before it is the same as --policy.",
+            help="csv, csv.gz, parquet, h5 or mcap to write; a policy before it is as --policy.",
             show_default=False,
         ),
     ],
@@ -62,6 +62,6 @@ def main(
         check_targets(record, velocity)
         frame = record_sensors(task, policy, finger, seed, options, material=material, sensors=sensors)
         save_record(frame, record, velocity)
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, ModuleNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
     typer.echo(f"{len(frame)} rows, {frame['t'].iloc[-1]:.2f} s: {record}")

@@ -12,6 +12,7 @@ import pytest
 
 import policies
 from estimator import records
+from policies.evaluation.record_files import save_record
 from policies.evaluation.sensor_record import record_sensors
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -124,6 +125,35 @@ def test_a_record_gives_the_environments_own_estimates(tmp_path, finger):
     ours = np.column_stack([result.estimates[name] for name in ("mu_s", "mu_c", "r")])
     np.testing.assert_allclose(ours, estimated, rtol=1e-9)
     assert result.estimates[-1]["updates_mu_c"] > 0
+
+
+@pytest.mark.parametrize(("name", "library"), [("log.h5", "h5py"), ("log.mcap", "mcap")])
+def test_a_record_in_one_file_closes_bit_for_bit(tmp_path, name, library):
+    pytest.importorskip(library)
+    frame = record_sensors("LinearSlip", "linear_slip", 1, seed=3, options=OPTIONS, material="wood")
+    for file in (name, "log.parquet"):
+        save_record(frame, tmp_path / file)
+    ours, plain = (records.estimate(records.load(tmp_path / file)) for file in (name, "log.parquet"))
+    np.testing.assert_array_equal(ours.estimates, plain.estimates)
+    np.testing.assert_array_equal(ours.samples.truth, plain.samples.truth)
+    with pytest.raises(ValueError, match="holds both streams already"):
+        save_record(frame, tmp_path / name, tmp_path / "velocity.csv")
+
+
+def test_the_fingers_of_a_mapping_have_a_folder_each(tmp_path, invoke):
+    (tmp_path / "two.yaml").write_text("fingers: {left: {}, right: {f_y: {sign: -1}, v_y: {sign: -1}}}")
+    done = invoke("estimate", SHIPPED, "--columns", tmp_path / "two.yaml", "--output", tmp_path / "out")
+    assert done.exit_code == 0, done.stderr
+    (run,) = (tmp_path / "out").iterdir()
+    left, right = (pd.read_parquet(run / finger / "estimates.parquet") for finger in ("left", "right"))
+    np.testing.assert_array_equal(left["f_y"], -right["f_y"])
+    assert "Finger left" in done.stdout
+    assert str(run / "right" / "summary.md") in done.stdout
+    (tmp_path / "two.yaml").write_text("fingers: {left: {}, right: {f_n: Fz}}")
+    done = invoke("estimate", SHIPPED, "--columns", tmp_path / "two.yaml", "--output", tmp_path / "out")
+    assert done.exit_code == 2
+    assert "finger right: linear_slip_wood.csv.gz: f_n: no column 'Fz'" in " ".join(done.stderr.split())
+    assert len(list((tmp_path / "out").iterdir())) == 1
 
 
 def test_a_record_of_nothing_known_is_refused():

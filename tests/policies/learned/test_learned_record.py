@@ -36,7 +36,7 @@ def test_every_sample_within_its_steps_is_kept(policy_folder, tmp_path):
         )
 
 
-@pytest.mark.parametrize("name", ["log.xlsx", "log.npz", "log.mcap", "log"])
+@pytest.mark.parametrize("name", ["log.xlsx", "log.npz", "log.bag", "log"])
 def test_a_type_that_cannot_be_written_is_refused_before_the_episode(tmp_path, name):
     with pytest.raises(ValueError, match=rf"{name}: unknown file type; records are \.csv, .*\.h5"):
         check_targets(tmp_path / name)
