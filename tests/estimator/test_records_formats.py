@@ -1,6 +1,5 @@
 """Arrays, DataFrames and files of other programs give the record of a csv file, and execute nothing."""
 
-import json
 import pickle
 import zipfile
 from pathlib import Path
@@ -11,7 +10,6 @@ import pytest
 from estimator import records
 
 pytest.importorskip("h5py")
-pytest.importorskip("openpyxl")
 pytest.importorskip("mcap")
 pytest.importorskip("rosbags")
 
@@ -107,15 +105,6 @@ def test_arrays_get_the_checks_of_a_file(table, change, match):
     assert "my gripper" in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("end", "write"), [("npz", write_npz), ("h5", write_hdf5), ("hdf5", write_hdf5), ("mat", write_mat)]
-)
-def test_files_of_arrays(table, plain, mapping, tmp_path, end, write):
-    path = tmp_path / f"log.{end}"
-    write(path, columns(*streams(table)))
-    assert_same(records.load(path, mapping("velocity_t: velocity_t")), plain)
-
-
 @pytest.mark.parametrize("turned", [False, True])
 @pytest.mark.parametrize("end", ["npz", "h5"])
 def test_columns_of_a_matrix(table, plain, mapping, tmp_path, end, turned):
@@ -145,39 +134,6 @@ def test_structures_of_matlab_and_groups_of_hdf5(table, plain, mapping, tmp_path
     for end, between in (("mat", "."), ("h5", "/")):
         names = "\n".join(f"{name}: log{between}run{between}{name}" for name in arrays)
         assert_same(records.load(tmp_path / f"log.{end}", mapping(names)), plain)
-
-
-def test_a_spreadsheet(table, plain, save, tmp_path):
-    forces, velocities = streams(table)
-    forces.to_excel(tmp_path / "f.xlsx", index=False)
-    velocities.to_excel(tmp_path / "v.xlsx", index=False)
-    assert_same(records.load(tmp_path / "f.xlsx", velocity=tmp_path / "v.xlsx"), plain, 1e-12)
-
-
-def test_mcap_with_json(table, plain, mapping, tmp_path):
-    from mcap.writer import Writer
-
-    forces, velocities = streams(table)
-    with (tmp_path / "log.mcap").open("wb") as file:
-        writer = Writer(file)
-        writer.start()
-        for topic, frame in (("/wrench", forces), ("/slip", velocities), ("/other", velocities)):
-            schema = writer.register_schema(topic, "jsonschema", b"{}")
-            channel = writer.register_channel(topic, "json", schema)
-            for k, row in enumerate(frame.to_dict("records")):
-                content = {"stamp": row.pop("t"), "values": row, "name": "text", "picture": [0.0] * 500}
-                writer.add_message(channel, k, json.dumps(content).encode(), k)
-        writer.finish()
-    names = {name: f"/wrench.values.{name}" for name in FORCES[1:]}
-    names |= {name: f"/slip.values.{name}" for name in VELOCITIES[1:]}
-    text = "\n".join(f"{key}: {name}" for key, name in names.items())
-    assert_same(records.load(tmp_path / "log.mcap", mapping(text)), plain)
-    with pytest.raises(
-        ValueError, match=r"no column '/slip\.values\.omegas'; did you mean '/slip\.values\.omega'"
-    ):
-        records.load(tmp_path / "log.mcap", mapping(text.replace("values.omega", "values.omegas")))
-    with pytest.raises(ValueError, match=r"it has: t, t_log, /wrench\.stamp, /wrench\.values\.f_x"):
-        records.load(tmp_path / "log.mcap")
 
 
 def test_mcap_of_ros_2(table, plain, mapping, tmp_path):
@@ -307,18 +263,6 @@ def test_arrays_that_would_fill_the_memory_are_refused(tmp_path):
         file.create_dataset("t", shape=(10**12,), dtype="f8", chunks=(10**6,), compression="gzip")
     with pytest.raises(ValueError, match="bytes"):
         records.load(tmp_path / "log.h5")
-
-
-@pytest.mark.parametrize("end", ["npz", "h5", "mat", "xlsx", "mcap", "bag"])
-@pytest.mark.parametrize(
-    "content", [b"", b"garbage" * 100, b"PK\x03\x04" + b"\x00" * 200, b"\x89HDF\r\n\x1a\n" + b"\xff" * 99]
-)
-def test_a_damaged_file_is_a_value_error_that_names_it(tmp_path, end, content):
-    path = tmp_path / f"log.{end}"
-    path.write_bytes(content)
-    with pytest.raises(ValueError, match=rf"log\.{end}: ") as caught:
-        records.load(path)
-    assert len(str(caught.value)) < 1000
 
 
 def test_a_missing_library_is_named_with_its_extra(tmp_path, monkeypatch):
