@@ -17,7 +17,7 @@ def bytes_with_pybullet(env_id: str = "slipgym/LinearSlip-v0", count: int = 20) 
     """
     envs, before = [], 0.0
     for k in range(count + 1):
-        envs.append(gym.make(env_id, disable_env_checker=True))
+        envs.append(gym.make(f"slipgym:{env_id}", disable_env_checker=True))
         envs[-1].reset(seed=k)
         before = before or _resident()
     grown = _resident() - before

@@ -62,14 +62,17 @@ class ObservationIndex:
         Raises:
             ValueError: No observation of the task has this length.
         """
-        for at in self._others:
-            longest, width = len(at), observations.shape[1]
-            full = longest - len(layout.DEVIATION_COLUMNS)
-            widths = longest, full, full - len(layout.FRICTION_COLUMNS)
-            if self.task_name is not None and len(at) != len(self._at) and width in widths:
-                return observations, at
-        if self.task_name is None and observations.shape[1] < len(self._at):
-            return observations, min(self._others, key=len)
+        width, shortest = observations.shape[1], min(self._others, key=len)
+        if self.task_name is None:
+            if width < len(shortest):
+                raise ValueError(f"observation has {width} columns; every task has at least {len(shortest)}")
+            if width < len(self._at):
+                return observations, shortest
+        else:
+            for at in self._others:
+                full = len(at) - len(layout.DEVIATION_COLUMNS)
+                if len(at) != len(self._at) and width in (len(at), full, full - len(layout.FRICTION_COLUMNS)):
+                    return observations, at
         return self._checked(observations), self._at
 
     def _checked(self, observations: np.ndarray) -> np.ndarray:

@@ -7,8 +7,12 @@ import pytest
 import estimator
 import policies
 from slipgym.config import load
+from slipgym.envs.load_part import LOAD
+from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, columns
+from slipgym.envs.sensor_part import LAYOUTS, LOADED
 from slipgym.sensors.markers import COLUMNS, COUNT, forces_of, press
 from slipgym.sensors.owned import motor_force, turn_motor
+from slipgym.tasks import TASKS, find
 from slipgym.world.plant import build
 
 EXACT = {"compliance": 1e-3, "noise": 0.0, "latency_frames": 0, "gain_error": 0.0, "normal_error": 0.0}
@@ -173,3 +177,19 @@ def test_controllers_act_on_what_there_is_or_say_what_is_missing():
     with pytest.raises(ValueError, match=r"the slip.*do not measure"):
         policies.make("linear_slip").predict(observations)
     envs.close()
+
+
+def test_an_observation_of_no_sensors_is_refused_by_a_policy_of_any_task():
+    with pytest.raises(ValueError, match=r"observation has 2 columns; every task has at least 3"):
+        policies.make("constant_force").predict(np.zeros(2))
+
+
+@pytest.mark.parametrize("task", [task.name for task in TASKS.values()])
+def test_the_length_of_an_observation_shows_its_sensors(task):
+    config = load()
+    whole = len(columns(config, find(task), "true", find(task).action_mode, "deviations"))
+    tail = whole - len(LAYOUTS["fingers"])
+    ends = 0, len(DEVIATION_COLUMNS), len(DEVIATION_COLUMNS) + len(FRICTION_COLUMNS)
+    lengths = [len(layout) + tail - end for layout in LAYOUTS.values() for end in ends]
+    lengths += [len(LAYOUTS[name]) + tail - end + len(LOAD) for name in LOADED for end in ends]
+    assert len(lengths) == len(set(lengths))
