@@ -23,7 +23,9 @@ def peaks(task, **arguments):
     names = [column.name for column in envs.privileged_columns]
     truth = dict(zip(names, observation["privileged"].T.astype(float), strict=True))
     gain = 0.5 * (truth["force_gain_1"] + truth["force_gain_2"])
-    force = np.tile(FACTORS, EPISODES) * truth["least_grip"] / gain
+    wanted, fingers = np.tile(FACTORS, EPISODES) * truth["least_grip"], envs.simulation.plant.fingers
+    turned = np.sign(wanted - fingers["settled"].mean(axis=1)) * fingers["stiction"].mean(axis=1)
+    force = (wanted + turned) / gain  # stiction holds the force back by so much
     action = (2.0 * (force - 0.6) / (25.0 - 0.6) - 1.0).astype(np.float32)[:, np.newaxis]
     largest, dropped = np.zeros(count), np.zeros(count, bool)
     for _ in range(envs.simulation.episode["steps"].max()):
