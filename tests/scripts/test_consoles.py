@@ -60,7 +60,6 @@ def test_what_a_command_prints_arrives(encoding, words, monkeypatch):
     assert said(encoding, front.main) == (0, expected)
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 @pytest.mark.parametrize(
     "program",
     [
@@ -82,11 +81,11 @@ def test_what_a_command_prints_arrives(encoding, words, monkeypatch):
         [ROOT / "scripts" / "export_policy.py", "no such policy ≥", "--onnx", "p.onnx"],
     ],
 )
-def test_a_process_with_such_a_console_ends_well(tmp_path, encoding, program):
+def test_a_process_with_such_a_console_ends_well(tmp_path, program):
     done = subprocess.run(
         [sys.executable, *map(str, program)],
         cwd=tmp_path,
-        env={**os.environ, "PYTHONIOENCODING": encoding, "PYTHONPATH": str(ROOT)},
+        env={**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONPATH": str(ROOT)},
         capture_output=True,
     )
     words = done.stdout + done.stderr
