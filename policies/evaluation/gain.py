@@ -106,11 +106,21 @@ def sentence(
     """
     name, solved = opponent
     with_truth = "" if true is None else f", {true} with the truth"
-    gain, low, high = (f"{value:.0f}".replace("-", "−") for value in points)
     return (
         f"Of {episodes} episodes {estimated} are solved with estimated friction, {solved} by the strongest "
-        f"policy without friction ({name}){with_truth}. The estimate gains {gain} points ({low} to {high})."
+        f"policy without friction ({name}){with_truth}. The estimate {_change(points)}."
     )
+
+
+def _change(points: Interval) -> str:
+    """A gain or loss with its interval, of which a single episode has none."""
+    verb, ends = "gains", points
+    if points.value < 0.0:
+        verb, ends = "loses", Interval(-points.value, -points.high, -points.low)
+    if np.isnan(points.low):
+        return f"{verb} {round(ends.value)} points"
+    value, low, high = (f"{round(end)}".replace("-", "−") for end in ends)
+    return f"{verb} {value} points ({low} to {high})"
 
 
 def _entry(policy: str, source: str, group: pd.DataFrame) -> Entry:
