@@ -107,7 +107,7 @@ def sentence(
     name, solved = opponent
     with_truth = "" if true is None else f", {true} with the truth"
     return (
-        f"Of {episodes} episodes {estimated} are solved with estimated friction, {solved} by the strongest "
+        f"Of {episodes} episodes, {estimated} are solved with estimated friction, {solved} by the strongest "
         f"policy without friction ({name}){with_truth}. The estimate {_change(points)}."
     )
 

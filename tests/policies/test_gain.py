@@ -42,7 +42,7 @@ def test_the_opponent_is_the_strongest_without_friction():
     assert gain is not None
     assert [entry.source for entry in gain.entries] == ["none", "none", "nominal", "estimated", "true"]
     assert gain.words().startswith(
-        "Of 10 episodes 8 are solved with estimated friction, 6 by the strongest policy without friction "
+        "Of 10 episodes, 8 are solved with estimated friction, 6 by the strongest policy without friction "
         "(controller, nominal friction), 9 with the truth. The estimate gains 20 points ("
     )
     paired = mean_interval(np.array([0.0] * 6 + [100.0] * 2 + [0.0] * 2))

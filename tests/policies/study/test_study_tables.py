@@ -81,7 +81,7 @@ def test_the_sentence_names_the_strongest_policy_without_friction(invented):
     table = pd.concat([invented(CLEAR), recurrent, invented({"none": 5}, kind="memory")], ignore_index=True)
     (said,) = claims(benefits(table), outcomes(table))
     assert said.startswith(
-        "Hold, train: Of 30 episodes 27 are solved with estimated friction, 18 by the strongest policy "
+        "Hold, train: Of 30 episodes, 27 are solved with estimated friction, 18 by the strongest policy "
         "without friction (recurrent network), 30 with the truth. The estimate gains 30 points ("
     )
 
