@@ -1,4 +1,5 @@
 import itertools
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -101,7 +102,7 @@ def test_the_demo_names_the_strongest_and_draws_it(tmp_path):
         "estimated friction",
         "true friction",
     }
-    assert trials.groupby("trial")["seed"].nunique().max() == 1
+    assert len(trials[["trial", "seed"]].drop_duplicates()) == 2
     assert str(folder / "gain.png") in said
     assert (folder / "gain.png").stat().st_size > 20_000
     assert set(trials["tolerance_mm"]) == {1.5}  # that of the level
@@ -127,7 +128,8 @@ def test_a_policy_acts_with_its_own_friction_choices_at_its_own_rate(two):
         "linear_slip": 1,
         "alone": 2,
     }
-    assert make_policy(experiment, trials["linear_slip"]).config.physics.control_rate == 120
+    controller: Any = make_policy(experiment, trials["linear_slip"])
+    assert controller.config.physics.control_rate == 120
     assert run_trial(experiment, trials["linear_slip"]).row["steps"] == 36
     assert run_trial(experiment, trials["alone"]).row["steps"] == 18
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from policies.evaluation.frames import groups
+from policies.evaluation.frames import groups, values
 from policies.evaluation.gain import Gain
 from policies.evaluation.plots.allowed import Limited, plot_allowed
 from policies.evaluation.plots.errors import plot_errors
@@ -95,7 +95,7 @@ def draw_gain(
 ) -> Path:
     """Draws `gain.png`; arguments as for `draw` and `plot_gain`."""
     has_limit = find(task).motion.axis is None and "tolerance_mm" in trials
-    tolerance = float(trials["tolerance_mm"].max()) if has_limit else math.nan
+    tolerance = float(values(trials, "tolerance_mm").max()) if has_limit else math.nan
     with styled():
         return _save(plot_gain(task, gain, episode, tolerance), folder / "gain.png")
 
