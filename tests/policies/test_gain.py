@@ -1,4 +1,3 @@
-import itertools
 from typing import Any
 
 import numpy as np
@@ -33,7 +32,8 @@ def table(solved, n=10):
             "success": trial < count,
             "return": float(trial < count),
         }
-        for ((policy, source), count), trial in itertools.product(solved.items(), range(n))
+        for (policy, source), count in solved.items()
+        for trial in range(n)
     ]
     return pd.DataFrame(rows)
 
