@@ -99,7 +99,10 @@ def test_a_folder_has_table_and_picture(tmp_path):
     assert list(wide["level"]) == ["easy", "hard"]
     assert list(wide["controller, true"]) == [100.0, 100.0]
     with styled():
-        (axes,) = plot_policies(table).axes
+        figure = plot_policies(table)
+        (axes,) = figure.axes
+    pixels = 670 / figure.get_figwidth() / 72  # of a point, on a page
+    assert min(text.get_fontsize() * pixels for text in [*axes.texts, *axes.get_yticklabels()]) > 10.0
     assert [label.get_text() for label in axes.get_yticklabels()] == ["controller, true", "best constant"]
 
 
