@@ -215,7 +215,7 @@ class Field:
             one_of(self.name, value, self.choices)
         if self.annotation is bool and not isinstance(value, bool):
             raise ValueError(f"{self.name} = {value!r:.80} must be True or False")
-        if tuple in map(get_origin, get_args(self.annotation)):
+        if any(get_origin(member) is tuple for member in get_args(self.annotation)):
             _check_pair(self.name, value, self.least or 0, self.most or 0)
         elif self.least is not None:
             whole(self.name, value, self.least, self.most)

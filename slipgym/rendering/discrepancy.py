@@ -84,7 +84,7 @@ def _reason(simulation: Source, row: int, history: History, name: str, within: b
 
 
 def _causes(simulation: Source, row: int, name: str) -> tuple[str, ...]:
-    """The estimator's causes but the deviation, which is told beside; of the finger with more confidence."""
+    """The causes but the deviation, which is named already; of the finger with more confidence."""
     batch = simulation.estimator
     fingers = range(2 * row, 2 * row + 2)
     best = max(fingers, key=lambda finger: batch.estimates[f"confidence_{name}"][finger])

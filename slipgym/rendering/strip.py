@@ -86,9 +86,9 @@ def _panel(
     """One plot; its range holds the curves, the first of `least`, and upwards the second."""
     scale, more = layout.scale, (layout.height / layout.scale - HEIGHT) / 3
     top = _TOP + number * (_PITCH + more)
-    frame = (round(scale * at) for at in (_LEFT, top, _RIGHT, top + _TALL + more))
+    left, upper, right, lower = (round(scale * at) for at in (_LEFT, top, _RIGHT, top + _TALL + more))
     low, high = limits([*(curve.values for curve in curves), np.array(least[:1])], least[1])
-    plot = Plot(*frame, float(history.times[-1]), low, high, scale)
+    plot = Plot(left, upper, right, lower, float(history.times[-1]), low, high, scale)
     heading(picture, 12 * scale, plot.right, plot.top - 12 * scale, title, keys, scale)
     plot.draw(picture, history.times, curves, clock=number == 2)
     if number == 2:
