@@ -234,6 +234,6 @@ TASK = Task(
         VIOLATED,
     ),
     action_mode="grip_force_translation",
-    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), goal="goal", roam=0.25, end=turned),
+    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), goal="goal", end=turned),
     page=__doc__,
 )
