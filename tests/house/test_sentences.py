@@ -28,7 +28,7 @@ def name(place: Path) -> str:
 
 def blocks(page: str) -> list[str]:
     """Paragraphs, list items and table rows of a page without its code, each on one line."""
-    text = re.sub(r"^```.*?^```$|^    .*$|<!--.*?-->", "", page, flags=re.DOTALL | re.MULTILINE)
+    text = re.sub(r"^```.*?^```$|^    [^\n]*$|<!--.*?-->", "", page, flags=re.DOTALL | re.MULTILINE)
     parts = re.split(r"\n\s*\n|\n(?=\||- |\d+\. |#)", text)
     return [" ".join(part.split()) for part in parts if part.strip()]
 
