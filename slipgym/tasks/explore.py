@@ -9,10 +9,9 @@ deviations. It commits itself by stating deviations of at most `commitment` (2.5
 the episode.
 
 mu_c is drawn from 0.2 to 0.8, log-uniformly, mu_s / mu_c is the material's, and r is drawn from 6 to 10 mm
-(`tasks.explore.friction_range`, `tasks.explore.radius_range`; assumed). A box that sticks shows a lower
-bound of mu_s and nothing of mu_c and r. mu_s shows when a slip begins, mu_c in any slip, and r where the box
-slides and turns: the weight makes it slide, and a turn of the wrist makes it turn, since its inertia holds
-it back.
+(`tasks.explore.friction_range`, `tasks.explore.radius_range`; assumed). mu_s shows when a slip begins, mu_c
+in any slip, and r where the box slides and turns: the weight makes it slide, and a turn of the wrist makes it
+turn, since its inertia holds it back.
 
 ## Action Space
 

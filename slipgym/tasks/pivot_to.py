@@ -13,15 +13,11 @@ a Franka Emika arm. The acceleration counts what the agent commands, along x and
 from 0.3 to 0.9, log-uniformly (`tasks.pivot_to.friction_range`).
 
 Friction has to be neither small nor large. Some sliding is inevitable, since the slip twist is normal to the
-limit surface at the load: with k = 2 mu_c f_n / f_t the box slides r / sqrt(k^2 - 1) per radian, along the
-load, whichever way it turns. With r = 3 mm and k = 10 that is 0.42 mm for 80 deg; in the swing the
-centripetal force raises f_t, and the slide with it.
-
-On the other side, the torque of the pads, k r f_t, has to be well below that of the wrist, m d a. With a
-disc of r = 10 mm the slide would be three times as large; the task therefore has its own contact, a rounded
-fingertip with r = 3 mm (`tasks.pivot_to.radius`, the reset option `r`). At the end friction has to hold the
-box beside the pads: m g d sin(80 deg) = 0.029 N m of the 2 mu_c r 25 N = 0.045 N m at mu_c 0.3. So the box
-is light, an empty carton of 30 g.
+limit surface at the load: with k = 2 mu_c f_n / f_t the box slides r / sqrt(k^2 - 1) per radian. With r =
+3 mm and k = 10 that is 0.42 mm for 80 deg, and more in the swing. On the other side, the torque of the pads,
+k r f_t, has to be well below that of the wrist, m d a, and at the end friction has to hold the box beside the
+pads. The task therefore has its own contact, a rounded fingertip with r = 3 mm (`tasks.pivot_to.radius`, the
+reset option `r`), and the box is light, an empty carton of 30 g.
 
 ## Action Space
 
