@@ -44,7 +44,7 @@ class PolicyChoice(Frozen):
 
     @property
     def title(self) -> str:
-        """How tables and figures call it."""
+        """Name in tables and figures."""
         return self.label or Path(self.name).name
 
 
@@ -69,7 +69,7 @@ class FrictionChoice(Frozen):
 
     @property
     def title(self) -> str:
-        """How tables and figures call it."""
+        """Name in tables and figures."""
         return self.label or self.source
 
     @property

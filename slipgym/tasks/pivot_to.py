@@ -17,8 +17,8 @@ limit surface at the load: with k = 2 mu_c f_n / f_t the box slides r / sqrt(k^2
 3 mm and k = 10 that is 0.42 mm for 80 deg, and more in the swing.
 
 On the other side, the torque of the pads, k r f_t, has to be well below that of the wrist, m d a, and at the
-end friction has to hold the box beside the pads. The task therefore has its own contact, a rounded fingertip with r = 3 mm (`tasks.pivot_to.radius`, the
-reset option `r`), and the box is light, an empty carton of 30 g.
+end friction has to hold the box beside the pads. The task therefore has its own contact, a rounded fingertip
+with r = 3 mm (`tasks.pivot_to.radius`, the reset option `r`), and the box is light, an empty carton of 30 g.
 
 ## Action Space
 
