@@ -20,8 +20,8 @@ turn, since its inertia holds it back.
 to 0.5 m/s (`gripper.wrist_speed_max`) and from -3 to 3 rad/s (`gripper.wrist_pitch_rate_max`).
 
 Then the guess: ln mu_s, ln mu_c, ln r, and the logarithms of their relative standard deviations, in the
-ranges of docs/modes.md. Values outside [-1, 1] are clipped; NaN and infinity are errors. The actuator force
-follows the command with a dead time (4 ms) and a first-order lag (12 ms), the wrist within a control step.
+ranges of docs/modes.md. The actuator force follows with a dead time (4 ms) and a first-order lag (12 ms), the
+wrist within a control step.
 
 This is "grip_force_wrist_guess", the `action_mode` of this task. In the other modes (see docs/modes.md)
 there is no guess, and the estimator's merged estimate and its deviations take its place.

@@ -24,9 +24,9 @@ with r = 3 mm (`tasks.pivot_to.radius`, the reset option `r`), and the box is li
 
 `Box(-1, 1, (3,), float32)`, the `action_mode` "grip_force_translation": the grip force commanded to both
 fingers, where -1 is `gripper.force_min` (0.6 N) and +1 is `gripper.force_max` (25 N), and the velocity of
-the wrist along world x and z, up to `tasks.pivot_to.wrist_speed` (1.7 m/s) either way. Values outside [-1,
-1] are clipped; NaN and infinity are errors. The actuator force follows the command with a dead time (4 ms)
-and a first-order lag (12 ms), the wrist with at most `tasks.pivot_to.wrist_acceleration`.
+the wrist along world x and z, up to `tasks.pivot_to.wrist_speed` (1.7 m/s) either way. The actuator
+force follows with a dead time (4 ms) and a first-order lag (12 ms), the wrist with at most
+`tasks.pivot_to.wrist_acceleration`.
 
 Other values of `action_mode` change the components (see docs/modes.md); without the wrist's velocity the
 goal is out of reach.

@@ -31,9 +31,8 @@ A turn moves that point as well: d(x, y) = d(measured slip) + d theta (-y, x).
 
 `Box(-1, 1, (2,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` (0.6 N) and
 +1 is `gripper.force_max` (25 N). Then the wrist's pitch rate, from -3 to 3 rad/s
-(`gripper.wrist_pitch_rate_max`). Values outside [-1, 1] are clipped; NaN and infinity are errors. The
-actuator force follows the command with a dead time (4 ms) and a first-order lag (12 ms), the pitch rate
-within a control step.
+(`gripper.wrist_pitch_rate_max`). The actuator force follows with a dead time (4 ms) and a first-order lag (12
+ms), the pitch rate within a control step.
 
 This is "grip_force_pitch", the `action_mode` of this task. Other modes add components, leave some out or
 change their meaning (see docs/modes.md).
