@@ -116,6 +116,17 @@ def test_the_page_of_a_list_has_all_its_names(page, what):
     assert any(LISTS[what] <= words for words in lists((ROOT / page).read_text(encoding="utf-8")))
 
 
+def test_the_default_action_modes_are_those_of_the_tasks():
+    page = (ROOT / "docs/modes.md").read_text(encoding="utf-8")
+    (listed,) = re.findall(
+        r"the task's default applies: (.*?), *\n? *the others \"grip_force\"", page, re.DOTALL
+    )
+    own = {
+        task.name: task.action_mode for task in map(find, ENVIRONMENTS) if task.action_mode != "grip_force"
+    }
+    assert dict(re.findall(r'(\w+) "(\w+)"', listed)) == own
+
+
 def test_counts_are_those_of_the_registries():
     for (page, pattern), count in COUNTS.items():
         assert re.findall(pattern, (ROOT / page).read_text(encoding="utf-8")) == [str(count)], page
