@@ -111,10 +111,14 @@ def by_level(table: pd.DataFrame) -> pd.DataFrame:
         table: From `outcomes`, of several tasks and levels.
 
     Returns:
-        A row for each task and level in the order of the table; NaN where a policy did not play.
+        A row for each task and level in the order of the table; NaN where a policy did not play. Of several
+        tasks, policies that play only one of them are left out.
     """
     cells = list(dict.fromkeys(zip(table["task"], table["level"], strict=True)))
     names = kinds(table)
+    tasks = table.groupby(names)["task"].transform("nunique")
+    shown = (tasks > 1) | (table["task"].nunique() == 1)
+    table, names = table[shown], names[shown]
     wide = table.assign(kind=names).pivot_table(index=["task", "level"], columns="kind", values="solved [%]")
     order = sorted(dict.fromkeys(names), key=lambda name: (name.partition(",")[0], wide[name].mean()))
     return wide.loc[cells, order].reset_index().rename_axis(columns=None)

@@ -138,6 +138,10 @@ def test_a_folder_has_table_and_picture(tmp_path):
     assert list(wide.columns) == ["task", "level", "best constant", "controller, true"]
     assert list(wide["level"]) == ["easy", "hard"]
     assert list(wide["controller, true"]) == [100.0, 100.0]
+    other = pd.DataFrame([("Carry", *rows[0][1:])], columns=pd.Index(COLUMNS))
+    several = by_level(pd.concat([table, other], ignore_index=True))
+    assert list(several.columns) == ["task", "level", "best constant"]  # the other one plays Hold alone
+    assert list(several["task"]) == ["Hold", "Hold", "Carry"]
     with styled():
         (axes,) = plot_policies(table).axes
     assert [label.get_text() for label in axes.get_yticklabels()] == ["controller, true", "best constant"]
