@@ -79,7 +79,7 @@ def row_options(trial: Trial) -> dict[str, Any]:
 
 
 def drawn(infos: Mapping[str, Any], n: int) -> list[dict[str, Any]]:
-    """What the randomization drew for each of n environments, as the info of a single one has it."""
+    """Values that the randomization drew for each of n environments, as in the info of a single one."""
     found = infos.get("drawn", {})
     names = [name for name in found if not name.startswith("_")]
     return [{name: _plain(found[name][i]) for name in names if found[f"_{name}"][i]} for i in range(n)]

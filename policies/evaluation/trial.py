@@ -174,7 +174,7 @@ def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:
 
 
 def make_policy(experiment: Experiment, trial: Trial) -> policies.Policy:
-    """Who acts; a controller gets the environment's configuration, with the rate at which it acts."""
+    """The policy that acts; a controller gets the environment's configuration and its own rate."""
     parameters, name, config = dict(trial.policy.parameters), trial.policy.name, dict(experiment.config)
     if policies.is_controller(name):
         skip = experiment.frame_skip_of(trial.policy)

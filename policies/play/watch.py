@@ -34,7 +34,7 @@ _FORCE_RATE = 8.0  # of a key held down [N/s]
 
 @dataclass(frozen=True)
 class Outcome:
-    """How an episode went."""
+    """Outcome of an episode."""
 
     seed: int
     """Of the environment."""

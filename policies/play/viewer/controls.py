@@ -156,7 +156,7 @@ def _within(value: float, low: float, high: float) -> float:
 
 
 def status(session: Session) -> str:
-    """How the episode goes, as HTML: state, time, object, slip, friction and what waits for the next one."""
+    """State of the episode as HTML: time, object, slip, friction and changes for the next one."""
     simulation, info = session.env.simulation, session.info
     state = session.outcome.ending if session.outcome else "slips" if slips(info["slip_twist"]) else "sticks"
     about = f"{simulation.materials[0]}, {1e3 * float(simulation.plant.world['mass'][0]):.0f} g"
