@@ -31,7 +31,7 @@ class Entry(NamedTuple):
 
 
 class Gain(NamedTuple):
-    """What friction is worth in an experiment."""
+    """Gain of an experiment by estimated friction."""
 
     entries: tuple[Entry, ...]
     """The policies without friction, the strongest last; then the strongest with estimated and with true
@@ -95,7 +95,7 @@ def compare(trials: pd.DataFrame) -> Gain | None:
 def sentence(
     episodes: int, estimated: int, opponent: tuple[str, int], true: int | None, points: Interval
 ) -> str:
-    """What friction is worth, in words.
+    """The gain by estimated friction, in words.
 
     Args:
         episodes: How many each policy played.

@@ -67,7 +67,7 @@ def words(study: Study, folder: Path) -> str:
 
 
 def claims(benefits: pd.DataFrame, outcomes: pd.DataFrame) -> list[str]:
-    """What the estimate gains over the strongest policy without friction, in a sentence for each task.
+    """Gain of the estimate over the strongest policy without friction, in a sentence for each task.
 
     Args:
         benefits: From `policies.study.benefit.benefits`, of one world.
