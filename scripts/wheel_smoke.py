@@ -1,15 +1,20 @@
 """Builds the wheel, installs it alone into a clean environment and uses it far from the sources.
 
 An episode of a controller, then one of a learned policy: the first one that comes with slipgym, or a small
-one written here while there is none.
+one written here while there is none. With `--sizes` it prints what installations take on each Python found.
 """
 
+import os
+import re
 import subprocess
 import sys
 import tempfile
 import venv
 import zipfile
 from pathlib import Path
+from time import perf_counter
+
+from matrix import interpreter
 
 ROOT = Path(__file__).resolve().parents[1]
 SHIPPED = ROOT / "policies" / "learned" / "pretrained_policies"
@@ -73,12 +78,18 @@ print(f"{sys.argv[1]}: solved {last.info['is_success']}")
 """
 
 
+SIZED = {"3.11": ("", "eval", "train"), "3.12": ("", "eval"), "3.13": ("", "eval")}
+"""Python -> extras of the table; torch, the bulk of `train`, is as large on each."""
+
+
 def main() -> None:
     """Fails with the first thing that is not as it should be."""
     with tempfile.TemporaryDirectory() as folder:
         temporary = Path(folder)
         wheel = build(temporary / "dist")
         check_contents(wheel)
+        if "--sizes" in sys.argv[1:]:
+            return print_sizes(wheel, temporary)
         python = install(wheel, temporary / "venv")
         elsewhere = temporary / "elsewhere"
         elsewhere.mkdir()
@@ -112,6 +123,45 @@ def check_contents(wheel: Path) -> None:
     wanted |= {path.relative_to(ROOT).as_posix() for path in SHIPPED.rglob("*") if path.is_file()}
     if wanted - files:
         sys.exit(f"missing from the wheel: {sorted(wanted - files)}")
+    with zipfile.ZipFile(wheel) as archive:
+        (metadata,) = (name for name in files if name.endswith(".dist-info/METADATA"))
+        relative = re.findall(r"\]\((?!https?:|#)[^)]*\)", archive.read(metadata).decode())
+    if relative:
+        sys.exit(f"relative links in the description of the wheel: {relative}")
+
+
+def print_sizes(wheel: Path, temporary: Path) -> None:
+    """Install every row of SIZED and play a first and a second episode, each in a process of its own."""
+    print("| Python | extra | packages | MB | install [s] | first episode [s] | second [s] |")
+    print("|---|---|---|---|---|---|---|", flush=True)
+    for version, extras in SIZED.items():
+        found = interpreter(version)
+        for extra in extras if found else ():
+            place = temporary / f"{version}-{extra}"
+            subprocess.run([found, "-m", "venv", str(place)], check=True)
+            python, site = place / "bin" / "python", next(place.glob("lib/*/site-packages"))
+            before = size(place)
+            wanted = f"{wheel}[{extra}]" if extra else str(wheel)
+            pip = [python, "-m", "pip", "install", "-q", "--no-cache-dir", "-c", ROOT / "constraints.txt"]
+            took = [seconds([*pip, wanted], place)]
+            taken = (size(place) - before) / 1e6
+            took += [seconds([python, "-I", "-c", EPISODE], place) for _ in range(2)]
+            packages = len(list(site.glob("*.dist-info")))
+            times = " | ".join(f"{value:.0f}" for value in took)
+            print(f"| {version} | {extra or '-'} | {packages} | {taken:.0f} | {times} |", flush=True)
+
+
+def size(folder: Path) -> int:
+    """Bytes of the files in a folder."""
+    return sum(path.lstat().st_size for path in folder.rglob("*") if path.is_file())
+
+
+def seconds(command: list, place: Path) -> float:
+    """Run a command with a store of programs in `place`, and return how long it took [s]."""
+    start = perf_counter()
+    environment = {**os.environ, "XDG_CACHE_HOME": str(place / "cache")}
+    subprocess.run(command, cwd=place, env=environment, check=True, stdout=subprocess.DEVNULL)
+    return perf_counter() - start
 
 
 def install(wheel: Path, folder: Path) -> Path:
