@@ -20,12 +20,12 @@ tags: [reinforcement-learning, robotics, gymnasium, slipgym]
 
 A policy of `{where.id}`, level "{arguments[level]}": `policies.make("{name}")`.
 
-- **Reads**: {columns} numbers at {where.rate:g} Hz (`policy.json` lists them), friction "{arguments[friction_source]}",
-  sensors "{arguments[sensors]}", randomization "{arguments[randomization]}".
+- **Reads**: {columns} numbers at {where.rate:g} Hz (`policy.json` lists them), friction
+  "{arguments[friction_source]}", sensors "{arguments[sensors]}", randomization "{arguments[randomization]}".
 - **Acts**: {actions}, mode "{arguments[action_mode]}".
 - **Network**: {network.kind}, hidden layers {layers}; it needs only numpy to act.
-- **Learned**: {origin.algorithm}, {steps:.1f} million steps, seed {seeds}, slipgym {origin.versions[slipgym]}:
-  `{origin.command}`
+- **Learned**: {origin.algorithm}, {steps:.1f} million steps, seed {seeds}, slipgym
+  {origin.versions[slipgym]}: `{origin.command}`
 - **Limits**: a simulation's policy. It was tried in the worlds below and on no robot.
 
 ## Solved [%]
@@ -42,7 +42,11 @@ def solved(name: str, text: str) -> str:
         text: Content of docs/results/learned.txt.
     """
     printed = re.search(r"^printed: (.+)$", text, re.MULTILINE)
-    rows = [[cell.strip() for cell in line.strip("| ").split("|")] for line in text.splitlines() if line[:1] == "|"]
+    rows = [
+        [cell.strip() for cell in line.strip("| ").split("|")]
+        for line in text.splitlines()
+        if line[:1] == "|"
+    ]
     own = [row for row in rows[2:] if row[0] == name]
     if not own or printed is None:
         return "Not printed yet: `slipgym cards` in a clone prints it."

@@ -1,4 +1,4 @@
-"""Writes the leaderboard as one page of HTML, from the files leaderboard.json of `slipgym policy-leaderboard`."""
+"""Writes the leaderboard as one page of HTML, from the files that `slipgym policy-leaderboard` wrote."""
 
 import json
 from itertools import groupby
@@ -19,22 +19,24 @@ td:first-child, th:first-child { text-align: left }
 <h1>Leaderboard of policies</h1>
 <h2>Rules of entry</h2>
 <ol>
-<li>Train on what you like; choose nothing by the episodes of the leaderboard, whose seeds are 0, 1, 2, ...</li>
+<li>Train on what you like; choose nothing by the episodes of the leaderboard, seeds 0, 1, 2, ...</li>
 <li>The policy reads its observations alone. Say with <code>--friction-source</code> which friction they hold;
 "true" is listed, and is no rival of those that read sensors.</li>
 <li>Play at least 200 episodes of every level of a task, with all opponents:
 <code>slipgym policy-leaderboard hold --policy YOURS --episodes 200</code></li>
 <li>Open a pull request that adds the <code>leaderboard.json</code> it wrote as
-<code>docs/leaderboard/NAME.json</code>, and says where the policy and its training can be had, and under which
-licence. A folder of <code>slipgym train</code> or of <code>slipgym import-policy</code> needs no code.</li>
+<code>leaderboard/NAME.json</code>, and says where policy and training are, under which licence.
+A folder of <code>slipgym train</code> or of <code>slipgym import-policy</code> needs no code.</li>
 <li>The entry is played again with the same versions. It is listed if the same figures come out.</li>
 </ol>
 {% for name, board in boards %}<h2>{{ name }}</h2>
-<p>{% for key, value in board.played.items() if value not in ({}, None) %}{{ key }} {{ value }}{{ ", " if not loop.last }}{% endfor %};
+<p>{% for key, value in board.played.items() if value not in ({}, None) -%}
+{{ key }} {{ value }}{{ ", " if not loop.last }}{% endfor %};
 slipgym {{ board.versions.slipgym }}, numpy {{ board.versions.numpy }}</p>
 {% for (task, level), rows in board.tables %}<h3>{{ task }}, {{ level }}</h3>
 <table><tr>{% for column in rows[0] %}<th>{{ column }}</th>{% endfor %}</tr>
-{% for row in rows %}<tr>{% for value in row.values() %}<td>{{ value if value is string else "%.1f" % value }}</td>{% endfor %}</tr>
+{% for row in rows %}<tr>{% for value in row.values() -%}
+<td>{{ "%.1f" % value if value is number else value or "–" }}</td>{% endfor %}</tr>
 {% endfor %}</table>
 {% endfor %}{% else %}<p>No entries yet.</p>
 {% endfor %}</html>
@@ -54,7 +56,9 @@ def board(path: Path) -> dict:
         played, versions, rows = (found[key] for key in KEYS)
         rows = sorted(rows, key=lambda row: (*(str(row[key]) for key in CELL), -float(row["solved [%]"])))
         cells = groupby(rows, key=lambda row: tuple(str(row[key]) for key in CELL))
-        shown = [(cell, [{k: v for k, v in row.items() if k not in CELL} for row in of]) for cell, of in cells]
+        shown = [
+            (cell, [{k: v for k, v in row.items() if k not in CELL} for row in of]) for cell, of in cells
+        ]
         return {"played": dict(played), "versions": dict(versions), "tables": shown}
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ValueError(f"{path}: no leaderboard.json of slipgym policy-leaderboard ({error!r})") from error

@@ -1,18 +1,21 @@
 """Builds the wheel, installs it alone into a clean environment and uses it far from the sources.
 
 An episode of a controller, then one of a learned policy: the first one that comes with slipgym, or a small
-one written here while there is none. With `--sizes` it prints what installations take on each Python found.
+one written here while there is none. With `--sizes` it prints what installations take on each Python found,
+with `--list FOLDER` what the wheels and sdists of a folder hold.
 """
 
-import os
 import re
 import subprocess
 import sys
+import tarfile
 import tempfile
 import venv
 import zipfile
+from collections import Counter
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 from matrix import interpreter
 
@@ -79,17 +82,19 @@ print(f"{sys.argv[1]}: solved {last.info['is_success']}")
 
 
 SIZED = {"3.11": ("", "eval", "train"), "3.12": ("", "eval"), "3.13": ("", "eval")}
-"""Python -> extras of the table; torch, the bulk of `train`, is as large on each."""
+"""Python -> extras of the table, each with those before it; torch is as large on each."""
 
 
 def main() -> None:
     """Fails with the first thing that is not as it should be."""
+    if sys.argv[1:2] == ["--list"]:
+        return list_contents(Path(sys.argv[2]))
     with tempfile.TemporaryDirectory() as folder:
         temporary = Path(folder)
         wheel = build(temporary / "dist")
         check_contents(wheel)
         if "--sizes" in sys.argv[1:]:
-            return print_sizes(wheel, temporary)
+            return print_sizes(wheel, temporary, sys.argv[2:] or list(SIZED))
         python = install(wheel, temporary / "venv")
         elsewhere = temporary / "elsewhere"
         elsewhere.mkdir()
@@ -130,25 +135,44 @@ def check_contents(wheel: Path) -> None:
         sys.exit(f"relative links in the description of the wheel: {relative}")
 
 
-def print_sizes(wheel: Path, temporary: Path) -> None:
-    """Install every row of SIZED and play a first and a second episode, each in a process of its own."""
+def list_contents(folder: Path) -> None:
+    """Print the size of each wheel and sdist of a folder, and how many files it has of each top level."""
+    for path in sorted(folder.iterdir()):
+        if path.suffix == ".whl":
+            with zipfile.ZipFile(path) as archive:
+                names = archive.namelist()
+        else:
+            with tarfile.open(path) as archive:
+                names = [name.partition("/")[2] for name in archive.getnames()]
+        counts = Counter(name.split("/")[0] for name in names)
+        print(f"{path.name}  {path.stat().st_size / 1e6:.1f} MB")
+        print("  " + ", ".join(f"{top} {count}" for top, count in sorted(counts.items())))
+
+
+def print_sizes(wheel: Path, temporary: Path, versions: list[str]) -> None:
+    """Install the rows of SIZED and play a first and a second episode, each in a process of its own."""
     print("| Python | extra | packages | MB | install [s] | first episode [s] | second [s] |")
     print("|---|---|---|---|---|---|---|", flush=True)
-    for version, extras in SIZED.items():
-        found = interpreter(version)
-        for extra in extras if found else ():
-            place = temporary / f"{version}-{extra}"
-            subprocess.run([found, "-m", "venv", str(place)], check=True)
-            python, site = place / "bin" / "python", next(place.glob("lib/*/site-packages"))
-            before = size(place)
-            wanted = f"{wheel}[{extra}]" if extra else str(wheel)
-            pip = [python, "-m", "pip", "install", "-q", "--no-cache-dir", "-c", ROOT / "constraints.txt"]
-            took = [seconds([*pip, wanted], place)]
-            taken = (size(place) - before) / 1e6
-            took += [seconds([python, "-I", "-c", EPISODE], place) for _ in range(2)]
-            packages = len(list(site.glob("*.dist-info")))
-            times = " | ".join(f"{value:.0f}" for value in took)
-            print(f"| {version} | {extra or '-'} | {packages} | {taken:.0f} | {times} |", flush=True)
+    for version in versions:
+        if (found := interpreter(version)) is None:
+            print(f"| {version} | no such Python here |", flush=True)
+            continue
+        place = temporary / version
+        subprocess.run([found, "-m", "venv", str(place)], check=True)
+        python, site = place / "bin" / "python", next(place.glob("lib/*/site-packages"))
+        pip = [python, "-m", "pip", "install", "-q", "--no-cache-dir", "-c", ROOT / "constraints.txt"]
+        empty = size(place)
+        for extra in SIZED[version]:
+            took = [seconds([*pip, f"{wheel}[{extra}]" if extra else str(wheel)], place)]
+            row = [
+                version,
+                extra or "-",
+                len(list(site.glob("*.dist-info"))),
+                round((size(place) - empty) / 1e6),
+            ]
+            if not extra:
+                took += [seconds([python, "-I", "-c", EPISODE], place) for _ in range(2)]
+            print("|", *(f"{cell} |" for cell in [*row, *(f"{value:.0f}" for value in took)]), flush=True)
 
 
 def size(folder: Path) -> int:
@@ -156,11 +180,10 @@ def size(folder: Path) -> int:
     return sum(path.lstat().st_size for path in folder.rglob("*") if path.is_file())
 
 
-def seconds(command: list, place: Path) -> float:
-    """Run a command with a store of programs in `place`, and return how long it took [s]."""
+def seconds(command: list[Any], place: Path) -> float:
+    """Run a command in a folder, and return how long it took [s]."""
     start = perf_counter()
-    environment = {**os.environ, "XDG_CACHE_HOME": str(place / "cache")}
-    subprocess.run(command, cwd=place, env=environment, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(command, cwd=place, check=True, stdout=subprocess.DEVNULL)
     return perf_counter() - start
 
 

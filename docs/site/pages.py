@@ -7,18 +7,17 @@ from typing import Any
 
 from mkdocs.structure.files import File, Files
 
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 OUTSIDE = {
     "index.md": "README.md",
     "changes.md": "CHANGELOG.md",
     "contributing.md": "CONTRIBUTING.md",
     "citation.cff": "CITATION.cff",
+    "examples/lerobot/env.py": "examples/lerobot/env.py",
+    **{f"examples/{path.stem}.md": f"examples/{path.name}" for path in EXAMPLES.glob("*.ipynb")},
     **{
-        f"examples/{name}.ipynb": f"examples/{name}.ipynb"
-        for name in ("1_first_rollout", "2_estimator_on_a_log", "3_what_friction_is_worth")
-    },
-    **{
-        f"examples/libraries/{name}.py": f"examples/libraries/{name}.py"
-        for name in ("collect", "ppo", "rllib_ppo", "skrl_ppo", "torchrl_ppo")
+        f"examples/libraries/{path.name}": f"examples/libraries/{path.name}"
+        for path in EXAMPLES.glob("libraries/*.py")
     },
 }
 """Path in the site -> path in the repository."""
@@ -29,8 +28,22 @@ def on_files(files: Files, config: Any) -> Files:
     root = Path(config.config_file_path).parent
     for page, source in OUTSIDE.items():
         text = (root / source).read_text(encoding="utf-8").replace("](docs/", "](")
+        if source.endswith(".ipynb"):
+            text, pictures = notebook(text, Path(page).stem)
+            for name, content in pictures.items():
+                files.append(File.generated(config, f"examples/{name}", content=content))
         files.append(File.generated(config, page, content=linked(text)))
     return files
+
+
+def notebook(text: str, name: str) -> tuple[str, dict[str, bytes]]:
+    """A notebook as Markdown, and its pictures by the names that stand there."""
+    import nbformat
+    from nbconvert import MarkdownExporter
+
+    resources = {"unique_key": name, "output_files_dir": name}
+    page, made = MarkdownExporter().from_notebook_node(nbformat.reads(text, as_version=4), resources)
+    return re.sub(r"\]\((\w+)\.ipynb\)", r"](\1.md)", page).replace("](../docs/", "](../"), made["outputs"]
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:

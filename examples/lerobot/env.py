@@ -1,7 +1,7 @@
 """Makes the nine tasks for LeRobot: the one file that a repository of EnvHub on the Hugging Face Hub needs.
 
-    from lerobot.envs.factory import make_env
-    suites = make_env("OWNER/REPOSITORY", n_envs=8, trust_remote_code=True)
+from lerobot.envs.factory import make_env
+suites = make_env("OWNER/REPOSITORY", n_envs=8, trust_remote_code=True)
 """
 
 from __future__ import annotations
@@ -39,7 +39,9 @@ def make_one(task: str) -> gym.Env:
     return AgentState(gym.make(f"slipgym:{task}", engine="planar", render_mode="rgb_array"))
 
 
-def make_env(n_envs: int = 1, use_async_envs: bool = False, cfg: Any = None) -> dict[str, dict[int, VectorEnv]]:
+def make_env(
+    n_envs: int = 1, use_async_envs: bool = False, cfg: Any = None
+) -> dict[str, dict[int, VectorEnv]]:
     """Makes every task.
 
     Args:

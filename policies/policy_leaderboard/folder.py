@@ -26,7 +26,7 @@ BAND = 5
 COLOURS = LinearSegmentedColormap.from_list("solved", ["#A33B00", "#E9A26A", "#F7F4E9", "#7FC8A9", "#00644A"])
 
 
-def write(table: pd.DataFrame, output: Path, played: Mapping[str, Any]) -> Path:
+def write(table: pd.DataFrame, output: Path, played: Mapping[str, Any] | None = None) -> Path:
     """Writes the table and the picture, whole or not at all.
 
     Args:
@@ -37,7 +37,7 @@ def write(table: pd.DataFrame, output: Path, played: Mapping[str, Any]) -> Path:
     Returns:
         The folder: `policies.csv`, `policies.png`, `leaderboard.json`, `versions.json`.
     """
-    return write_table(table, output, "policies", plot_policies, played)
+    return write_table(table, output, "policies", plot_policies, played or {})
 
 
 def write_table(
