@@ -55,7 +55,7 @@ def write_table(
             with styled():
                 plot(table).savefig(folder / f"{name}.png", dpi=STYLE.dpi)
         if played is not None:
-            rows = json.loads(table.to_json(orient="records", double_precision=3))
+            rows = json.loads(table.to_json(orient="records", double_precision=3) or "[]")
             board = {"played": dict(played), "versions": versions(), "rows": rows}
             atomic_io.write(folder / "leaderboard.json", (json.dumps(board, indent=1) + "\n").encode())
         write_versions(folder)
