@@ -42,7 +42,9 @@ def notebook(text: str, name: str) -> tuple[str, dict[str, bytes]]:
     from nbconvert import MarkdownExporter
 
     resources = {"unique_key": name, "output_files_dir": name}
-    page, made = MarkdownExporter().from_notebook_node(nbformat.reads(text, as_version=4), resources)
+    read = nbformat.reads(text, as_version=4)
+    read.metadata.language_info = {"name": "python"}
+    page, made = MarkdownExporter().from_notebook_node(read, resources)
     return re.sub(r"\]\((\w+)\.ipynb\)", r"](\1.md)", page).replace("](../docs/", "](../"), made["outputs"]
 
 
