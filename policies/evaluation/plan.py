@@ -51,6 +51,7 @@ def plan(experiment: Experiment) -> list[Trial]:
         Trial(policy, friction, material, options, number, seed(experiment.seed, material, options, number))
         for policy in experiment.policies
         for friction in experiment.friction
+        if not policy.friction or friction.title in policy.friction
         for material in experiment.materials
         for options in experiment.combinations()
         for number in range(experiment.trials)

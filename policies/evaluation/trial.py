@@ -22,6 +22,7 @@ from policies.evaluation.plan import Trial
 from policies.evaluation.recording import INFOS, Recorder, Recording
 from policies.learned import LearnedPolicy
 from policies.stepping import steps
+from slipgym.config.level import load_level
 from slipgym.tasks import configure, find
 
 
@@ -107,10 +108,19 @@ def run_trial(experiment: Experiment, trial: Trial) -> Result:
     return _result(experiment, trial, recording)
 
 
+def steps_of(experiment: Experiment, trial: Trial) -> dict[str, np.ndarray]:
+    """Runs one trial, as `run_block` does, and returns its steps as columns."""
+    policy = make_policy(experiment, trial)
+    if experiment.engine == "planar" and acts_on_batches(policy):
+        return record_block(experiment, [trial], policy, environment(experiment, trial))[0].series()
+    return record(experiment, trial, policy).series()
+
+
 def _result(experiment: Experiment, trial: Trial, recording: Recording) -> Result:
     """The row of a trial in the table, and its steps."""
     task = find(experiment.task)
-    settings = configure(task, experiment.config, experiment.sensors)[1]
+    level = load_level(experiment.level, task.key)
+    settings = configure(task, experiment.config, experiment.sensors, level=level)[1]
     settings = task.options.parse(trial.options).applied_to(settings)
     limits = {
         limit.column: limit.scale * getattr(settings, limit.option)
@@ -159,7 +169,7 @@ def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:
         "material": trial.material,
         "randomization": experiment.randomization,
         "level": experiment.level,
-        "frame_skip": experiment.steps_per_action,
+        "frame_skip": experiment.frame_skip_of(trial.policy),
         "config": dict(experiment.config),
     }
 
@@ -168,7 +178,8 @@ def make_policy(experiment: Experiment, trial: Trial) -> policies.Policy:
     """Who acts; a controller gets the environment's configuration, with the rate at which it acts."""
     parameters, name, config = dict(trial.policy.parameters), trial.policy.name, dict(experiment.config)
     if policies.is_controller(name):
-        skip, takes = experiment.steps_per_action, inspect.signature(policies.find(name)).parameters
+        skip = experiment.frame_skip_of(trial.policy)
+        takes = inspect.signature(policies.find(name)).parameters
         if skip > 1:
             config = at_rate(experiment.environment_config().physics.control_rate / skip, config)
         if config and "config" in takes:
