@@ -7,18 +7,18 @@ from typing import Any
 
 from mkdocs.structure.files import File, Files
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = [
+    path.relative_to(ROOT).as_posix()
+    for pattern in ("*.ipynb", "libraries/*.py", "lerobot/*.py")
+    for path in sorted((ROOT / "examples").glob(pattern))
+]
 OUTSIDE = {
     "index.md": "README.md",
     "changes.md": "CHANGELOG.md",
     "contributing.md": "CONTRIBUTING.md",
     "citation.cff": "CITATION.cff",
-    "examples/lerobot/env.py": "examples/lerobot/env.py",
-    **{f"examples/{path.stem}.md": f"examples/{path.name}" for path in EXAMPLES.glob("*.ipynb")},
-    **{
-        f"examples/libraries/{path.name}": f"examples/libraries/{path.name}"
-        for path in EXAMPLES.glob("libraries/*.py")
-    },
+    **{path.replace(".ipynb", ".md"): path for path in EXAMPLES},
 }
 """Path in the site -> path in the repository."""
 
@@ -58,10 +58,9 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
 
 def shown(text: str) -> str:
     """The text with the files that `<!-- code: PATH -->` names."""
-    root = Path(__file__).resolve().parents[2]
     return re.sub(
         r"<!-- code: (\S+) -->",
-        lambda found: f"```python\n{(root / found[1]).read_text(encoding='utf-8')}```",
+        lambda found: f"```python\n{(ROOT / found[1]).read_text(encoding='utf-8')}```",
         text,
     )
 

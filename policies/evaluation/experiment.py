@@ -52,7 +52,7 @@ class PolicyChoice(Frozen):
 
     @property
     def title(self) -> str:
-        """How tables and figures call it."""
+        """Name in tables and figures."""
         return self.label or Path(self.name).name
 
 
@@ -77,7 +77,7 @@ class FrictionChoice(Frozen):
 
     @property
     def title(self) -> str:
-        """How tables and figures call it."""
+        """Name in tables and figures."""
         return self.label or self.source
 
     @property

@@ -32,7 +32,7 @@ class Trial:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What distinguishes this trial from the others, for tables."""
+        """Columns that distinguish this trial from the others, for tables."""
         return {
             "policy": self.policy.title,
             "friction": self.friction.title,

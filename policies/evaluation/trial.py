@@ -13,7 +13,6 @@ from tqdm import tqdm
 
 import policies
 from policies import parallel
-from policies.controllers.base import ObservationIndex
 from policies.controllers.rate import at_rate
 from policies.evaluation.batch import acts_on_batches, blocks, record_block
 from policies.evaluation.experiment import Experiment
@@ -144,12 +143,12 @@ def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None 
     modes = policies.modes(policy)
     keywords = {**environment(experiment, trial), **modes}
     env: Any = gym.make(f"slipgym:{task.id}", disable_env_checker=True, **keywords)
-    index = ObservationIndex(experiment.task, experiment.environment_config(), modes.get("action_mode"))
     try:
         if isinstance(policy, LearnedPolicy):
             policy.check(env)
         observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
-        recorder, running = Recorder(index, [info.get("drawn", {})]), np.ones(1, dtype=bool)
+        columns = [column.name for column in env.unwrapped.columns]
+        recorder, running = Recorder(columns, [info.get("drawn", {})]), np.ones(1, dtype=bool)
         for step in steps(env, policy, observation):
             newest = _present(env, step.observation)[np.newaxis]
             infos = {name: np.asarray(step.info[name])[np.newaxis] for name in INFOS if name in step.info}
@@ -175,7 +174,7 @@ def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:
 
 
 def make_policy(experiment: Experiment, trial: Trial) -> policies.Policy:
-    """Who acts; a controller gets the environment's configuration, with the rate at which it acts."""
+    """The policy that acts; a controller gets the environment's configuration and its own rate."""
     parameters, name, config = dict(trial.policy.parameters), trial.policy.name, dict(experiment.config)
     if policies.is_controller(name):
         skip = experiment.frame_skip_of(trial.policy)

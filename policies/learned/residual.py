@@ -48,7 +48,7 @@ class Underlying:
     def act(
         self, observations: np.ndarray, state: Any, starts: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray, Any]:
-        """What the controller does.
+        """The controller's action.
 
         Args:
             observations: As the environment gives them, earlier ones first in each, (n, m).

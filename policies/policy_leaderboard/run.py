@@ -105,7 +105,7 @@ def kinds(table: pd.DataFrame) -> pd.Series:
 
 
 def by_level(table: pd.DataFrame) -> pd.DataFrame:
-    """What is solved of each task and level [%], a column for each policy.
+    """Solved share of each task and level [%], a column for each policy.
 
     Args:
         table: From `outcomes`, of several tasks and levels.

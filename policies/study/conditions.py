@@ -45,7 +45,7 @@ class Condition:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What distinguishes its episodes from the others', for tables."""
+        """Columns that distinguish its episodes from the others', for tables."""
         return {
             "world": self.world.label,
             "task": self.task,

@@ -28,7 +28,7 @@ Levels = Annotated[tuple[float, ...], BeforeValidator(as_tuple)]
 
 
 class World(Frozen):
-    """Where episodes take place."""
+    """Engine and contact of episodes."""
 
     label: str = Field(min_length=1, description="How tables and figures call it [-]")
     engine: Literal["bullet", "planar"] = Field(description="What moves the bodies [-]")

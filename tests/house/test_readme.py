@@ -65,7 +65,7 @@ def test_there_are_examples():
 )
 def test_example_runs(example):
     done = subprocess.run(
-        [sys.executable, "-c", example.replace("2_000_000", "10_000")],
+        [sys.executable, "-c", example.replace("1_000_000", "10_000")],
         cwd=ROOT,
         capture_output=True,
         text=True,

@@ -149,7 +149,10 @@ def test_a_folder_has_table_and_picture(tmp_path):
     assert list(several.columns) == ["task", "level", "best constant"]  # the other one plays Hold alone
     assert list(several["task"]) == ["Hold", "Hold", "Carry"]
     with styled():
-        (axes,) = plot_policies(table).axes
+        figure = plot_policies(table)
+        (axes,) = figure.axes
+    pixels = 670 / figure.get_figwidth() / 72  # of a point, on a page
+    assert min(text.get_fontsize() * pixels for text in [*axes.texts, *axes.get_yticklabels()]) > 10.0
     assert [label.get_text() for label in axes.get_yticklabels()] == ["controller, true", "best constant"]
 
 
