@@ -59,8 +59,9 @@ site: $(VENV)/.dev ## the documentation as a site in build/site, links checked
 	$(PIP) --editable '.[site]'
 	NO_MKDOCS_2_WARNING=1 $(RUN) -m mkdocs build
 
-release: check site wheel ## everything above but the benchmark, then wheel and sdist in dist/; uploads nothing
-	$(RUN) -m build --sdist
+release: wheel ## sdist, a wheel for any Python and the wheel with programs in dist/, and what is in it; uploads nothing
+	$(RUN) -m build
+	$(RUN) scripts/wheel_smoke.py --list dist
 
 wheel: $(VENV)/.dev ## the wheel in dist/, with programs compiled for processors with AVX2 and the pinned versions
 	rm -rf dist build/programs

@@ -21,7 +21,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
         command = [sys.executable, "-m", "pip", "install", "--quiet", "--dry-run", "--ignore-installed"]
-        command += ["--report", str(report), "--constraint", "constraints.txt", ".[dev,train]", "hatchling"]
+        command += ["--report", str(report), "--constraint", "constraints.txt", ".[dev,train]"]
+        command += ["hatchling", "hatch-fancy-pypi-readme"]
         subprocess.run(command, cwd=ROOT, check=True)
         found = json.loads(report.read_text(encoding="utf-8"))["install"]
     lines = []

@@ -5,6 +5,18 @@ from importlib import import_module
 from pathlib import Path
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+FILES = "https://raw.githubusercontent.com/slipgym/slipgym/main/examples"
+INSTALL = f"""\
+import subprocess
+import sys
+from importlib.util import find_spec
+from urllib.request import urlretrieve
+
+if find_spec("slipgym") is None:  # in a cloud notebook
+    subprocess.run([sys.executable, "-m", "pip", "install", "-q", "slipgym[eval]"], check=True)
+    for name in ("columns.yaml", "linear_slip_wood.csv.gz"):
+        urlretrieve(f"{FILES}/{{name}}", name)"""
+"""First cell of code of each notebook."""
 
 
 def main() -> None:
@@ -12,6 +24,8 @@ def main() -> None:
     nbformat, client = import_module("nbformat"), import_module("nbclient")
     for path in sorted(EXAMPLES.glob("*.ipynb")):
         notebook = nbformat.read(path, as_version=4)
+        if notebook.cells[1].source != INSTALL:
+            notebook.cells.insert(1, nbformat.v4.new_code_cell(INSTALL))
         client.NotebookClient(
             notebook, timeout=900, resources={"metadata": {"path": str(EXAMPLES)}}
         ).execute()

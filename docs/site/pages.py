@@ -10,7 +10,7 @@ from mkdocs.structure.files import File, Files
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = [
     path.relative_to(ROOT).as_posix()
-    for pattern in ("*.ipynb", "libraries/*.py")
+    for pattern in ("*.ipynb", "libraries/*.py", "lerobot/*.py")
     for path in sorted((ROOT / "examples").glob(pattern))
 ]
 OUTSIDE = {
@@ -18,7 +18,7 @@ OUTSIDE = {
     "changes.md": "CHANGELOG.md",
     "contributing.md": "CONTRIBUTING.md",
     "citation.cff": "CITATION.cff",
-    **{path: path for path in EXAMPLES},
+    **{path.replace(".ipynb", ".md"): path for path in EXAMPLES},
 }
 """Path in the site -> path in the repository."""
 
@@ -28,8 +28,24 @@ def on_files(files: Files, config: Any) -> Files:
     root = Path(config.config_file_path).parent
     for page, source in OUTSIDE.items():
         text = (root / source).read_text(encoding="utf-8").replace("](docs/", "](")
+        if source.endswith(".ipynb"):
+            text, pictures = notebook(text, Path(page).stem)
+            for name, content in pictures.items():
+                files.append(File.generated(config, f"examples/{name}", content=content))
         files.append(File.generated(config, page, content=linked(text)))
     return files
+
+
+def notebook(text: str, name: str) -> tuple[str, dict[str, bytes]]:
+    """A notebook as Markdown, and its pictures by the names that stand there."""
+    import nbformat
+    from nbconvert import MarkdownExporter
+
+    resources = {"unique_key": name, "output_files_dir": name}
+    read = nbformat.reads(text, as_version=4)
+    read.metadata.language_info = {"name": "python"}
+    page, made = MarkdownExporter().from_notebook_node(read, resources)
+    return re.sub(r"\]\((\w+)\.ipynb\)", r"](\1.md)", page).replace("](../docs/", "](../"), made["outputs"]
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:

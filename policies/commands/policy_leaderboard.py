@@ -100,7 +100,7 @@ def main(
         folder = write_table(table, output, "worlds")
         typer.echo(f"Solved [%]:\n\n{markdown(table, 1)}\nLook at:\n  {folder / 'worlds.csv'}")
         return
-    folder = write(table, output)
+    folder = write(table, output, {"episodes": episodes, "engine": engine, **arguments})
     typer.echo(f"Solved [%], {episodes} episodes each:\n\n{markdown(by_level(table), 1)}")
     typer.echo(f"Worth of friction: episodes solved [%], {episodes} each\n\n{markdown(gains(worths), 1)}")
     typer.echo(f"Look at:\n  {folder / 'policies.png'}")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,7 +17,8 @@ from policies.evaluation.folder import stamped
 from policies.evaluation.frames import distinct
 from policies.evaluation.plots.style import STYLE, styled
 from policies.policy_leaderboard.run import kinds
-from policies.versions import write_versions
+from policies.versions import versions, write_versions
+from slipgym import atomic_io
 from slipgym.atomic_io import new_folder
 
 BAND = 3
@@ -25,29 +28,38 @@ WIDTH = 6.7
 COLOURS = LinearSegmentedColormap.from_list("solved", ["#A33B00", "#E9A26A", "#F7F4E9", "#7FC8A9", "#00644A"])
 
 
-def write(table: pd.DataFrame, output: Path) -> Path:
+def write(table: pd.DataFrame, output: Path, played: Mapping[str, Any] | None = None) -> Path:
     """Writes the table and the picture, whole or not at all.
 
     Args:
         table: Of all tasks and levels, from `policies.policy_leaderboard.run.outcomes`.
         output: Folder of the run's own folder.
+        played: What the episodes were: their number, the engine, arguments of the environments.
 
     Returns:
-        The folder: `policies.csv`, `policies.png`, `versions.json`.
+        The folder: `policies.csv`, `policies.png`, `leaderboard.json`, `versions.json`.
     """
-    return write_table(table, output, "policies", plot_policies)
+    return write_table(table, output, "policies", plot_policies, played or {})
 
 
 def write_table(
-    table: pd.DataFrame, output: Path, name: str, plot: Callable[[pd.DataFrame], Figure] | None = None
+    table: pd.DataFrame,
+    output: Path,
+    name: str,
+    plot: Callable[[pd.DataFrame], Figure] | None = None,
+    played: Mapping[str, Any] | None = None,
 ) -> Path:
-    """Writes a table, its picture if there is one, and `versions.json` into a folder of their own."""
+    """Writes a table, its picture and `leaderboard.json` if asked, and `versions.json` into a folder."""
     place = stamped(output, name)
     with new_folder(place) as folder:
         table.to_csv(folder / f"{name}.csv", index=False, float_format="%.3f")
         if plot is not None:
             with styled():
                 plot(table).savefig(folder / f"{name}.png", dpi=STYLE.dpi)
+        if played is not None:
+            rows = json.loads(table.to_json(orient="records", double_precision=3) or "[]")
+            board = {"played": dict(played), "versions": versions(), "rows": rows}
+            atomic_io.write(folder / "leaderboard.json", (json.dumps(board, indent=1) + "\n").encode())
         write_versions(folder)
     return place
 

@@ -17,8 +17,10 @@ def cells(path, kind):
     return [cell for cell in json.loads(path.read_text())["cells"] if cell["cell_type"] == kind]
 
 
-def test_there_are_three():
+def test_there_are_three_and_each_installs_slipgym_where_it_is_missing():
     assert len(NOTEBOOKS) == 3
+    (first,) = {"".join(cells(path, "code")[0]["source"]) for path in NOTEBOOKS}
+    assert re.search(r"^if find_spec\(.slipgym.\) is None:.*\n.*slipgym\[eval\]", first, re.MULTILINE)
 
 
 @pytest.mark.quick_cases("1_first_rollout")

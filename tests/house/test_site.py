@@ -11,7 +11,8 @@ import pytest
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
-OUTSIDE = ["changes.md", "contributing.md", "index.md"]
+NOTEBOOKS = [f"examples/{path.stem}.md" for path in (ROOT / "examples").glob("*.ipynb")]
+OUTSIDE = ["changes.md", "contributing.md", "index.md", *NOTEBOOKS]
 
 
 def leaves(entry: Any) -> Iterator[str]:

@@ -1,8 +1,11 @@
 """The table of the learned policies that come with slipgym."""
 
 import pytest
+from typer.testing import CliRunner
 
 from lab import cards
+from lab.commands.cards import app
+from lab.model_cards import solved
 from policies.policy_leaderboard import worlds
 from policies.policy_leaderboard.worlds import WORLDS
 
@@ -20,3 +23,26 @@ def test_a_card_says_what_a_policy_is_given_and_solves(monkeypatch):
 def test_an_unknown_policy_is_named():
     with pytest.raises(FileNotFoundError, match="carry_scrach"):
         cards.cards(["carry_scrach"], 2, progress=False)
+
+
+def test_cards_are_written_beside_the_policies_or_not_at_all(tmp_path):
+    done = CliRunner().invoke(app, ["hold_memory", "--into", str(tmp_path / "cards")])
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "cards" / "hold_memory"
+    assert {path.name for path in folder.iterdir()} == {"README.md", "policy.json", "weights.safetensors"}
+    text = (folder / "README.md").read_text()
+    assert text.startswith("---\nlicense: mit\n")
+    for said in ("slipgym/Hold-v0", 'level "hard"', 'friction "none"', "million steps"):
+        assert said in " ".join(text.split())
+    done = CliRunner().invoke(app, ["hold_memry", "--into", str(tmp_path / "wrong")])
+    assert done.exit_code == 2
+    assert not (tmp_path / "wrong").exists()
+
+
+def test_a_card_shows_the_printed_figures_with_their_commit():
+    head = "printed: 2026-11-27, commit abcdef0\n\n"
+    head += "| policy | friction | million steps | CPU [s] | easy | itself |\n"
+    text = head + "| --- | --- | ---: | ---: | ---: | ---: |\n| mine | true | 1.0 | 2.0 | 99.0 | 90.5 |\n"
+    assert "commit abcdef0" in solved("mine", text)
+    assert "| itself | 90.5 |" in solved("mine", text)
+    assert "Not printed yet" in solved("other", text)

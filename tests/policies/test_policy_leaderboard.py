@@ -132,8 +132,14 @@ def test_a_folder_has_table_and_picture(tmp_path):
         for name, solved in (("best constant (5 N)", 20.0), ("controller, true", 100.0))
     ]
     table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
-    folder = write(table, tmp_path)
-    assert {path.name for path in folder.iterdir()} == {"policies.csv", "policies.png", "versions.json"}
+    folder = write(table, tmp_path, {"episodes": 200, "engine": "planar"})
+    written = {"leaderboard.json", "policies.csv", "policies.png", "versions.json"}
+    assert {path.name for path in folder.iterdir()} == written
+    board = json.loads((folder / "leaderboard.json").read_text())
+    assert board["played"] == {"episodes": 200, "engine": "planar"}
+    assert board["versions"]["slipgym"] is not None
+    assert [row["solved [%]"] for row in board["rows"]] == [20.0, 100.0, 20.0, 100.0]
+    assert list(board["rows"][0]) == list(COLUMNS)
     wide = by_level(table)
     assert list(wide.columns) == ["task", "level", "best constant", "controller, true"]
     assert list(wide["level"]) == ["easy", "hard"]
