@@ -136,7 +136,7 @@ class OnlineEstimator:
         return self.estimate
 
     def reasons(self) -> dict[str, str]:
-        """Why values of the newest estimate have little confidence, as `estimator.reasons` says it."""
+        """Reasons for little confidence in values of the newest estimate, as by `estimator.reasons`."""
         return reasons(self.estimate, *doubts(self.batch.states[0]))
 
     def reset(self) -> None:

@@ -33,7 +33,7 @@ BLIND = {
 
 
 class Doubts(NamedTuple):
-    """What speaks against an estimate beside its own fields, as far as the estimator keeps it."""
+    """Evidence against an estimate that its own fields do not show, as far as the estimator keeps it."""
 
     misfit: float = 1.0
     """Mean squared normalised residual."""
@@ -52,7 +52,7 @@ def doubts(state: np.void) -> Doubts:
 def reasons(
     estimate: Estimate, misfit: float = 1.0, at_bound: float = 0.0, unmeasured: float = 0.0
 ) -> dict[str, str]:
-    """Why values have little confidence.
+    """Reasons for little confidence in values.
 
     Args:
         estimate: What an estimator published.
@@ -77,7 +77,7 @@ def reasons(
 
 
 def causes(estimate: Estimate, misfit: float = 1.0, at_bound: float = 0.0) -> dict[str, tuple[str, ...]]:
-    """What speaks against each of "mu_s", "mu_c" and "r", whatever its confidence; the most important first.
+    """Evidence against each of "mu_s", "mu_c" and "r", whatever its confidence; the most important first.
 
     Args:
         estimate: What an estimator published.

@@ -38,7 +38,7 @@ class FilterMatrices(NamedTuple):
 
 @dataclass(frozen=True)
 class Specification:
-    """What makes an estimator."""
+    """An estimator: its parameters, initial states and update."""
 
     name: str
     """Name that `make` knows it by."""

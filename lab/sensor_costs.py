@@ -12,7 +12,7 @@ import pandas as pd
 import typer
 
 from policies.policy_leaderboard.entries import Member, best_constant, controllers, entered, remembering
-from policies.policy_leaderboard.run import kinds, outcomes
+from policies.policy_leaderboard.run import kinds, outcomes, play_all
 from slipgym.tasks import find
 
 PRESETS = "realistic", "lab", "markers", "wrist", "motor"
@@ -45,9 +45,10 @@ def main(
             given = {"sensors": chosen, "level": level}
             for member in members(name, given, episodes, policy or []):
                 try:
-                    table = outcomes(name, level, [member], episodes, {"sensors": chosen}, progress=False)
+                    played = play_all(name, level, [member], episodes, {"sensors": chosen}, progress=False)
                 except ValueError:  # it needs more than these sensors measure, or was trained on others
                     continue
+                table = outcomes(name, level, played)
                 rows.append(table.assign(sensors=chosen, policy=kinds(table)))
     whole = pd.concat(rows)
     wide = whole.pivot_table(index=["task", "policy"], columns="sensors", values="solved [%]", sort=False)

@@ -14,7 +14,7 @@ from policies.learned import LearnedPolicy, pretrained
 
 
 class Policy(Protocol):
-    """What acts on observations, as in Stable-Baselines3."""
+    """Acts on observations, as in Stable-Baselines3."""
 
     def predict(
         self,

@@ -11,7 +11,7 @@ from policies.registry import Policy
 
 
 class Step(NamedTuple):
-    """What `env.step` returned."""
+    """Values that `env.step` returned."""
 
     observation: Any
     """The observation after the step: an array, or a mapping of groups."""
@@ -49,7 +49,7 @@ def steps(env: Any, policy: Policy, observation: Any) -> Iterator[Step]:
 
 
 class BatchStep(NamedTuple):
-    """What the `step` of a vector environment returned; arrays have a leading axis of n."""
+    """Values that the `step` of a vector environment returned; arrays have a leading axis of n."""
 
     observations: Any
     """The observations after the step: an array, or a mapping of groups."""

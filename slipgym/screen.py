@@ -10,7 +10,7 @@ _DISPLAYS = "DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"
 
 
 def obstacle() -> str:
-    """What keeps a window from opening here; empty if nothing does.
+    """The reason why no window can open here; empty if one can.
 
     `SDL_VIDEODRIVER=dummy` counts as a screen: windows then open where nobody sees them.
     """

@@ -20,14 +20,14 @@ COMMON = f"""# Common to all environments
 
 {NOTE}
 
+The page of a task has its own description, rewards, observation columns and options; this page has those that
+all tasks share. `help(env.unwrapped)` prints both together.
+
 ```python
 import gymnasium as gym
 
 env = gym.make("slipgym:slipgym/LinearSlip-v0")
-```
-
-makes the environment of a task. The page of a task has its own description, rewards, observation columns and
-options; this page has those that it shares with the others. `help(env.unwrapped)` prints both together."""
+```"""
 LISTS = ("Reset Options", "Info")
 """Sections whose tables are lists on the page of a task."""
 BEFORE = {

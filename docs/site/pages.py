@@ -7,19 +7,18 @@ from typing import Any
 
 from mkdocs.structure.files import File, Files
 
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = [
+    path.relative_to(ROOT).as_posix()
+    for pattern in ("*.ipynb", "libraries/*.py")
+    for path in sorted((ROOT / "examples").glob(pattern))
+]
 OUTSIDE = {
     "index.md": "README.md",
     "changes.md": "CHANGELOG.md",
     "contributing.md": "CONTRIBUTING.md",
     "citation.cff": "CITATION.cff",
-    **{
-        f"examples/{name}.ipynb": f"examples/{name}.ipynb"
-        for name in ("1_first_rollout", "2_estimator_on_a_log", "3_what_friction_is_worth")
-    },
-    **{
-        f"examples/libraries/{name}.py": f"examples/libraries/{name}.py"
-        for name in ("collect", "ppo", "rllib_ppo", "skrl_ppo", "torchrl_ppo")
-    },
+    **{path: path for path in EXAMPLES},
 }
 """Path in the site -> path in the repository."""
 
@@ -43,10 +42,9 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
 
 def shown(text: str) -> str:
     """The text with the files that `<!-- code: PATH -->` names."""
-    root = Path(__file__).resolve().parents[2]
     return re.sub(
         r"<!-- code: (\S+) -->",
-        lambda found: f"```python\n{(root / found[1]).read_text(encoding='utf-8')}```",
+        lambda found: f"```python\n{(ROOT / found[1]).read_text(encoding='utf-8')}```",
         text,
     )
 

@@ -1,10 +1,12 @@
-"""Hook of mkdocs: shows the file of a result below a link to it that is a paragraph of its own."""
+"""Hook of mkdocs: shows the file of a result below a link in a paragraph of its own, folded if it is long."""
 
 import re
 from pathlib import Path
 from typing import Any
 
 LINK = re.compile(r"^\[[^]]+\]\((?:\.\./)*results/(\w+\.txt)\)$", re.MULTILINE)
+LONGEST = 36
+"""Lines of a result that is shown open."""
 
 
 def on_page_markdown(markdown: str, config: Any, **_: Any) -> str:
@@ -20,6 +22,11 @@ def shown(text: str) -> str:
     content = re.sub(r"^#+ (.+)$", r"**\1**", content.strip("\n"), flags=re.MULTILINE)
     if not content:
         return f"*{printed.capitalize()}*"
+    long = content.count("\n") >= LONGEST
     if not re.search(r"^\| ", content, re.MULTILINE):
         content = f"```text\n{content}\n```"
+    if long:
+        content = (
+            f"<details markdown>\n<summary>All tables of this result</summary>\n\n{content}\n\n</details>"
+        )
     return f"*{printed.capitalize()}*\n\n{content}"

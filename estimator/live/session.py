@@ -22,7 +22,7 @@ _ERRORS = 10
 
 
 class Pilot(Protocol):
-    """What commands the gripper: `policies.live.PolicyPilot`, or one of your own."""
+    """Commands the gripper: `policies.live.PolicyPilot`, or one of your own."""
 
     def act(self, outputs: list[Output], now: float) -> dict[str, Any] | None:
         """The command after new estimates; None: none is due."""
@@ -99,7 +99,7 @@ class Session:
         return []
 
     def tick(self, now: float | None = None) -> list[dict[str, Any]]:
-        """What is due without a message: the watchdog's commands. Call it at least every 20 ms."""
+        """The commands that are due without a message, the watchdog's. Call it at least every 20 ms."""
         now = time.monotonic() if now is None else now
         return [
             *self._warned(now),
@@ -137,7 +137,7 @@ class Session:
             self._log(line)
 
     def report(self) -> str:
-        """What became of all readings, in lines."""
+        """Counts of all readings by their fate, in lines."""
         lines = []
         for name, counts in self.live.counts.items():
             found = ", ".join(f"{what} {often}" for what, often in counts.items() if often)

@@ -104,7 +104,7 @@ class Source:
 
     @property
     def ahead(self) -> float:
-        """How much the offset is more than what is taken off the stamps [s]."""
+        """Offset minus the correction of the stamps [s]."""
         return self.offset - (self._shift if math.isfinite(self._shift) else self.offset)
 
     def insert(self, t: float, values: list[float], arrival: float) -> None:

@@ -43,7 +43,7 @@ class Found:
 
 @dataclass(frozen=True)
 class Calibration:
-    """What a run found, since the last gap."""
+    """Errors of the sensors that a run found since the last gap."""
 
     delay: int
     """Delay of the velocity against the force [samples]."""

@@ -51,7 +51,7 @@ def definitions(text: str, name: str) -> Definitions:
 
 @dataclass
 class Layout:
-    """Where the numbers of a message are."""
+    """Places of the numbers in a message."""
 
     length: int
     """Of a message [bytes]."""

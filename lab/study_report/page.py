@@ -35,6 +35,7 @@ from slipgym import atomic_io
 TITLES = {
     "classic": "The controllers",
     "memory": "The controllers with a memory of slips",
+    "recurrent": "The recurrent networks",
     "learned": "The learned policies",
     "imitation": "The imitations",
 }

@@ -1,4 +1,4 @@
-"""Runs a short evaluation with figures."""
+"""Shows what friction is worth, with a figure."""
 
 from pathlib import Path
 from typing import Annotated
@@ -21,5 +21,5 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
 ) -> None:
-    """Compare a controller with estimated, true and nominal friction; prints a table and writes figures."""
+    """Show what friction is worth: the gain over the strongest policy without it, and a figure."""
     evaluate.main(demo=True, output=output, jobs=jobs)

@@ -16,7 +16,7 @@ except ModuleNotFoundError as error:
 from policies.console import spell_out
 
 COMMANDS = {
-    "demo": "Run a short evaluation with figures: about a minute.",
+    "demo": "Show what friction is worth: about a minute.",
     "play": "Watch a policy in a window, or write a video.",
     "train": "Train slip-control policies.",
     "evaluate": "Compare policies by the friction they know; test one.",

@@ -59,8 +59,10 @@ def main(
     from policies.leaderboard.tables import markdown
     from policies.policy_leaderboard.entries import entered, opponents
     from policies.policy_leaderboard.folder import write, write_table
-    from policies.policy_leaderboard.run import by_level, outcomes
+    from policies.policy_leaderboard.run import by_level, outcomes, play_all
     from policies.policy_leaderboard.worlds import generalisation
+    from policies.policy_leaderboard.worth import table as gains
+    from policies.policy_leaderboard.worth import worth
     from slipgym.atomic_io import check_folder
     from slipgym.config.level import level_names
     from slipgym.envs.arguments import ENGINES, FRICTION_SOURCES, one_of
@@ -79,14 +81,17 @@ def main(
             raise ValueError(f"--engine {engine}: --worlds plays on both engines")
         engine = resolved(one_of("engine", engine, ENGINES))
         mine = entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
-        found = []
+        found, worths = [], []
         for task in tasks or TASKS:
             for name in level or level_names(find(task).key):
                 others = opponents(task, {**arguments, "level": name}, max(episodes // 2, 1), imitation)
+                members = [*mine, *others]
                 if worlds:
-                    found.append(generalisation(task, name, [*mine, *others], episodes, arguments))
+                    found.append(generalisation(task, name, members, episodes, arguments))
                     continue
-                found.append(outcomes(task, name, [*mine, *others], episodes, arguments, engine))
+                played = play_all(task, name, members, episodes, arguments, engine)
+                found.append(outcomes(task, name, played))
+                worths.append(worth(task, name, members, played))
                 typer.echo(markdown(found[-1], 1))
     except (ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
@@ -97,4 +102,5 @@ def main(
         return
     folder = write(table, output)
     typer.echo(f"Solved [%], {episodes} episodes each:\n\n{markdown(by_level(table), 1)}")
+    typer.echo(f"Worth of friction: episodes solved [%], {episodes} each\n\n{markdown(gains(worths), 1)}")
     typer.echo(f"Look at:\n  {folder / 'policies.png'}")

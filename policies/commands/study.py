@@ -31,7 +31,8 @@ def main(
         typer.Option(help="Keep only this task: linear_slip, also LinearSlip or its id; repeatable."),
     ] = None,
     kind: Annotated[
-        list[str] | None, typer.Option(help="Only classic, memory, learned or imitation; repeatable.")
+        list[str] | None,
+        typer.Option(help="Only classic, memory, recurrent, learned or imitation; repeatable."),
     ] = None,
     learned: Annotated[str, typer.Option(help="Folder of learned policies instead of those shipped.")] = "",
     imitation: Annotated[str, typer.Option(help="Folder of the runs of slipgym imitate.")] = "",

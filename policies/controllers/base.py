@@ -20,7 +20,7 @@ State: TypeAlias = np.ndarray | tuple[np.ndarray, ...]
 
 
 class ObservationIndex:
-    """Where each column of an observation is.
+    """Places of the columns of an observation.
 
     Args:
         task_name: As `slipgym.tasks.find` takes it; None for the sensor part that all tasks share.
@@ -51,7 +51,7 @@ class ObservationIndex:
         return self._at[name]
 
     def get(self, name: str) -> int | None:
-        """Where a column is; None if there is none."""
+        """The place of a column; None if there is none."""
         return self._at.get(name)
 
     def fitted(self, observations: np.ndarray) -> tuple[np.ndarray, Mapping[str, int]]:

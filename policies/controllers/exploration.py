@@ -41,7 +41,7 @@ class ExplorationState(NamedTuple):
 
 @dataclass(frozen=True)
 class ActiveExploration:
-    """How a controller explores friction that it does not know.
+    """Exploration of unknown friction by a controller.
 
     Raises:
         ValueError: A value is out of range.

@@ -66,7 +66,7 @@ class Forces(NamedTuple):
 
 
 class Events(NamedTuple):
-    """What happens in a control step, arrays (n,)."""
+    """Events of a control step, arrays (n,)."""
 
     falls: np.ndarray
     """Control steps since the grip began to fall; negative where it does not."""

@@ -9,7 +9,7 @@ from slipgym.config.base import Frozen, NonNegative, Positive
 
 
 class ForceGains(Frozen):
-    """How forces show friction."""
+    """Gains of finding friction from forces."""
 
     sd_force: Positive = Field(default=0.014, description="Noise of the tangential force, both fingers [N]")
     sd_normal: Positive = Field(default=0.028, description="Noise of the normal force, both fingers [N]")
@@ -51,7 +51,9 @@ class ForceGains(Frozen):
     sd_break: NonNegative = Field(
         default=0.015, description="Relative deviation of a break-away's ratio beside noise [-]"
     )
-    sd_sample: NonNegative = Field(default=0.01, description="The same of a sample in a slide or turn [-]")
+    sd_sample: NonNegative = Field(
+        default=0.01, description="Standard deviation of a sample in a slide or turn [-]"
+    )
     sd_shared: NonNegative = Field(
         default=0.01, description="Relative deviation of the ratios that all samples share [-]"
     )

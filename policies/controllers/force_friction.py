@@ -29,7 +29,7 @@ class Ratios(NamedTuple):
     disc_force: np.ndarray
     """Weighted sum of (f_t / f_n)^p with the exponent of the disc [-]."""
     disc_torque: np.ndarray
-    """The same of (tau / f_n)^p."""
+    """Weighted sum of (tau / f_n)^p."""
     force: np.ndarray
     """With the exponent of the ellipsoid."""
     torque: np.ndarray

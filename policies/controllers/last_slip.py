@@ -13,7 +13,7 @@ from slipgym.config.base import Frozen, NonNegative, Positive
 
 
 class SlipGains(Frozen):
-    """When a slip is noticed."""
+    """Gains of noticing a slip."""
 
     speed: Positive = Field(default=0.003, description="Scaled slip speed that is a slip [m/s]")
     rest: NonNegative = Field(default=12, description="Control steps after a slip without another one [-]")

@@ -21,7 +21,7 @@ RESTS, SHOWN = 0.0, -1.0
 
 
 class LatenessGains(Frozen):
-    """When a velocity counts as late."""
+    """Gains of deciding that a velocity is late."""
 
     prompt: NonNegative = Field(
         default=0.02,

@@ -56,7 +56,7 @@ class LeapState(NamedTuple):
 
 
 class LeapGains(Frozen):
-    """Gains of the leaps; those that count control steps do so at 120 Hz (`at_rate`)."""
+    """Gains of the leaps; numbers of control steps are at 120 Hz (`at_rate`)."""
 
     start: Positive = Field(
         default=1.3, description="Grip from which it falls to the first break-away, over f_slip [-]"
@@ -64,7 +64,9 @@ class LeapGains(Frozen):
     keep: Positive = Field(
         default=0.96, lt=1, description="Fraction of the grip left a control step later [-]"
     )
-    again: Positive = Field(default=1.12, description="Grip after a leap, over that of the break-away [-]")
+    again: Positive = Field(
+        default=1.12, description="Ratio of the grip after a leap to the grip at the break-away [-]"
+    )
     fall: Positive = Field(default=0.1, description="Fall of the load that is a break-away [-]")
     deviations: NonNegative = Field(default=2.5, description="And over the noise of the load, at least [-]")
     quiet: NonNegative = Field(default=0.05, description="Largest noise allowed for, over the load [-]")
@@ -98,7 +100,7 @@ def at_rate(gains: LeapGains, rate: float) -> LeapGains:
 
 
 class Slip(NamedTuple):
-    """What the leaps are to do, arrays (n,)."""
+    """Request to the leaps, arrays (n,)."""
 
     wanted: np.ndarray
     """Whether the object is to slip."""

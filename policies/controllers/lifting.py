@@ -137,7 +137,7 @@ class LiftingPolicy(GainPolicy[L]):
         return np.where(caught, g.kick * force, force), memory
 
     def _zeroed(self, columns: Columns, zero: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Mean force and torque per finger (3, n) [N, N, N m], less what it was on the support, and that."""
+        """Mean force and torque per finger (3, n) [N, N, N m] since the support, and those on the support."""
         load = np.array([both(columns, name) for name in ("f_x", "f_y", "tau")])
         samples = zero[3] + (zero[3] < self._tares)
         weight = np.where(samples > zero[3], 1.0 / np.maximum(samples, 1.0), 0.0)

@@ -20,7 +20,9 @@ class LinearSlipLeapGains(LeapGains):
     start: Positive = Field(
         default=1.6, description="Grip from which it falls to the first break-away, over f_slip [-]"
     )
-    again: Positive = Field(default=1.2, description="Grip after a leap, over that of the break-away [-]")
+    again: Positive = Field(
+        default=1.2, description="Ratio of the grip after a leap to the grip at the break-away [-]"
+    )
     slide: Positive = Field(default=0.002, description="Longest leap [m]")
     hold_margin: Positive = Field(default=1.4, description="Grip while holding, over the need [-]")
 

@@ -47,7 +47,7 @@ class PlanState(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """What the plan asks of the grip, arrays (n,)."""
+    """Request of the plan to the grip, arrays (n,)."""
 
     turning: np.ndarray
     """Whether the object is to turn; else it is to slide."""
@@ -118,7 +118,7 @@ class PlanarPlanPolicy(GainPolicy[P], Generic[P]):
     def slip(
         self, columns: Columns, slips: Any, motion: Motion, begins: np.ndarray, r: np.ndarray
     ) -> tuple[np.ndarray, Any]:
-        """How the object slips.
+        """Kind of slip of the object.
 
         Args:
             columns: n observations.
@@ -136,7 +136,7 @@ class PlanarPlanPolicy(GainPolicy[P], Generic[P]):
         """Creep along the arc of a turn that is left [rad], times |b|, (n,) [m^2]."""
 
     def interruptible(self, slips: Any) -> np.ndarray | bool:
-        """Where a slip may begin or end now, (n,) or all."""
+        """Rows in which a slip may begin or end now, (n,) or all."""
         return True
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:

@@ -26,7 +26,7 @@ from slipgym.config.base import NonNegative, Positive
 
 
 class Choice(NamedTuple):
-    """How the object slips, (n,) each; all 0 at the start."""
+    """Kind of slip of the object, (n,) each; all 0 at the start."""
 
     continuous: np.ndarray
     """1 in continuous slips, 0 in leaps."""

@@ -11,7 +11,7 @@ from estimator.suggestions import unknown
 
 
 class Known(NamedTuple):
-    """What a file of a set has to be."""
+    """Size and digest that a file of a set must have."""
 
     sha256: str
     size: int
@@ -32,7 +32,7 @@ class PublicSet:
 
     @property
     def url(self) -> str:
-        """Where the repository lies."""
+        """Address of the repository."""
         return f"https://github.com/{self.repository}"
 
     @cached_property

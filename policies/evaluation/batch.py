@@ -10,7 +10,7 @@ import gymnasium as gym
 import numpy as np
 
 import policies
-from policies.controllers.base import ForcePolicy, ObservationIndex
+from policies.controllers.base import ForcePolicy
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.controllers.slip_memory import SlipMemory
 from policies.evaluation.experiment import Experiment
@@ -54,7 +54,6 @@ def record_block(
     given = {
         name: value for name, value in {**keywords, **modes}.items() if name not in ("engine", "material")
     }
-    index = ObservationIndex(experiment.task, experiment.environment_config(), modes.get("action_mode"))
     made: Any = gym.make_vec(
         f"slipgym:{find(experiment.task).id}", len(trials), "vector_entry_point", **given
     )
@@ -64,7 +63,7 @@ def record_block(
             policy.check(envs)
         options = {"rows": [row_options(trial) for trial in trials]}
         observations, infos = envs.reset(seed=[trial.seed for trial in trials], options=options)
-        recorder = Recorder(index, drawn(infos, len(trials)))
+        recorder = Recorder([column.name for column in envs.columns], drawn(infos, len(trials)))
         for step in batch_steps(envs, policy, observations):
             seen = step.observations
             newest = seen["policy"] if isinstance(seen, Mapping) else seen
@@ -80,7 +79,7 @@ def row_options(trial: Trial) -> dict[str, Any]:
 
 
 def drawn(infos: Mapping[str, Any], n: int) -> list[dict[str, Any]]:
-    """What the randomization drew for each of n environments, as the info of a single one has it."""
+    """Values that the randomization drew for each of n environments, as in the info of a single one."""
     found = infos.get("drawn", {})
     names = [name for name in found if not name.startswith("_")]
     return [{name: _plain(found[name][i]) for name in names if found[f"_{name}"][i]} for i in range(n)]

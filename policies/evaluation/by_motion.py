@@ -36,7 +36,7 @@ def measures_by_motion(task: Task) -> Measures:
 
 
 def measure_motion(recording: Recording, motion: Motion) -> dict[str, Any]:
-    """How far the object slipped, and how well its motion followed the reference where it has one."""
+    """Slip of the object, and error of its motion where it has a reference."""
     row = {"largest_slip_mm": largest_slip(recording)}
     if motion.axis is None:
         return row

@@ -37,7 +37,7 @@ class Tolerance:
 
 @dataclass(frozen=True)
 class Measures:
-    """What is measured in the trials of a task."""
+    """Measures of the trials of a task."""
 
     measure: Callable[[Recording], dict[str, Any]]
     """The task's own columns."""

@@ -27,7 +27,7 @@ _SELECTION_SEED = 1000
 
 
 class Outcomes(NamedTuple):
-    """How episodes with a constant force went."""
+    """Outcomes of episodes with a constant force."""
 
     force: float
     """The command, per finger [N]."""

@@ -14,7 +14,7 @@ from policies.stepping import steps
 
 
 class Stored(NamedTuple):
-    """What a dataset holds."""
+    """Content of a dataset."""
 
     episodes: int
     steps: int

@@ -30,6 +30,12 @@ class PolicyChoice(Frozen):
     name: str = Field(description="Its name, the folder of a learned one, or module:class [-]")
     parameters: Mapping[str, Any] = Field(default={}, description="Its parameters [-]")
     label: str = Field(default="", description="How tables and figures call it; empty: by its name [-]")
+    friction: Annotated[tuple[str, ...], BeforeValidator(as_tuple)] = Field(
+        default=(), description="Labels of the friction choices that it acts with; empty: all [-]"
+    )
+    frame_skip: Count | None = Field(
+        default=None, description="Control steps per action of its own; null: the experiment's [-]"
+    )
 
     @model_validator(mode="after")
     def _exists(self) -> Self:
@@ -40,11 +46,13 @@ class PolicyChoice(Frozen):
         elif self.name not in policies.names():
             message = unknown("policy", self.name, policies.names())
             raise ValueError(f"{message}; or the folder of a learned one, or module:class")
+        if self.frame_skip is not None:
+            common_frame_skip([self.name], self.frame_skip)
         return self
 
     @property
     def title(self) -> str:
-        """How tables and figures call it."""
+        """Name in tables and figures."""
         return self.label or Path(self.name).name
 
 
@@ -69,7 +77,7 @@ class FrictionChoice(Frozen):
 
     @property
     def title(self) -> str:
-        """How tables and figures call it."""
+        """Name in tables and figures."""
         return self.label or self.source
 
     @property
@@ -132,6 +140,10 @@ class Experiment(Frozen):
             titles = [choice.title for choice in getattr(self, kind)]
             if len(set(titles)) < len(titles):
                 raise ValueError(f"{kind} needs distinct labels, got {', '.join(titles)}")
+        titles = [choice.title for choice in self.friction]
+        for name in (name for policy in self.policies for name in policy.friction):
+            if name not in titles:
+                raise ValueError(unknown("friction of this experiment", name, titles))
         configuration.load_randomization(self.randomization)
         load_level(self.level, find(self.task).key)
         known = self.environment_config().materials
@@ -147,12 +159,17 @@ class Experiment(Frozen):
 
     @property
     def steps_per_action(self) -> int:
-        """Control steps per action, the same for every policy.
+        """Control steps per action, the same for every policy without a `frame_skip` of its own.
 
         Raises:
             ValueError: The learned policies were trained with different ones, or not with `frame_skip`.
         """
-        return common_frame_skip((policy.name for policy in self.policies), self.frame_skip)
+        names = (policy.name for policy in self.policies if policy.frame_skip is None)
+        return common_frame_skip(names, self.frame_skip)
+
+    def frame_skip_of(self, policy: PolicyChoice) -> int:
+        """Control steps per action of one of its policies."""
+        return policy.frame_skip or self.steps_per_action
 
     def environment_config(self) -> configuration.Config:
         """The environment's configuration with this experiment's overrides, without the task's settings."""

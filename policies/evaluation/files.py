@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 
-from policies.evaluation.experiment import Experiment
+from policies.evaluation.experiment import Experiment, FrictionChoice, PolicyChoice
 from policies.task_names import file_name
 from slipgym.config.errors import unknown
 from slipgym.config.yaml_model import names, read_model, validate
@@ -58,7 +58,18 @@ def narrowed(
             raise ValueError(unknown("friction of this experiment", name, valid))
     if friction:
         kept = tuple(choice for choice in kept if {choice.title, choice.source} & set(friction))
-    values = {**dict(experiment), "friction": kept}
+    values = {**dict(experiment), "friction": kept, "policies": _acting(experiment.policies, kept)}
     changes = {"trials": trials, "seed": seed, "level": level}
     values.update({key: value for key, value in changes.items() if value is not None})
     return validate(values, Experiment, experiment.name)
+
+
+def _acting(policies: Sequence[PolicyChoice], kept: Sequence[FrictionChoice]) -> tuple[PolicyChoice, ...]:
+    """The policies that act with one of the friction choices, each with those alone."""
+    titles = [choice.title for choice in kept]
+    found = []
+    for policy in policies:
+        own = tuple(name for name in policy.friction if name in titles)
+        if own or not policy.friction:
+            found.append(policy.model_copy(update={"friction": own}))
+    return tuple(found)

@@ -16,7 +16,7 @@ INCOMPLETE = "INCOMPLETE"
 
 
 def run_path(experiment: Experiment, output: str | os.PathLike[str]) -> Path:
-    """Where a run that starts now goes: <output>/<experiment>__<seed>__<timestamp>."""
+    """Folder of a run that starts now: <output>/<experiment>__<seed>__<timestamp>."""
     return stamped(output, f"{experiment.name}__{experiment.seed}")
 
 

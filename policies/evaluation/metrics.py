@@ -39,7 +39,7 @@ def measure(recording: Recording, task: str) -> dict[str, Any]:
 
 
 def measures(task: str) -> Measures:
-    """What is measured in the trials of a task: its own, or what follows from its motion and its options.
+    """Measures of the trials of a task: its own, or those that follow from its motion and options.
 
     Args:
         task: As `slipgym.tasks.find` takes it.
@@ -49,7 +49,7 @@ def measures(task: str) -> Measures:
 
 
 def measure_linear_slip(recording: Recording) -> dict[str, Any]:
-    """How well the slip along gravity followed its reference, and mu_c over the cruise."""
+    """Tracking error of the slip along gravity, and mu_c over the cruise."""
     slid = -recording.slip[:, 1]
     error = slid - recording.reference[:, 0]
     final = 1e3 * (slid[-1] - recording.goal).item()
@@ -65,7 +65,7 @@ def measure_linear_slip(recording: Recording) -> dict[str, Any]:
 
 
 def measure_rotational_slip(recording: Recording) -> dict[str, Any]:
-    """How well the turn by gravity followed its reference, and how far the object slid meanwhile."""
+    """Tracking error of the turn by gravity, and slide of the object meanwhile."""
     turned = -recording.slip[:, 2]
     final = math.degrees(turned[-1] - recording.goal)
     return {
@@ -77,7 +77,7 @@ def measure_rotational_slip(recording: Recording) -> dict[str, Any]:
 
 
 def measure_hinge(recording: Recording) -> dict[str, Any]:
-    """How far the object slid and how far it left the vertical while the wrist pitched."""
+    """Slide and tilt of the object while the wrist pitched."""
     tilt = recording.slip[:, 2] + recording.reference[:, 0]
     return {
         "largest_slip_mm": largest_slip(recording),
@@ -86,7 +86,7 @@ def measure_hinge(recording: Recording) -> dict[str, Any]:
 
 
 def measure_planar_slip(recording: Recording) -> dict[str, Any]:
-    """How far from its target the object ended."""
+    """Final distance of the object from its target."""
     target, final = recording.reference[-1], recording.slip[-1]
     turn = math.degrees(final[2] - target[2])
     return {
@@ -100,7 +100,7 @@ def measure_planar_slip(recording: Recording) -> dict[str, Any]:
 
 
 def measure_hold(recording: Recording) -> dict[str, Any]:
-    """How far the object slipped, and how the grip force compares with the least that could do."""
+    """Slip of the object, and ratio of the grip force to the least one."""
     needed = recording.needed_force
     force = recording.grip_force.mean(axis=1)
     return {
@@ -112,7 +112,7 @@ def measure_hold(recording: Recording) -> dict[str, Any]:
 
 
 def measure_fragile_hold(recording: Recording) -> dict[str, Any]:
-    """How far the object slipped, and how the grip compares with what holds it and what breaks it."""
+    """Slip of the object, and grip beside the least and the breaking force."""
     limit, least = recording.reference[-1, 0].item(), recording.reference[-1, 1].item()
     force = recording.grip_force.mean(axis=1)
     return {
@@ -125,7 +125,7 @@ def measure_fragile_hold(recording: Recording) -> dict[str, Any]:
 
 
 def measure_carry(recording: Recording) -> dict[str, Any]:
-    """How far the object slipped, and how the mean grip compares with the least and the allowed one."""
+    """Slip of the object, and mean grip beside the least and the allowed one."""
     allowed, least, peak = recording.reference[-1].tolist()
     force = recording.grip_force.mean().item()
     return {
@@ -138,7 +138,7 @@ def measure_carry(recording: Recording) -> dict[str, Any]:
 
 
 def measure_explore(recording: Recording) -> dict[str, Any]:
-    """When the episode ended, how much of the budget of slip was used, and what the guess is worth."""
+    """End of the episode, used share of the budget of slip, and score of the guess."""
     score, regret, used = recording.reference[-1].tolist()
     return {
         "time_s": recording.time[-1].item(),
@@ -150,7 +150,7 @@ def measure_explore(recording: Recording) -> dict[str, Any]:
 
 
 def measure_pivot_to(recording: Recording) -> dict[str, Any]:
-    """How far from its angle the object ended, and how far it slid."""
+    """Final error of the object's angle, and its slide."""
     final = math.degrees(recording.slip[-1, 2] - recording.goal)
     return {
         "final_error_deg": final,

@@ -23,7 +23,7 @@ FRESH = 1_000_000
 
 @dataclass(frozen=True)
 class Outcome:
-    """How an episode went."""
+    """Outcome of an episode."""
 
     success: bool
     """Whether the task succeeded."""
@@ -119,7 +119,7 @@ def episodes(
 
 
 def outcome(which: str, found: Sequence[Outcome]) -> str:
-    """How episodes went, in a line.
+    """Outcome of episodes, in a line.
 
     Args:
         which: What the policy was loaded by.

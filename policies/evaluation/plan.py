@@ -32,7 +32,7 @@ class Trial:
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What distinguishes this trial from the others, for tables."""
+        """Columns that distinguish this trial from the others, for tables."""
         return {
             "policy": self.policy.title,
             "friction": self.friction.title,
@@ -51,6 +51,7 @@ def plan(experiment: Experiment) -> list[Trial]:
         Trial(policy, friction, material, options, number, seed(experiment.seed, material, options, number))
         for policy in experiment.policies
         for friction in experiment.friction
+        if not policy.friction or friction.title in policy.friction
         for material in experiment.materials
         for options in experiment.combinations()
         for number in range(experiment.trials)

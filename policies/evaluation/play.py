@@ -12,7 +12,7 @@ from policies.stepping import batch_steps
 
 
 class Played(NamedTuple):
-    """How n episodes went; arrays (n,)."""
+    """Outcomes of n episodes; arrays (n,)."""
 
     success: np.ndarray
     """Whether the task succeeded."""

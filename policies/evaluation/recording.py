@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from policies.controllers.base import ObservationIndex
-
 INFOS = (
     "time", "slip", "reference", "grip_force", "contact_wrench", "true", "estimated_per_finger", "is_success",
     "dropped",
@@ -46,6 +44,8 @@ class Recording:
     """Whether the object was lost."""
     drawn: Mapping[str, Any]
     """What the randomization drew; empty without one."""
+    shown: np.ndarray | None = None
+    """Friction mu_s and mu_c in the observations, (T, 2) [-]; NaN where they have none."""
 
     def series(self) -> dict[str, np.ndarray]:
         """The steps as columns, float32: a table with a row per step."""
@@ -56,6 +56,8 @@ class Recording:
             columns[f"force_{finger + 1}"] = self.grip_force[:, finger]
             for k, name in enumerate(("mu_s", "mu_c", "r")):
                 columns[f"{name}_{finger + 1}"] = self.estimated[:, finger, k]
+        shown = np.full((len(self.time), 2), np.nan) if self.shown is None else self.shown
+        columns.update(shown_mu_s=shown[:, 0], shown_mu_c=shown[:, 1])
         return {name: values.astype(np.float32) for name, values in columns.items()}
 
 
@@ -63,13 +65,13 @@ class Recorder:
     """Collects the episodes of n environments, step by step.
 
     Args:
-        index: Where the columns of the observation are.
+        columns: Names of the observation's columns.
         drawn: What the randomization drew for each environment, n mappings.
     """
 
-    def __init__(self, index: ObservationIndex, drawn: Sequence[Mapping[str, Any]]) -> None:
-        goals = (index.get(name) for name in ("distance", "angle"))
-        self._goal = next((goal for goal in goals if goal is not None), None)
+    def __init__(self, columns: Sequence[str], drawn: Sequence[Mapping[str, Any]]) -> None:
+        self._at = {name: k for k, name in enumerate(columns)}
+        self._goal = next((name for name in ("distance", "angle") if name in self._at), "")
         self._drawn = drawn
         self._steps: list[dict[str, np.ndarray]] = []
         self._lengths = np.zeros(len(drawn), dtype=np.int64)
@@ -85,14 +87,19 @@ class Recorder:
             infos: Name -> array (n, ...).
             running: Whether each environment's episode was still running before the step, (n,) bool.
         """
-        goals = np.zeros(len(rewards)) if self._goal is None else observations[:, self._goal]
         kept = {"estimated_per_finger": np.full((len(rewards), 2, 3), np.nan), **infos}
-        self._steps.append({"reward": rewards, "goal": goals, **{name: kept[name] for name in INFOS}})
+
+        def column(name: str, otherwise: float) -> np.ndarray:
+            return observations[:, self._at[name]] if name in self._at else np.full(len(rewards), otherwise)
+
+        shown = np.stack([column(name, np.nan) for name in ("mu_s", "mu_c")], axis=1)
+        own = {"reward": rewards, "goal": column(self._goal, 0.0), "shown": shown}
+        self._steps.append({**own, **{name: kept[name] for name in INFOS}})
         self._lengths[running] = len(self._steps)
 
     def finish(self) -> list[Recording]:
         """The whole episodes, once all are over."""
-        series = {name: np.array([step[name] for step in self._steps]) for name in ("reward", "goal", *INFOS)}
+        series = {name: np.array([step[name] for step in self._steps]) for name in self._steps[0]}
         return [self._recording(i, series) for i in range(len(self._drawn))]
 
     def _recording(self, i: int, series: Mapping[str, np.ndarray]) -> Recording:
@@ -111,6 +118,7 @@ class Recorder:
             success=bool(own["is_success"][-1]),
             dropped=bool(own["dropped"][-1]),
             drawn=self._drawn[i],
+            shown=own["shown"],
         )
 
 

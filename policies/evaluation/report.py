@@ -10,6 +10,7 @@ import yaml
 
 from policies.evaluation.folder import INCOMPLETE
 from policies.evaluation.frames import by_metric, groups, where
+from policies.evaluation.gain import compare
 from policies.evaluation.metrics import measures
 from policies.evaluation.tables import KEYS, text
 
@@ -35,9 +36,12 @@ def report(folder: Path) -> str:
         found = by_metric(group)
         rows.append([*keys, *(text(found[m.column], m.heading) for m in metrics)])
     table = aligned([[*KEYS, *(m.heading for m in metrics)], *rows])
+    trials = pd.read_csv(folder / "trials.csv", dtype={"friction": str, "friction_source": str})
+    gain = compare(trials)
+    claim = [] if gain is None else [gain.words(), ""]
     pictures = sorted(folder.glob("*.png"))
     paths = [f"  {path}" for path in [*pictures, folder / "summary.md", folder / "trials.csv"]]
-    return "\n".join([table, "(95 % confidence intervals in brackets)", "", "Look at:", *paths])
+    return "\n".join([*claim, table, "(95 % confidence intervals in brackets)", "", "Look at:", *paths])
 
 
 def aligned(rows: list[list[str]]) -> str:

@@ -11,10 +11,11 @@ import pandas as pd
 
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.folder import INCOMPLETE, run_path, write_origin
+from policies.evaluation.gain import compare
 from policies.evaluation.plan import plan
-from policies.evaluation.plots import draw
+from policies.evaluation.plots import draw, draw_gain
 from policies.evaluation.tables import markdown, summarise
-from policies.evaluation.trial import Result, run_trials
+from policies.evaluation.trial import Result, run_trials, steps_of
 from slipgym.atomic_io import check_folder, new_files, new_folder
 
 TRIALS = "trials.parquet"
@@ -84,6 +85,10 @@ def write_results(experiment: Experiment, results: Sequence[Result], folder: Pat
     page = markdown(summary, experiment.task, len(trials))
     (folder / "summary.md").write_text(page, encoding="utf-8")
     draw(experiment.task, trials, series, folder)
+    if (gain := compare(trials)) is not None:
+        run = plan(experiment)
+        again = [steps_of(experiment, run[entry.rows[gain.episode()]]) for entry in gain.entries]
+        draw_gain(experiment.task, trials, gain, again, folder)
 
 
 def write_trials(results: Sequence[Result], folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:

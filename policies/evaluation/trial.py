@@ -13,7 +13,6 @@ from tqdm import tqdm
 
 import policies
 from policies import parallel
-from policies.controllers.base import ObservationIndex
 from policies.controllers.rate import at_rate
 from policies.evaluation.batch import acts_on_batches, blocks, record_block
 from policies.evaluation.experiment import Experiment
@@ -22,6 +21,7 @@ from policies.evaluation.plan import Trial
 from policies.evaluation.recording import INFOS, Recorder, Recording
 from policies.learned import LearnedPolicy
 from policies.stepping import steps
+from slipgym.config.level import load_level
 from slipgym.tasks import configure, find
 
 
@@ -107,10 +107,19 @@ def run_trial(experiment: Experiment, trial: Trial) -> Result:
     return _result(experiment, trial, recording)
 
 
+def steps_of(experiment: Experiment, trial: Trial) -> dict[str, np.ndarray]:
+    """Runs one trial, as `run_block` does, and returns its steps as columns."""
+    policy = make_policy(experiment, trial)
+    if experiment.engine == "planar" and acts_on_batches(policy):
+        return record_block(experiment, [trial], policy, environment(experiment, trial))[0].series()
+    return record(experiment, trial, policy).series()
+
+
 def _result(experiment: Experiment, trial: Trial, recording: Recording) -> Result:
     """The row of a trial in the table, and its steps."""
     task = find(experiment.task)
-    settings = configure(task, experiment.config, experiment.sensors)[1]
+    level = load_level(experiment.level, task.key)
+    settings = configure(task, experiment.config, experiment.sensors, level=level)[1]
     settings = task.options.parse(trial.options).applied_to(settings)
     limits = {
         limit.column: limit.scale * getattr(settings, limit.option)
@@ -134,12 +143,12 @@ def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None 
     modes = policies.modes(policy)
     keywords = {**environment(experiment, trial), **modes}
     env: Any = gym.make(f"slipgym:{task.id}", disable_env_checker=True, **keywords)
-    index = ObservationIndex(experiment.task, experiment.environment_config(), modes.get("action_mode"))
     try:
         if isinstance(policy, LearnedPolicy):
             policy.check(env)
         observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
-        recorder, running = Recorder(index, [info.get("drawn", {})]), np.ones(1, dtype=bool)
+        columns = [column.name for column in env.unwrapped.columns]
+        recorder, running = Recorder(columns, [info.get("drawn", {})]), np.ones(1, dtype=bool)
         for step in steps(env, policy, observation):
             newest = _present(env, step.observation)[np.newaxis]
             infos = {name: np.asarray(step.info[name])[np.newaxis] for name in INFOS if name in step.info}
@@ -159,16 +168,17 @@ def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:
         "material": trial.material,
         "randomization": experiment.randomization,
         "level": experiment.level,
-        "frame_skip": experiment.steps_per_action,
+        "frame_skip": experiment.frame_skip_of(trial.policy),
         "config": dict(experiment.config),
     }
 
 
 def make_policy(experiment: Experiment, trial: Trial) -> policies.Policy:
-    """Who acts; a controller gets the environment's configuration, with the rate at which it acts."""
+    """The policy that acts; a controller gets the environment's configuration and its own rate."""
     parameters, name, config = dict(trial.policy.parameters), trial.policy.name, dict(experiment.config)
     if policies.is_controller(name):
-        skip, takes = experiment.steps_per_action, inspect.signature(policies.find(name)).parameters
+        skip = experiment.frame_skip_of(trial.policy)
+        takes = inspect.signature(policies.find(name)).parameters
         if skip > 1:
             config = at_rate(experiment.environment_config().physics.control_rate / skip, config)
         if config and "config" in takes:

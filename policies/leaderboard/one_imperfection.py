@@ -27,7 +27,7 @@ IMPERFECTIONS = {
 
 
 def values_of(label: str, preset: str = "lab") -> Values:
-    """What a preset of the sensors has for an imperfection: sensor -> parameter -> value.
+    """Values of a preset of the sensors for an imperfection: sensor -> parameter -> value.
 
     Args:
         label: Of `IMPERFECTIONS`.

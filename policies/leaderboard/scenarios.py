@@ -24,7 +24,7 @@ COUNT = 7.94e-6  # [m]
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is run."""
+    """Amount of what is run."""
 
     seeds: int = 20
     """Records of each course with noise of their own."""
@@ -152,7 +152,7 @@ def mixed() -> Course:
 
 
 def mixed_judged(record: Record) -> dict[str, np.ndarray]:
-    """Where estimates of the mixed course are evaluated."""
+    """Instants at which estimates of the mixed course are evaluated."""
     stops = ends(record, STOP) & after(record, 1.0)
     return {
         "mu_c": ends(record, "linear", "planar"),

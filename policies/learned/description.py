@@ -76,7 +76,7 @@ class Memory(Frozen):
 
 
 class Network(Frozen):
-    """What turns an observation into an action."""
+    """The network from observation to action."""
 
     kind: Literal["mlp", "lstm"] = Field(description="Dense layers, or LSTM layers ahead of them [-]")
     memory: Memory | None = Field(default=None, description="The LSTM layers of kind lstm [-]")
@@ -99,7 +99,7 @@ class Normalisation(Frozen):
 
 
 class Critic(Frozen):
-    """What rebuilding the model for more training needs besides the policy's own network."""
+    """Settings that rebuilding the model for more training needs besides the policy's own network."""
 
     layers: _Layers = Field(description="Sizes of the hidden layers [-]")
     count: Count = Field(default=1, le=64, description="How many critics (SAC, TQC) [-]")
@@ -108,7 +108,7 @@ class Critic(Frozen):
 
 
 class Origin(Frozen):
-    """How a policy came about."""
+    """Origin of a policy."""
 
     algorithm: Literal["PPO", "SAC", "TQC", "RecurrentPPO", "PrivilegedPPO", "DAgger"] = Field(
         description="What trained it [-]"

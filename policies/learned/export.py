@@ -155,7 +155,7 @@ def normaliser(path: str | os.PathLike[str], env: Any, **options: Any) -> Any:
 
 
 def described(environment: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """What policy.json says about an environment.
+    """Description of an environment in policy.json.
 
     Raises:
         ValueError: The id or an argument is not allowed.

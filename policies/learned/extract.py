@@ -73,7 +73,7 @@ def network_of(model: Any) -> Network:
 
 
 def critic_of(model: Any) -> Critic:
-    """What rebuilds the model's critics."""
+    """Settings that rebuild the model's critics."""
     policy = model.policy
     if hasattr(policy, "critic_target"):
         nets, quantiles = policy.critic.q_networks, getattr(policy.critic, "n_quantiles", 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -13,7 +14,7 @@ from PIL import Image
 
 from slipgym.atomic_io import new_file
 from slipgym.config.errors import unknown
-from slipgym.rendering import HEIGHT, WIDTH, palette
+from slipgym.rendering import palette
 
 _SIGNS = palette.INK, palette.MUTED, palette.SLIP, palette.GRIP_2, palette.MU_C, palette.MU_S
 
@@ -30,14 +31,19 @@ class _Mp4:
     def __init__(self, path: Path, rate: int) -> None:
         from imageio_ffmpeg import write_frames
 
-        self._frames = write_frames(str(path), (WIDTH, HEIGHT), fps=rate, codec="libx264", quality=7)
-        self._frames.send(None)
+        made = {"fps": rate, "codec": "libx264", "quality": 7, "macro_block_size": 2}
+        self._begin = partial(write_frames, str(path), **made)
+        self._frames: Any = None
 
     def add(self, picture: np.ndarray) -> None:
+        if self._frames is None:
+            self._frames = self._begin(picture.shape[1::-1])
+            self._frames.send(None)
         self._frames.send(np.ascontiguousarray(picture))
 
     def finish(self) -> None:
-        self._frames.close()
+        if self._frames is not None:
+            self._frames.close()
 
 
 class Gif:
@@ -103,7 +109,7 @@ class Video:
         return self
 
     def add(self, picture: np.ndarray) -> None:
-        """Appends a picture (HEIGHT, WIDTH, 3) uint8."""
+        """Appends a picture (height, width, 3) uint8, of the size of the first."""
         self._writer.add(picture)
 
     def __exit__(self, *error: Any) -> bool | None:

@@ -34,7 +34,7 @@ _FORCE_RATE = 8.0  # of a key held down [N/s]
 
 @dataclass(frozen=True)
 class Outcome:
-    """How an episode went."""
+    """Outcome of an episode."""
 
     seed: int
     """Of the environment."""
@@ -148,7 +148,7 @@ def watch(
         if isinstance(player, LearnedPolicy):
             player.check(env)
         if video is None:
-            window = Window(f"slipgym {task}", (WIDTH, HEIGHT))
+            window = Window(f"slipgym {task}", keywords.get("render_size") or (WIDTH, HEIGHT))
             stack.callback(window.close)
             force = env.settings.initial_force
             player = player or Keyboard(window, env.config, force)

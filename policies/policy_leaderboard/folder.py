@@ -18,8 +18,10 @@ from policies.policy_leaderboard.run import kinds
 from policies.versions import write_versions
 from slipgym.atomic_io import new_folder
 
-BAND = 5
+BAND = 3
 """Tasks beside each other."""
+WIDTH = 6.7
+"""Of the picture: its words keep their size on a page 670 pixels wide [inches]."""
 COLOURS = LinearSegmentedColormap.from_list("solved", ["#A33B00", "#E9A26A", "#F7F4E9", "#7FC8A9", "#00644A"])
 
 
@@ -60,8 +62,7 @@ def plot_policies(table: pd.DataFrame) -> Figure:
     tasks = distinct(table, "task")
     bands = [table.loc[table["task"].isin(tasks[k : k + BAND])] for k in range(0, len(tasks), BAND)]
     heights = [len(set(band["kind"])) + 3 for band in bands]
-    width = max(len(set(zip(band["task"], band["level"], strict=True))) for band in bands)
-    figure = Figure(figsize=(0.56 * width + 3.4, 0.34 * sum(heights)), layout="constrained")
+    figure = Figure(figsize=(WIDTH, 0.23 * sum(heights)), layout="constrained")
     rows = figure.subplots(len(bands), squeeze=False, gridspec_kw={"height_ratios": heights})
     for axes, band in zip(rows[:, 0], bands, strict=True):
         plot_band(axes, band)
@@ -87,10 +88,10 @@ def plot_band(axes: Axes, table: pd.DataFrame) -> None:
         for row, value in enumerate(column):
             if np.isfinite(value):
                 colour = STYLE.ink if 20 < value < 80 else "white"
-                axes.text(place, row, f"{value:.0f}", ha="center", va="center", size=9, color=colour)
+                axes.text(place, row, f"{value:.0f}", ha="center", va="center", size=8, color=colour)
     for task, start in zip(tasks, starts, strict=True):
-        axes.text(places[start] - 0.48, -0.75, task, size=10, weight="bold", ha="left", va="bottom")
-    axes.set_xticks(places, [level for _, level in cells], rotation=40, ha="right", rotation_mode="anchor")
+        axes.text(places[start] - 0.48, -0.75, task, size=9, weight="bold", ha="left", va="bottom")
+    axes.set_xticks(places, [level for _, level in cells], rotation=30, ha="right", rotation_mode="anchor")
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()
     axes.tick_params(length=0)

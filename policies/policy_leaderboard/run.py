@@ -51,7 +51,7 @@ def episodes_of(
     return Played(*(np.concatenate(values) for values in zip(*parts, strict=True)))
 
 
-def outcomes(
+def play_all(
     task: str,
     level: str,
     members: Sequence[Member],
@@ -59,7 +59,7 @@ def outcomes(
     arguments: Mapping[str, Any],
     engine: str = "planar",
     progress: bool = True,
-) -> pd.DataFrame:
+) -> dict[str, Played]:
     """Plays the same episodes with every policy.
 
     Args:
@@ -72,17 +72,29 @@ def outcomes(
         progress: Whether to show a progress bar.
 
     Returns:
+        The episodes of each policy by its name.
+    """
+    given, bar = {**arguments, "level": level}, f"{find(task).key}, {level}"
+    return {
+        member.name: episodes_of(task, member, episodes, given, engine)
+        for member in tqdm(members, desc=bar, unit="policy", disable=not progress)
+    }
+
+
+def outcomes(task: str, level: str, played: Mapping[str, Played]) -> pd.DataFrame:
+    """The table of the episodes that `play_all` played.
+
+    Returns:
         A row for each policy, best first, with the columns COLUMNS: solved with its interval of 95 %, drops,
         mean grip of both fingers over the episodes, length of the way that the object slid.
     """
     rows = []
-    for member in tqdm(members, desc=f"{find(task).key}, {level}", unit="policy", disable=not progress):
-        played = episodes_of(task, member, episodes, {**arguments, "level": level}, engine)
-        share = share_interval(int(played.success.sum()), episodes)
-        measured = played.reward.mean(), 100.0 * played.dropped.mean()
-        spent = played.grip.mean(), 1e3 * played.slip.mean()
+    for name, each in played.items():
+        share = share_interval(int(each.success.sum()), len(each.success))
+        measured = each.reward.mean(), 100.0 * each.dropped.mean()
+        spent = each.grip.mean(), 1e3 * each.slip.mean()
         solved = (100.0 * value for value in share)
-        rows.append((find(task).name, level, member.name, *solved, *measured, *spent))
+        rows.append((find(task).name, level, name, *solved, *measured, *spent))
     table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
     return table.sort_values(["solved [%]", "mean return"], ascending=False, ignore_index=True)
 
@@ -93,16 +105,20 @@ def kinds(table: pd.DataFrame) -> pd.Series:
 
 
 def by_level(table: pd.DataFrame) -> pd.DataFrame:
-    """What is solved of each task and level [%], a column for each policy.
+    """Solved share of each task and level [%], a column for each policy.
 
     Args:
         table: From `outcomes`, of several tasks and levels.
 
     Returns:
-        A row for each task and level in the order of the table; NaN where a policy did not play.
+        A row for each task and level in the order of the table; NaN where a policy did not play. Of several
+        tasks, policies that play only one of them are left out.
     """
     cells = list(dict.fromkeys(zip(table["task"], table["level"], strict=True)))
     names = kinds(table)
+    tasks = table.groupby(names)["task"].transform("nunique")
+    shown = (tasks > 1) | (table["task"].nunique() == 1)
+    table, names = table[shown], names[shown]
     wide = table.assign(kind=names).pivot_table(index=["task", "level"], columns="kind", values="solved [%]")
     order = sorted(dict.fromkeys(names), key=lambda name: (name.partition(",")[0], wide[name].mean()))
     return wide.loc[cells, order].reset_index().rename_axis(columns=None)

@@ -16,7 +16,7 @@ from slipgym.tasks import find
 
 
 class World(NamedTuple):
-    """What differs from the level itself."""
+    """Differences of a world from the level itself."""
 
     name: str
     arguments: Mapping[str, Any]
@@ -53,7 +53,7 @@ def generalisation(
     arguments: Mapping[str, Any],
     progress: bool = True,
 ) -> pd.DataFrame:
-    """What each policy solves in each world [%], on the same episodes of a world for all of them.
+    """Solved share of each policy in each world [%], on the same episodes of a world for all of them.
 
     Args:
         task: As `slipgym.tasks.find` takes it.

@@ -10,6 +10,7 @@ from typing import Any
 
 from policies.evaluation.experiment import Experiment, PolicyChoice
 from policies.evaluation.rate import common_frame_skip
+from policies.learned import pretrained
 from policies.study.changes import UNCHANGED, Change, changes
 from policies.study.config import BLOCKS_MAX, Study, World
 from policies.study.learned import TRAINED_WITH, Shelf
@@ -40,11 +41,11 @@ class Condition:
     block: int
     episodes: int
     frame_skip: int = 1
-    """Control steps per action, the same for all policies of a task."""
+    """Control steps per action, the same for all policies of a task but the recurrent ones."""
 
     @property
     def keys(self) -> dict[str, Any]:
-        """What distinguishes its episodes from the others', for tables."""
+        """Columns that distinguish its episodes from the others', for tables."""
         return {
             "world": self.world.label,
             "task": self.task,
@@ -108,12 +109,13 @@ def conditions(study: Study, learned: Shelf) -> list[Condition]:
         for task in study.tasks
     }
     return [
-        Condition(world, task, preset, change, kind, source, estimator, policy, block, episodes, skips[task])
+        Condition(world, task, preset, change, kind, source, estimator, policy, block, episodes, skip)
         for world, task, preset, change, sources, estimators, episodes in _places(study)
         for kind, source in itertools.product(study.kinds, sources)
         for estimator in (estimators if source == "estimated" else study.estimators[:1])
         for block in range(study.blocks)
         for policy in _policy(task, kind, source, block, learned)
+        for skip in [common_frame_skip([policy]) if kind == "recurrent" else skips[task]]
     ]
 
 
@@ -134,6 +136,9 @@ def _policy(task: str, kind: str, source: str, block: int, learned: Shelf) -> li
     """The policy of a block, or none."""
     if kind == "classic" or (kind == "memory" and source == "none"):
         return [own_policy(task)]
+    if kind == "recurrent":
+        folder = pretrained.folders().get(f"{find(task).key}_memory")
+        return [str(folder)] if folder and source == "none" else []
     seeds = learned.get((kind, task, TRAINED_WITH[source]), {})
     chosen = sorted(seeds)
     return [str(seeds[chosen[block % len(chosen)]])] if chosen else []

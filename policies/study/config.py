@@ -17,7 +17,7 @@ from slipgym.config.level import load_level
 from slipgym.config.physics import ContactModel
 from slipgym.tasks import find
 
-Kind: TypeAlias = Literal["classic", "memory", "learned", "imitation"]
+Kind: TypeAlias = Literal["classic", "memory", "recurrent", "learned", "imitation"]
 Source: TypeAlias = Literal["none", "nominal", "estimated", "true"]
 SOURCES: tuple[Source, ...] = ("none", "nominal", "estimated", "true")
 BLOCKS_MAX = 1000
@@ -28,7 +28,7 @@ Levels = Annotated[tuple[float, ...], BeforeValidator(as_tuple)]
 
 
 class World(Frozen):
-    """Where episodes take place."""
+    """Engine and contact of episodes."""
 
     label: str = Field(min_length=1, description="How tables and figures call it [-]")
     engine: Literal["bullet", "planar"] = Field(description="What moves the bodies [-]")

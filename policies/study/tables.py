@@ -63,7 +63,7 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
 
 
 def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
-    """What the estimate recovers of what the truth would bring: (estimated - none) / (true - none).
+    """Share of the truth's benefit that the estimate recovers: (estimated - none) / (true - none).
 
     Args:
         episodes: The table of episodes.

@@ -9,15 +9,26 @@ from typing import Any
 
 import pandas as pd
 
-from policies.evaluation.frames import records, where
+from policies.evaluation.frames import groups, records, where
+from policies.evaluation.gain import sentence
 from policies.evaluation.report import aligned
+from policies.evaluation.statistics import Interval
 from policies.evaluation.tables import text
 from policies.study.config import Study
 from policies.study.tables import FRICTION, PLACE
 
+TITLES = {
+    "classic": "controller",
+    "memory": "memory of slips",
+    "recurrent": "recurrent network",
+    "learned": "learned policy",
+    "imitation": "imitated policy",
+}
+"""Kind of a policy -> what a sentence calls it."""
+
 
 def words(study: Study, folder: Path) -> str:
-    """Success of every condition in the first world, the shares, and where to look next.
+    """Gain, success of every condition in the first world, the shares, and where to look next.
 
     Args:
         study: The study.
@@ -36,7 +47,9 @@ def words(study: Study, folder: Path) -> str:
         known = " ".join(str(row[name]) for name in FRICTION if row[name] == row[name])
         figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
         rows.append([row["task"], row["preset"], row["kind"], known, *figures])
-    parts = [f"{world}:", aligned(rows), "(95 % confidence intervals in brackets)"]
+    known = where(outcomes, world=world)
+    parts = [*claims(where(benefits, world=world), known.loc[known["change"].isna()])]
+    parts += [f"{world}:", aligned(rows), "(95 % confidence intervals in brackets)"]
     if len(shares):
         rows = [["task", "preset", "policy", "of", "(estimated - none) / (true - none) [%]", ">= 80 %"]]
         for row in shares[shares["world"] == world].to_dict("records"):
@@ -51,6 +64,31 @@ def words(study: Study, folder: Path) -> str:
         rows.append([row["task"], f"{row['force_N']:.2f}", *figures])
     parts += ["The best constant grip, without any sensor, planar engine:", aligned(rows)]
     return "\n\n".join([*parts, f"Look at:\n  {folder / 'outcomes.csv'}"])
+
+
+def claims(benefits: pd.DataFrame, outcomes: pd.DataFrame) -> list[str]:
+    """What the estimate gains over the strongest policy without friction, in a sentence for each task.
+
+    Args:
+        benefits: From `policies.study.benefit.benefits`, of one world.
+        outcomes: From `policies.study.tables.outcomes`, of the same world.
+    """
+    found = []
+    for (task, preset), group in groups(where(benefits, source="estimated"), ["task", "preset"]):
+        row = max(records(group), key=lambda each: each["difference"])
+        played = where(outcomes, task=task, preset=preset)
+        count = {source: _solved(where(played, source=source)) for source in ("estimated", "true")}
+        opponent = _solved(where(played, source="none", kind=row["opponent"]))
+        points = Interval(*(100.0 * row[f"difference{end}"] for end in ("", "_low", "_high")))
+        name = TITLES[row["opponent"]]
+        words = sentence(row["n"], count["estimated"] or 0, (name, opponent or 0), count["true"], points)
+        found.append(f"{task}, {preset}: {words}" if preset != "none" else f"{task}: {words}")
+    return found
+
+
+def _solved(outcomes: pd.DataFrame) -> int | None:
+    """Most episodes that a condition solves; None without any."""
+    return max((round(row["success"] * row["n"]) for row in records(outcomes)), default=None)
 
 
 def training_seeds(outcomes: pd.DataFrame) -> list[str]:

@@ -11,7 +11,7 @@ _SUFFIX = ".checkpoint"
 
 
 def folder(run: Path) -> Path:
-    """Where the checkpoints of a run are."""
+    """Folder of the checkpoints of a run."""
     return run / "checkpoints"
 
 

@@ -35,7 +35,7 @@ def chosen(name: str | None, options: Mapping[str, Any], texts: Sequence[str]) -
 
 
 def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Callable[[], str]:
-    """What goes on with a run or study.
+    """The command that continues a run or study.
 
     Args:
         path: Its folder.

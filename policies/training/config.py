@@ -70,14 +70,14 @@ class Evaluation(Frozen):
 
 
 class Stop(Frozen):
-    """When a run ends before its budget."""
+    """Conditions that end a run before its budget."""
 
     success: float | None = Field(default=None, ge=0, le=1, description="Share of episodes solved [-]")
     evaluations: Count = Field(default=2, description="As many evaluations in a row must reach it [-]")
 
 
 class Checkpoints(Frozen):
-    """What is kept of a run that may be interrupted."""
+    """Checkpoints of a run that may be interrupted."""
 
     every: Count = Field(default=50_000, description="Steps between two checkpoints [-]")
     keep: Count = Field(default=2, description="As many of the last are kept, besides the best [-]")

@@ -25,7 +25,7 @@ _FIRST_LAYERS = "mlp_extractor.policy_net.0", "mlp_extractor.value_net.0"
 
 
 def coefficients(derived: Derived, columns: Sequence[Any], history: int, width: int) -> np.ndarray:
-    """What turns an observation into its derived columns, (d, k) float64.
+    """Matrix from an observation to its derived columns, (d, k) float64.
 
     Args:
         derived: The combinations.

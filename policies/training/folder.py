@@ -1,4 +1,4 @@
-"""The folder of a run: what it was asked to do, and how far it got."""
+"""Reads and writes the folder of a run: its configuration, curve and result."""
 
 from __future__ import annotations
 
@@ -96,6 +96,6 @@ def write_result(folder: Path, result: dict[str, Any]) -> None:
 
 
 def result(folder: Path) -> dict[str, Any] | None:
-    """How a run ended; None if it has not."""
+    """Result of a run; None before its end."""
     path = folder / _RESULT
     return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None

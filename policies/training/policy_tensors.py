@@ -28,7 +28,7 @@ def dense(actor: Any) -> list[nn.Linear]:
 
 
 def network(config: Training) -> Network:
-    """What a file says about the network of a run."""
+    """Description of the network of a run in a file."""
     chosen = config.privileged_ppo
     memory = Memory(size=chosen.memory, layers=1) if chosen.memory else None
     return Network(

@@ -37,7 +37,7 @@ class Figure(NamedTuple):
 
 
 def machine(*more: str) -> dict[str, Any]:
-    """What the figures depend on besides the code; with the versions of more libraries."""
+    """The machine and versions that figures depend on, with the versions of more libraries."""
     libraries = {name: _version(name) for name in (*LIBRARIES, *more)}
     return {"python": platform.python_version(), "cores": os.cpu_count(), **libraries}
 

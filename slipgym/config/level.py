@@ -21,7 +21,7 @@ _FOLDER = "levels"
 
 
 class Level(Frozen):
-    """What a level changes."""
+    """Changes of settings and randomization by a level."""
 
     settings: Mapping[str, Any] = Field(default={}, description="Settings of the task that differ")
     randomization: Ranges = Field(default=Ranges(), description="Distributions of the task that differ")

@@ -114,7 +114,7 @@ class SlipConfig(Frozen):
 
 
 class MotorConfig(Frozen):
-    """What a gripper without sensors in its fingers knows: its motor's load and its opening."""
+    """Readings of a gripper without sensors in its fingers: its motor's load and its opening."""
 
     gain_error: float = Field(
         ge=0.0, le=0.9, description="Largest relative error of the force, per episode [-]"

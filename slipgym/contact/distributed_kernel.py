@@ -63,7 +63,7 @@ SLIPPING = 0.5
 
 @compiled
 def rear_of(cells: Cells, i: int, give: float, recall: Pair) -> Vector:
-    """What the rubber behind a cell remembers of its shear [m]; nothing without `give`."""
+    """Remembered shear of the rubber behind a cell [m]; 0 without `give`."""
     if give > 0.0:
         now, before = recall
         return (

@@ -21,7 +21,7 @@ from slipgym.contact.soft_pad import advance_age, advance_shear, load_pad, prepa
 
 @compiled
 def rear_of(pad: Pad) -> Vector:
-    """What the rubber remembers of its shear [m]."""
+    """Remembered shear of the rubber [m]."""
     now, before, rate = pad.recall
     return (
         now * pad.shear[0] + before * pad.relaxed[0] + rate * pad.shear_rate[0],

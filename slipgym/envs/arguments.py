@@ -6,10 +6,8 @@ Signatures, docstrings, pages, checks and the arguments that a state records are
 
 from __future__ import annotations
 
-import inspect
 import os
-import textwrap
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from types import NoneType
@@ -19,7 +17,6 @@ from typing import (
     Literal,
     TypeAlias,
     TypedDict,
-    TypeVar,
     get_args,
     get_origin,
     get_type_hints,
@@ -59,6 +56,17 @@ class Argument:
     least: int | None = None
     most: int | None = None
     """Smallest and largest value, of an argument that is a whole number."""
+
+
+RenderSize: TypeAlias = Annotated[
+    tuple[int, int] | None,
+    Argument(
+        None,
+        "width and height of what `render` shows, in pixels; `None`: 720 and 480 (docs/rendering.md)",
+        least=32,
+        most=4096,
+    ),
+]
 
 
 class CommonArguments(TypedDict, total=False):
@@ -132,6 +140,7 @@ class ScalarArguments(CommonArguments, total=False):
         Literal["human", "rgb_array", "depth_array"] | None,
         Argument(None, "output of `render` (see docs/rendering.md)"),
     ]
+    render_size: RenderSize
 
 
 class VectorArguments(CommonArguments, total=False):
@@ -164,6 +173,7 @@ class VectorArguments(CommonArguments, total=False):
     render_mode: Annotated[
         Literal["rgb_array", "depth_array"] | None, Argument(None, "output of `render`; `None`: nothing")
     ]
+    render_size: RenderSize
     render_rows: Annotated[
         Sequence[int] | None,
         Argument(
@@ -205,7 +215,9 @@ class Field:
             one_of(self.name, value, self.choices)
         if self.annotation is bool and not isinstance(value, bool):
             raise ValueError(f"{self.name} = {value!r:.80} must be True or False")
-        if self.least is not None:
+        if any(get_origin(member) is tuple for member in get_args(self.annotation)):
+            _check_pair(self.name, value, self.least or 0, self.most or 0)
+        elif self.least is not None:
             whole(self.name, value, self.least, self.most)
 
 
@@ -240,38 +252,6 @@ def complete(kind: type, given: Mapping[str, Any]) -> dict[str, Any]:
     return values
 
 
-Class = TypeVar("Class", bound=type)
-
-
-def documented(kind: type, *first: inspect.Parameter) -> Callable[[Class], Class]:
-    """Decorator for a class whose constructor takes the arguments of a kind: signature and docstring.
-
-    Args:
-        kind: `ScalarArguments` or `VectorArguments`.
-        *first: Parameters in front of them.
-    """
-
-    def decorate(cls: Class) -> Class:
-        parameters = [
-            inspect.Parameter(
-                field.name, inspect.Parameter.KEYWORD_ONLY, default=field.default, annotation=field.annotation
-            )
-            for field in fields(kind).values()
-        ]
-        cls.__signature__ = inspect.Signature([*first, *parameters])
-        if cls.__doc__ is not None:
-            lines = [_paragraph(field) for field in fields(kind).values()]
-            cls.__doc__ = cls.__doc__.replace("        {arguments}", "\n".join(lines))
-        return cls
-
-    return decorate
-
-
-def _paragraph(field: Field) -> str:
-    text = f"{field.name}: {field.text[0].upper()}{field.text[1:]}. Default: {field.default!r}."
-    return textwrap.fill(text, 110, initial_indent=" " * 8, subsequent_indent=" " * 12)
-
-
 def friction_part(friction_source: str, estimator: object) -> str:
     """Source of the friction part: "none" where it would be estimates, and there is no estimator."""
     return "none" if friction_source == "estimated" and estimator is None else friction_source
@@ -298,3 +278,10 @@ def whole(name: str, value: object, least: int, most: int | None = None) -> int:
     if most is not None and value > most:
         raise ValueError(f"{name} = {value!r:.80} must be a whole number from {least} to {most}")
     return value
+
+
+def _check_pair(name: str, value: object, least: int, most: int) -> None:
+    given = value if isinstance(value, list | tuple) else ()
+    if len(given) != 2 or not all(type(each) is int and least <= each <= most for each in given):
+        valid = f"two whole numbers from {least} to {most}: width, height"
+        raise ValueError(f"{name} = {value!r:.80} must be {valid}")

@@ -42,11 +42,8 @@ _ACTION = """\
 and +1 is `gripper.force_max` ({high:g} N). Values outside [-1, 1] are clipped; NaN and infinity are errors.
 The actuator force follows the command with a dead time ({dead:g} ms) and a first-order lag ({lag:g} ms).
 
-Other values of `action_mode` add components or change their meaning (see docs/modes.md):
-"grip_force_pitch" adds the wrist's pitch rate, "grip_force_translation" adds its velocity along world x and
-z, "grip_force_wrist" adds both, "grip_force_wrist_guess" adds a guess of friction to that,
-"force_increment" takes the change of the grip force per control step instead of the force, and
-"log_grip_force" scales the force geometrically."""
+Other values of `action_mode` add the wrist's velocity, change the meaning of the force or scale it
+geometrically (see docs/modes.md)."""
 
 _OBSERVATION = """\
 `Box(low, high, ({n},), float32)`. Forces, torques and velocities are sensor readings at the centre of
@@ -59,12 +56,8 @@ With `friction_source="estimated"` the friction part merges both fingers' estima
 the confidence (0 to 1) says how much data each value rests on: an estimate is unreliable while its confidence
 is low. With "true" and "nominal" every confidence is 1.
 
-With an `action_mode` that moves the wrist, the commanded wrist velocities and the wrist's pitch precede
-the friction part, unless the table has them already. `observation_mode="deviations"` appends the standard
-deviations of the estimates; "sensor" leaves the friction part out, as `estimator=None` does where it would be
-estimates; "dict" returns the groups "policy" (the observation above) and "privileged" (the ground truth);
-`load_columns=True` appends logarithms and ratios of grip and load, and `history=k` prepends the last k
-observations (see docs/modes.md)."""
+The arguments `action_mode`, `observation_mode`, `load_columns`, `history` and `estimator` add columns or
+leave some out (see docs/modes.md)."""
 
 _END = """\
 - Terminated: the object is dropped, that is, neither pad touches it or a pad reaches beyond its edge.

@@ -71,10 +71,10 @@ DEVIATIONS = (
         "sd_mu_s", (0.0, 10.0), "-", "standard deviation of mu_s that the estimator states",
         _deviation("mu_s"),
     ),
-    Reading("sd_mu_c", (0.0, 10.0), "-", "the same of mu_c", _deviation("mu_c")),
-    Reading("sd_r", (0.0, 1.0), "m", "the same of r", _deviation("r")),
+    Reading("sd_mu_c", (0.0, 10.0), "-", "standard deviation of mu_c", _deviation("mu_c")),
+    Reading("sd_r", (0.0, 1.0), "m", "standard deviation of r", _deviation("r")),
     Reading(
-        "sd_lever", (0.0, 10.0), "m", "the same of mu_c r, the torque per normal force of a spin",
+        "sd_lever", (0.0, 10.0), "m", "standard deviation of mu_c r, the torque per normal force of a spin",
         "0.5 * (first.sd_lever + second.sd_lever)",
     ),
     Reading(
@@ -82,7 +82,7 @@ DEVIATIONS = (
         "0.5 * abs(first.mu_c - second.mu_c)",
     ),
 )  # fmt: skip
-"""What follows the friction part with `observation_mode="deviations"`; both fingers are said to err alike."""
+"""Follow the friction part with `observation_mode="deviations"`; both fingers err alike."""
 FRICTION_COLUMNS = tuple(reading.column() for reading in FRICTION)
 DEVIATION_COLUMNS = tuple(reading.column() for reading in DEVIATIONS)
 

@@ -196,7 +196,7 @@ TEXTS = ("pressure", "disturbances")
 
 
 class Drawn:
-    """What the randomization sampled for the episodes of n environments and no option fixed.
+    """Values sampled for the episodes of n environments, without those that an option fixes.
 
     Args:
         randomizer: Samples it.
@@ -211,7 +211,7 @@ class Drawn:
         self._known: list[tuple[str, ...]] = [()] * n
 
     def reported(self, options: EpisodeOptions) -> tuple[str, ...]:
-        """What is reported of episodes with some reset options: `FIRST`, and fields of `VALUES`."""
+        """Reported values of episodes with some reset options: `FIRST`, and fields of `VALUES`."""
         drawn = (name for name in self._randomizer.drawn if name not in FRICTION + NAMES)
         return *FIRST, *(
             name for name in drawn if name not in FIXED_BY or getattr(options, FIXED_BY[name]) is None
@@ -243,7 +243,7 @@ class Drawn:
             self._known[i] = known
 
     def one(self, i: int) -> dict[str, Any]:
-        """What was sampled for environment i, JSON-like; empty without randomization."""
+        """Values sampled for environment i, JSON-like; empty without randomization."""
         if not self._known[i]:
             return {}
         names, columns = _columns(self._known[i])

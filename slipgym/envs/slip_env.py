@@ -8,11 +8,12 @@ import gymnasium as gym
 import numpy as np
 
 from slipgym.config.plain import plain
-from slipgym.envs.arguments import ScalarArguments, complete, documented
+from slipgym.envs.arguments import ScalarArguments, complete
 from slipgym.envs.conventions import Conventions, horizon, rebuilt
 from slipgym.envs.engines import resolved, simulation_of
 from slipgym.envs.infos import info_reader
 from slipgym.envs.setup import Setup
+from slipgym.envs.signatures import documented
 from slipgym.envs.states import EnvState, checked, restored_generator
 from slipgym.screen import obstacle
 from slipgym.tasks import Task
@@ -50,6 +51,7 @@ class SlipEnv(Conventions, gym.Env[Any, np.ndarray]):
         values = complete(ScalarArguments, arguments)
         self.engine = resolved(values["engine"])
         render_mode, frame_skip = values["render_mode"], values["frame_skip"]
+        self._shown = {name: values[name] for name in ("render_mode", "render_size")}
         setup = Setup(self.task, values, simulation_of(self.engine))
         self.config, self.settings = setup.config, setup.settings
         self.randomization, self.material = setup.randomization, setup.material
@@ -67,7 +69,7 @@ class SlipEnv(Conventions, gym.Env[Any, np.ndarray]):
         if render_mode is not None:
             from slipgym.rendering import Renderer
 
-            self._renderer = Renderer(render_mode, self.simulation)
+            self._renderer = Renderer(render_mode, self.simulation, size=values["render_size"])
         self._ready = False
         self._horizon = horizon(self.task, self.settings, self.simulation.blank, frame_skip)
         self._own = frozenset(vars(self))
@@ -153,7 +155,8 @@ class SlipEnv(Conventions, gym.Env[Any, np.ndarray]):
 
         Returns:
             "rgb_array": picture (480, 720, 3) uint8; "depth_array": distances (480, 448) float32 [m],
-            infinite for the background; "human": None, the picture is shown in a window.
+            infinite for the background; both of the argument `render_size` if it is given. "human": None,
+            the picture is shown in a window.
 
         Raises:
             RuntimeError: The environment is closed or was never reset.
@@ -225,7 +228,7 @@ class SlipEnv(Conventions, gym.Env[Any, np.ndarray]):
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickling and copying make an independent environment in the same state, see `Conventions`."""
         state = None if self.simulation.closed else self.get_state()
-        arguments = {**self._arguments, "render_mode": self.render_mode}
+        arguments = {**self._arguments, **self._shown}
         return rebuilt, (SlipEnv, type(self), arguments, state), self._kept()
 
     def close(self) -> None:

@@ -13,11 +13,12 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from slipgym.config.plain import plain
-from slipgym.envs.arguments import VectorArguments, complete, documented, one_of
+from slipgym.envs.arguments import VectorArguments, complete, one_of
 from slipgym.envs.conventions import Conventions, horizon, rebuilt
 from slipgym.envs.planar_simulation import PlanarSimulation
 from slipgym.envs.reset_options import Generators, RowOptions
 from slipgym.envs.setup import Setup
+from slipgym.envs.signatures import documented
 from slipgym.envs.states import VectorState, checked
 from slipgym.envs.vector_rendering import Pictures
 from slipgym.tasks import TASKS, Task
@@ -73,11 +74,12 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
             "autoreset_mode": self.autoreset_mode.value,
             "max_episode_steps": self._horizon,
         }
-        shown = "threads", "render_mode", "render_rows", "max_episode_steps"
+        shown = "threads", "render_mode", "render_rows", "render_size", "max_episode_steps"
         self._shown = {name: values[name] for name in shown}
         self._generators = Generators(num_envs)
         self.render_mode = values["render_mode"]
-        self._pictures = Pictures(self.simulation, self.render_mode, values["render_rows"])
+        shown = values["render_rows"], values["render_size"]
+        self._pictures = Pictures(self.simulation, self.render_mode, *shown)
         self._options = self.task.options.parse(None)
         self._ready = np.zeros(num_envs, dtype=bool)
         self._over = np.zeros(num_envs, dtype=bool)

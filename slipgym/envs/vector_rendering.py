@@ -20,12 +20,19 @@ class Pictures:
         simulation: The environments' simulation.
         mode: None, "rgb_array" or "depth_array".
         rows: Environments to show; None: all, or only the first if there are more than `SHOWN`.
+        size: Width and height of a picture [pixels]; None: the usual one.
 
     Raises:
         ValueError: `rows` is not a list of indices of environments.
     """
 
-    def __init__(self, simulation: Simulation, mode: str | None, rows: Sequence[int] | None) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        mode: str | None,
+        rows: Sequence[int] | None,
+        size: Sequence[int] | None = None,
+    ) -> None:
         self._renderers: dict[int, Any] = {}
         self._mode, self._begun = mode, set[int]()
         if mode is None:
@@ -39,7 +46,7 @@ class Pictures:
         for row in rows:
             if isinstance(row, bool) or not isinstance(row, int) or not 0 <= row < simulation.n:
                 raise ValueError(f"render_rows: {row!r} must be a whole number from 0 to {simulation.n - 1}")
-            self._renderers[row] = Renderer(mode, simulation, row)
+            self._renderers[row] = Renderer(mode, simulation, row, size)
 
     def begin(self, rows: np.ndarray) -> None:
         """Update the renderers of environments (m,) after a reset."""

@@ -39,7 +39,7 @@ ALTERNATIVES = ({"pressure": "hertz"}, {"substep": 0.5 * SUBSTEP}, {"contact": "
 
 @dataclass(frozen=True)
 class Result:
-    """What a log shows of a gripper; p parameters in the order of `PARAMETERS`."""
+    """Parameters of a gripper found from a log; p of them in the order of `PARAMETERS`."""
 
     log: Log
     contact: str

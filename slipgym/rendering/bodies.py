@@ -24,7 +24,7 @@ class Section(NamedTuple):
     widths: tuple[float, float]
     """Its half width there, of that of the box."""
     shade: float
-    """Brightness of its colour, over that of the material; 0: dark metal."""
+    """Ratio of its brightness to the material's; 0: dark metal."""
 
 
 BODIES: dict[str, tuple[Section, ...]] = {

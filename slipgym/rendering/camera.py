@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-WIDTH, HEIGHT = 448, 480
-"""Size of the view [pixels]."""
-_CLEAR = 370
-"""Height of the view between the words [pixels]."""
+from slipgym.rendering.layout import Layout, arrange
+
 FINE = 2
-"""Samples per pixel in each direction, see `raster.shrink`."""
+"""Samples per pixel in each direction, see `raster.fill`."""
+DEFAULT = arrange("rgb_array", None)
+WIDTH, HEIGHT = DEFAULT.width, DEFAULT.height
+"""Size of the view in a picture of the usual size [pixels]."""
+_WORDS = 54, 76  # heights of the words above and below the view [pixels, in a picture of the usual size]
+_MARGIN = 0.08  # of the view's width and height
+_STILL = 0.1  # how far the gripper moves in the view before the camera follows it [half widths of the view]
 _YAW, _PITCH = math.radians(28.0), math.radians(16.0)
 _FOCAL = 4.5  # in half widths of the view
 _NEAREST = 0.05  # [m]
@@ -26,31 +30,62 @@ _AXES = np.column_stack([_RIGHT, np.cross(_RIGHT, _FORWARD), _FORWARD])
 
 @dataclass(frozen=True)
 class Camera:
-    """Position and orientation of the camera, constant in an episode."""
+    """Position and orientation of the camera, and the picture that it takes."""
 
     target: tuple[float, float]
     """Point (x, z) in the middle of the view [m]."""
     span: float
-    """Half the width that is seen at the target [m]."""
+    """Half of what is seen at the target, of the shorter of width and height [m]."""
+    layout: Layout = DEFAULT
+    """Sizes of the picture."""
 
     def project(self, points: np.ndarray) -> np.ndarray:
         """World points (..., 3) [m] to x and y [samples] and nearness 1/depth [1/m]; see `raster.fill`."""
         seen = (points - (self.target[0], 0.0, self.target[1])) @ _AXES
         depth = seen[..., 2] + _FOCAL * self.span
         near = np.where(depth > _NEAREST, 1.0 / np.maximum(depth, _NEAREST), 0.0)
-        scale = FINE * WIDTH / 2 * _FOCAL * near
-        x = FINE * WIDTH / 2 + scale * seen[..., 0]
-        y = FINE * HEIGHT / 2 - scale * seen[..., 1]
-        return np.stack([x, y, near], axis=-1)
+        width, height = FINE * self.layout.width, FINE * self.layout.height
+        scale = min(width, height) / 2 * _FOCAL * near
+        return np.stack([width / 2 + scale * seen[..., 0], height / 2 - scale * seen[..., 1], near], axis=-1)
+
+    @property
+    def pixel(self) -> float:
+        """Size of a pixel at the target [m]."""
+        return self.span / (min(self.layout.width, self.layout.height) / 2)
+
+    def point(self, x: float, y: float) -> np.ndarray:
+        """World point (3,) [m] that is seen at x and y [pixels], as far from the camera as the target."""
+        right, down = x - self.layout.width / 2, y - self.layout.height / 2
+        return np.array([self.target[0], 0.0, self.target[1]]) + _AXES @ (
+            self.pixel * right,
+            -self.pixel * down,
+            0,
+        )
+
+    def follow(self, way: np.ndarray) -> Camera:
+        """Camera after the gripper has moved by (x, z) [m]; small moves are seen, and it stays."""
+        x, z = (way - np.clip(way, -_STILL * self.span, _STILL * self.span)).tolist()
+        return replace(self, target=(self.target[0] + x, self.target[1] + z)) if x or z else self
 
 
-def framing(points: np.ndarray, margin: float = 1.5) -> Camera:
-    """Make a camera that has all points in view.
+def framing(points: np.ndarray, layout: Layout = DEFAULT) -> Camera:
+    """Make a camera that has all points in the part of the view that is free of words, as large as possible.
 
     Args:
         points: (n, 3) [m].
-        margin: Half the visible width over the half width of the points.
+        layout: Sizes of the picture.
     """
+    above, below = (layout.scale * size if layout.strip else 0.0 for size in _WORDS)
+    middle = np.array([layout.width, layout.height + above - below]) / 2
+    free = np.array([layout.width, layout.height - above - below]) * (1.0 - 2.0 * _MARGIN)
     low, high = points.min(axis=0), points.max(axis=0)
-    span = margin / 2 * max(high[0] - low[0], (high[2] - low[2]) * WIDTH / _CLEAR)
-    return Camera((float(low[0] + high[0]) / 2, float(low[2] + high[2]) / 2), float(span))
+    camera = Camera(
+        (float(low[0] + high[0]) / 2, float(low[2] + high[2]) / 2), float(max(high - low)), layout
+    )
+    for _ in range(10):  # perspective: each step corrects the one before
+        seen = camera.project(points)[:, :2] / FINE
+        low, high = seen.min(axis=0), seen.max(axis=0)
+        x, down = (middle - (low + high) / 2) * camera.pixel
+        target = float(camera.target[0] - x / _RIGHT[0]), float(camera.target[1] + down / math.cos(_PITCH))
+        camera = Camera(target, float(camera.span * max((high - low) / free)), layout)
+    return camera

@@ -7,9 +7,8 @@ import math
 import numpy as np
 from PIL import Image
 
-from slipgym.rendering.camera import HEIGHT, WIDTH
 from slipgym.rendering.forces import Contact
-from slipgym.rendering.palette import FRICTION, GRIP, INK, MUTED, PAPER, SLIP, TARGET
+from slipgym.rendering.palette import FRICTION, GRIP, INK, MUTED, PAPER, SLIP, TARGET, Colour
 from slipgym.rendering.poses import Pose
 from slipgym.rendering.text import write
 
@@ -25,6 +24,7 @@ def caption(
     contact: Contact,
     slip: np.ndarray,
     target: Pose | None = None,
+    scale: float = 1.0,
 ) -> None:
     """Write text over the view.
 
@@ -37,17 +37,23 @@ def caption(
         contact: Forces of the pads on the object.
         slip: Slip displacement (x, y, theta) [m, m, rad].
         target: The one that the task asks for; None: none.
+        scale: Size of the words, over that in a picture of the usual size.
     """
-    write(picture, 14, 26, title, INK, 17)
-    write(picture, 14, 45, about, MUTED, 13)
-    write(picture, WIDTH - 14, 26, f"{time:.2f} s", INK, 17, align=1.0)
-    write(picture, WIDTH - 14, 45, state, MUTED, 13, align=1.0)
+    right, bottom = picture.width / scale - 14, picture.height / scale - _FOOT
+
+    def put(x: float, y: float, words: str, colour: Colour, size: float = 13, align: float = 0.0) -> None:
+        write(picture, scale * x, scale * y, words, colour, scale * size, align)
+
+    put(14, 26, title, INK, 17)
+    put(14, 45, about, MUTED)
+    put(right, 26, f"{time:.2f} s", INK, 17, align=1.0)
+    put(right, 45, state, MUTED, align=1.0)
+    put(14, bottom - 10, "dashed:", MUTED)
+    put(66, bottom - 10, "grasp", SLIP)
     if target is not None:
-        write(picture, 14, HEIGHT - _FOOT - 10, "dashed:", MUTED, 13)
-        write(picture, 66, HEIGHT - _FOOT - 10, "grasp", SLIP, 13)
-        write(picture, 106, HEIGHT - _FOOT - 10, "target", TARGET, 13)
-    foot = 0, HEIGHT - _FOOT, WIDTH, HEIGHT
-    picture.paste(PAPER, foot, Image.new("L", (WIDTH, _FOOT), 191))
+        put(106, bottom - 10, "target", TARGET)
+    foot = 0, round(scale * bottom), picture.width, picture.height
+    picture.paste(PAPER, foot, Image.new("L", (foot[2], foot[3] - foot[1]), 191))
     friction, torque = math.hypot(*contact.friction), 1e3 * contact.torque
     sliding, turn = 1e3 * math.hypot(slip[0], slip[1]), math.degrees(slip[2])
     keys = (
@@ -57,9 +63,9 @@ def caption(
     )
     for k, (words, colour, first, second) in enumerate(keys):
         x = 14 + (0, 128, 296)[k]
-        write(picture, x, HEIGHT - _FOOT + 19, words, colour, 13)
-        write(picture, x, HEIGHT - _FOOT + 36, first, INK, 13)
-        write(picture, x + 58, HEIGHT - _FOOT + 36, second, INK, 13)
+        put(x, bottom + 19, words, colour)
+        put(x, bottom + 36, first, INK)
+        put(x + 58, bottom + 36, second, INK)
 
 
 def _signed(value: float, digits: int) -> str:

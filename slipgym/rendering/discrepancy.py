@@ -25,7 +25,7 @@ class Discrepancy(NamedTuple):
     name: str
     """"mu_c", "mu_s" or "mu_c, mu_s"."""
     error: str
-    """Its error in words, over the deviation that the estimator states."""
+    """Its error in words, and the deviation that the estimator states."""
     reason: str
     """Why."""
 
@@ -54,16 +54,17 @@ def discrepancies(simulation: Source, row: int, history: History) -> list[Discre
         if not confidence:
             found.append(Discrepancy(name, "not observed", NEEDS[name]))
         elif abs(error) > max(min(deviation, LARGE * true), VISIBLE * true):
-            size = f"{100.0 * abs(error) / true:.0f} % {'high' if error > 0.0 else 'low'}"
-            times = f", {abs(error) / deviation:.1f} deviations" if deviation else ""
-            found.append(Discrepancy(name, size + times, _reason(simulation, row, history, name)))
+            size = f"{100.0 * abs(error) / true:.0f} % {'above' if error > 0.0 else 'below'} the truth"
+            states = f"; states ± {100.0 * deviation / value:.0f} %" if deviation else ""
+            within = abs(error) <= deviation
+            found.append(Discrepancy(name, size + states, _reason(simulation, row, history, name, within)))
     if len(found) == 2 and found[0][1:] == found[1][1:]:
         return [found[0]._replace(name="mu_c, mu_s")]
     return found
 
 
-def _reason(simulation: Source, row: int, history: History, name: str) -> str:
-    """Why an estimate with data is off: the first that applies."""
+def _reason(simulation: Source, row: int, history: History, name: str, within: bool) -> str:
+    """Why an estimate with data is off, or that it is `within` its deviation: the first that applies."""
     true = history.column(f"true_{name}")
     errors = np.abs(history.column(name) / true - 1.0)
     newest = _last_change(history, f"data_{name}", 0.0)
@@ -72,20 +73,23 @@ def _reason(simulation: Source, row: int, history: History, name: str) -> str:
         return f"friction changed; newest data {age:.1f} s old"
     if found := _causes(simulation, row, name):
         return found[0]
+    if within:
+        return "no more than it states"
     if age >= RECENT:
         return f"newest data {age:.1f} s old"
     changed = (history.step - _last_change(history, f"true_{name}", 0.5 * errors[-1])) * history.step_time
     if changed < min(RECENT, history.time):
         return f"friction changed {changed:.1f} s ago"
-    return "sensor or model errors beyond the deviation"
+    return "more than it states: errors of sensors or model"
 
 
 def _causes(simulation: Source, row: int, name: str) -> tuple[str, ...]:
-    """The estimator's causes, for the finger that has more confidence in the value."""
+    """The causes but the deviation, which is named already; of the finger with more confidence."""
     batch = simulation.estimator
     fingers = range(2 * row, 2 * row + 2)
     best = max(fingers, key=lambda finger: batch.estimates[f"confidence_{name}"][finger])
-    return causes(Estimate._make(batch.estimates[best].item()), *doubts(batch.states[best])[:2])[name]
+    estimate = Estimate._make(batch.estimates[best].item())._replace(sd_mu_s=0.0, sd_mu_c=0.0)
+    return causes(estimate, *doubts(batch.states[best])[:2])[name]
 
 
 def _last_change(history: History, column: str, change: float) -> int:

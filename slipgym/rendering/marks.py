@@ -30,7 +30,7 @@ def arrow(
         camera: The camera.
         path: World points (n, 3) [m].
         colour: Its colour.
-        width: Of the shaft [pixels].
+        width: Of the shaft [pixels, in a picture of the usual size].
         opacity: 0 to 1.
         cased: Whether it has a white edge against the background; for marks that are `stacked`.
 
@@ -39,7 +39,8 @@ def arrow(
     """
     seen = camera.project(path)
     left = np.cumsum(np.linalg.norm(np.diff(seen[::-1, :2], axis=0), axis=1))
-    size = min(FINE * width, left[-1] / _SHORT)
+    fine = FINE * camera.layout.scale
+    size = min(fine * width, left[-1] / _SHORT)
     if size < _LEAST:
         return nothing()
     keep = np.flatnonzero(left[::-1] > _HEAD * size)[-1] + 1  # the points before the head
@@ -47,7 +48,7 @@ def arrow(
     neck = last + (tip - last) * (1.0 - _HEAD * size / np.linalg.norm(tip[:2] - last[:2]))
     shaft = np.vstack([seen[:keep], neck])
     parts = []
-    for extra, paint in ((_CASING * FINE, PAPER), (0.0, colour)) if cased else ((0.0, colour),):
+    for extra, paint in ((_CASING * fine, PAPER), (0.0, colour)) if cased else ((0.0, colour),):
         body = _ribbon(shaft, size / 2 + extra)
         head = _head(neck, tip, _SPREAD * size, extra)
         corners = np.concatenate([body, head])
@@ -57,15 +58,15 @@ def arrow(
 
 
 def outline(camera: Camera, path: np.ndarray, colour: Colour, width: float, dash: float) -> Marks:
-    """A dashed closed line through world points (n, 3) [m]; width and dash in pixels."""
-    seen = camera.project(np.vstack([path, path[:1]]))
+    """A dashed closed line through world points (n, 3) [m]; width and dash as in `arrow`."""
+    seen, fine = camera.project(np.vstack([path, path[:1]])), FINE * camera.layout.scale
     ends = []
     for start, end in pairwise(seen):
-        count = 2 * max(1, round(np.linalg.norm(end[:2] - start[:2]) / (2 * FINE * dash))) - 1
+        count = 2 * max(1, round(np.linalg.norm(end[:2] - start[:2]) / (2 * fine * dash))) - 1
         at = start + np.linspace(0.0, 1.0, count + 1)[:, None] * (end - start)
         ends.append(at.reshape(-1, 2, 3))
     both = np.concatenate(ends)
-    corners = _band(both[:, 0], both[:, 1], _normals(both[:, 1] - both[:, 0]) * FINE * width / 2)
+    corners = _band(both[:, 0], both[:, 1], _normals(both[:, 1] - both[:, 0]) * fine * width / 2)
     return corners, _paint(len(corners), colour, 1.0)
 
 

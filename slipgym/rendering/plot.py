@@ -44,6 +44,8 @@ class Plot:
     """Value at the bottom."""
     high: float
     """Value at the top."""
+    scale: float = 1.0
+    """Size of words and lines."""
 
     def draw(self, picture: Image.Image, times: np.ndarray, curves: list[Curve], clock: bool) -> None:
         """Draw frame, labels and curves.
@@ -54,19 +56,22 @@ class Plot:
             curves: Curves; later ones are drawn over earlier ones.
             clock: Whether the time axis has labels.
         """
-        pen, step = ImageDraw.Draw(picture), spacing(self.high - self.low)
+        pen, step, scale = ImageDraw.Draw(picture), spacing(self.high - self.low), self.scale
+        thin, above = max(1, round(scale)), round(_ABOVE * scale)
         for k in range(math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9) + 1):
             y = round(self._y(k * step))
-            pen.line((self.left, y, self.right - 1, y), MUTED if k == 0 else RULE)
-            write(picture, self.left - 6, y + 4, f"{k * step:g}", MUTED, 11, align=1.0)
+            pen.line((self.left, y, self.right - 1, y), MUTED if k == 0 else RULE, thin)
+            write(
+                picture, self.left - 6 * scale, y + 4 * scale, f"{k * step:g}", MUTED, 11 * scale, align=1.0
+            )
         second = spacing(self.end)
         for k in range(math.floor(self.end / second + 1e-9) + 1):
             x = round(self._x(k * second))
-            pen.line((x, self.bottom, x, self.bottom + 3), MUTED)
+            pen.line((x, self.bottom, x, self.bottom + 3 * scale), MUTED, thin)
             if clock:
-                write(picture, x, self.bottom + 16, f"{k * second:g}", MUTED, 11, align=0.5)
-        pen.line((self.left, self.bottom, self.right - 1, self.bottom), MUTED)
-        frame = self.left, self.top - _ABOVE, self.right + _ABOVE, self.bottom + _ABOVE
+                write(picture, x, self.bottom + 16 * scale, f"{k * second:g}", MUTED, 11 * scale, align=0.5)
+        pen.line((self.left, self.bottom, self.right - 1, self.bottom), MUTED, thin)
+        frame = self.left, self.top - above, self.right + above, self.bottom + above
         part = picture.crop(frame)
         fine = part.resize((FINE * part.width, FINE * part.height), Image.Resampling.NEAREST)
         for curve in curves:
@@ -75,10 +80,10 @@ class Plot:
 
     def _line(self, pen: ImageDraw.ImageDraw, times: np.ndarray, curve: Curve) -> None:
         """One curve, and a dot where it ends."""
-        values, width = curve.values, round(FINE * curve.width)
+        values, width = curve.values, round(FINE * self.scale * curve.width)
         points = np.column_stack([self._x(times[: len(values)]), self._y(values)])
-        points = FINE * (points - (self.left, self.top - _ABOVE))
-        for piece in pieces(points, FINE * curve.dash):
+        points = FINE * (points - (self.left, self.top - round(_ABOVE * self.scale)))
+        for piece in pieces(points, FINE * self.scale * curve.dash):
             pen.line(piece.ravel().tolist(), fill=curve.colour, width=width)
         if not curve.dash and np.isfinite(points[-1]).all():
             pen.circle(points[-1].tolist(), 1.5 * width, fill=curve.colour)
@@ -130,11 +135,17 @@ def limits(values: list[np.ndarray], least: float) -> tuple[float, float]:
 
 
 def heading(
-    picture: Image.Image, left: int, right: int, y: int, title: str, keys: list[tuple[str, Colour]]
+    picture: Image.Image,
+    left: float,
+    right: float,
+    y: float,
+    title: str,
+    keys: list[tuple[str, Colour]],
+    scale: float = 1.0,
 ) -> None:
     """Draw a plot's title, and at the right its legend in the curves' colours."""
-    write(picture, left, y, title, INK, 13)
+    write(picture, left, y, title, INK, 13 * scale)
     x = float(right)
     for words, colour in reversed(keys):
-        write(picture, x, y, words, colour, 12, align=1.0)
-        x -= 10.0 + breadth(words, 12)
+        write(picture, x, y, words, colour, 12 * scale, align=1.0)
+        x -= 10.0 * scale + breadth(words, 12 * scale)

@@ -6,7 +6,7 @@ import numpy as np
 from PIL import Image
 
 from slipgym.rendering.camera import FINE, Camera
-from slipgym.rendering.marks import Marks, arrow, outline
+from slipgym.rendering.marks import Marks, arrow, nothing, outline
 from slipgym.rendering.palette import MUTED, Colour
 from slipgym.rendering.stage import View
 from slipgym.rendering.text import write
@@ -15,8 +15,7 @@ Pose = tuple[float, float, float]
 """Slip displacement (x, y, theta) in the pad frame [m, m, rad]."""
 AT_THE_GRASP: Pose = (0.0, 0.0, 0.0)
 
-_CORNER, _LENGTH = (0.86, 0.62), 0.2
-"""Upper end of the arrow of gravity from the middle of the view, and its length [half widths of the view]."""
+_CORNER, _LENGTH = (22.0, 60.0), 44.0  # upper end of the arrow of gravity, and its length [pixels]
 
 
 def held_at(view: View, pose: Pose, camera: Camera, colour: Colour) -> Marks:
@@ -25,18 +24,18 @@ def held_at(view: View, pose: Pose, camera: Camera, colour: Colour) -> Marks:
 
 
 def gravity(camera: Camera) -> Marks:
-    """An arrow down, at the right edge of the view."""
-    return arrow(camera, _path(camera), MUTED, 2.0)
+    """An arrow down, at the upper left of the view; nothing in a view without words."""
+    return arrow(camera, _path(camera), MUTED, 2.0) if camera.layout.strip else nothing()
 
 
 def name_gravity(picture: Image.Image, camera: Camera) -> None:
     """Write "g" beside the arrow of gravity into the view."""
     x, y, _ = camera.project(_path(camera).mean(axis=0)).tolist()
-    write(picture, x / FINE + 6, y / FINE + 4, "g", MUTED, 13)
+    scale = camera.layout.scale
+    write(picture, x / FINE + 6 * scale, y / FINE + 4 * scale, "g", MUTED, 13 * scale)
 
 
 def _path(camera: Camera) -> np.ndarray:
-    x, z = camera.target
-    across, up = _CORNER
-    top = np.array([x + across * camera.span, 0.0, z + up * camera.span])
-    return np.stack([top, top - (0.0, 0.0, _LENGTH * camera.span)])
+    top = camera.point(*(camera.layout.scale * at for at in _CORNER))
+    length = camera.layout.scale * _LENGTH * camera.pixel
+    return np.stack([top, top - (0.0, 0.0, length)])

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from slipgym.rendering import camera, strip
+from slipgym.rendering import strip
+from slipgym.rendering.camera import Camera, framing
 from slipgym.rendering.caption import caption
 from slipgym.rendering.discrepancy import Discrepancy, discrepancies
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.history import History
+from slipgym.rendering.layout import arrange
 from slipgym.rendering.look import look, slips
 from slipgym.rendering.scene import draw_scene, measure_depth
 from slipgym.rendering.source import Source
 from slipgym.rendering.stage import View, footprint
 from slipgym.rendering.window import Window
 
-WIDTH, HEIGHT = camera.WIDTH + strip.WIDTH, camera.HEIGHT
-"""Size of a picture [pixels]."""
 WINDOW_RATE = 30
 """Pictures per second in a window."""
 
@@ -28,12 +30,18 @@ class Renderer:
         mode: "rgb_array", "depth_array" or "human".
         simulation: The environment's simulation.
         row: Index of the environment.
+        size: Width and height of the pictures [pixels]; None: see `slipgym.rendering.layout`.
     """
 
-    def __init__(self, mode: str, simulation: Source, row: int = 0) -> None:
+    def __init__(
+        self, mode: str, simulation: Source, row: int = 0, size: Sequence[int] | None = None
+    ) -> None:
         self._mode, self._simulation, self._row = mode, simulation, row
-        self._motion = simulation.task.motion
-        self._window = Window(f"slipgym {simulation.task.name}", (WIDTH, HEIGHT)) if mode == "human" else None
+        self._motion, self._layout = simulation.task.motion, arrange(mode, size)
+        self._window: Window | None = None
+        if mode == "human":
+            shape = self._layout.width + self._layout.strip, self._layout.height
+            self._window = Window(f"slipgym {simulation.task.name}", shape)
 
     def begin(self) -> None:
         """Start the plots anew, after a reset or a restored state."""
@@ -41,10 +49,11 @@ class Renderer:
         names = [column.name for column in self._simulation.task.columns]
         goals = dict(zip(names, self._simulation.task_part[self._row].tolist(), strict=True))
         self._goal = self._motion.target(goals.get(self._motion.goal, 0.0))
-        ways = np.cumsum(self._simulation.episode["moves"][self._row, :, 2:4], axis=0)
-        roam = self._motion.roam
-        ways = np.concatenate([ways, [(-roam, 0.0), (roam, 0.0)]])
-        self._camera = camera.framing(footprint(self._view(), goals.get("wrist_pitch_goal", 0.0), ways))
+        episode = self._simulation.episode[self._row]
+        turns = [goals.get("wrist_pitch_goal", 0.0), *np.cumsum(episode["moves"][:, 4]).tolist()]
+        self._start = episode["wrist_start"].copy()
+        target = self._motion.pose(episode)
+        self._framed = framing(footprint(self._view(), self._start.tolist(), target, turns), self._layout)
         self._show()
 
     def keep(self) -> None:
@@ -56,7 +65,7 @@ class Renderer:
                 self._show()
 
     def render(self) -> np.ndarray | None:
-        """Return a picture (HEIGHT, WIDTH, 3) uint8 or depths, or show the window and return None."""
+        """Return a picture (height, width, 3) uint8 or depths, or show the window and return None."""
         if self._mode == "depth_array":
             return measure_depth(self._view(), self._camera)
         if self._mode == "rgb_array":
@@ -65,21 +74,31 @@ class Renderer:
         return None
 
     def picture(self) -> np.ndarray:
-        """Return a new picture (HEIGHT, WIDTH, 3) uint8."""
+        """Return a new picture (height, width, 3) uint8."""
         simulation = self._simulation
         contact = self._contact()
         row, world = self._row, simulation.plant.world[self._row]
         target = self._motion.pose(simulation.episode[row])
         view = draw_scene(self._view(), contact, self._camera, target)
+        if not self._layout.strip:
+            return np.asarray(view).copy()
         about = f"{simulation.materials[row]}, {1e3 * world['mass']:.0f} g"
         slip = world["slip"]
-        caption(view, simulation.task.name, about, self._history.time, self._state(), contact, slip, target)
-        beside = strip.draw_strip(self._history, self._motion, self._goal, self.discrepancies())
+        words = simulation.task.name, about, self._history.time, self._state()
+        caption(view, *words, contact, slip, target, self._layout.scale)
+        off = self.discrepancies()
+        beside = strip.draw_strip(self._history, self._motion, self._goal, off, self._layout)
         return np.hstack([np.asarray(view), np.asarray(beside)])
 
     def discrepancies(self) -> list[Discrepancy]:
         """Return the estimates that are off, or have no data, as a picture names them."""
         return discrepancies(self._simulation, self._row, self._history)
+
+    @property
+    def _camera(self) -> Camera:
+        """The camera, which follows the gripper."""
+        wrist = self._simulation.plant.world["wrist"][self._row]
+        return self._framed.follow(wrist[:2] - self._start[:2])
 
     def close(self) -> None:
         """Close the window, if there is one."""

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image
 
 from slipgym.rendering import forces
-from slipgym.rendering.camera import FINE, HEIGHT, WIDTH, Camera
+from slipgym.rendering.camera import FINE, Camera
 from slipgym.rendering.forces import Contact
 from slipgym.rendering.poses import Pose, name_gravity
 from slipgym.rendering.raster import fill
@@ -18,11 +18,10 @@ from slipgym.rendering.stage import View, assemble, grid
 _LIGHT = np.array([-0.25, -0.75, 0.61])
 _AMBIENT = 0.6
 _TOP, _BOTTOM = np.array([249.0, 250.0, 251.0]), np.array([229.0, 232.0, 237.0])
-_SIZE = FINE * HEIGHT, FINE * WIDTH
 
 
 def draw_scene(view: View, contact: Contact, camera: Camera, target: Pose | None = None) -> Image.Image:
-    """Draw the scene, RGB, WIDTH by HEIGHT.
+    """Draw the scene, RGB, in the size of the camera's view.
 
     Args:
         view: Poses of object and gripper.
@@ -33,23 +32,24 @@ def draw_scene(view: View, contact: Contact, camera: Camera, target: Pose | None
     corners, colours = assemble(view)
     shaded = colours.copy()
     shaded[:, :3] *= 255.0 * _brightness(corners)[:, None]
-    image, nearness = _backdrop(camera).copy(), np.zeros(_SIZE, dtype=np.float32)
+    image, nearness = _backdrop(camera).copy(), _empty(camera)
     fill(camera.project(corners), shaded, image, nearness)
     fill(*forces.before(view, contact, camera), image, nearness)
     nearness[:] = 0.0
     fill(*forces.above(view, contact, camera, target), image, nearness)
     picture = Image.fromarray(image).reduce(FINE)
-    name_gravity(picture, camera)
+    if camera.layout.strip:
+        name_gravity(picture, camera)
     return picture
 
 
 def measure_depth(view: View, camera: Camera) -> np.ndarray:
-    """Distances along the camera's axis, (HEIGHT, WIDTH) float32 [m]; the background is infinite."""
+    """Distances along the camera's axis, (height, width) float32 [m]; the background is infinite."""
     corners, colours = assemble(view)
     solid = colours.copy()
     solid[:, 3] = 1.0
-    nearness = np.zeros(_SIZE, dtype=np.float32)
-    fill(camera.project(corners), solid, np.zeros((*_SIZE, 3), np.uint8), nearness)
+    nearness = _empty(camera)
+    fill(camera.project(corners), solid, np.zeros((*nearness.shape, 3), np.uint8), nearness)
     rows = np.maximum(nearness[::FINE], nearness[1::FINE])
     nearest = np.maximum(rows[:, ::FINE], rows[:, 1::FINE])
     return np.divide(1.0, nearest, out=np.full_like(nearest, math.inf), where=nearest > 0.0)
@@ -58,12 +58,18 @@ def measure_depth(view: View, camera: Camera) -> np.ndarray:
 @lru_cache(maxsize=4)
 def _backdrop(camera: Camera) -> np.ndarray:
     """The picture of an empty scene, with `FINE` samples per pixel."""
-    shades = np.linspace(0.0, 1.0, _SIZE[0])[:, None]
-    image = np.empty((*_SIZE, 3), dtype=np.uint8)
+    nearness = _empty(camera)
+    shades = np.linspace(0.0, 1.0, len(nearness))[:, None]
+    image = np.empty((*nearness.shape, 3), dtype=np.uint8)
     image[:] = np.rint((1.0 - shades) * _TOP + shades * _BOTTOM)[:, None]
-    corners, colours = grid()
-    fill(camera.project(corners), colours * [255.0, 255.0, 255.0, 1.0], image, np.zeros(_SIZE, np.float32))
+    corners, colours = grid(camera.target, camera.pixel * max(nearness.shape))
+    fill(camera.project(corners), colours * [255.0, 255.0, 255.0, 1.0], image, nearness)
     return image
+
+
+def _empty(camera: Camera) -> np.ndarray:
+    """Nearness of a view without anything in it, with `FINE` samples per pixel."""
+    return np.zeros((FINE * camera.layout.height, FINE * camera.layout.width), dtype=np.float32)
 
 
 def _brightness(corners: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -78,36 +79,45 @@ def assemble(view: View) -> tuple[np.ndarray, np.ndarray]:
     return corners, np.concatenate([body_colours, palm[1], finger[1], glass])
 
 
-def footprint(view: View, swing: float, ways: np.ndarray) -> np.ndarray:
-    """Points around gripper and object, and around the space they will move through, (n, 3) [m].
+def footprint(
+    view: View,
+    start: tuple[float, float, float],
+    target: tuple[float, float, float] | None,
+    turns: Sequence[float],
+) -> np.ndarray:
+    """Points around the object, where it is held and where it is to be, and around the gripper, (n, 3) [m].
 
     Args:
-        view: The start of an episode.
-        swing: Angle by which the wrist is going to pitch [rad].
-        ways: Ends of the wrist's planned moves (x, z) from where it is, (k, 2) [m].
+        view: Present poses, to which the target belongs.
+        start: Pad centre (x, z) and pitch at the start of the episode [m, m, rad].
+        target: Slip displacement that the task asks for; None: none.
+        turns: Angles by which the wrist is going to pitch [rad].
     """
-    half, at = np.array(view.box.size) / 2, -np.array(view.box.grasp_offset)
-    face = np.array([(x, 0.0, z) for x in (-half[0], half[0]) for z in (-half[2], half[2])])
-    grasped = face + np.array([at[0], 0.0, at[1]])
-    held = view.place(grasped)
-    lowered = held * (1.0, 1.0, -1.0) if view.position[2] > view.wrist[1] else held  # by gravity
-    palm = np.array([(view.side * (REACH + 0.07), 0.0, z) for z in (-0.03, 0.03)])
-    pitched = replace(view, wrist=(view.wrist[0], view.wrist[1], view.wrist[2] + swing))
-    ends = pitched.place(np.concatenate([grasped, palm]))
-    points = np.concatenate([held, lowered, view.place(palm), ends])
-    low, high = np.zeros(3), np.zeros(3)
-    low[[0, 2]], high[[0, 2]] = np.minimum(ways.min(axis=0), 0.0), np.maximum(ways.max(axis=0), 0.0)
-    return np.concatenate([points + low, points + high])
+    x, y, theta = target or (0.0, 0.0, 0.0)
+    held = view.front((0.0, 0.0, 0.0))
+    asked = [view.front((share * x, share * y, share * theta)) for share in (0.5, 1.0)]
+    rail = [(view.side * (REACH + 0.018), y, z) for y in (-0.062, 0.062) for z in (-0.016, 0.016)]
+    places = [(np.concatenate([held, rail]), start[2] + turn) for turn in (0.0, *turns)]
+    places += [(np.concatenate(asked), view.wrist[2] if target else start[2])]
+    points = [replace(view, wrist=(*start[:2], pitch)).place(each) for each, pitch in places]
+    return np.concatenate([*points, *(each * (1.0, -1.0, 1.0) for each in points)])
 
 
-def grid() -> tuple[np.ndarray, np.ndarray]:
-    """Grid lines every 50 mm on a plane in the background, which make the wrist's motion visible."""
-    y, far, thick = 0.12, 0.9, 5e-4
+def grid(around: tuple[float, float], reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """Grid lines every 50 mm on a plane in the background, which make the wrist's motion visible.
+
+    Args:
+        around: Point (x, z) in front of its middle [m].
+        reach: How far it is seen to each side [m].
+    """
+    count = min(round(reach / 0.05) + 1, 40)
+    y, far, thick = 0.12, 0.05 * count, 5e-4
+    x, z = (0.05 * round(at / 0.05) for at in around)
     lines = []
-    for k in range(-18, 19):
+    for k in range(-count, count + 1):
         at = 0.05 * k
-        lines.append(solids.patch((at - thick, at + thick), (-far, far), y))
-        lines.append(solids.patch((-far, far), (at - thick, at + thick), y))
+        lines.append(solids.patch((x + at - thick, x + at + thick), (z - far, z + far), y))
+        lines.append(solids.patch((x - far, x + far), (z + at - thick, z + at + thick), y))
     return _painted([(line, _GRID) for line in lines])
 
 

@@ -16,7 +16,7 @@ def write(
     y: float,
     words: str,
     colour: Colour,
-    size: int = 12,
+    size: float = 12,
     align: float = 0.0,
 ) -> None:
     """Write one line.
@@ -34,13 +34,13 @@ def write(
     picture.paste(colour, (round(x - align * mask.width), round(y) - rise), mask)
 
 
-def breadth(words: str, size: int) -> int:
+def breadth(words: str, size: float) -> int:
     """Width of a line [pixels]."""
     return _mask(words, size)[0].width
 
 
 @lru_cache(maxsize=8)
-def _font(size: int) -> FreeTypeFont:
+def _font(size: float) -> FreeTypeFont:
     font = ImageFont.load_default(size)
     if not isinstance(font, FreeTypeFont):
         raise RuntimeError("pictures need a Pillow with FreeType, as its wheels on PyPI have it")
@@ -48,7 +48,7 @@ def _font(size: int) -> FreeTypeFont:
 
 
 @lru_cache(maxsize=1024)
-def _mask(words: str, size: int) -> tuple[Image.Image, int]:
+def _mask(words: str, size: float) -> tuple[Image.Image, int]:
     """Coverage of a line, and how far its top is above the baseline [pixels]."""
     font = _font(size)
     left, top, right, bottom = font.getbbox(words, anchor="ls")

@@ -60,7 +60,7 @@ def start_markers(markers: Any, key: int) -> None:
 
 @compiled
 def place_of(markers: Any, k: int) -> tuple[float, float]:
-    """Where marker k is, from the pad's centre in the pad frame [m]."""
+    """Position of marker k from the pad's centre in the pad frame [m]."""
     x = (k % COLUMNS - 0.5 * (COLUMNS - 1)) * markers.spacing[0]
     return x, (k // COLUMNS - 0.5 * (ROWS - 1)) * markers.spacing[1]
 

@@ -76,7 +76,7 @@ def mount(sensor: Any) -> None:
 
 @compiled
 def mixed(sensor: Any, load: Any, axis: int) -> float:
-    """What an axis of a sensor sees of a load (6,) on the finger at the pad's centre [N or N m]."""
+    """Reading of an axis of a sensor under a load (6,) on the finger at the pad's centre [N or N m]."""
     total = 0.0
     for k in range(LOAD_AXES):
         total += sensor.mix[axis, k] * load[k]

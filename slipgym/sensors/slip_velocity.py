@@ -77,7 +77,7 @@ SLIP_SENSOR = joined(SLIP_SENSOR_FIXED, SLIP_SENSOR_EPISODE)
 
 
 def chip_positions(radius: float, chips: int) -> np.ndarray:
-    """Where the chips are, from the pad centre in the finger's frame; their mean is the pad centre.
+    """Positions of the chips from the pad centre in the finger's frame; their mean is the pad centre.
 
     Args:
         radius: Distance of the chips from the pad centre [m].

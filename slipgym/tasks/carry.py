@@ -7,10 +7,9 @@ swings it sideways and half of the way back, lowers it, and a support takes it o
 while it swings.
 
 The box must not slip, and the grip must be economical: its mean over the episode may be at most `economy`
-(1.6) times the mean of the least grip that holds the box. A constant grip that holds the largest load is too
-firm on average, and so is one that allows for every friction: the grip has to follow the load, which the
-plan of the wrist announces (its acceleration now and in 50, 100 and 200 ms is observed), by a factor that
-depends on friction.
+(1.6) times the mean of the least grip that holds the box. No constant grip does both. The grip has to follow
+the load, which the plan of the wrist announces (its acceleration now and in 50, 100 and 200 ms is observed),
+by a factor that depends on friction.
 
 Mass and friction are unknown: the mass shows in the load when the support gives way, and friction when the
 box slips.
@@ -18,10 +17,8 @@ box slips.
 The swing reaches 5 to 10 m/s^2 and 1.7 m/s, within the limits of a light arm such as Franka Emika's. mu_c is
 drawn from 0.15 to 0.8, log-uniformly (`tasks.carry.friction_range`).
 
-The least grip is that with which both pads stick, by the ellipsoidal limit surface: sqrt(f_x^2 + f_y^2 +
-(tau / r)^2) / mu_s for the load per finger, and at least `gripper.force_min`. The load follows from the plan
-of the wrist and from the disturbances, for a box that never slips, and the pads are those of the episode, as
-in [FragileHold](fragile_hold.md).
+The least grip is defined as in [FragileHold](fragile_hold.md), for the load per finger at each time, and is
+at least `gripper.force_min`.
 
 ## Rewards
 

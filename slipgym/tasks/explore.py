@@ -9,10 +9,9 @@ deviations. It commits itself by stating deviations of at most `commitment` (2.5
 the episode.
 
 mu_c is drawn from 0.2 to 0.8, log-uniformly, mu_s / mu_c is the material's, and r is drawn from 6 to 10 mm
-(`tasks.explore.friction_range`, `tasks.explore.radius_range`; assumed). A box that sticks shows a lower
-bound of mu_s and nothing of mu_c and r. mu_s shows when a slip begins, mu_c in any slip, and r where the box
-slides and turns: the weight makes it slide, and a turn of the wrist makes it turn, since its inertia holds
-it back.
+(`tasks.explore.friction_range`, `tasks.explore.radius_range`; assumed). mu_s shows when a slip begins, mu_c
+in any slip, and r where the box slides and turns: the weight makes it slide, and a turn of the wrist makes it
+turn, since its inertia holds it back.
 
 ## Action Space
 
@@ -21,8 +20,8 @@ it back.
 to 0.5 m/s (`gripper.wrist_speed_max`) and from -3 to 3 rad/s (`gripper.wrist_pitch_rate_max`).
 
 Then the guess: ln mu_s, ln mu_c, ln r, and the logarithms of their relative standard deviations, in the
-ranges of docs/modes.md. Values outside [-1, 1] are clipped; NaN and infinity are errors. The actuator force
-follows the command with a dead time (4 ms) and a first-order lag (12 ms), the wrist within a control step.
+ranges of docs/modes.md. The actuator force follows with a dead time (4 ms) and a first-order lag (12 ms), the
+wrist within a control step.
 
 This is "grip_force_wrist_guess", the `action_mode` of this task. In the other modes (see docs/modes.md)
 there is no guess, and the estimator's merged estimate and its deviations take its place.

@@ -11,15 +11,12 @@ That force is 1.5 to 2.5 times the least grip that holds the box through the epi
 in the load when the support gives way, and friction when it slips.
 
 Friction decides this task. mu_c is drawn from 0.15 to 0.8, log-uniformly
-(`tasks.fragile_hold.friction_range`; assumed, from slippery to rubber-like pairs), so that a grip which
-suits one end of the range breaks or drops the box at the other. The force that breaks the box is not
-observed, since a grip just below it would always be right.
+(`tasks.fragile_hold.friction_range`; assumed), so that a grip which suits one end of the range breaks or
+drops the box at the other. The force that breaks the box is not observed.
 
 The least grip is that with which both pads stick, by the ellipsoidal limit surface: sqrt(f_x^2 + f_y^2 +
 (tau / r)^2) / mu_s, at the largest load per finger of the episode. The load follows from the plan of the
-wrist and from the disturbances, for a box that never slips. A randomization that draws pads draws the least
-grip with them: on a soft pad mu_s and r are those at this very grip, the box swings on its torsion, and the
-pad that slips first decides.
+wrist and from the disturbances, for a box that never slips, on the pads of the episode.
 
 ## Starting State
 

@@ -5,7 +5,7 @@
 A parallel gripper holds a box near its top. The wrist pitches along a trapezoidal profile. The grip must be
 loose enough that the box stays upright, turning between the pads like a door on a hinge, and firm enough
 that the box does not slide down. The task follows the hinge of Waltersson and Karayiannidis (arXiv
-2410.19660), who pitch from 60 to 120 deg; with round pads only the relative turn matters.
+2410.19660).
 
 Sliding and tilt are coupled. While the box turns in the grip, the slip twist is normal to the limit surface
 at the load: the box slides r^2 / (d sin(tilt)) per radian, where d is the depth of its centre of mass below

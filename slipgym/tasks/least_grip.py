@@ -38,7 +38,7 @@ def torsion_arm(episode):
 
 @compiled
 def bearing(episode):
-    """What `demand` needs of both pads, as numbers: a loop over loads then computes several at once."""
+    """Numbers of both pads that `demand` needs: a loop over loads then computes several at once."""
     cops, radii, axes, arm = episode.cops, episode.radii, episode.axes, torsion_arm(episode)
     x, y = 0.5 * (cops[0, 0] - cops[1, 0]), 0.5 * (cops[0, 1] - cops[1, 1])
     mu_s, friction = episode.mu_s, episode.finger_friction

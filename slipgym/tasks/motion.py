@@ -29,8 +29,6 @@ class Motion:
 
     body: Literal["box", "bottle", "tool"] = "box"
     """What the object is drawn as, within the box that is simulated."""
-    roam: float = 0.0
-    """How far the agent's commands carry the wrist to either side, for which pictures leave room [m]."""
     end: Callable[[Any], tuple[float, float, float]] | None = None
     """Slip displacement (x, y, theta) that the task asks for [m, m, rad], of an EPISODE record, as pictures
     show it; None: none but that at the grasp."""

@@ -13,23 +13,20 @@ a Franka Emika arm. The acceleration counts what the agent commands, along x and
 from 0.3 to 0.9, log-uniformly (`tasks.pivot_to.friction_range`).
 
 Friction has to be neither small nor large. Some sliding is inevitable, since the slip twist is normal to the
-limit surface at the load: with k = 2 mu_c f_n / f_t the box slides r / sqrt(k^2 - 1) per radian, along the
-load, whichever way it turns. With r = 3 mm and k = 10 that is 0.42 mm for 80 deg; in the swing the
-centripetal force raises f_t, and the slide with it.
+limit surface at the load: with k = 2 mu_c f_n / f_t the box slides r / sqrt(k^2 - 1) per radian. With r =
+3 mm and k = 10 that is 0.42 mm for 80 deg, and more in the swing.
 
-On the other side, the torque of the pads, k r f_t, has to be well below that of the wrist, m d a. With a
-disc of r = 10 mm the slide would be three times as large; the task therefore has its own contact, a rounded
-fingertip with r = 3 mm (`tasks.pivot_to.radius`, the reset option `r`). At the end friction has to hold the
-box beside the pads: m g d sin(80 deg) = 0.029 N m of the 2 mu_c r 25 N = 0.045 N m at mu_c 0.3. So the box
-is light, an empty carton of 30 g.
+On the other side, the torque of the pads, k r f_t, has to be well below that of the wrist, m d a, and at the
+end friction has to hold the box beside the pads. The task therefore has its own contact, a rounded fingertip
+with r = 3 mm (`tasks.pivot_to.radius`, the reset option `r`), and the box is light, an empty carton of 30 g.
 
 ## Action Space
 
 `Box(-1, 1, (3,), float32)`, the `action_mode` "grip_force_translation": the grip force commanded to both
 fingers, where -1 is `gripper.force_min` (0.6 N) and +1 is `gripper.force_max` (25 N), and the velocity of
-the wrist along world x and z, up to `tasks.pivot_to.wrist_speed` (1.7 m/s) either way. Values outside [-1,
-1] are clipped; NaN and infinity are errors. The actuator force follows the command with a dead time (4 ms)
-and a first-order lag (12 ms), the wrist with at most `tasks.pivot_to.wrist_acceleration`.
+the wrist along world x and z, up to `tasks.pivot_to.wrist_speed` (1.7 m/s) either way. The actuator
+force follows with a dead time (4 ms) and a first-order lag (12 ms), the wrist with at most
+`tasks.pivot_to.wrist_acceleration`.
 
 Other values of `action_mode` change the components (see docs/modes.md); without the wrist's velocity the
 goal is out of reach.
@@ -234,6 +231,6 @@ TASK = Task(
         VIOLATED,
     ),
     action_mode="grip_force_translation",
-    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), goal="goal", roam=0.25, end=turned),
+    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), goal="goal", end=turned),
     page=__doc__,
 )

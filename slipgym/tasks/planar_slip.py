@@ -14,16 +14,14 @@ r^2:
 
     d theta = (b x db) / r^2
 
-If b is 0 or along u, with the centre of mass straight below the pads (stable) or above them (unstable), the
-box slides without turning, for any pitch of the wrist. With the centre of mass to the side at a distance s
-it turns, and slides only r^2 / s per radian. Sequences of slides and turns reach every (x, y, theta). The
-target is sampled as the end of such a sequence: a slide by `slide` with the wrist pitched by `heading`, then
-a turn by `turn` about the pad centre.
+If b is 0 or along u, with the centre of mass straight below or above the pads, the box slides without
+turning, for any pitch of the wrist. With the centre of mass to the side at a distance s it turns, and slides
+only r^2 / s per radian. Sequences of slides and turns reach every (x, y, theta). The target is sampled as the
+end of such a sequence: a slide by `slide` with the wrist pitched by `heading`, then a turn by `turn` about
+the pad centre.
 
-For r = 10 mm and s = 15 mm the pads would slide 6.7 mm per radian of the turn. The task therefore has its
-own contact, a rounded fingertip with r = 5 mm (`tasks.planar_slip.radius`, the reset option `r`), which
-slides by 1.7 mm per radian. A smaller contact holds less torque: already with r = 5 mm, a box of 0.2 kg
-gripped 18 mm off its centre of mass needs up to 12 N at a friction of 0.3.
+The task has its own contact, a rounded fingertip with r = 5 mm (`tasks.planar_slip.radius`, the reset option
+`r`), which slides by 1.7 mm per radian where a pad with r = 10 mm would slide by 6.7 mm.
 
 The measured slip is the time integral of the slip velocity at the pad centre, in the pad frame. The target
 refers to another quantity, the displacement of the point of the box that lay at the pad centre at the grasp.
@@ -33,14 +31,11 @@ A turn moves that point as well: d(x, y) = d(measured slip) + d theta (-y, x).
 
 `Box(-1, 1, (2,), float32)`: the grip force commanded to both fingers; -1 is `gripper.force_min` (0.6 N) and
 +1 is `gripper.force_max` (25 N). Then the wrist's pitch rate, from -3 to 3 rad/s
-(`gripper.wrist_pitch_rate_max`). Values outside [-1, 1] are clipped; NaN and infinity are errors. The
-actuator force follows the command with a dead time (4 ms) and a first-order lag (12 ms), the pitch rate
-within a control step.
+(`gripper.wrist_pitch_rate_max`). The actuator force follows with a dead time (4 ms) and a first-order lag (12
+ms), the pitch rate within a control step.
 
 This is "grip_force_pitch", the `action_mode` of this task. Other modes add components, leave some out or
-change their meaning (see docs/modes.md): "grip_force" takes the grip force alone, "grip_force_wrist" adds
-the wrist's velocity along world x and z, and "force_increment" takes the change of the grip force per
-control step.
+change their meaning (see docs/modes.md).
 
 ## Starting State
 

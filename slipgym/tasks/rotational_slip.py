@@ -11,10 +11,9 @@ Some sliding is inevitable. The slip twist is normal to the limit surface at the
 therefore slides 2 (r^2 / d) ln tan(45 deg + angle/4). With r = 10 mm and d = 180 mm this is 0.61 mm at 60
 deg, whatever the controller does.
 
-On a disc (`contact="distributed"`), whose limit surface is flatter there, it is 3/2 as much. Holding the bar
-level takes m g d / (2 mu_c r) per finger. The task therefore has its own light and long object
-(`tasks.rotational_slip.object`): 0.06 kg, 460 mm by 40 mm, gripped 180 mm from its centre, which takes 15 N
-at mu_c 0.36.
+On a disc (`contact="distributed"`) it is 3/2 as much. Holding the bar level takes m g d / (2 mu_c r) per
+finger. The task therefore has its own light and long object (`tasks.rotational_slip.object`): 0.06 kg,
+460 mm by 40 mm, gripped 180 mm from its centre, which takes 15 N at mu_c 0.36.
 
 ## Starting State
 

@@ -144,7 +144,7 @@ class Task(Generic[SettingsT]):
 
     @cached_property
     def options(self) -> type[EpisodeOptions]:
-        """What `reset(options=...)` can fix: derived from the settings."""
+        """Options that `reset(options=...)` can fix, derived from the settings."""
         return derive_options(self.name, self.settings)
 
     @cached_property

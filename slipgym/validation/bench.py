@@ -133,7 +133,7 @@ class Bench:
 
     @property
     def velocity_age(self) -> float:
-        """How long before a row of the trace its velocity holds: PyBullet's is the mean over a step [s]."""
+        """Age of the velocity in a row of the trace [s]: PyBullet's is the mean over a step."""
         return 0.0 if self._alone else 0.5 * self.engine_time
 
     def limit(self) -> float:

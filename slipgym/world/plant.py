@@ -144,7 +144,7 @@ def _pads(config: Config, n: int) -> np.ndarray:
 
 
 def _cells(config: Config, n: int) -> np.ndarray | None:
-    """The patch of every pad, which an episode scales by its r alone, or what says that there is none."""
+    """The patch of every pad, which an episode scales by its r alone; an empty one for other contacts."""
     if config.contact.model == "distributed":
         cells = patch_of(config)
         stretch(cells, np.array(friction_axes(config.contact.pad.anisotropy)))

@@ -1,10 +1,11 @@
-"""Pages and modules say what they do: no first line that is a noun clause, no long paragraph.
+"""Pages, modules and public names say what they do: no first line that is a noun clause, no long paragraph.
 
 `python tests/house/test_sentences.py` prints what is wrong.
 """
 
 import ast
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -15,10 +16,9 @@ LONGEST = 600
 CLAUSE = re.compile(r"(?:What|How|Whether|Who|Why|Where|When|Which)\b")
 """First word of a noun clause in place of a sentence."""
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
+PACKAGES = ("slipgym", "estimator", "policies")
 MODULES = sorted(
-    path
-    for package in ("slipgym", "estimator", "policies", "scripts", "lab")
-    for path in ROOT.glob(f"{package}/**/*.py")
+    path for package in (*PACKAGES, "scripts", "lab") for path in ROOT.glob(f"{package}/**/*.py")
 )
 
 
@@ -28,7 +28,7 @@ def name(place: Path) -> str:
 
 def blocks(page: str) -> list[str]:
     """Paragraphs, list items and table rows of a page without its code, each on one line."""
-    text = re.sub(r"^```.*?^```$|^    .*$|<!--.*?-->", "", page, flags=re.DOTALL | re.MULTILINE)
+    text = re.sub(r"^```.*?^```$|^    [^\n]*$|<!--.*?-->", "", page, flags=re.DOTALL | re.MULTILINE)
     parts = re.split(r"\n\s*\n|\n(?=\||- |\d+\. |#)", text)
     return [" ".join(part.split()) for part in parts if part.strip()]
 
@@ -49,6 +49,13 @@ def faults_of_module(source: str) -> list[str]:
     return [f"first line: {line}"] if CLAUSE.match(line) else []
 
 
+def public(source: str) -> Iterator[tuple[str, str]]:
+    """Name and first line of the docstring of each class and function without a leading underscore."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ClassDef | ast.FunctionDef) and not node.name.startswith("_"):
+            yield node.name, (ast.get_docstring(node) or "").partition("\n")[0]
+
+
 def faults(place: Path) -> list[str]:
     text = place.read_text(encoding="utf-8")
     return faults_of_page(text) if place.suffix == ".md" else faults_of_module(text)
@@ -63,6 +70,17 @@ def test_a_module_begins_with_a_sentence():
     assert {name(module): faults(module) for module in MODULES if faults(module)} == {}
 
 
+def test_a_public_class_or_function_begins_with_a_sentence():
+    clauses = [
+        f"{name(module)}: {called}: {line}"
+        for module in MODULES
+        if module.relative_to(ROOT).parts[0] in PACKAGES
+        for called, line in public(module.read_text(encoding="utf-8"))
+        if CLAUSE.match(line) and not line.startswith("Whether ")
+    ]
+    assert clauses == []
+
+
 def test_faults_are_found():
     long = "word " * 130
     page = f"# Title\n\nHow it works.\n\n| a | {long} |\n\n```text\n{long}\n```\n\n- {long}\n"
@@ -74,6 +92,9 @@ def test_faults_are_found():
     assert faults_of_page("# Title\n\nThis page is short.\n") == []
     assert faults_of_module('"""What is done."""') == ["first line: What is done."]
     assert faults_of_module('"""Does it."""') == []
+    assert list(public('def f():\n    """How it is."""\n\n\ndef _g():\n    pass\n')) == [("f", "How it is.")]
+    after_a_command = "# Title\n\nRun\n\n    slipgym demo\n\n" + long
+    assert faults_of_page(after_a_command) == [f"{len(long.strip())} characters: {long[:60]}"]
 
 
 if __name__ == "__main__":

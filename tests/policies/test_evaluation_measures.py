@@ -1,11 +1,12 @@
 import dataclasses
 import math
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
 from policies.evaluation.metrics import MEASURES, measure
-from policies.evaluation.recording import Recording, needed_force
+from policies.evaluation.recording import INFOS, Recorder, Recording, needed_force
 from slipgym.tasks import TASKS
 
 
@@ -153,6 +154,26 @@ def test_needed_force_lies_on_the_ellipsoid():
     f_x, f_y, tau = 2.0, -3.0, 0.008
     limit = mu_s * force
     assert (f_x / limit) ** 2 + (f_y / limit) ** 2 + (tau / (limit * r)) ** 2 == pytest.approx(1.0)
+
+
+def test_series_have_the_friction_that_the_controller_was_shown():
+    """The truth, the nominal values or nothing, whatever the estimators say."""
+    shown = {}
+    for source in ("true", "nominal", "none"):
+        made = gym.make("slipgym/Hold-v0", engine="planar", friction_source=source, disable_env_checker=True)
+        made.reset(seed=0)
+        recorder = Recorder([column.name for column in made.unwrapped.columns], [{}])
+        step = made.step(made.action_space.sample())
+        infos = {name: np.asarray(value)[None] for name, value in step[4].items() if name in INFOS}
+        recorder.add(step[0][None], np.zeros(1), infos, np.ones(1, dtype=bool))
+        (kept,) = recorder.finish()
+        shown[source] = [kept.series()[f"shown_{name}"][0] for name in ("mu_s", "mu_c")]
+        true = kept.true[:2]
+    nominal = made.unwrapped.config.nominal
+    assert shown["true"] == pytest.approx(true, rel=1e-5)
+    assert shown["nominal"] == pytest.approx((nominal.mu_s, nominal.mu_c))
+    assert np.isnan(shown["none"]).all()
+    assert np.isnan(recording().series()["shown_mu_c"]).all()
 
 
 def test_series_has_a_row_per_step():

@@ -9,18 +9,30 @@ import pytest
 from typer.testing import CliRunner
 
 from policies.commands.policy_leaderboard import app
+from policies.evaluation.play import Played
 from policies.evaluation.plots.style import styled
 from policies.learned import pretrained
 from policies.policy_leaderboard import worlds
-from policies.policy_leaderboard.entries import best_constant, constant, entered, further, learned, opponents
+from policies.policy_leaderboard.entries import (
+    Member,
+    best_constant,
+    constant,
+    entered,
+    further,
+    learned,
+    opponents,
+)
 from policies.policy_leaderboard.folder import plot_policies, write
-from policies.policy_leaderboard.run import COLUMNS, ROWS, by_level, episodes_of, outcomes
+from policies.policy_leaderboard.run import COLUMNS, ROWS, by_level, episodes_of, outcomes, play_all
+from policies.policy_leaderboard.worth import table as gains
+from policies.policy_leaderboard.worth import worth
 
 SHORT = {"config": {"tasks": {"hold": {"duration": 0.5}}}}
 
 
 def test_firm_grips_win_and_the_table_says_how():
-    table = outcomes("hold", "easy", [constant(0.6), constant(20.0)], 6, SHORT, progress=False)
+    played = play_all("hold", "easy", [constant(0.6), constant(20.0)], 6, SHORT, progress=False)
+    table = outcomes("hold", "easy", played)
     assert list(table.columns) == list(COLUMNS)
     firm, weak = table.iloc[0], table.iloc[1]
     assert (firm["policy"], weak["policy"]) == ("constant 20 N", "constant 0.6 N")
@@ -28,6 +40,34 @@ def test_firm_grips_win_and_the_table_says_how():
     assert weak["dropped [%]"] == 100.0
     assert firm["grip [N]"] == pytest.approx(20.0, abs=3.0)  # rises from the initial force
     assert weak["slid [mm]"] > 10.0 > 1.0 > firm["slid [mm]"]
+
+
+def episodes(*solved: int) -> Played:
+    """Episodes of which some are solved, all else equal."""
+    zero = np.zeros(len(solved))
+    return Played(np.array(solved, dtype=bool), zero.astype(bool), zero, zero, zero)
+
+
+def test_the_worth_of_friction_is_against_the_strongest_policy_without_it():
+    sources = {"a (3 N)": "none", "controller, memory of slips": "none", "controller, nominal": "nominal"}
+    sources |= {"controller, estimated": "estimated", "weak": "estimated", "controller, true": "true"}
+    members = [Member(name, constant(1.0).policy, {"friction_source": s}) for name, s in sources.items()]
+    played = {
+        "a (3 N)": episodes(0, 0, 0, 0),
+        "controller, memory of slips": episodes(1, 0, 1, 0),
+        "controller, nominal": episodes(1, 0, 0, 0),
+        "controller, estimated": episodes(1, 1, 1, 0),
+        "weak": episodes(0, 0, 0, 1),
+        "controller, true": episodes(1, 1, 1, 1),
+    }
+    row = worth("hold", "hard", members, played)
+    assert row["strongest without friction"] == "memory of slips"
+    assert (row["without"], row["estimated"], row["true"], row["gain"]) == (50.0, 75.0, 100.0, 25.0)
+    assert (row["low"], row["high"]) == (0.0, 75.0)  # of four pairs one differs: 0 to 3 of them in a resample
+    other = worth("carry", "hard", members, {**played, "controller, estimated": episodes(1, 1, 1, 1)})
+    nothing = worth("hinge", "hard", members[:3], played)
+    assert list(gains([row, nothing, other])["task"]) == ["Carry", "Hold", "Hinge"]
+    assert np.isnan(gains([nothing])["gain"][0])
 
 
 def test_blocks_of_rows_play_the_same_episodes(monkeypatch):
@@ -98,8 +138,15 @@ def test_a_folder_has_table_and_picture(tmp_path):
     assert list(wide.columns) == ["task", "level", "best constant", "controller, true"]
     assert list(wide["level"]) == ["easy", "hard"]
     assert list(wide["controller, true"]) == [100.0, 100.0]
+    other = pd.DataFrame([("Carry", *rows[0][1:])], columns=pd.Index(COLUMNS))
+    several = by_level(pd.concat([table, other], ignore_index=True))
+    assert list(several.columns) == ["task", "level", "best constant"]  # the other one plays Hold alone
+    assert list(several["task"]) == ["Hold", "Hold", "Carry"]
     with styled():
-        (axes,) = plot_policies(table).axes
+        figure = plot_policies(table)
+        (axes,) = figure.axes
+    pixels = 670 / figure.get_figwidth() / 72  # of a point, on a page
+    assert min(text.get_fontsize() * pixels for text in [*axes.texts, *axes.get_yticklabels()]) > 10.0
     assert [label.get_text() for label in axes.get_yticklabels()] == ["controller, true", "best constant"]
 
 

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from policies.play.viewer import Session
+from policies.play.viewer.controls import status
 from policies.play.viewer.plots import Plots
+from policies.play.viewer.scene import Scene
 from policies.play.viewer.surface import SurfacePlot, boundary
 from slipgym.contact import EllipsoidContact
 
@@ -82,3 +84,40 @@ def test_below_the_plot_of_friction_stands_why_an_estimate_is_off(session):
     session.env.simulation.estimated[0, :9] = session.env.simulation.ground_truth[0, :9]
     plots.update()
     assert "no estimate is off" in words.content
+
+
+class Stage:
+    """Stands in for the 3-D view: every node that is added keeps what it is given."""
+
+    def __init__(self):
+        self.nodes = {}
+
+    def __getattr__(self, name):
+        def add(path="", *_, **given):
+            self.nodes[path] = SimpleNamespace(remove=lambda: None, **{"visible": False, **given})
+            return self.nodes[path]
+
+        return add
+
+
+def test_the_view_follows_the_gripper_and_gravity_stays():
+    carried, stage, camera = Session("carry", engine="planar"), Stage(), SimpleNamespace()
+    simulation = carried.env.simulation
+    scene = Scene(stage, camera)
+    scene.begin(simulation)
+    world, gripper = stage.nodes["/world"], stage.nodes["/world/gripper"]
+    start = np.array(gripper.position)
+    away = np.linalg.norm(np.subtract(camera.position, camera.look_at))
+    while carried.outcome is None and np.linalg.norm(gripper.position - start) < 0.15:
+        carried.advance(DT)
+        scene.update(simulation)
+    assert np.linalg.norm(gripper.position - start) >= 0.15
+    seen = np.add(world.position, gripper.position)
+    assert np.linalg.norm(seen - start) < 0.15 * away * np.tan(0.5 * camera.fov)
+    assert {"/gravity", "/gravity_name"} <= set(stage.nodes)  # outside of the world that moves
+    carried.close()
+
+
+def test_no_minus_stands_before_a_zero(session):
+    session.info = {**session.info, "slip": np.array([0.0, 0.0, -1e-5])}
+    assert "0.0 mm, 0.0&deg;" in status(session)

@@ -52,7 +52,7 @@ def test_an_estimate_within_its_deviation_needs_no_words():
 
 def test_a_large_error_is_named_within_its_deviation():
     (off,) = found(Past(mu_c=0.5), mu_c=0.5, true=0.4, deviation=0.2)
-    assert off == ("mu_c", "25 % high, 0.5 deviations", "one standard deviation is 40 %")
+    assert off == ("mu_c", "25 % above the truth; states ± 40 %", "no more than it states")
 
 
 def test_a_value_without_data_says_which_motion_it_needs():
@@ -74,21 +74,21 @@ JUMP = np.where(np.arange(STEPS + 1) < 80, 0.5, 0.4)
             "residuals are 3.0 times what noise explains",
         ),
         ({"mu_c": 0.5}, {"misfit": 9.0}, "residuals are 3.0 times what noise explains"),
-        ({"mu_c": 0.5}, {"deviation": 0.08}, "one standard deviation is 16 %"),
+        ({"mu_c": 0.5}, {"deviation": 0.12}, "no more than it states"),
         ({"mu_c": 0.5, "data_mu_c": LATE - 20}, {}, "newest data 0.4 s old"),
         ({"mu_c": 0.5, "true_mu_c": JUMP}, {}, "friction changed 0.2 s ago"),
-        ({"mu_c": 0.5}, {}, "sensor or model errors beyond the deviation"),
+        ({"mu_c": 0.5}, {}, "more than it states: errors of sensors or model"),
     ],
 )
 def test_each_reason(past, values, reason, monkeypatch):
     monkeypatch.setattr("slipgym.rendering.discrepancy.RECENT", 0.35)
     off = found(Past(**past), mu_c=0.5, true=0.4, **values)
-    size = 0.1 / values.get("deviation", 0.01)
-    assert off == [Discrepancy("mu_c", f"25 % high, {size:.1f} deviations", reason)]
+    states = 100 * values.get("deviation", 0.01) / 0.5
+    assert off == [Discrepancy("mu_c", f"25 % above the truth; states ± {states:.0f} %", reason)]
 
 
 def test_the_same_words_for_both_are_said_once():
-    expected = Discrepancy("mu_c, mu_s", "25 % high, 2.5 deviations", "newest data 1.0 s old")
+    expected = Discrepancy("mu_c, mu_s", "25 % above the truth; states ± 8 %", "newest data 1.0 s old")
     past = Past(mu_c=0.5, mu_s=0.75, data_mu_c=0, data_mu_s=0)
     values = simulated(0.5, 0.4, deviation=0.04, sd_mu_s=0.06)
     values.estimated[0, [0, 6]] = 0.75, 0.06
@@ -108,7 +108,7 @@ def test_an_environment_says_them_where_it_draws(make):
 
 def test_reasons_fit_beside_the_view():
     reasons = [
-        "sensor or model errors beyond the deviation",
+        "more than it states: errors of sensors or model",
         *NEEDS.values(),
     ]
     reasons += [

@@ -50,7 +50,11 @@ def test_a_missing_package_names_the_extra_before_anything_runs(tmp_path, invoke
 
 def test_the_quick_study_takes_two_tasks_of_the_planar_engine():
     study = load_study("quick")
-    assert (study.tasks, study.level, study.kinds) == (("Hold", "Hinge"), "hard", ("classic", "memory"))
+    assert (study.tasks, study.level, study.kinds) == (
+        ("Hold", "Hinge"),
+        "hard",
+        ("classic", "memory", "recurrent"),
+    )
     assert study.estimators == (DEFAULT,)
     assert {world.engine for world in study.worlds} == {"planar"}
     assert sum(condition.episodes for condition in conditions(study, {})) <= 400

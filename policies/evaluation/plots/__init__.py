@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from policies.evaluation.frames import groups
+from policies.evaluation.frames import groups, values
+from policies.evaluation.gain import Gain
 from policies.evaluation.plots.allowed import Limited, plot_allowed
 from policies.evaluation.plots.errors import plot_errors
+from policies.evaluation.plots.gain import plot_gain
 from policies.evaluation.plots.grip import plot_grip
 from policies.evaluation.plots.style import STYLE, styled
 from policies.evaluation.plots.tracking import plot_tracking
@@ -84,6 +88,16 @@ def draw(task: str, trials: pd.DataFrame, series: pd.DataFrame, folder: Path) ->
                 figures[f"{name}_{slug}"] = plot(group)
             written += [_save(figure, folder / f"{name}.png") for name, figure in figures.items()]
     return written
+
+
+def draw_gain(
+    task: str, trials: pd.DataFrame, gain: Gain, episode: Sequence[Mapping[str, np.ndarray]], folder: Path
+) -> Path:
+    """Draws `gain.png`; arguments as for `draw` and `plot_gain`."""
+    has_limit = find(task).motion.axis is None and "tolerance_mm" in trials
+    tolerance = float(values(trials, "tolerance_mm").max()) if has_limit else math.nan
+    with styled():
+        return _save(plot_gain(task, gain, episode, tolerance), folder / "gain.png")
 
 
 def _outcome(task: Task, trials: pd.DataFrame) -> list[tuple[str, Callable[[pd.DataFrame], Figure]]]:

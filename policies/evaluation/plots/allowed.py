@@ -28,7 +28,7 @@ class Limited(NamedTuple):
     """What is allowed: a column, or a number."""
 
     def most(self, trials: pd.DataFrame) -> float:
-        """What is allowed in the trials."""
+        """Largest allowed value in the trials."""
         return float(values(trials, self.allowed).max()) if isinstance(self.allowed, str) else self.allowed
 
 

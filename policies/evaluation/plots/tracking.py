@@ -130,16 +130,21 @@ def _force(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
 def _friction(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
     time = values(steps, "time")
     for name, symbol, colour in (("mu_c", "μ$_c$", _MU_C), ("mu_s", "μ$_s$", _MU_S)):
-        for finger, width in ((1, 1.4), (2, 0.8)):
-            axes.plot(time, values(steps, f"{name}_{finger}"), color=colour, linewidth=width)
+        for finger in (1, 2):
+            axes.plot(time, values(steps, f"{name}_{finger}"), color=colour, linewidth=0.8, alpha=0.35)
+        shown = values(steps, f"shown_{name}")
+        axes.plot(time, shown, color=colour, linewidth=1.8)
         true = trial[f"true_{name}"]
         axes.axhline(true, color=colour, linestyle="--", linewidth=1.0)
         beside: dict[str, Any] = {"xycoords": axes.get_yaxis_transform(), "annotation_clip": False}
         note(axes, 1.01, true, symbol, colour, va="center", **beside)
     axes.set_ylim(0.0, 1.6)
+    if np.isnan(values(steps, "shown_mu_c")).all():
+        note(axes, 0.98, 0.9, "the controller is shown no friction", STYLE.muted, **_CORNER)
     if first:
         axes.set_ylabel("friction [–]")
-        note(axes, 0.98, 0.05, "estimates of both fingers; dashed: true", STYLE.muted, **_CORNER)
+        note(axes, 0.98, 0.14, "bold: what the controller is shown", STYLE.muted, **_CORNER)
+        note(axes, 0.98, 0.05, "pale: estimates of both fingers; dashed: true", STYLE.muted, **_CORNER)
 
 
 _MOTION = {

@@ -77,7 +77,7 @@ class Viewer:
 
     @property
     def url(self) -> str:
-        """Where a browser finds it."""
+        """Address for a browser."""
         return f"http://{self.server.get_host()}:{self.server.get_port()}"
 
     def frame(self, seconds: float) -> None:

@@ -156,16 +156,17 @@ def _within(value: float, low: float, high: float) -> float:
 
 
 def status(session: Session) -> str:
-    """How the episode goes, as HTML: state, time, object, slip, friction and what waits for the next one."""
+    """State of the episode as HTML: time, object, slip, friction and changes for the next one."""
     simulation, info = session.env.simulation, session.info
     state = session.outcome.ending if session.outcome else "slips" if slips(info["slip_twist"]) else "sticks"
     about = f"{simulation.materials[0]}, {1e3 * float(simulation.plant.world['mass'][0]):.0f} g"
     slip, true, estimated = info["slip"], info["true"], simulation.estimated[0]
+    turn = round(math.degrees(slip[2]), 1) + 0.0  # no minus before a zero
     estimate = f"{estimated[1]:.3f} ± {estimated[7]:.3f}" if estimated[4] > 0.0 else "no data yet"
     rows = (
         ("policy", session.policy),
         ("object", about),
-        ("slip", f"{1e3 * math.hypot(slip[0], slip[1]):.1f} mm, {math.degrees(slip[2]) + 0.0:.1f}&deg;"),
+        ("slip", f"{1e3 * math.hypot(slip[0], slip[1]):.1f} mm, {turn:.1f}&deg;"),
         ("mu_c true", f"{true[1]:.3f}"),
         ("mu_c estimated", estimate if simulation.estimating else "no estimator"),
         ("set by hand", ", ".join(sorted(set(session.values) - session.pending)) or "nothing"),
@@ -173,7 +174,7 @@ def status(session: Session) -> str:
     )
     solved = sum(outcome.success for outcome in session.finished)
     cells = "".join(
-        f'<tr><td style="color:#767676;padding-right:10px">{name}</td>'
+        f'<tr><td style="color:#767676;padding-right:10px;white-space:nowrap">{name}</td>'
         f'<td data-name="{name}">{value if "&deg;" in value else html.escape(value)}</td></tr>'
         for name, value in rows
     )

@@ -12,8 +12,16 @@ from typing import Any
 import numpy as np
 
 from slipgym.rendering import palette
+from slipgym.rendering.camera import framing
 from slipgym.rendering.look import look
-from slipgym.rendering.stage import SEE_THROUGH, View, gripper_triangles, mirrored, object_triangles
+from slipgym.rendering.stage import (
+    SEE_THROUGH,
+    View,
+    footprint,
+    gripper_triangles,
+    mirrored,
+    object_triangles,
+)
 
 PUSH: palette.Colour = (0xAA, 0x33, 0x77)
 """Colour of external forces."""
@@ -23,6 +31,8 @@ GRIP_LENGTH, FORCE_LENGTH = 0.004, 0.025
 """Length of an arrow for 1 N of grip force, and of other forces [m]."""
 _LONGEST, _SHORTEST = 0.12, 0.002  # [m] of an arrow
 _FLOOR = -0.22  # [m]
+_FIELD = math.radians(34.0)  # that the camera sees, from top to bottom
+_AWAY = np.array([0.5, -0.81, 0.3]) * 1.3 / math.tan(_FIELD / 2)  # to the camera, for a span of 1 m
 
 
 class Scene:
@@ -35,19 +45,22 @@ class Scene:
 
     def __init__(self, scene: Any, camera: Any) -> None:
         self._scene = scene
+        self._world = scene.add_frame("/world", show_axes=False)
         scene.set_up_direction("+z")
-        scene.configure_environment_map("studio", environment_intensity=0.5)
+        scene.configure_default_lights(False)
+        scene.configure_environment_map("studio", environment_intensity=0.3)
         scene.add_light_directional("/lamp", intensity=0.7, position=(-0.5, -2.0, 1.0))
         grid = {"cell_color": (214, 219, 226), "section_color": (180, 188, 198), "cell_size": 0.05}
-        scene.add_grid("/floor", 2.4, 2.4, plane="xy", section_size=0.25, position=(0.0, 0.0, _FLOOR), **grid)
-        camera.position, camera.look_at = (0.30, -0.52, 0.16), (-0.02, 0.0, -0.03)
-        camera.fov, camera.near = math.radians(34.0), 0.01
+        place = {"plane": "xy", "section_size": 0.25, "position": (0.0, 0.0, _FLOOR)}
+        scene.add_grid("/world/floor", 2.4, 2.4, **place, **grid)
+        self._camera = camera
+        camera.fov, camera.near = _FIELD, 0.01
         self._arrows = {
             "/gravity": self._arrow("/gravity", palette.MUTED),
-            "/push": self._arrow("/push", PUSH),
-            "/gripper/friction": self._arrow("/gripper/friction", palette.FRICTION),
-            "/gripper/grip_1": self._arrow("/gripper/grip_1", palette.INK),
-            "/gripper/grip_2": self._arrow("/gripper/grip_2", palette.INK),
+            "/world/push": self._arrow("/world/push", PUSH),
+            "/world/gripper/friction": self._arrow("/world/gripper/friction", palette.FRICTION),
+            "/world/gripper/grip_1": self._arrow("/world/gripper/grip_1", palette.INK),
+            "/world/gripper/grip_2": self._arrow("/world/gripper/grip_2", palette.INK),
         }
         self._name = scene.add_label("/gravity_name", "g")
         self._bodies: list[Any] = []
@@ -60,50 +73,60 @@ class Scene:
         x, z = view.box.com_offset
         palm, finger = gripper_triangles(view.pad_radius, view.side)
         offset = np.array([0.0, view.box.size[1] / 2 + PAD / 2, 0.0])
-        self._gripper = self._scene.add_frame("/gripper", show_axes=False)
-        self._object = self._scene.add_frame("/object", show_axes=False)
+        self._gripper = self._scene.add_frame("/world/gripper", show_axes=False)
+        self._object = self._scene.add_frame("/world/object", show_axes=False)
         self._bodies = [self._gripper, self._object]
         triangles, colours = object_triangles(view.box, view.material, view.body)
-        self._add("/object/body", triangles - (x, 0.0, z), colours)
-        self._add("/gripper/palm", palm[0], palm[1])
-        self._add("/gripper/finger_1", finger[0] + offset, finger[1])
-        self._add("/gripper/finger_2", mirrored(finger[0], 1) - offset, finger[1], SEE_THROUGH)
-        self._outline("/gripper/grasp", view, (0.0, 0.0, 0.0), palette.SLIP)
+        self._add("/world/object/body", triangles - (x, 0.0, z), colours)
+        self._add("/world/gripper/palm", palm[0], palm[1])
+        self._add("/world/gripper/finger_1", finger[0] + offset, finger[1])
+        self._add("/world/gripper/finger_2", mirrored(finger[0], 1) - offset, finger[1], SEE_THROUGH)
+        self._outline("/world/gripper/grasp", view, (0.0, 0.0, 0.0), palette.SLIP)
         target = simulation.task.motion.pose(simulation.episode[0])
         if target is not None:
-            self._outline("/gripper/target", view, target, palette.TARGET)
+            self._outline("/world/gripper/target", view, target, palette.TARGET)
         for name in ("friction", "grip_1", "grip_2"):  # they went with their parent
             colour = palette.FRICTION if name == "friction" else palette.INK
-            self._arrows[f"/gripper/{name}"] = self._arrow(f"/gripper/{name}", colour)
+            self._arrows[f"/world/gripper/{name}"] = self._arrow(f"/world/gripper/{name}", colour)
+        x, z, pitch = simulation.episode["wrist_start"][0].tolist()
+        self._framed = framing(footprint(view, (x, z, pitch), target, ()))
+        middle = np.array([self._framed.target[0], 0.0, self._framed.target[1]])
+        self._camera.look_at = tuple(middle.tolist())
+        self._camera.position = tuple((middle + _AWAY * self._framed.span).tolist())
+        self._start = np.array([x, z])
+        corner = middle + self._framed.span * np.array([-0.8 * view.side, 0.0, 0.75])
+        self._point("/gravity", corner, (0.0, 0.0, -0.3 * self._framed.span), 1.0)
+        self._name.position = np.add(corner, (0.008, 0.0, -0.014))
         self.update(simulation)
 
     def update(self, simulation: Any) -> None:
-        """Move the bodies and arrows to where they are now."""
+        """Move the bodies and arrows to where they are now, and the world so that one sees them."""
         view, plant = look(simulation, 0), simulation.plant
+        seen = self._framed.follow(np.array(view.wrist[:2]) - self._start)
+        x, z = np.subtract(self._framed.target, seen.target).tolist()
+        self._world.position = (x, 0.0, z)
         world = plant.world[0]
         self._object.position, self._object.wxyz = view.position, turned(float(world["angle"]))
         self._gripper.position = (view.wrist[0], 0.0, view.wrist[1])
         self._gripper.wxyz = turned(view.wrist[2])
         half = view.box.size[1] / 2
         f_x, f_z, _ = plant.pads["wrench"][0].sum(axis=0).tolist()
-        self._point("/gripper/friction", (0.0, -half - 0.002, 0.0), (f_x, 0.0, f_z), FORCE_LENGTH)
+        self._point("/world/gripper/friction", (0.0, -half - 0.002, 0.0), (f_x, 0.0, f_z), FORCE_LENGTH)
         for side, force in zip((1.0, -1.0), plant.fingers["contact_force"][0].tolist(), strict=True):
             back = side * (half + PAD + 0.012 + min(GRIP_LENGTH * force, _LONGEST))
-            name = "/gripper/grip_1" if side > 0.0 else "/gripper/grip_2"
+            name = "/world/gripper/grip_1" if side > 0.0 else "/world/gripper/grip_2"
             self._point(name, (0.0, back, 0.0), (0.0, -side * force, 0.0), GRIP_LENGTH)
         push_x, push_z, turn = world["external"].tolist()
         start = view.position - (0.0, half + 0.004, 0.0)
         if turn:  # a couple, as the force at its lever
             start, push_z = np.add(start, (0.03, 0.0, 0.0)), push_z + turn / 0.03
-        self._point("/push", start, (push_x, 0.0, push_z), FORCE_LENGTH)
-        corner = np.array([-view.side * 0.11 + view.wrist[0], 0.0, view.wrist[1] + 0.10])
-        self._point("/gravity", corner, (0.0, 0.0, -0.04), 1.0)
-        self._name.position = np.add(corner, (0.008, 0.0, -0.014))
+        self._point("/world/push", start, (push_x, 0.0, push_z), FORCE_LENGTH)
 
     def _arrow(self, name: str, colour: palette.Colour) -> Any:
         shape = {"shaft_radius": 0.0016, "head_radius": 0.0042, "head_length": 0.010}
+        linear = tuple(round(255 * (part / 255) ** 2.2) for part in colour)  # viser takes it so for arrows
         return self._scene.add_arrows(
-            name, np.array([[(0, 0, 0), (0, 0, 0.01)]]), colour, visible=False, **shape
+            name, np.array([[(0, 0, 0), (0, 0, 0.01)]]), linear, visible=False, **shape
         )
 
     def _point(self, name: str, start: Any, force: Any, scale: float) -> None:

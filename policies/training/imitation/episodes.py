@@ -81,7 +81,7 @@ class Scene:
         self._ends = np.exp([force.low, force.high]) if given["action_mode"].startswith(LOGARITHMIC) else None
 
     def seen(self, observations: np.ndarray) -> np.ndarray:
-        """What the network observes of observations (n, m)."""
+        """The network's part of observations (n, m)."""
         return observations[:, self._kept]
 
     def acted(self, actions: np.ndarray) -> np.ndarray:
@@ -94,7 +94,7 @@ class Scene:
         return found
 
     def taught(self, observations: np.ndarray, true: np.ndarray) -> np.ndarray:
-        """What the controller observes.
+        """Observations of the controller.
 
         Args:
             observations: (n, m).

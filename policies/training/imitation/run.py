@@ -40,7 +40,7 @@ LIMIT = 1.0
 
 @dataclass(frozen=True)
 class Outcome:
-    """What an imitation came to."""
+    """Result of an imitation."""
 
     weights: dict[str, np.ndarray]
     """Tensors of the network, see `policies.learned.tensors.expected`."""

@@ -101,7 +101,7 @@ def _lstm(width: int, size: int) -> nn.LSTM:
 
 
 def network_of(config: Imitation) -> Network:
-    """What a policy's file says about the network."""
+    """Description of the network in a policy's file."""
     memory = Memory(size=config.memory, layers=1) if config.memory else None
     return Network(
         kind="lstm" if memory else "mlp",

@@ -165,6 +165,16 @@ def test_all_policies_of_a_task_act_at_the_same_rate(small, monkeypatch):
         conditions(study, _learned(true=["a", "c"]))
 
 
+def test_a_recurrent_policy_acts_at_its_own_rate(small):
+    study = small(tasks=["Hold", "LinearSlip"], kinds=["classic", "recurrent"])
+    found = conditions(study, {})
+    (recurrent,) = {(each.task, each.source, each.frame_skip) for each in found if each.kind == "recurrent"}
+    assert recurrent == ("Hold", "none", 2)
+    assert {each.frame_skip for each in found if each.kind == "classic"} == {1}
+    chosen = next(each for each in found if each.kind == "recurrent").experiment(study)
+    assert (chosen.policies[0].title, chosen.steps_per_action) == ("recurrent", 2)
+
+
 def test_episodes_come_in_pairs(small):
     study = small(kinds=["classic"])
     seeds = {}

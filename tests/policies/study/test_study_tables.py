@@ -7,7 +7,7 @@ from policies.evaluation.statistics import share_interval
 from policies.study.benefit import benefits
 from policies.study.statistics import over_seeds
 from policies.study.tables import ALL, outcomes, shares, transfer
-from policies.study.terminal import training_seeds
+from policies.study.terminal import claims, training_seeds
 
 BULLET, CORE = "PyBullet, ellipsoid", "core"
 CLEAR = {"none": 2, "estimated": 9, "true": 10}
@@ -74,6 +74,16 @@ def test_the_change_of_engine_over_pairs(invented, small):
     assert row["difference"] == pytest.approx(-20.0)
     assert row["difference_low"] < -20.0 < row["difference_high"] < 0.0
     assert row["n"] == 30
+
+
+def test_the_sentence_names_the_strongest_policy_without_friction(invented):
+    recurrent = invented({"none": 6}, kind="recurrent")
+    table = pd.concat([invented(CLEAR), recurrent, invented({"none": 5}, kind="memory")], ignore_index=True)
+    (said,) = claims(benefits(table), outcomes(table))
+    assert said.startswith(
+        "Hold, train: Of 30 episodes, 27 are solved with estimated friction, 18 by the strongest policy "
+        "without friction (recurrent network), 30 with the truth. The estimate gains 30 points ("
+    )
 
 
 def test_the_benefit_is_against_the_strongest_policy_without_friction(invented):

@@ -1,0 +1,87 @@
+"""Draws what friction is worth: episodes solved with and without it, and one of them over time."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from policies.evaluation.gain import WITHOUT, Gain
+from policies.evaluation.plots.style import STYLE, note
+from policies.evaluation.statistics import share_interval
+from slipgym.tasks import find
+
+_BLUE, _ORANGE, _GREEN = STYLE.palette[:3]
+_PALE = "#B5BBC0"
+
+
+def plot_gain(task: str, gain: Gain, episode: Sequence[Mapping[str, np.ndarray]], tolerance: float) -> Figure:
+    """Bars of the episodes solved, with intervals of 95 %; beside them grip and motion in one episode.
+
+    Args:
+        task: The task.
+        gain: The comparison.
+        episode: Steps of the episode `gain.episode()` as columns, of each of `gain.entries`.
+        tolerance: Of the motion [mm]; NaN where it has none.
+    """
+    figure = Figure(figsize=(7.2, 3.4))
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0))
+    colours = [_colour(gain, k) for k in range(len(gain.entries))]
+    _bars(figure.add_subplot(grid[:, 0]), gain, colours)
+    grip = figure.add_subplot(grid[0, 1])
+    motion = figure.add_subplot(grid[1, 1], sharex=grip)
+    way = find(task).motion
+    for steps, colour in zip(episode, colours, strict=True):
+        line = {"color": colour, "linewidth": 1.0 if colour == _PALE else 1.4}
+        grip.plot(steps["time"], 0.5 * (steps["force_1"] + steps["force_2"]), **line)
+        slip = np.column_stack([steps[f"slip_{axis}"] for axis in ("x", "y", "theta")])
+        motion.plot(steps["time"], way.path(slip), **line)
+    needed = episode[-1]
+    grip.fill_between(needed["time"], needed["needed_force"], color=STYLE.band, linewidth=0, zorder=0)
+    note(grip, 0.99, 0.0, "needed", STYLE.muted, va="bottom", ha="right", xycoords=grip.get_yaxis_transform())
+    grip.set_title(f"Episode {gain.episode() + 1}: grip [N]")
+    grip.set_ylim(bottom=0.0)
+    grip.tick_params(labelbottom=False)
+    if np.isfinite(tolerance):
+        motion.axhspan(0.0, tolerance, color=STYLE.band, linewidth=0, zorder=0)
+        note(
+            motion,
+            0.99,
+            tolerance,
+            "allowed",
+            STYLE.muted,
+            va="top",
+            ha="right",
+            xycoords=motion.get_yaxis_transform(),
+        )
+        motion.set_ylim(0.0, 2.0 * tolerance)
+    motion.set_title(way.title.replace("slid [mm]", "slip [mm]"))
+    motion.set_xlabel("time [s]")
+    figure.suptitle("\n".join(textwrap.wrap(gain.words(), 96)), x=0.01, ha="left", fontsize=9.5)
+    return figure
+
+
+def _colour(gain: Gain, k: int) -> str:
+    entry = gain.entries[k]
+    if entry.source in WITHOUT:
+        return _ORANGE if entry is gain.opponent else _PALE
+    return _BLUE if entry is gain.estimated else _GREEN
+
+
+def _bars(axes: Axes, gain: Gain, colours: Sequence[str]) -> None:
+    for k, (entry, colour) in enumerate(zip(gain.entries, colours, strict=True)):
+        share = share_interval(int(entry.success.sum()), len(entry.success))
+        value, low, high = (100.0 * each for each in share)
+        axes.barh(k, value, color=colour, height=0.62)
+        axes.plot([low, high], [k, k], color=STYLE.ink, linewidth=1.2)
+        note(axes, max(high, value) + 2.0, k, f"{value:.0f} %", STYLE.ink, va="center", fontsize=9.5)
+    axes.set_yticks(range(len(gain.entries)), [entry.name.replace(", ", ",\n") for entry in gain.entries])
+    axes.invert_yaxis()
+    axes.tick_params(axis="y", length=0, labelcolor=STYLE.ink)
+    axes.spines["left"].set_visible(False)
+    axes.set_xlim(0.0, 112.0)
+    axes.set_xticks(range(0, 101, 25))
+    axes.set_title("Episodes solved [%]")
