@@ -10,7 +10,7 @@ PIP := $(RUN) -m pip install --quiet --constraint constraints.txt
 PYTEST := OMP_NUM_THREADS=1 $(RUN) -m pytest -n $(JOBS) --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all lint types wheel-smoke check benchmark validate torture results audit matrix site release wheel clean
+.PHONY: help demo test test-all lint types wheel-smoke check benchmark validate results audit matrix site release wheel clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -41,9 +41,6 @@ benchmark: $(VENV)/.dev ## steps per second
 
 validate: $(VENV)/.dev ## the acceptance figures of the physics
 	$(RUN) scripts/validate.py && $(RUN) -m slipgym validate-parts
-
-torture: $(VENV)/.dev ## attacks on the public interface for some hours; goes on where it was stopped
-	$(RUN) -m slipgym torture
 
 results: $(VENV)/.dev ## every result in docs/results, some hours; NAMES="jumps pushes" prints only these
 	$(RUN) -m lab.results $(NAMES)

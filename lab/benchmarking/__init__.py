@@ -1,1 +1,1 @@
-"""Measures what docs/performance.md states: parts of a step, first use, optimisations, learning."""
+"""Measures what docs/performance.md states: parts of a step, first use, learning."""

@@ -15,13 +15,11 @@ from policies.training import model as learners
 from policies.training.adapter import SlipVecEnv
 from policies.training.derived import DerivedVecEnv
 from policies.training.privileged_ppo import PrivilegedPPO
-from policies.training.residual import ResidualVecEnv
 from slipgym.benchmarking.report import Figure
 
 _WRAPPERS: dict[type, str] = {
     SlipVecEnv: "adapter",
     VecMonitor: "monitor",
-    ResidualVecEnv: "controller",
     DerivedVecEnv: "derived columns",
     VecNormalize: "normalisation",
 }

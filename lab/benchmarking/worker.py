@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from multiprocessing import get_context
 from typing import Any, Protocol
 
@@ -25,28 +24,17 @@ class Worker:
         make: Makes a player, in the process that plays; it is pickled.
         *arguments: Its arguments.
         processor: Numbers of the processors that it keeps to; empty: all.
-        environment: Environment variables of the process, besides those of this one.
     """
 
     def __init__(
-        self,
-        make: Callable[..., Player],
-        *arguments: Any,
-        processor: set[int] | None = None,
-        environment: Mapping[str, str] | None = None,
+        self, make: Callable[..., Player], *arguments: Any, processor: set[int] | None = None
     ) -> None:
         context = get_context("spawn")
         self._end, there = context.Pipe()
         self._process = context.Process(
             target=_play, args=(there, processor or set(), make, arguments), daemon=True
         )
-        before = dict(os.environ)
-        os.environ.update(environment or {})
-        try:
-            self._process.start()
-        finally:
-            os.environ.clear()
-            os.environ.update(before)
+        self._process.start()
         there.close()
 
     @property

@@ -21,7 +21,6 @@ COMMANDS = {
     "sensor-costs": "Print what the sensors of a gripper cost controllers.",
     "ship": "Add trained policies to the pretrained ones.",
     "study-report": "Write the report of a study as one page.",
-    "torture": "Attack the public interface for some hours.",
     "train-estimator": 'Train the network of the estimator "gru".',
     "validate-parts": "Check steps, engines, patches, tilt and soft pads.",
     "validate-real": "Compare surfaces and estimators with real data.",

@@ -29,7 +29,7 @@ Json: TypeAlias = Annotated[
 
 @app.callback()
 def parts() -> None:
-    """Measure what the parts of a step, a first use, an optimisation and learning cost."""
+    """Measure what the parts of a step, a first use and learning cost."""
 
 
 @app.command("all")
@@ -74,16 +74,6 @@ def first_use(env: Env = "linear_slip", json: Json = None) -> None:
 
     typer.echo(line(machine()))
     publish(compiling(_id(env)), json)
-
-
-@app.command()
-def optimisations(env: Env = "linear_slip", pairs: Pairs = 300, json: Json = None) -> None:
-    """The benefit of each optimisation."""
-    from lab.benchmarking.optimisations import optimisations as measured
-    from slipgym.benchmarking.report import line, machine, publish
-
-    typer.echo(line(machine()))
-    publish(measured(_id(env), max(3, pairs // 20)), json)
 
 
 @app.command()

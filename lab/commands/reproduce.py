@@ -12,7 +12,6 @@ Examples:\n
   slipgym reproduce coupling
   slipgym reproduce linear --trials 2
   slipgym reproduce planar --contact ellipsoid
-  slipgym reproduce planar --pads --trials 3
 """
 app = typer.Typer(epilog=EPILOG, add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 Output = Annotated[Path, typer.Option(help="Folder for the run's own folder.")]
@@ -81,20 +80,12 @@ def planar(
     jobs: Jobs = -1,
     seed: Seed = 0,
     contact: Contact = "distributed",
-    pads: Annotated[
-        bool, typer.Option("--pads", help="On rigid, Hertz, rim, soft and shifted pads; errors alone.")
-    ] = False,
     output: Output = Path("runs"),
 ) -> None:
     """Planar motion, 40 trials: the gripper turns round a hanging object; beside the paper's table."""
-    from lab.reproduction import reproduce_planar, reproduce_planar_pads
+    from lab.reproduction import reproduce_planar
 
-    if pads and contact != "distributed":
-        raise typer.BadParameter(f"--contact {contact}: --pads has contacts of its own")
-    if pads:
-        _report(reproduce_planar_pads, output, trials, jobs, seed)
-    else:
-        _report(reproduce_planar, output, trials, jobs, seed, contact)
+    _report(reproduce_planar, output, trials, jobs, seed, contact)
 
 
 def _report(reproduce: Callable[..., Path], output: Path, *arguments: object) -> None:

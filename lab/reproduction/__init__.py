@@ -2,7 +2,6 @@
 
 from lab.reproduction.coupling import reproduce_coupling
 from lab.reproduction.linear import reproduce_linear
-from lab.reproduction.pads import reproduce_planar_pads
 from lab.reproduction.planar import reproduce_planar
 from lab.reproduction.profile import reproduce_profile
 from lab.reproduction.surface import reproduce_surface
@@ -11,7 +10,6 @@ __all__ = [
     "reproduce_coupling",
     "reproduce_linear",
     "reproduce_planar",
-    "reproduce_planar_pads",
     "reproduce_profile",
     "reproduce_surface",
 ]

@@ -7,7 +7,6 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, JsonValue, field_validator, model_validator
 
-from policies.controllers.table import CLASSES
 from slipgym.config import names
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.errors import unknown
@@ -24,18 +23,6 @@ _Layers = Annotated[tuple[_Width, ...], BeforeValidator(as_tuple), Field(max_len
 _Text = Annotated[str, Field(max_length=200)]
 
 
-RENAMED_COLUMNS = {
-    "support_mu_s": "confidence_mu_s",
-    "support_mu_c": "confidence_mu_c",
-    "support_r": "confidence_r",
-    "travel_x": "measured_slip_x",
-    "travel_y": "measured_slip_y",
-    "travel_theta": "measured_slip_theta",
-    "command": "commanded_force",
-}
-"""Name of a column in files of version 0.1.0 -> its present name."""
-
-
 class Column(Frozen):
     """A number that a policy reads or gives."""
 
@@ -43,11 +30,6 @@ class Column(Frozen):
     low: float = Field(description="Lower bound; of an action: what -1 stands for [unit]")
     high: float = Field(description="Upper bound; of an action: what +1 stands for [unit]")
     unit: _Text = Field(description="Unit of the bounds [-]")
-
-    @field_validator("name")
-    @classmethod
-    def _present_name(cls, name: str) -> str:
-        return RENAMED_COLUMNS.get(name, name)
 
 
 _Number = bool | float | None
@@ -116,29 +98,6 @@ class Normalisation(Frozen):
     epsilon: Positive = Field(description="Added to the variance [unit^2]")
 
 
-class Residual(Frozen):
-    """A controller whose actions a network changes: action + reach network(observation, action, memory)."""
-
-    controller: str = Field(description="Its name, of those that come with slipgym [-]")
-    parameters: Mapping[str, _Number | Annotated[tuple[_Number, ...], BeforeValidator(as_tuple)]] = Field(
-        default={}, description="Numbers that its class is made with [-]"
-    )
-    reach: float = Field(gt=0.0, le=2.0, description="Largest change of an action [-]")
-
-    @field_validator("controller")
-    @classmethod
-    def _comes_with_slipgym(cls, name: str) -> str:
-        if name not in CLASSES:
-            raise ValueError(unknown("controller", name, CLASSES))
-        return name
-
-
-class Underlay(Residual):
-    """The same with what else the network reads."""
-
-    memory: int = Field(ge=0, le=1024, description="Numbers in the controller's memory [-]")
-
-
 class Critic(Frozen):
     """Settings that rebuilding the model for more training needs besides the policy's own network."""
 
@@ -173,19 +132,11 @@ class Description(Frozen):
     environment: Environment = Field(description="The environment it was trained in [-]")
     network: Network = Field(description="What turns an observation into an action [-]")
     normalisation: Normalisation | None = Field(description="Of observations; null: none [-]")
-    residual: Underlay | None = Field(
-        default=None, description="What the network changes; null: it acts by itself [-]"
-    )
+    residual: None = Field(default=None, description="Null; kept for files that have it [-]")
     origin: Origin = Field(description="How it came about [-]")
     files: Mapping[str, Annotated[str, Field(pattern=r"\A[0-9a-f]{64}\z")]] = Field(
         description="SHA-256 of each other file by its name [-]"
     )
-
-    @property
-    def width(self) -> int:
-        """Numbers that the network reads: an observation; behind it a controller's action and memory."""
-        where, residual = self.environment, self.residual
-        return where.width + (0 if residual is None else len(where.action) + residual.memory)
 
     @field_validator("files")
     @classmethod

@@ -20,11 +20,9 @@ from policies.learned.description import (
     Description,
     Environment,
     Network,
-    Residual,
 )
 from policies.learned.extract import ALGORITHMS, acting_tensors, algorithm_of, array, critic_of, network_of
 from policies.learned.fitting import column_of
-from policies.learned.residual import Underlying
 from policies.versions import versions
 
 
@@ -37,7 +35,6 @@ def save(
     command: str = "",
     seeds: Sequence[int] = (),
     training: bool = True,
-    residual: Residual | None = None,
 ) -> Path:
     """Writes a model as a policy's folder, whole or not at all.
 
@@ -50,8 +47,6 @@ def save(
         command: What trained it, for the record.
         seeds: Of the training, for the record.
         training: Whether to keep all that training adapts, so that `build` can go on from it.
-        residual: The controller whose actions the model changes; its observations end with the controller's
-            action and memory.
 
     Raises:
         FileExistsError: Something is there already.
@@ -59,11 +54,6 @@ def save(
     """
     algorithm, network, where = algorithm_of(model), network_of(model), described(environment, arguments)
     acts, reads = len(where["action"]), (where["history"] + 1) * len(where["observation"])
-    underlay = None
-    if residual is not None:
-        underlying = Underlying(residual, arguments, len(where["observation"]), where["rate"])
-        underlay = {**residual.model_dump(mode="json"), "memory": underlying.memory}
-        reads += acts + underlying.memory
     for what, space, shape in (
         ("observation", model.observation_space, (reads,)),
         ("action", model.action_space, (acts,)),
@@ -83,7 +73,6 @@ def save(
         "environment": where,
         "network": network.model_dump(mode="json"),
         "normalisation": normalised,
-        "residual": underlay,
         "origin": {
             "algorithm": algorithm,
             "command": command,

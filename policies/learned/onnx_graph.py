@@ -27,8 +27,7 @@ def write_onnx(policy: str | os.PathLike[str], path: str | os.PathLike[str]) -> 
     Input `observation` (n, m) float32, as it comes from the environment; output `action` (n, k) float32
     within [-1, 1]. Normalisation (in float64, as in training) and clipping are part of the graph. LSTM
     layers add inputs `hidden` and `cell` (n, layers, size), zero where an episode begins, and outputs
-    `next_hidden` and `next_cell`. A residual policy has inputs `controller_action` (n, k) and
-    `controller_memory` (n, j): what its controller, which is no part of the graph, does and remembers then.
+    `next_hidden` and `next_cell`.
     The metadata `policy` is policy.json: columns, units, what -1 and +1 mean.
 
     Args:
@@ -51,10 +50,7 @@ def graph_of(description: Description, tensors: dict[str, np.ndarray]) -> onnx.M
     """The graph of a policy, from what `files.read` returns."""
     graph, acts = _Graph(), len(description.environment.action)
     inputs, outputs = [("observation", (description.environment.width,))], [("action", (acts,))]
-    x, network, residual = "observation", description.network, description.residual
-    if residual is not None:
-        inputs += [("controller_action", (acts,)), ("controller_memory", (residual.memory,))]
-        x = graph.add("Concat", [name for name, _ in inputs], axis=1)
+    x, network = "observation", description.network
     if description.normalisation is not None:
         x = _normalised(graph, x, description.normalisation, tensors)
     if network.memory is not None:
@@ -71,12 +67,7 @@ def graph_of(description: Description, tensors: dict[str, np.ndarray]) -> onnx.M
             x = graph.add({"tanh": "Tanh", "relu": "Relu", "elu": "Elu"}[network.activation], [x])
     ends = graph.scalar(-1.0), graph.scalar(1.0)
     bounded = ("Tanh", [x]) if network.squash else ("Clip", [x, *ends])
-    if residual is None:
-        graph.add(*bounded, output="action")
-    else:
-        change = graph.add("Mul", [graph.add(*bounded), graph.scalar(residual.reach)])
-        sum_ = graph.add("Add", ["controller_action", change])
-        graph.add("Clip", [sum_, *ends], output="action")
+    graph.add(*bounded, output="action")
     model = helper.make_model(
         helper.make_graph(graph.nodes, "policy", _values(inputs), _values(outputs), graph.constants),
         opset_imports=[helper.make_opsetid("", OPSET)],

@@ -12,7 +12,6 @@ from policies.learned import files
 from policies.learned.fitting import check_environment, check_width
 from policies.learned.forward import Memory, Network
 from policies.learned.reading import layout, selection
-from policies.learned.residual import Underlying
 
 MODES = ("action_mode", "observation_mode", "load_columns", "history", "frame_skip")
 """Arguments of an environment that decide what a policy reads, gives and how often."""
@@ -38,18 +37,10 @@ class LearnedPolicy:
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.description, tensors = files.read(path)
         self._network = Network(self.description.network, self.description.normalisation, tensors)
-        self._underlying = None
         where = self.description.environment
         self.names = layout(where)
         self.width = (where.history + 1) * len(self.names)
-        self._read = selection(where, self.width + self.description.width - where.width)
-        if (residual := self.description.residual) is not None:
-            self._underlying = Underlying(residual, where.arguments, len(self.names), where.rate)
-            if self._underlying.memory != residual.memory:
-                raise ValueError(
-                    f"{path}: the memory of its controller {residual.controller!r} had {residual.memory} "
-                    f"numbers in training, in this version of slipgym it has {self._underlying.memory}"
-                )
+        self._read = selection(where)
 
     @property
     def modes(self) -> dict[str, Any]:
@@ -82,8 +73,7 @@ class LearnedPolicy:
 
         Returns:
             Action (k,) or (n, k), float32 within [-1, 1], and the memory: None, or hidden and cell state of
-            the LSTM layers, (n, layers, size) each, n = 1 for a single observation; of a residual policy
-            the controller's memory and this one, a tuple.
+            the LSTM layers, (n, layers, size) each, n = 1 for a single observation.
 
         Raises:
             ValueError: The observation, the memory or `episode_start` does not fit, or holds NaN or infinity.
@@ -92,13 +82,7 @@ class LearnedPolicy:
             raise ValueError("deterministic = False: a policy's file acts without exploration")
         observations = self._observations(observation)
         rows = np.atleast_2d(observations)
-        if self._underlying is None:
-            actions, memory = self._act(rows, state, episode_start)
-        else:
-            beneath, own = _parts(state)
-            given, rows, beneath = self._underlying.act(rows, beneath, episode_start)
-            change, own = self._act(rows, own, episode_start)
-            actions, memory = self._underlying.changed(given, change), (beneath, own)
+        actions, memory = self._act(rows, state, episode_start)
         return (actions if observations.ndim == 2 else actions[0]), memory
 
     def _act(
@@ -149,12 +133,3 @@ class LearnedPolicy:
             raise ValueError(f"state has shapes {shapes}, {n} observations need {[(n, *shape)] * 2}")
         hidden, cell = (np.where(begun[:, None, None], np.float32(0.0), part) for part in state)
         return hidden, cell
-
-
-def _parts(state: Any) -> tuple[Any, Any]:
-    """Memory of the controller and of the network of a residual policy."""
-    if state is None:
-        return None, None
-    if not isinstance(state, tuple) or len(state) != 2:
-        raise ValueError(f"state must be what the last call returned, got {type(state).__name__}")
-    return state

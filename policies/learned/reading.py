@@ -52,13 +52,11 @@ def _task(env_id: str) -> Task:
         raise ValueError(f"{error}; {own}") from None
 
 
-def selection(trained: Environment, width: int) -> np.ndarray | None:
+def selection(trained: Environment) -> np.ndarray | None:
     """Places of the numbers that a policy's network reads.
 
     Args:
         trained: The environment the policy was trained in.
-        width: Numbers to choose from: a present observation with its history, and what follows it: action and
-            memory of a controller.
 
     Returns:
         Indices, or None if all are read in their order.
@@ -66,5 +64,5 @@ def selection(trained: Environment, width: int) -> np.ndarray | None:
     present = layout(trained)
     places = np.array([present.index(column.name) for column in trained.observation])
     frames = np.arange(trained.history + 1)[:, np.newaxis] * len(present)
-    chosen = np.append(frames + places, np.arange(frames.size * len(present), width))
-    return None if np.array_equal(chosen, np.arange(width)) else chosen
+    chosen = (frames + places).ravel()
+    return None if np.array_equal(chosen, np.arange(frames.size * len(present))) else chosen

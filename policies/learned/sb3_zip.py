@@ -97,7 +97,6 @@ def import_zip(
             "squash": kind == "SAC",
         },
         "normalisation": None,
-        "residual": None,
         "origin": {
             "algorithm": "RecurrentPPO" if memory else kind,
             "command": f"imported from {source.name}",

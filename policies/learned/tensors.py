@@ -23,7 +23,7 @@ def expected(description: Description) -> Shapes:
     rows of input, forget, cell and output gate, in this order, as in torch.
     """
     environment, network = description.environment, description.network
-    width = description.width
+    width = description.environment.width
     found: Shapes = {}
     if description.normalisation is not None:
         found = {f"observation.{name}": ("F64", (width,)) for name in ("mean", "var")}

@@ -20,8 +20,7 @@ from policies.training.evaluate import evaluate
 
 STOPS_UNTRAINED = (
     "before any learning the policy solves {:.0%} of the evaluation episodes, and stop.success is {}: the "
-    "run may end without having learned anything. A residual policy begins as its controller. Raise "
-    "stop.success, leave it out, or train from nothing (<task>_scratch, or --set residual=null)"
+    "run may end without having learned anything. Raise stop.success, or leave it out"
 )
 """Warning for a stopping rule that is met at step 0."""
 

@@ -8,9 +8,7 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import BeforeValidator, Field, create_model, field_validator, model_validator
 
-import policies
 from estimator.reference import is_reference
-from policies.learned.description import Residual
 from policies.task_names import canonical
 from policies.training import seeds
 from policies.training.algorithms import PPO, SAC, TQC, PrivilegedPPO, RecurrentPPO
@@ -136,10 +134,6 @@ class Training(Frozen):
         default={},
         description="Overrides of the environment's config where it learns; not where it is evaluated [-]",
     )
-    residual: Residual | None = Field(
-        default=None,
-        description="A controller whose actions the learner changes; null: it acts by itself [-]",
-    )
     derived: Mapping[str, Mapping[str, float]] = Field(
         default={},
         description="Columns that the learner reads in addition: name -> column of the observation -> factor",
@@ -166,33 +160,16 @@ class Training(Frozen):
         return canonical(name)
 
     @model_validator(mode="after")
-    def _can_change_the_controller(self) -> Self:
-        if self.residual is None:
-            return self
-        if self.environment.observation_mode != "flat":
-            raise ValueError("residual needs observation_mode 'flat', which its controller reads")
-        controller = policies.make(self.residual.controller, **self.residual.parameters)
-        needs, has = policies.modes(controller)["action_mode"], find(self.task).action_mode
-        if needs != (self.environment.action_mode or has):
-            raise ValueError(f"residual: {self.residual.controller} needs action_mode {needs!r}")
-        if getattr(controller, "task", None) not in (None, find(self.task).name):
-            raise ValueError(f"residual: {self.residual.controller} is not for {self.task}")
-        return self
-
-    @model_validator(mode="after")
     def _can_fold_derived_columns(self) -> Self:
-        if self.derived and (self.algorithm not in ("ppo", "privileged_ppo") or self.residual is not None):
-            raise ValueError("derived needs algorithm 'ppo' or 'privileged_ppo', and no residual")
+        if self.derived and self.algorithm not in ("ppo", "privileged_ppo"):
+            raise ValueError("derived needs algorithm 'ppo' or 'privileged_ppo'")
         return self
 
     @model_validator(mode="after")
     def _can_learn_with_a_privileged_critic(self) -> Self:
         if self.algorithm == "privileged_ppo":
-            wanted = self.engine == "planar" and self.environment.observation_mode == "flat"
-            if not wanted or self.residual is not None:
-                raise ValueError(
-                    "privileged_ppo needs engine 'planar', observation_mode 'flat' and no residual"
-                )
+            if self.engine != "planar" or self.environment.observation_mode != "flat":
+                raise ValueError("privileged_ppo needs engine 'planar' and observation_mode 'flat'")
             chosen = self.privileged_ppo
             rows = self.num_envs if chosen.memory else self.num_envs * chosen.n_steps
             if chosen.n_minibatches > rows:

@@ -46,7 +46,7 @@ def write(
     learners.set_normalisation(envs, dict(normalisation))
     if config.derived:
         model, envs = _folded(model, envs, config)
-    return export.save(model, path, env_id, arguments, envs, command, [seed], residual=config.residual)
+    return export.save(model, path, env_id, arguments, envs, command, [seed])
 
 
 def _privileged(

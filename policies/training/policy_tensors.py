@@ -81,10 +81,10 @@ def load(
     description, weights = files.read(path, WEIGHTS)
     if description.environment.id != find(config.task).id:
         raise ValueError(f"{path}: is a policy for {description.environment.id}, not for {config.task}")
-    if description.network != network(config) or description.residual is not None:
+    if description.network != network(config):
         raise ValueError(
-            f"{path}: privileged_ppo.start needs the network that is trained, {network(config)!r}, and no "
-            f"residual; the policy has {description.network!r}"
+            f"{path}: privileged_ppo.start needs the network that is trained, {network(config)!r}; "
+            f"the policy has {description.network!r}"
         )
     normalised = config.normalisation.observation
     if normalised != (description.normalisation is not None):

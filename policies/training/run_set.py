@@ -71,12 +71,11 @@ def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -
 
 
 def _best(run: Path, row: Mapping[str, Any]) -> str:
-    """The best evaluation; that at step 0 is of the controller or policy that the run started from."""
+    """The best evaluation; that at step 0 may be of a policy that the run started from."""
     said = f"solved {row['success']:.0%} of the held-out episodes at step {row['steps']}"
     config, _ = folder.order(run)
     given = config.algorithm == "privileged_ppo" and config.privileged_ppo.start
-    kind = "controller" if config.residual else "policy" if given else None
-    return said if row["steps"] or kind is None else f"{said}: the {kind} that it started from solves as many"
+    return said if row["steps"] or not given else f"{said}: the policy that it started from solves as many"
 
 
 def _time(result: Mapping[str, Any]) -> str:

@@ -10,11 +10,9 @@ import gymnasium as gym
 from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv, VecMonitor
 
 from estimator.reference import is_reference
-from policies.learned.residual import Underlying
 from policies.training.adapter import SlipVecEnv, TaskEnd, make_vec_env
 from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv
-from policies.training.residual import ResidualVecEnv
 from policies.training.state_checks import check_like
 from slipgym.tasks import find
 
@@ -70,10 +68,6 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
         made = scalar(config.task, count, combinations, config.processes, **keywords)
         made.seed(seed)
     envs: VecEnv = made
-    if config.residual is not None:
-        columns, metadata = envs.get_attr("columns")[0], envs.get_attr("metadata")[0]
-        underlying = Underlying(config.residual, keywords, len(columns), metadata["render_fps"])
-        envs = ResidualVecEnv(envs, underlying)
     if config.derived and not privileged:
         envs = DerivedVecEnv(envs, config.derived, config.environment.history)
     return envs
@@ -105,8 +99,6 @@ def get_state(envs: Any) -> dict[str, Any]:
     """Everything that decides what the environments do next, as plain data."""
     if isinstance(envs, DerivedVecEnv):
         return get_state(envs.venv)
-    if isinstance(envs, ResidualVecEnv):
-        return {**get_state(envs.venv), "residual": envs.get_state()}
     states = envs.env_method("get_state")
     return {
         "envs": states[:1] if _is_batch(envs) else states,
@@ -122,10 +114,6 @@ def set_state(envs: Any, state: dict[str, Any]) -> None:
         ValueError: It is of other environments.
     """
     if isinstance(envs, DerivedVecEnv):
-        set_state(envs.venv, state)
-        return
-    if isinstance(envs, ResidualVecEnv):
-        envs.set_state(state["residual"])
         set_state(envs.venv, state)
         return
     own = {"returns": envs.episode_returns, "lengths": envs.episode_lengths}

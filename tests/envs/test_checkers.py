@@ -12,6 +12,7 @@ from slipgym.registration import ENVIRONMENTS
 SOURCES = ("estimated", "true", "nominal", "none")
 
 
+@pytest.mark.quick_tasks
 @pytest.mark.parametrize("source", SOURCES)
 def test_gymnasium_checker(env_id, source):
     env = gym.make(env_id, friction_source=source, render_mode="rgb_array")
@@ -19,6 +20,7 @@ def test_gymnasium_checker(env_id, source):
     env.close()
 
 
+@pytest.mark.quick_cases("slipgym/LinearSlip-v0-estimated", "slipgym/Hold-v0-none")
 @pytest.mark.parametrize("source", SOURCES)
 def test_stable_baselines_checker(make, env_id, source):
     checker = pytest.importorskip("stable_baselines3.common.env_checker")

@@ -25,6 +25,7 @@ SCRIPT = str(Path(__file__).with_name("rollout.py"))
         ({"radius": 0.006}, 0.006),
     ],
 )
+@pytest.mark.quick_tasks
 @pytest.mark.parametrize("model", ["ellipsoid", "distributed"])
 def test_the_true_r_is_that_of_the_pressure_on_the_pad(make, env_id, model, contact, r):
     if "Explore" in env_id:

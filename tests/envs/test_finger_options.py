@@ -108,6 +108,9 @@ def test_a_centre_of_pressure_must_lie_on_the_pad(make):
         make(LINEAR, config={"contact": {"cop_offset": [[0.02, 0.0], [0.0, 0.0]]}})
 
 
+@pytest.mark.quick_cases(
+    "slipgym/LinearSlip-v0-train", "slipgym/Hold-v0-eval_ood", "slipgym/PlanarSlip-v0-train"
+)
 @pytest.mark.parametrize("preset", ["train", "eval_ood"])
 def test_presets_draw_each_finger_on_its_own(make, env_id, preset):
     env = make(env_id, randomization=preset)

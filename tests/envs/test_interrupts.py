@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lab.torture.interrupts import after_engine, before_engine, count, interrupt, lines
+from tests.envs.interrupts import after_engine, before_engine, count, interrupt, lines
 
 OTHER = {"object_size": (0.44, 0.02, 0.3)}
 IDLE = np.zeros(1, np.float32)
@@ -21,7 +21,7 @@ def said(env, seed=2, options=None) -> list[str]:
 
 
 def moments(total: int) -> list[int]:
-    """Some of so many moments, always the same; `make torture` interrupts at all of them."""
+    """Some of so many moments, always the same."""
     most = min(total, MOMENTS)
     return sorted((np.random.default_rng(0).choice(total, most, replace=False) + 1).tolist())
 

@@ -78,6 +78,7 @@ def test_the_load_part_follows_from_the_sensors(engine):
     env.close()
 
 
+@pytest.mark.quick_cases("planar")
 @ENGINES
 def test_the_privileged_group_holds_what_an_episode_drew(engine):
     arguments = {"observation_mode": "dict", "randomization": "lab", "sensors": "lab", "level": "hard"}

@@ -16,13 +16,12 @@ from slipgym.envs.arguments import OBSERVATION_MODES
 pytestmark = pytest.mark.quick_tasks
 
 PAIRS = tuple(product(ACTION_MODES, OBSERVATION_MODES))
-QUICK = [f"slipgym/LinearSlip-v0-{action}-{observation}" for action, observation in PAIRS]
-QUICK += [
+QUICK = [
     f"slipgym/{task}-v0-{action}-{observation}"
-    for task in ("PlanarSlip", "Hold")
+    for task in ("LinearSlip", "PlanarSlip", "Hold")
     for action, observation in zip(ACTION_MODES, cycle(OBSERVATION_MODES))
 ]
-"""Every pair in one task, every mode in the others."""
+"""Every mode in three tasks; the other pairs are slow."""
 FULL = {"action_mode": "grip_force_wrist", "observation_mode": "dict", "history": 2}
 
 
@@ -32,7 +31,7 @@ def test_gymnasium_checker(make, env_id, action_mode, observation_mode):
     check_env(make(env_id, action_mode=action_mode, observation_mode=observation_mode, history=1))
 
 
-@pytest.mark.quick_cases(*QUICK)
+@pytest.mark.quick_cases(*(each for each in QUICK if "LinearSlip" in each))
 @pytest.mark.parametrize(("action_mode", "observation_mode"), PAIRS)
 def test_stable_baselines_checker(make, env_id, action_mode, observation_mode):
     checker = pytest.importorskip("stable_baselines3.common.env_checker")

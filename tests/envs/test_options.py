@@ -4,6 +4,9 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
+from slipgym.tasks import TASKS
+from tests.envs.conftest import CARRYING
+
 HOLD, LINEAR = "slipgym/Hold-v0", "slipgym/LinearSlip-v0"
 FIRM = np.float32([0.2])
 CHANGES = {
@@ -52,6 +55,16 @@ LIFTED = {"slipgym/Carry-v0", "slipgym/FragileHold-v0"}
 """Neither tilt nor slip before the wrist moves."""
 UNSEEN = {("slipgym/Explore-v0", name) for name in ("accuracy", "commitment", "tilt_tolerance")}
 """Options that show in a guess, or in a turn in the grip: tests/tasks/test_explore.py."""
+TASKS_OF = {
+    name: [
+        task.id
+        for task in TASKS.values()
+        if name in task.options.model_fields and task.id not in CARRYING and (task.id, name) not in UNSEEN
+    ]
+    for name in CHANGES
+}
+QUICK = [f"{ids[k % len(ids)]}-{name}" for k, (name, ids) in enumerate(TASKS_OF.items()) if ids]
+"""Every option in one task, one task after the other; the other cases are slow."""
 
 
 @pytest.fixture(scope="module")
@@ -90,6 +103,7 @@ def test_every_option_is_tried_and_explained(make, env_id):
     assert all(field.description for field in fields.values())
 
 
+@pytest.mark.quick_cases(*QUICK)
 @pytest.mark.parametrize("name", CHANGES)
 def test_an_option_changes_its_episode_and_no_other(kept, plain, env_id, play, name):
     env = kept(env_id, "train" if name == "randomization_scale" else "none")

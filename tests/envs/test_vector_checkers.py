@@ -11,6 +11,8 @@ from tests.vector_checker import check_vector_env
 
 pytestmark = pytest.mark.quick_tasks
 
+CHECKED = zip(("LinearSlip", "PlanarSlip", "Hold"), AutoresetMode, strict=True)
+"""Each mode in one task; the other cases are slow."""
 FULL = {
     "observation_mode": "dict",
     "history": 1,
@@ -24,6 +26,7 @@ def test_gymnasium_checker_of_the_planar_engine(make, env_id):
     check_env(make(env_id, engine="planar", render_mode="rgb_array"))
 
 
+@pytest.mark.quick_cases(*(f"slipgym/{task}-v0-{mode}" for task, mode in CHECKED))
 @pytest.mark.parametrize("mode", AutoresetMode)
 def test_vector_checker(env_id, mode):
     check_vector_env(

@@ -133,6 +133,14 @@ def test_any_slip_in_three_directions_shows_what_it_moves(spin_first, noise):
     assert wrong == {}
 
 
+SQUARE = (
+    *("0.0022-3.0-0.0", "0.0022-8.0-0.3", "0.0022-15.0-1.0", "0.004-3.0-0.3", "0.004-8.0-1.0"),
+    *("0.004-15.0-0.0", "0.007-3.0-1.0", "0.007-8.0-0.0", "0.007-15.0-0.3"),
+)
+"""A Latin square of r, f_n and held: every pair of two values once."""
+
+
+@pytest.mark.quick_cases(*(f"{rim}-{case}" for rim in (True, False) for case in SQUARE))
 @pytest.mark.parametrize("held", [0.0, 0.3, 1.0])
 @pytest.mark.parametrize("f_n", [3.0, 8.0, 15.0])
 @pytest.mark.parametrize("r", [0.0022, 0.004, 0.007])

@@ -19,6 +19,7 @@ def mapped(path, tmp_path):
     return done.output, records.load_columns(output)
 
 
+@pytest.mark.quick_cases("{}_R", "/finger_1/{}")
 @pytest.mark.parametrize("names", ["left_{}", "{}_R", "/finger_1/{}", "{}2"])
 def test_two_fingers_and_positions(table, save, tmp_path, names):
     other = {"left_{}": "right_{}", "{}_R": "{}_l", "/finger_1/{}": "/finger_2/{}", "{}2": "{}1"}[names]

@@ -30,7 +30,7 @@ USAGE_ERROR = typer.BadParameter.__bases__[0]
 COMMANDS = PRODUCT | LAB
 OWN = {"first-use", "lock", "make-docs", "make-notebooks", "matrix", "wheel-smoke"}
 """Scripts of the repository alone."""
-TARGETS = {"make validate", "make benchmark", "make torture"}
+TARGETS = {"make validate", "make benchmark"}
 """Commands within a sentence that state figures; the other targets are those of development."""
 RUNS: dict[str, dict[str, Any]] = yaml.safe_load(
     (ROOT / "tests/house/documented_commands.yaml").read_text(encoding="utf-8")

@@ -72,21 +72,29 @@ def test_the_report_asks_for_a_motion_that_turns(folder):
 
 def test_environments_take_the_configuration(result, folder):
     config = str(folder / "gripper.yaml")
-    env = gym.make("slipgym/Hold-v0", config=config, material="identified")
-    env.reset(seed=0)
-    assert np.isfinite(float(env.step(env.action_space.sample())[1]))
-    env.close()
-    envs = gym.make_vec("slipgym/Hold-v0", num_envs=2, config=config, material="identified")
-    envs.reset(seed=0)
-    assert np.isfinite(envs.step(envs.action_space.sample())[1]).all()
-    envs.close()
+    env = gym.make("slipgym/Hold-v0", engine="planar", config=config, material="identified").unwrapped
+    envs = gym.make_vec("slipgym/Hold-v0", num_envs=2, config=config, material="identified").unwrapped
+    for made in (env, envs):
+        assert made.config.materials["identified"].mu_c == found(result)["mu_c"]
+        assert made.config.contact.pad.shear_compliance == found(result)["shear compliance"]
+        made.close()
     written = yaml.safe_load((folder / "gripper.yaml").read_text())
     assert written["materials"]["identified"]["mu_c"] == found(result)["mu_c"]
 
 
-def test_the_same_log_gives_the_same_bits():
-    log = simulated_log(GRIPPER, names=("slide x",))
-    result, again = identify(log, "disc"), identify(log, "disc")
+@pytest.mark.slow  # programs of its own
+@pytest.mark.parametrize("engine", ["planar", "bullet"])
+def test_environments_run_with_the_configuration(result, folder, engine):
+    config = str(folder / "gripper.yaml")
+    env = gym.make("slipgym/Hold-v0", engine=engine, config=config, material="identified")
+    _, info = env.reset(seed=0)
+    assert info["true"][1] == pytest.approx(found(result)["mu_c"])
+    assert np.isfinite(float(env.step(env.action_space.sample())[1]))
+    env.close()
+
+
+def test_the_same_log_gives_the_same_bits(result):
+    again = identify(simulated_log(GRIPPER, names=("press", "slide x")))
     assert again.point.tobytes() == result.point.tobytes()
     assert again.deviation.tobytes() == result.deviation.tobytes()
 

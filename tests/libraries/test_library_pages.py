@@ -120,16 +120,6 @@ def test_a_demonstration_repeats_itself_bit_for_bit(tmp_path, monkeypatch):
         demonstrate("hold", "bad name", 1)
 
 
-def test_the_first_policy_learns_something():
-    """A residual policy begins as its controller, which meets the page's stopping rule at step 0."""
-    pytest.importorskip("stable_baselines3")
-    from policies.training import files
-
-    page = (ROOT / "docs" / "first_policy.md").read_text(encoding="utf-8")
-    (name,) = re.findall(r"^    slipgym train (\w+) --set stop", page, re.MULTILINE)
-    assert files.load(name).residual is None
-
-
 @pytest.mark.slow
 def test_the_first_policy(tmp_path):
     """Its commands, with a small budget."""

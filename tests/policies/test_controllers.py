@@ -43,6 +43,7 @@ def play(env, policy, seed, **options):
     return info, largest
 
 
+@pytest.mark.quick_cases("0.02-2.0-true", "0.04-2.0-estimated", "0.04-5.0-nominal", "0.04-5.0-estimated")
 @pytest.mark.parametrize("source", SOURCES)
 @pytest.mark.parametrize(("distance", "duration"), [(0.02, 2.0), (0.04, 2.0), (0.04, 5.0)])
 def test_linear_slip_arrives(source, distance, duration):

@@ -135,6 +135,7 @@ def test_a_run_without_a_complete_cell_leaves_no_folder(small, tmp_path, monkeyp
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.quick_cases("OSError-planar", "KeyboardInterrupt-bullet")
 @pytest.mark.parametrize("engine", ["planar", "bullet"])
 @pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
 def test_a_run_that_is_broken_off_keeps_its_complete_cells(small, tmp_path, monkeypatch, error, engine):

@@ -14,9 +14,7 @@ from policies.evaluation.one_policy import episodes
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import run_trials
 from policies.learned.description import Environment as Trained
-from policies.learned.description import Residual
 from policies.learned.fitting import check_environment, column_of
-from policies.learned.residual import Underlying
 from policies.play.viewer.controls import status
 from policies.play.viewer.plots import Plots
 from policies.play.viewer.session import Session
@@ -111,17 +109,6 @@ def test_configurations_take_null():
     message = r"teacher 'estimate' acts on estimates: environment\.estimator is null"
     with pytest.raises(ValueError, match=message):
         imitation.read({**base, "teacher": "estimate"})
-
-
-def test_a_residual_policy_stands_on_a_controller_without_friction():
-    residual = Residual(controller="linear_slip", reach=0.1)
-    env = gym.make("slipgym/LinearSlip-v0", engine="planar", estimator=None).unwrapped
-    under = Underlying(residual, {"estimator": None}, len(env.columns), 120.0)
-    observation, _ = env.reset(seed=0)
-    actions, read, _ = under.act(observation[np.newaxis], None, None)
-    assert actions.shape == (1, 1)
-    assert np.isfinite(read).all()
-    env.close()
 
 
 def test_a_learned_policy_reads_what_it_was_trained_on():

@@ -60,6 +60,7 @@ def test_what_a_command_prints_arrives(encoding, words, monkeypatch):
     assert said(encoding, front.main) == (0, expected)
 
 
+@pytest.mark.quick_cases("program0", "program2", "program4")
 @pytest.mark.parametrize(
     "program",
     [

@@ -103,6 +103,7 @@ def test_rows_do_not_depend_on_each_other_and_states_restore_every_bit(preset):
     envs.close()
 
 
+@pytest.mark.quick_cases("markers")
 @pytest.mark.parametrize("preset", OWNED)
 def test_both_engines_have_the_same_columns(preset):
     pytest.importorskip("pybullet")

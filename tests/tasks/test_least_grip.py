@@ -40,10 +40,12 @@ def peaks(task, **arguments):
     return largest.reshape(EPISODES, -1), inside.reshape(EPISODES, -1).all(axis=1)
 
 
-@pytest.mark.parametrize("randomization", ["none", "train", "lab"])
-def test_of_a_carried_object(randomization):
+@pytest.mark.parametrize(
+    ("randomization", "sensors"), [("none", "realistic"), ("train", "realistic"), ("lab", "lab")]
+)
+def test_of_a_carried_object(randomization, sensors):
     """Beyond the least grip a pad only gives elastically; below it the object slides."""
-    found, inside = peaks("FragileHold", randomization=randomization)
+    found, inside = peaks("FragileHold", randomization=randomization, sensors=sensors)
     assert inside.sum() >= EPISODES - 2
     less, enough, firm = found[inside].T
     assert (enough < 1.3 * firm + 2e-5).mean() >= 0.9  # a resonance of the swing depends on the grip

@@ -13,6 +13,10 @@ FRICTION = Friction(mu_s=0.5, mu_c=0.4)
 MASS, FORCE = 0.2, 5.0
 
 
+@pytest.mark.quick_cases(
+    *("-x-4-bullet", "oblique-2-bullet", "oblique-8-bullet", "pitch-5-bullet"),
+    *("-x-2-planar", "oblique-5-planar", "pitch-8-planar"),
+)
 @pytest.mark.parametrize("engine", ["planar", "bullet"])
 @pytest.mark.parametrize("engine_steps", [2, 4, 5, 8])
 @pytest.mark.parametrize("name", ["-x", "oblique", "pitch"])

@@ -22,6 +22,7 @@ ALL = {
 LONG = (0.08, 0.03, 0.5)
 
 
+@pytest.mark.quick_cases(*(f"ellipsoid-overrides{k}" for k in range(6)), "distributed-overrides5")
 @pytest.mark.parametrize("overrides", [FRICTION, RADIUS, CENTRE, LAG, GAIN, ALL])
 @pytest.mark.parametrize("contact", ["ellipsoid", "distributed"])
 def test_both_engines_agree(overrides, contact):

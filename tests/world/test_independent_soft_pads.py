@@ -30,6 +30,10 @@ def drag(held: Bench, load: tuple[float, float, float], duration: float = 0.1) -
     return held.plant.pads["wrench"][0].sum(axis=0)
 
 
+@pytest.mark.quick_cases(
+    *("0.31-1.0-ellipsoid-planar", "-0.4-12.0-ellipsoid-bullet", "0.31-12.0-disc-planar"),
+    *("-0.4-1.0-disc-planar", "0.31-3.0-distributed-planar", "-0.4-12.0-distributed-planar"),
+)
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("contact", ["ellipsoid", "disc", "distributed"])
 @pytest.mark.parametrize("force", [1.0, 3.0, 12.0])
@@ -111,6 +115,10 @@ def shear(pad: dict, load: float, duration: float) -> tuple[np.ndarray, np.ndarr
     return times, solve_ivp(derivative, (0.0, duration), [0.0] * 3, "Radau", times, **options).y[0]
 
 
+@pytest.mark.quick_cases(
+    *("5000.0-ellipsoid-planar", "200000.0-ellipsoid-bullet", "20000.0-disc-planar"),
+    *("5000.0-distributed-planar", "200000.0-distributed-planar"),
+)
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("contact", ["ellipsoid", "disc", "distributed"])
 @pytest.mark.parametrize("stiffness", [5e3, 2e4, 2e5])

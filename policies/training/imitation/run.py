@@ -89,7 +89,6 @@ def imitate(
             "environment": where,
             "network": network_of(config).model_dump(mode="json"),
             "normalisation": NORMALISATION.model_dump(mode="json"),
-            "residual": None,
             "origin": origin,
         }
         files.write(path, description, outcome.weights)

@@ -9,11 +9,10 @@ from pathlib import Path
 import pybullet
 import pytest
 
-from lab.benchmarking import batch, measure, optimisations
+from lab.benchmarking import batch, measure
 from lab.benchmarking.bare import BareLoop
 from lab.benchmarking.layers import Layers
 from lab.benchmarking.timing import compare
-from slipgym._numba.switches import OPTIMISATIONS, VARIABLE
 from slipgym.config import load
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -129,13 +128,6 @@ def test_a_third_of_the_headlines_rows_slips_and_none_of_a_firm_hold():
         player.env.close()
     assert 0.25 < slipping["about the slip limit"] < 0.42
     assert slipping["all forces, mostly a firm hold"] < 0.01
-
-
-def test_every_variant_has_its_own_compiler_cache():
-    variants = [optimisations._environment(off) for off in ("", *OPTIMISATIONS)]
-    assert [variant[VARIABLE] for variant in variants] == ["", *OPTIMISATIONS]
-    folders = [variant["NUMBA_CACHE_DIR"] for variant in variants[1:]]
-    assert len(set(folders)) == len(OPTIMISATIONS)
 
 
 def test_compare_takes_medians_of_ratios_of_neighbours():

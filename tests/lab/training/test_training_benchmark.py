@@ -34,10 +34,7 @@ def test_ppo_in_both():
 @pytest.mark.parametrize(
     ("changes", "named"),
     [
-        (
-            {"residual": {"controller": "linear_slip", "reach": 0.2}},
-            {"controller", "policy in rollouts", "forward pass", "backward pass", "optimiser"},
-        ),
+        ({}, {"policy in rollouts", "forward pass", "backward pass", "optimiser"}),
         ({"algorithm": "privileged_ppo"}, {"actor and critic in rollouts", "update"}),
     ],
 )

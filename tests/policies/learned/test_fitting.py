@@ -6,7 +6,6 @@ import pytest
 
 import policies
 import slipgym  # noqa: F401
-from policies.controllers.hold import HoldPolicy
 from policies.evaluation.plan import plan
 from policies.evaluation.trial import run_trial, run_trials
 from policies.learned import LearnedPolicy, pretrained
@@ -148,20 +147,14 @@ def described():
     return [column_of(column).model_dump() for column in columns(load(), TASKS["Hold"], "estimated")]
 
 
-MEMORY = len(HoldPolicy().initial_state(1)[0])
-
-
 @pytest.mark.parametrize("history", [0, 2])
-@pytest.mark.parametrize(
-    "residual", [None, {"controller": "hold", "parameters": {}, "reach": 0.3, "memory": MEMORY}]
-)
-def test_a_policy_reads_its_columns_by_name_and_ignores_later_ones(policy_folder, history, residual):
+def test_a_policy_reads_its_columns_by_name_and_ignores_later_ones(policy_folder, history):
     """As one that was trained before the observation had `violated`."""
     observed = described()
     at = [column["name"] for column in observed].index("violated")
     old = {"observation": [*observed[:at], *observed[at + 1 :]], "history": history}
     old["arguments"] = {"friction_source": "estimated", "action_mode": "grip_force", "history": history}
-    policy = LearnedPolicy(policy_folder(environment=old, residual=residual))
+    policy = LearnedPolicy(policy_folder(environment=old))
     assert (len(policy.names), policy.width) == (len(observed), (history + 1) * len(observed))
     env = gym.make("slipgym/Hold-v0", engine="planar", history=history)
     policy.check(env)
@@ -169,12 +162,9 @@ def test_a_policy_reads_its_columns_by_name_and_ignores_later_ones(policy_folder
     other = observation.copy()
     other[at :: len(observed)] = 1.0
     np.testing.assert_array_equal(policy.predict(other)[0], policy.predict(observation)[0])
-    read = observation[np.newaxis]
-    if residual is not None:
-        _, read, _ = policy._underlying.act(read, None, None)
     frames = observation.reshape(history + 1, -1)
-    wanted = np.append(np.delete(frames, at, axis=1), read[0, observation.size :])
-    np.testing.assert_array_equal(np.take(read, policy._read, axis=1)[0], wanted)
+    wanted = np.delete(frames, at, axis=1).ravel()
+    np.testing.assert_array_equal(np.take(observation, policy._read), wanted)
     env.close()
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import policies
 from policies.learned import LearnedPolicy
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -68,25 +67,6 @@ def test_graph_and_policy_remember_alike(policy_folder, lstm, tmp_path):
         action, hidden, cell = graph.run(names, inputs)
         for ours, theirs in ((wanted, action), (state[0], hidden), (state[1], cell)):
             np.testing.assert_allclose(theirs, ours, atol=2e-6)
-
-
-def test_graph_changes_a_controller_as_the_policy_does(policy_folder, tmp_path):
-    memory = len(policies.make("hold").initial_state(1)[0])
-    residual = {"controller": "hold", "parameters": {}, "reach": 0.3, "memory": memory}
-    policy = LearnedPolicy(folder := policy_folder(residual=residual))
-    graph, controller = session(folder, tmp_path / "policy.onnx"), policies.make("hold")
-    state, own, rng, changes = None, None, np.random.default_rng(0), []
-    small = [k for k, name in enumerate(policy.names) if name.startswith(("tau", "v_", "omega"))]
-    for _ in range(5):
-        observations = np.abs(rng.normal(size=(16, policy.width))).astype(np.float32)
-        observations[:, small] *= 1e-3  # or the controller would grip with all its force
-        wanted, state = policy.predict(observations, state)
-        given, own = controller.predict(observations, own)
-        inputs = {"observation": observations, "controller_action": given}
-        (actions,) = graph.run(["action"], {**inputs, "controller_memory": own.astype(np.float32)})
-        np.testing.assert_allclose(actions, wanted, atol=2e-6)
-        changes.append(np.abs(actions - given).max())
-    assert max(changes) > 0.01
 
 
 def test_the_file_says_what_the_numbers_mean(policy_folder, tmp_path):

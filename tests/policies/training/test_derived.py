@@ -83,5 +83,3 @@ def test_what_does_not_fit_is_refused(small, config):
         vector.make(wrong, 0)
     with pytest.raises(ValueError, match="derived needs algorithm 'ppo'"):
         small(derived=DERIVED, algorithm="sac")
-    with pytest.raises(ValueError, match="derived needs algorithm 'ppo'"):
-        small(derived=DERIVED, residual={"controller": "linear_slip", "reach": 0.2})

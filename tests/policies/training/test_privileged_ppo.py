@@ -147,7 +147,6 @@ def test_a_task_has_any_spelling(name):
     ("changes", "named"),
     [
         ({"engine": "bullet"}, "needs engine 'planar'"),
-        ({"residual": {"controller": "linear_slip", "reach": 0.1}}, "no residual"),
         ({"privileged_ppo": {"n_minibatches": 99}}, "must not exceed 64"),
         ({"privileged_ppo": {"curriculum": {"stages": [{"tasks": {"linear_slip": {"tol": 1}}}]}}}, "tol"),
         ({"privileged_ppo": {"memory": -1}}, "whole number >= 0"),

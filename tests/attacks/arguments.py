@@ -12,7 +12,11 @@ import numpy as np
 
 import estimator as estimators
 from estimator.registry import specification
-from lab.torture.cases import (
+from slipgym.config import load
+from slipgym.config.load import load_randomization, merge
+from slipgym.envs.arguments import FRICTION_SOURCES, OBSERVATION_MODES, ActionMode
+from slipgym.registration import ENVIRONMENTS
+from tests.attacks.cases import (
     ACCEPTED,
     REFUSED,
     STOPPED,
@@ -24,10 +28,6 @@ from lab.torture.cases import (
     placed,
     value,
 )
-from slipgym.config import load
-from slipgym.config.load import load_randomization, merge
-from slipgym.envs.arguments import FRICTION_SOURCES, OBSERVATION_MODES, ActionMode
-from slipgym.registration import ENVIRONMENTS
 
 IDS = tuple(ENVIRONMENTS)
 KEYWORDS = {
@@ -181,9 +181,9 @@ def actions(rng: np.random.Generator) -> str:
 
 EXPLAINED = ACCEPTED, REFUSED, STOPPED
 ATTACKS = (
-    Attack("keywords", keywords, 2000, EXPLAINED),
-    Attack("configuration", config, 4000, EXPLAINED),
-    Attack("randomization", randomization, 2000, EXPLAINED),
-    Attack("reset options", options, 4000, EXPLAINED),
-    Attack("actions", actions, 4000, (ACCEPTED, REFUSED)),
+    Attack("keywords", keywords, 15, EXPLAINED),
+    Attack("configuration", config, 25, EXPLAINED),
+    Attack("randomization", randomization, 15, EXPLAINED),
+    Attack("reset options", options, 40, EXPLAINED),
+    Attack("actions", actions, 60, (ACCEPTED, REFUSED)),
 )

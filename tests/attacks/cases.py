@@ -1,4 +1,4 @@
-"""Cases of the campaign: an attack makes one from a random generator and says what came of it."""
+"""Makes values, and says what came of a call: an attack makes its cases from a random generator."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-ACCEPTED, REFUSED, STOPPED, EQUAL = "accepted", "refused", "stopped", "equal"
-"""It worked; a named error refused it; FloatingPointError ended it; it equals the undisturbed one."""
+ACCEPTED, REFUSED, STOPPED = "accepted", "refused", "stopped"
+"""It worked; a named error refused it; FloatingPointError ended it."""
 
 
 @dataclass(frozen=True)
@@ -17,15 +17,13 @@ class Attack:
     """A kind of case."""
 
     name: str
-    """Its name in the table."""
+    """Its name."""
     case: Callable[[np.random.Generator], str]
     """Makes one case; returns an outcome, or raises what nothing explains."""
     count: int
-    """Cases in a full campaign."""
+    """Cases without `slow`."""
     allowed: tuple[str, ...]
     """Outcomes that are explained."""
-    seconds: float = 60.0
-    """Time after which a case counts as endless [s]."""
 
 
 REFUSALS = (ValueError, TypeError)

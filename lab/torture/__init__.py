@@ -1,1 +1,0 @@
-"""Attacks on the public interface: interrupts, crafted files, inconsistent states, values without limit."""
