@@ -1,5 +1,6 @@
 """The result that every estimator publishes, and the state fields that all share."""
 
+import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -66,6 +67,26 @@ class Estimate(NamedTuple):
     """Whether this sample updated mu_c."""
     observable_r: bool
     """Whether this sample updated r."""
+
+    @property
+    def support_mu_s(self) -> float:
+        """Deprecated name of `confidence_mu_s`."""
+        return self._renamed("mu_s")
+
+    @property
+    def support_mu_c(self) -> float:
+        """Deprecated name of `confidence_mu_c`."""
+        return self._renamed("mu_c")
+
+    @property
+    def support_r(self) -> float:
+        """Deprecated name of `confidence_r`."""
+        return self._renamed("r")
+
+    def _renamed(self, value: str) -> float:
+        message = f"Estimate.support_{value} is now Estimate.confidence_{value}"
+        warnings.warn(message, DeprecationWarning, stacklevel=3)
+        return getattr(self, f"confidence_{value}")
 
 
 ESTIMATE = np.dtype(list(Estimate.__annotations__.items()), align=True)

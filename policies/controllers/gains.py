@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Generic, TypeVar
 
 from pydantic import Field
@@ -15,6 +17,8 @@ from slipgym.config.yaml_model import validate
 G = TypeVar("G", bound=Frozen)
 Fraction = Annotated[float, Field(ge=0, lt=1)]
 """A fraction in [0, 1)."""
+RENAMED = {"caution": "prior", "probe": "exploration", "worth": "least"}
+"""Keyword of version 0.1.0 -> its present name; the old ones go in the version after the next."""
 
 
 class GainPolicy(ForcePolicy, Generic[G]):
@@ -46,6 +50,8 @@ class GainPolicy(ForcePolicy, Generic[G]):
         **parameters: Any,
     ) -> None:
         super().__init__(config)
+        parameters = renamed(parameters)
+        prior = parameters.pop("prior", prior)
         values = {} if gains is None else gains.model_dump()
         self.gains: G = validate({**values, **parameters}, self.Gains, type(self).__name__)  # type: ignore[assignment]
         self.prior = prior or self.prior_default
@@ -68,3 +74,17 @@ class GainPolicy(ForcePolicy, Generic[G]):
     def parameters(cls) -> list[str]:
         """Names of the gains, for `policies.make`."""
         return list(cls.Gains.model_fields)
+
+
+def renamed(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters by their present names; warns about names of version 0.1.0."""
+    found = {}
+    for name, value in parameters.items():
+        if name in RENAMED:
+            warnings.warn(
+                f"the controllers' parameter {name!r} is now {RENAMED[name]!r}",
+                DeprecationWarning,
+                stacklevel=3,
+            )
+        found[RENAMED.get(name, name)] = value
+    return found

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from policies.controllers.base import Columns, State
 from policies.controllers.exploration import ActiveExploration, ExplorationState
-from policies.controllers.gains import Fraction, GainPolicy
+from policies.controllers.gains import Fraction, GainPolicy, renamed
 from policies.controllers.sensing import ConservativePrior, both, scaled_speed, tangential
 from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
@@ -95,6 +95,8 @@ class HingePolicy(GainPolicy[HingeGains]):
         config: Overrides | None = None,
         **parameters: Any,
     ) -> None:
+        parameters = renamed(parameters)
+        prior = parameters.pop("prior", prior)
         super().__init__(gains, prior, config, **parameters)
         if prior is None and self.gains.known == 0.0:
             self.prior = _UNEXPLORED

@@ -12,7 +12,7 @@ from policies.controllers import friction_fall
 from policies.controllers.base import Columns, State
 from policies.controllers.exploration import ActiveExploration, ExplorationState
 from policies.controllers.friction_fall import FallState
-from policies.controllers.gains import Fraction, GainPolicy
+from policies.controllers.gains import Fraction, GainPolicy, renamed
 from policies.controllers.sensing import ConservativePrior, both, relative, scaled_load, scaled_speed
 from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
@@ -96,7 +96,8 @@ class HoldPolicy(GainPolicy[HoldGains]):
         config: Overrides | None = None,
         **parameters: Any,
     ) -> None:
-        self.exploration = exploration
+        parameters = renamed(parameters)
+        self.exploration = parameters.pop("exploration", exploration)
         own = (
             ConservativePrior()
             if self.exploration is None

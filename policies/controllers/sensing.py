@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -117,3 +118,11 @@ def relative(columns: Columns, name: str, value: np.ndarray) -> np.ndarray:
     if not columns.has(f"sd_{name}"):
         return np.zeros(len(columns))
     return columns[f"sd_{name}"] / np.maximum(value, 1e-9)
+
+
+def Caution(mu_c: float = 0.3, r: float = 0.008, support: float = 0.1) -> ConservativePrior:
+    """`ConservativePrior` by the names of version 0.1.0; warns."""
+    warnings.warn(
+        "Caution(support=...) is now ConservativePrior(confidence=...)", DeprecationWarning, stacklevel=2
+    )
+    return ConservativePrior(mu_c, r, support)

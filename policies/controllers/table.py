@@ -8,7 +8,7 @@ from typing import Any
 
 from estimator.reference import is_reference, referenced
 from estimator.suggestions import asking
-from policies.controllers.gains import GainPolicy
+from policies.controllers.gains import GainPolicy, renamed
 
 CLASSES = {
     "rotational_slip": "policies.controllers.rotational_slip:RotationalSlipPolicy",
@@ -65,6 +65,8 @@ def make(name: str, parameters: Mapping[str, Any], valid: Iterable[str] = tuple(
         ValueError: The name or a parameter is unknown, or a value is not allowed.
     """
     policy = find(name, valid)
+    if issubclass(policy, GainPolicy):
+        parameters = renamed(parameters)
     refuse(name, parameters, parameters_of(policy))
     return policy(**parameters)
 

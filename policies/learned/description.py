@@ -23,6 +23,18 @@ _Layers = Annotated[tuple[_Width, ...], BeforeValidator(as_tuple), Field(max_len
 _Text = Annotated[str, Field(max_length=200)]
 
 
+RENAMED_COLUMNS = {
+    "support_mu_s": "confidence_mu_s",
+    "support_mu_c": "confidence_mu_c",
+    "support_r": "confidence_r",
+    "travel_x": "measured_slip_x",
+    "travel_y": "measured_slip_y",
+    "travel_theta": "measured_slip_theta",
+    "command": "commanded_force",
+}
+"""Name of a column in files of version 0.1.0 -> its present name."""
+
+
 class Column(Frozen):
     """A number that a policy reads or gives."""
 
@@ -30,6 +42,11 @@ class Column(Frozen):
     low: float = Field(description="Lower bound; of an action: what -1 stands for [unit]")
     high: float = Field(description="Upper bound; of an action: what +1 stands for [unit]")
     unit: _Text = Field(description="Unit of the bounds [-]")
+
+    @field_validator("name")
+    @classmethod
+    def _present_name(cls, name: str) -> str:
+        return RENAMED_COLUMNS.get(name, name)
 
 
 _Number = bool | float | None

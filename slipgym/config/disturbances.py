@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+import warnings
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -81,3 +83,17 @@ AnyDisturbance = Annotated[
     Push | Shake | MassChange | FrictionJump | SurfaceRegion, Field(discriminator="kind")
 ]
 """A disturbance of any kind."""
+
+
+def renamed(values: Any) -> Any:
+    """Disturbances as given, those of kind "patch" under the kind's new name "surface_region"."""
+    if not isinstance(values, list | tuple):
+        return values
+    return tuple(_renamed(value) for value in values)
+
+
+def _renamed(value: Any) -> Any:
+    if not isinstance(value, Mapping) or value.get("kind") != "patch":
+        return value
+    warnings.warn("disturbance kind 'patch' is now 'surface_region'", DeprecationWarning, stacklevel=2)
+    return {**value, "kind": "surface_region"}

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
 from slipgym.config.base import as_tuple
 from slipgym.config.distribution import Distribution, within
-from slipgym.config.disturbances import AnyDisturbance
+from slipgym.config.disturbances import AnyDisturbance, renamed
 from slipgym.config.errors import unknown
 from slipgym.config.pad_ranges import PadRanges
 from slipgym.contact.pressure import PressureName
@@ -100,7 +100,7 @@ class Ranges(PadRanges):
     slip_latency: Annotated[Distribution | None, within(0.0, 6.0)] = Field(
         default=None, description="Latency of the slip velocity, rounded [samples]"
     )
-    disturbances: Annotated[tuple[AnyDisturbance, ...], BeforeValidator(as_tuple)] = Field(
+    disturbances: Annotated[tuple[AnyDisturbance, ...], BeforeValidator(renamed)] = Field(
         default=(), description="Disturbances during an episode"
     )
 

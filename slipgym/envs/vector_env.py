@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import warnings
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any, Unpack
@@ -258,12 +259,12 @@ def _final(observations: Any, infos: dict[str, Any], rows: np.ndarray, n: int) -
 
 
 def _without_scalar(arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Remove `engine`, which must be "planar" or "auto".
+    """Remove `engine`, which must be "planar" or "auto", and the former argument `infos`.
 
     A limit of -1 steps is none, as for `gymnasium.make`.
 
     Raises:
-        ValueError: The engine is another one.
+        ValueError: The engine is another one, or the value of `infos` was never allowed.
     """
     given = dict(arguments)
     engine = given.pop("engine", "planar")
@@ -272,6 +273,10 @@ def _without_scalar(arguments: Mapping[str, Any]) -> dict[str, Any]:
             f"engine = {engine!r}: the batch runs on the planar engine alone; for PyBullet use "
             'gym.make_vec(..., vectorization_mode="async")'
         )
+    if "infos" in given:
+        one_of("infos", given.pop("infos"), ("all", "ends"))
+        message = "infos is gone: infos of all environments are always returned"
+        warnings.warn(message, DeprecationWarning, stacklevel=3)
     if given.get("max_episode_steps") == -1:
         del given["max_episode_steps"]
     return given

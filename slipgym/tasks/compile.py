@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
@@ -26,6 +28,28 @@ class _Column(Protocol):
     def name(self) -> str: ...
     @property
     def read(self) -> str | Callable[..., Any]: ...
+
+
+def track_arguments(track: Any) -> tuple[str, ...]:
+    """Arguments that a task's `track` takes: `fingers` came later, and those written before do without.
+
+    Raises:
+        ValueError: It takes neither (episode, world, fingers) nor (episode, world).
+    """
+    function = track.py_func if isinstance(track, Dispatcher) else track
+    takes = inspect.signature(function)
+    for arguments in (("episode", "world", "fingers"), ("episode", "world")):
+        try:
+            takes.bind(*arguments)
+        except TypeError:
+            continue
+        if "fingers" not in arguments:
+            message = f"{function.__name__}{takes} should take (episode, world, fingers), like a term"
+            code = function.__code__
+            place = code.co_filename, code.co_firstlineno, function.__module__
+            warnings.warn_explicit(message, DeprecationWarning, *place)
+        return arguments
+    raise ValueError(f"track = {function.__name__}{takes} must take (episode, world, fingers)")
 
 
 def inlined(function: Any) -> Any:
@@ -78,7 +102,7 @@ def compile_evaluate_step(
     body = [
         "for i in range(episodes.shape[0]):",
         "    episode, world, fingers = episodes[i], worlds[i], grippers[i]",
-        *(["    track(episode, world, fingers)"] if "track" in namespace else []),
+        *([f"    track({', '.join(track_arguments(functions['track']))})"] if "track" in namespace else []),
         "    episode.dropped = detect_drop(episode, world, fingers)",
         "    before = episode.violated",
         f"    episode.violated = before{violated}",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from slipgym._numba.generate import generate
 from slipgym.config.errors import unknown
+from slipgym.tasks.compile import track_arguments
 from slipgym.tasks.episode import EPISODE
 from slipgym.world.records import FINGER, WORLD
 
@@ -58,10 +59,10 @@ class Function(NamedTuple):
 
 def functions(task: Task[Any]) -> Iterator[Function]:
     """The functions of a task, in the order in which they are called."""
-    pair = "episode", "world"
+    pair, track = ("episode", "world"), task.track
     own = (
         ("wrist_velocity", pair, THREE),
-        ("track", _ALL, ""),
+        ("track", pair if track is None else track_arguments(track), ""),
         ("violated", _ALL, TRUTH),
         ("ends", pair, TRUTH),
         ("success", pair, TRUTH),

@@ -107,7 +107,7 @@ class Task(Generic[SettingsT]):
     whatever follows; `episode.violated` stays true from then on. None: never before the end."""
     track: Value | None = None
     """After each control step, first: (episode, world, fingers) updates `episode.reference` and what is kept.
-    The other functions change nothing."""
+    The other functions change nothing. The former (episode, world) works with a DeprecationWarning."""
     ends: Value | None = None
     """After each control step: (episode, world) -> bool, whether the episode ends before its length; the
     environment then reports it as terminated. None: it never does."""

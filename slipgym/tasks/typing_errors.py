@@ -43,11 +43,6 @@ def explained(task: Task[Any]) -> Iterator[None]:
 
 def _fault(function: Function) -> str:
     """What keeps a function from being compiled; empty: nothing."""
-    takes = inspect.signature(function.source)
-    try:
-        takes.bind(*function.takes)
-    except TypeError:
-        return function.fault(f"takes {takes}; must take ({', '.join(function.takes)})")
     arguments = tuple(_TYPES[name] for name in function.takes)
     try:
         template: Any = inlined(function.call).get_call_template(arguments, {})[0]

@@ -144,3 +144,15 @@ def test_train_keeps_the_tasks_feasible(task):
         weight = thing.mass * ends("mass_scale")[0] * config.physics.gravity
         mu_s = ends("mu_c")[1] * ends("friction_ratio")[1] * ends("finger_friction")[1]
         assert 2.0 * config.gripper.force_min * ends("force_gain")[1] * mu_s < 0.9 * weight
+
+
+def test_the_old_name_of_a_surface_region_warns():
+    region = {
+        "probability": 1.0,
+        "start": {"choices": [0.01]},
+        "length": {"choices": [0.01]},
+        "factor": {"choices": [0.7]},
+    }
+    with pytest.warns(DeprecationWarning, match="'patch' is now 'surface_region'"):
+        old = load_randomization({"disturbances": [{"kind": "patch", **region}]})
+    assert old == load_randomization({"disturbances": [{"kind": "surface_region", **region}]})

@@ -119,3 +119,13 @@ def test_repr_of_a_batch():
     batch.parameters_array = np.repeat(batch.parameters_array, 5)
     assert "different in each row" in repr(batch)
     assert len(batch) == 5
+
+
+@pytest.mark.parametrize("value", ["mu_s", "mu_c", "r"])
+def test_old_names_of_confidence_warn_and_give_the_new_one(value):
+    est = estimator.make("rls")
+    (e,) = run(est, ellipsoid(1, *planar(0.7, R), MU_C, R))
+    with pytest.warns(DeprecationWarning, match=f"support_{value} is now .*confidence_{value}") as caught:
+        assert getattr(e, f"support_{value}") == getattr(e, f"confidence_{value}")
+    assert caught[0].filename == __file__
+    assert f"support_{value}" not in e._fields

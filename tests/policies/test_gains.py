@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import policies
-from policies.controllers.gains import GainPolicy
+from policies.controllers.gains import RENAMED, GainPolicy
 from policies.controllers.linear_slip import LinearSlipGains, LinearSlipPolicy
+from policies.controllers.sensing import Caution, ConservativePrior
 from policies.controllers.table import CLASSES, find, parameters_of
 
 TUNED = [name for name in CLASSES if issubclass(find(name), GainPolicy)]
@@ -37,3 +38,16 @@ def test_keywords_change_single_gains_of_a_set():
         LinearSlipPolicy(k_x=np.nan)
     with pytest.raises(ValueError, match=r"unknown parameter 'smothing' of policy 'linear_slip'; valid: k_x"):
         policies.make("linear_slip", smothing=0.9)
+
+
+def test_names_of_version_0_1_0_still_work_and_warn():
+    with pytest.warns(DeprecationWarning, match="ConservativePrior"):
+        prior = Caution(support=0.3)
+    assert prior == ConservativePrior(confidence=0.3)
+    with pytest.warns(DeprecationWarning, match="'caution' is now 'prior'"):
+        assert policies.make("linear_slip", caution=prior).prior is prior
+    with pytest.warns(DeprecationWarning, match="'probe' is now 'exploration'"):
+        assert policies.make("hold", probe=None).exploration is None
+    with pytest.warns(DeprecationWarning, match="'worth' is now 'least'"):
+        assert policies.make("planar_slip", worth=(0.002, 0.04)).gains.least == (0.002, 0.04)
+    assert set(RENAMED) == {"caution", "probe", "worth"}

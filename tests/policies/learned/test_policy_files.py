@@ -6,12 +6,13 @@ import pickle
 import zipfile
 from pathlib import Path
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
 import policies
 from policies.learned import files, read_description
-from policies.learned.description import TRAINING, WEIGHTS
+from policies.learned.description import RENAMED_COLUMNS, TRAINING, WEIGHTS
 
 
 class Payload:
@@ -201,3 +202,22 @@ def test_the_same_policy_gives_the_same_bytes(policy_folder):
 def test_a_file_that_is_not_there_by_agreement_is_named(policy_folder):
     with pytest.raises(ValueError, match=r"unknown file 'training\.safetensors'"):
         files.read(policy_folder(), TRAINING)
+
+
+def test_columns_of_version_0_1_0_have_their_present_names(policy_folder):
+    folder = policy_folder("old")
+    path = folder / "policy.json"
+    present = path.read_text()
+    old = present
+    for before, after in RENAMED_COLUMNS.items():
+        assert f'"{after}"' in old
+        old = old.replace(f'"{after}"', f'"{before}"')
+    path.write_text(old)
+    assert old != present
+    policy = policies.load(folder)
+    names = [column.name for column in policy.description.environment.observation]
+    assert {*RENAMED_COLUMNS.values()} <= set(names)
+    assert not {*RENAMED_COLUMNS} & set(names)
+    env = gym.make("slipgym:slipgym/Hold-v0")
+    policy.check(env)
+    env.close()
