@@ -116,9 +116,9 @@ def by_level(table: pd.DataFrame) -> pd.DataFrame:
     """
     cells = list(dict.fromkeys(zip(table["task"], table["level"], strict=True)))
     names = kinds(table)
-    tasks = table.groupby(names)["task"].transform("nunique")
-    shown = (tasks > 1) | (table["task"].nunique() == 1)
-    table, names = table[shown], names[shown]
+    if len(set(table["task"])) > 1:
+        shown = [len(set(table.loc[names == name, "task"])) > 1 for name in names]
+        table, names = table.loc[shown], names.loc[shown]
     wide = table.assign(kind=names).pivot_table(index=["task", "level"], columns="kind", values="solved [%]")
     order = sorted(dict.fromkeys(names), key=lambda name: (name.partition(",")[0], wide[name].mean()))
     return wide.loc[cells, order].reset_index().rename_axis(columns=None)
