@@ -26,8 +26,9 @@ _WORDS = {
     "w": "w|omega|angular|rate|slip_rate|rot|rotation",
 }
 _WHOLE = {
-    TIME: r"((ft|f|force|wrench|header)_)?(t|time|stamp|time_?stamp|secs?|seconds|ms|elapsed|t_s|t_ms)",
-    VELOCITY_TIME: r"velocity_t|(slip|vel|velocity|twist|v)_?(t|time|stamp)",
+    TIME: r"((ft|f|force|wrench|header)_)?"
+    r"(secs?|seconds|ms|(t|time|stamp|time_?stamp|elapsed)(_?([mun]s|s|secs?|seconds))?)",
+    VELOCITY_TIME: r"velocity_t|(slip|vel|velocity|twist|v)_?(t|time|stamp)(_[mun]?s)?",
     "f_n": r"f_?n|normal(_force)?|pressure_force|grip(_force)?",
     "tau": r"tau(_?[nz])?|mz|tz|torsion|(ft|wrench)\[5\]",
     "omega": r"omega(_?[nz])?|wz|yaw_?rate|slip_?rate|slip_omega|slip\[2\]",
