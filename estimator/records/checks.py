@@ -22,6 +22,8 @@ _SPIN_MAX = 200.0  # [rad/s]
 _COP_MAX = 0.5  # median distance of the centre of pressure from the origin [m]
 _LEVER_MAX = 0.1  # torque at the centre of pressure over normal force [m]
 _RISES = 0.3  # correlation of friction with f_n that shows its sign
+OPPOSITE = 0.3
+"""Least correlation that shows that a sign is wrong [-]."""
 _PERIODS = (1e-5, 1.0)  # [s]
 _USUAL_PERIODS = (4e-5, 0.105)
 """Sample periods, 10 Hz to 25 kHz, for which seconds need not be stated [s]."""
@@ -185,3 +187,13 @@ def check_cop(source: str, cop: Array) -> None:
             f"{source}: the CoP is {distance:.4g} m from the origin; "
             "cop_x and cop_y in mm, or tau_x and tau_y in N mm? `{unit: …}` in the mapping says so"
         )
+
+
+def correlation(a: Array, b: Array) -> float:
+    """Correlation of two columns (n,) where both have a number; 0 if one does not change."""
+    if len(a) != len(b):
+        return 0.0
+    both = np.isfinite(a) & np.isfinite(b)
+    if both.sum() < 3 or np.ptp(a[both]) == 0.0 or np.ptp(b[both]) == 0.0:
+        return 0.0
+    return float(np.corrcoef(a[both], b[both])[0, 1])

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from estimator.records.cells import numbers, times
+from estimator.records.checks import OPPOSITE, correlation
 from estimator.records.extras import extra
 from estimator.records.record import Array
 from estimator.records.sources import read_columns
@@ -25,21 +26,27 @@ _WORDS = {
     "w": "w|omega|angular|rate|slip_rate|rot|rotation",
 }
 _WHOLE = {
-    TIME: r"((ft|f|force|wrench|header)_)?(t|time|stamp|time_?stamp|secs?|seconds|ms|elapsed|t_s|t_ms)",
-    VELOCITY_TIME: r"velocity_t|(slip|vel|velocity|twist|v)_?(t|time|stamp)",
+    TIME: r"((ft|f|force|wrench|header)_)?"
+    r"(secs?|seconds|ms|(t|time|stamp|time_?stamp|elapsed)(_?([mun]s|s|secs?|seconds))?)",
+    VELOCITY_TIME: r"velocity_t|(slip|vel|velocity|twist|v)_?(t|time|stamp)(_[mun]?s)?",
     "f_n": r"f_?n|normal(_force)?|pressure_force|grip(_force)?",
     "tau": r"tau(_?[nz])?|mz|tz|torsion|(ft|wrench)\[5\]",
     "omega": r"omega(_?[nz])?|wz|yaw_?rate|slip_?rate|slip_omega|slip\[2\]",
     "cop_x": r"cop_?x|cop\[0\]",
     "cop_y": r"cop_?y|cop\[1\]",
+    "force": r"((grip(per)?|force)_)*(cmd|command(ed)?|target|goal|setpoint|desired)(_(grip(per)?|force))*",
     "true_mu_s": "true_mu_s|mu_s",
     "true_mu_c": "true_mu_c|mu_c|mu_k",
     "true_r": "true_r",
 }
 _COMPONENT = {
     "f_x": "fx", "f_y": "fy", "f_n": "fz", "tau_x": "mx", "tau_y": "my", "tau": "mz",
-    "v_x": "vx", "v_y": "vy", "omega": "wz",
+    "v_x": "vx", "v_y": "vy", "omega": "wz", "motion_x": "vx", "motion_y": "vy", "motion_omega": "wz",
 }  # fmt: skip
+_ROBOT = re.compile(r"(^|[./_])(arm|robot|wrist|tcp|eef?|end_effector|flange|tool|motion)([./_]|$)")
+"""Names of what the robot does itself."""
+_MOTION = {"motion_x": ("v_x", "f_x"), "motion_y": ("v_y", "f_y"), "motion_omega": ("omega", "tau")}
+"""Motion of the object against the gripper -> what goes along with it."""
 _PLACES = {
     "v_x": r"((pos|position|disp|displacement|p|s)[._]?)?(x|\[0\])",
     "v_y": r"((pos|position|disp|displacement|p|s)[._]?)?(y|\[1\])",
@@ -215,6 +222,8 @@ def _score(key: str, name: str) -> int:
     plain = _UNIT.sub("", name).strip().lower().replace(" ", "_").replace("-", "_")
     if plain == key:
         return 4
+    if (key in _MOTION or key in POSITIONS) and (key in _MOTION) != bool(_ROBOT.search(plain)):
+        return 0
     last = re.split(r"[./]", plain)[-1]
     if key in _WHOLE and re.fullmatch(_WHOLE[key], plain):
         return 3
@@ -241,8 +250,8 @@ def _unit(
         unit = stated or (likely[0] if likely else "s")
         return unit, 1, f"{rates[unit]:.4g} Hz" if rates else "one time"
     size = max(float(np.nanpercentile(np.abs(each), 99)) for each in alike)
-    most = LIKELY["omega"] if key == "omega" else LIKELY["v"] if key in ("v_x", "v_y") else np.inf
-    if key.startswith("f_"):
+    most = LIKELY["omega"] if key.endswith("omega") else LIKELY["v"] if "m/s" in units else np.inf
+    if "N" in units:
         most = LIKELY["f"]
     elif key.startswith("tau") and "f_n" in found:
         most = LIKELY["arm"] * float(np.nanpercentile(np.abs(found["f_n"].values), 99))
@@ -252,6 +261,9 @@ def _unit(
     pressed = x[np.abs(x) > 0.5 * np.max(np.abs(x))]
     if key == "f_n" and len(pressed) and float(np.median(pressed)) < 0.0:
         sign, why = -1, f"{why}; negative in contact"
+    for other in _MOTION.get(key, ()):
+        if other in found and correlation(values, found[other].values) < -OPPOSITE:
+            return unit, -1, f"{why}; goes against {other}"
     return unit, sign, why
 
 
@@ -266,7 +278,8 @@ def plot(proposals: list[Proposal], path: Path) -> None:
         t = next((t for t in clocks.values() if len(t) == len(each.values)), np.arange(len(each.values)))
         there = np.isfinite(each.values)
         ax.plot((t - np.nanmin(t))[there], each.values[there], linewidth=0.8)
-        ax.set_title(f"{each.key} = {each.column}", loc="left", fontsize=9)
+        minus = "−" if each.sign < 0 else ""
+        ax.set_title(f"{each.key} = {minus}{each.column}", loc="left", fontsize=9)
         ax.set_ylabel(f"[{next(iter(units_of(each.key, each.position)))}]")
     axes[-1, 0].set_xlabel("time [s]")
     figure.tight_layout()

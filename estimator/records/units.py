@@ -10,11 +10,13 @@ TIME, VELOCITY_TIME = "t", "velocity_t"
 COP = ("cop_x", "cop_y")
 TILT = ("tau_x", "tau_y")
 GRIP = "grip"
+BENCH = ("force", "motion_x", "motion_y", "motion_omega")
+"""Grip command and motion of the object against the gripper, which `slipgym identify` reads."""
 TRUTH = ("true_mu_s", "true_mu_c", "true_r")
 REQUIRED = (TIME, *WRENCH, *TWIST)
 ROWS, FINGERS = "rows", "fingers"
 """Keys of a mapping that say which rows are those of the finger, and what differs between fingers."""
-OPTIONAL = (*COP, *TILT, *TRUTH, VELOCITY_TIME, GRIP)
+OPTIONAL = (*COP, *TILT, *TRUTH, VELOCITY_TIME, GRIP, *BENCH)
 
 _WRITTEN = str.maketrans({"µ": "u", "μ": "u", "°": "deg", **dict.fromkeys(" []()·*.")})
 _SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
@@ -35,6 +37,9 @@ UNITS: dict[str, dict[str, float]] = {
     **dict.fromkeys(COP, _LENGTH),
     **dict.fromkeys(("true_mu_s", "true_mu_c"), _NUMBER),
     "true_r": _LENGTH,
+    "force": dict(_FORCE),  # copies: magnitudes of another kind do not decide these units
+    **{key: dict(_SPEED) for key in BENCH[1:3]},
+    "motion_omega": dict(_SPIN),
 }
 """Key of a mapping -> unit -> factor to SI; the first unit is the default."""
 POSITIONS: dict[str, dict[str, float]] = {

@@ -14,7 +14,7 @@
 #define FIRM 25.0     /* N; when slipgym is silent */
 #define PATIENCE 0.2  /* s */
 
-/* f_x, f_y, f_n, tau of the pad on the object [N, N, N, N m], 1000 times a second. */
+/* f_x, f_y, f_n, tau that load the pad [N, N, N, N m], 1000 times a second. */
 static void read_wrench(int finger, double w[4]) { (void)finger; w[0] = 1.0; w[1] = 0.0; w[2] = 5.0; w[3] = 0.0; }
 
 /* v_x, v_y, omega of the object against the pad [m/s, m/s, rad/s], 120 times a second. */

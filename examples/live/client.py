@@ -13,7 +13,7 @@ PATIENCE = 0.2  # s
 
 
 def read_wrench(finger):
-    """f_x, f_y, f_n, tau of the pad on the object [N, N, N, N m], 1000 times a second."""
+    """f_x, f_y, f_n, tau that load the pad [N, N, N, N m], 1000 times a second."""
     return [1.0, 0.0, 5.0, 0.0]
 
 

@@ -12,18 +12,23 @@ EPILOG = """
 Examples:\n
 \b
   slipgym identify log.csv --output my_gripper
+  slipgym identify log.csv --columns mapping.yaml --output my_gripper
 \n
 A log holds t [s], the grip command force [N], the motion of the object against the gripper motion_x,
 motion_y, motion_omega [m/s, m/s, rad/s], and the readings f_x, f_y, f_n, tau [N, N, N, N m] and v_x, v_y,
-omega [m/s, m/s, rad/s] at the pad's centre; v_x, v_y, omega may be absent. docs/identify.md says how to
-record it.
+omega [m/s, m/s, rad/s] at the pad's centre; v_x, v_y, omega may be absent. Other
+names, units and signs: --columns, which `slipgym map` proposes. docs/identify.md says how to record it.
 """
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 @app.command(epilog=EPILOG)
 def main(
-    log: Annotated[Path, typer.Argument(help="csv, csv.gz or parquet.", show_default=False)],
+    log: Annotated[Path, typer.Argument(help="Any file that slipgym estimate reads.", show_default=False)],
+    columns: Annotated[
+        Path | None,
+        typer.Option(help="YAML: which column is what, its unit and sign.", show_default=False),
+    ] = None,
     output: Annotated[Path, typer.Option(help="New folder for gripper.yaml and report.")] = Path(
         "identified"
     ),
@@ -39,11 +44,12 @@ def main(
     record next.
     """
     try:
+        from estimator.records import load_columns
         from slipgym import identification
         from slipgym.atomic_io import check_folder, new_folder
 
         check_folder(output)
-        result = identification.identify(identification.read_log(log), contact, seed)
+        result = identification.identify(identification.read_log(log, load_columns(columns)), contact, seed)
         with new_folder(output.expanduser().resolve()) as folder:
             identification.write(result, folder)
     except ModuleNotFoundError as error:

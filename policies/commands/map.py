@@ -37,6 +37,7 @@ def main(
         from estimator.records import load, load_columns, proposal
         from estimator.records.alignment import align
         from estimator.records.summary import faults
+        from estimator.records.units import BENCH
         from slipgym.atomic_io import new_file, write
 
         found, left = proposal.propose_fingers(log)
@@ -67,4 +68,6 @@ def main(
             f"\n{name}{': ' * bool(name)}readable: {record.force_t[-1] - record.force_t[0]:.1f} s, forces at "
             f"{rates[0]:.0f} Hz, velocities at {rates[1]:.0f} Hz"
         )
-    typer.echo("\n".join([*dict.fromkeys(told), f"go on with\n  slipgym estimate {log} --columns {output}"]))
+    names = ["estimate", *(["identify"] if all(columns.given.get(key) for key in BENCH) else [])]
+    lines = [f"  slipgym {name} {log} --columns {output}" for name in names]
+    typer.echo("\n".join([*dict.fromkeys(told), "go on with", *lines]))

@@ -18,6 +18,7 @@ from slipgym.config.base import Count, Frozen, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
 from slipgym.config.level import load_level
+from slipgym.config.load import Content
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR, ENGINES, FRICTION_SOURCES, one_of
 from slipgym.envs.engines import resolved
 from slipgym.tasks import configure, find
@@ -122,7 +123,7 @@ class Experiment(Frozen):
         default=None,
         description="Control steps per action; null: as of the learned policies, or 1 [-]",
     )
-    config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
+    config: Content = Field(default={}, description="Overrides of the configuration [-]")
 
     @field_validator("task")
     @classmethod

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
@@ -14,6 +13,7 @@ from slipgym.config.base import Count, Frozen, Positive, PositiveInterval, as_tu
 from slipgym.config.errors import unknown
 from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
 from slipgym.config.level import load_level
+from slipgym.config.load import Content
 from slipgym.config.physics import ContactModel
 from slipgym.tasks import find
 
@@ -80,7 +80,7 @@ class Study(Frozen):
     degradation: Degradation | None = Field(default=None, description="What gets worse step by step [-]")
     videos: Names = Field(default=(), description="Tasks that the report shows videos of [-]")
     video_speed: Positive = Field(default=1.0, description="Of the videos over the real one [-]")
-    config: Mapping[str, Any] = Field(default={}, description="Overrides of the configuration [-]")
+    config: Content = Field(default={}, description="Overrides of the configuration [-]")
 
     @field_validator("tasks", "videos")
     @classmethod

@@ -15,7 +15,7 @@ from policies.training.algorithms import PPO, SAC, TQC, PrivilegedPPO, Recurrent
 from slipgym.config import load, load_randomization
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.errors import unknown
-from slipgym.config.load import merge
+from slipgym.config.load import Content, merge
 from slipgym.envs.arguments import CommonArguments, fields
 from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import configure, find
@@ -28,7 +28,7 @@ _DIFFERENT: dict[str, Any] = {"randomization": "train", "config": {}}
 _TYPES: dict[str, Any] = {
     "observation_mode": Literal["flat", "sensor"],
     "randomization": str | Mapping[str, Any],
-    "config": Mapping[str, Any],
+    "config": Content,
 }
 """Arguments of another type: a training file holds plain data, and a policy gets no privileged group."""
 _FIELDS: dict[str, Any] = {

@@ -4,7 +4,9 @@ import os
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator
 
 from slipgym.config import files
 from slipgym.config.errors import unknown
@@ -13,6 +15,8 @@ from slipgym.config.root import Config
 from slipgym.config.yaml_model import read_model, validate
 
 Overrides = str | os.PathLike[str] | Mapping[str, Any]
+Content = Annotated[Mapping[str, Any], BeforeValidator(lambda given: content(given))]
+"""Overrides of a model that is plain data: a mapping, or a file that becomes one."""
 
 
 def load(
@@ -62,6 +66,11 @@ def read_overrides(overrides: Overrides) -> tuple[str, Mapping[str, Any]]:
     if isinstance(overrides, str | os.PathLike):
         return os.fspath(overrides), files.read(Path(overrides))
     raise ValueError(f"config argument: must be a mapping or a path, got {overrides!r}")
+
+
+def content(overrides: Any) -> Any:
+    """The content of overrides that are a path, so that what keeps them does not depend on the file."""
+    return read_overrides(overrides)[1] if isinstance(overrides, str) else overrides
 
 
 def load_randomization(choice: Overrides = "none", tasks: Iterable[str] | None = None) -> Randomization:

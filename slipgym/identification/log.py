@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from estimator.records.checks import OPPOSITE, correlation
+from estimator.records.columns import Columns
+from estimator.records.extras import extra
+from estimator.records.sources import read_sources
+from estimator.records.streams import of_one_finger, read_tables, stream
+from estimator.records.table import Table
 from slipgym.identification.rollout import CHANNELS
 
 COMMAND = "force"
@@ -69,53 +76,85 @@ class Log:
         return np.maximum(np.maximum(spread, rounding), LEAST_NOISE)
 
 
-def read_log(path: str | os.PathLike[str]) -> Log:
-    """Reads a csv, csv.gz or parquet file with the columns `COLUMNS`; those of the slip twist may be absent.
+def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Log:
+    """Reads a file of any type that records have; the columns of the slip twist may be absent.
+
+    Args:
+        path: A file with the columns `COLUMNS`, all on one clock.
+        columns: The mapping of other names, units and signs; None: none.
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: A column is absent or not finite, or the time does not go on in equal steps; the message
-            names file, column, row and range.
+        ValueError: A column is absent, not finite or of another sign than the motion's, or the time does not
+            go on in equal steps; the message names file, column, row and range.
+        ModuleNotFoundError: An extra is not installed.
     """
-    import pandas
-
-    path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"{path}: no such file")
-    if not path.name.lower().endswith((".csv", ".csv.gz", ".parquet")):
-        raise ValueError(f"{path.name}: unknown file type; a log is csv, csv.gz or parquet")
-    try:
-        frame = pandas.read_parquet(path) if path.suffix == ".parquet" else pandas.read_csv(path)
-    except Exception as error:  # pandas and its engines have many
+    path, columns = Path(path), columns or Columns()
+    if columns.fingers:
         raise ValueError(
-            f"{path.name}: cannot be read as a table: {str(error).partition(chr(10))[0]}"
-        ) from None
-    slip = [name for name in CHANNELS[4:] if name in frame.columns]
+            f"{path.name}: the mapping is of the fingers {', '.join(columns.fingers)}; a log is of one"
+        )
+    tables = of_one_finger(read_tables(path.name, columns, partial(read_sources, path)), columns)
+    table = stream(tables, CHANNELS[:4], (COMMAND, *MOTION, *CHANNELS[4:]))[1]
+    there = [name for name in COLUMNS if (of := columns[name]) and of.column in table.frame.columns]
+    slip = set(there) & set(CHANNELS[4:])
     needed = COLUMNS if slip else COLUMNS[: -len(CHANNELS[4:])]
-    if missing := [name for name in needed if name not in frame.columns]:
-        raise ValueError(f"{path.name}: column {missing[0]} is missing; a log has {', '.join(needed)}")
-    columns = [_numbers(path.name, name, frame[name]) for name in needed]
-    rate = _rate(path.name, columns[0])
-    n = len(columns[0])
-    readings = np.full((n, len(CHANNELS)), np.nan)
-    readings[:, : len(columns) - 5] = np.stack(columns[5:], axis=1)
+    for name in needed:
+        column = columns[name]
+        if column is None or column.position:
+            raise ValueError(f"{path.name}: {name} must be a column of the log, of its own unit")
+        if name not in there:
+            raise ValueError(
+                f"{path.name}: column {column.column} is missing; a log has {', '.join(needed)}; a mapping "
+                "(--columns) gives them other names, units and signs"
+            )
+    t = _seconds(table)
+    rate = _rate(path.name, t)
+    values = np.stack([_numbers(table, name) for name in needed[1:]], axis=1)
+    readings = np.full((len(t), len(CHANNELS)), np.nan)
+    readings[:, : len(needed) - 5] = values[:, 4:]
+    _check_signs(path.name, values[:, 1:4], readings)
     try:
-        return Log(rate, columns[1], np.stack(columns[2:5], axis=1), readings)
+        return Log(rate, values[:, 0], values[:, 1:4], readings)
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from None
 
 
-def _numbers(file: str, name: str, column: object) -> np.ndarray:
-    import pandas
+def _seconds(table: Table) -> np.ndarray:
+    t = table.seconds("t")[0]
+    if (bad := ~np.isfinite(t)).any():
+        raise ValueError(f"{table.name}: row {int(np.argmax(bad)) + 1}: t must be a finite number")
+    return t
 
-    numbers: np.ndarray = pandas.to_numeric(column, errors="coerce").to_numpy(float)  # type: ignore[call-overload]
-    bad = ~(np.abs(numbers) <= (np.inf if name == "t" else LARGEST)) | ~np.isfinite(numbers)
+
+def _numbers(table: Table, name: str) -> np.ndarray:
+    try:
+        numbers = table.numbers([name])[:, 0]
+    except ValueError as error:  # of a cell that is text: the message below has the range
+        cells = extra("pandas").to_numeric(table.frame[table.column(name).column], errors="coerce")
+        if np.isfinite(numbers := cells.to_numpy(float)).all():
+            raise ValueError(str(error)) from None
+    bad = ~(np.abs(numbers) <= LARGEST)
     if bad.any():
-        row = int(np.argmax(bad))
+        row = table.rows(np.arange(len(numbers)))[int(np.argmax(bad))]
         raise ValueError(
-            f"{file}: row {row + 1}: {name} must be a finite number of at most {LARGEST:g} in SI units"
+            f"{table.name}: row {row}: {name} must be a finite number of at most {LARGEST:g} in SI units, "
+            "in each row"
         )
     return numbers
+
+
+def _check_signs(file: str, motion: np.ndarray, readings: np.ndarray) -> None:
+    """Refuses a motion that goes against the slip, or against the load of its friction on the finger."""
+    of_each = zip(MOTION, motion.T, (0, 1, 3), (4, 5, 6), strict=True)
+    for name, moves, load, slip in of_each:
+        for k in (slip, load):
+            if (along := correlation(moves, readings[:, k])) < -OPPOSITE:
+                raise ValueError(
+                    f"{file}: {name} goes against {CHANNELS[k]} (correlation {along:.2f}): it is the motion "
+                    f"of the object against the gripper, minus the gripper's own; `{name}: {{sign: -1}}` in "
+                    f"the mapping, or the sign of {CHANNELS[k]} if that is wrong"
+                )
 
 
 def _rate(file: str, t: np.ndarray) -> float:

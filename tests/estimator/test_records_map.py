@@ -74,3 +74,15 @@ def test_columns_that_mean_nothing(save, tmp_path):
     assert done.exit_code == 0, done.output
     assert "slipgym estimate does not take it yet" in done.output
     assert (tmp_path / "m.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "factor"),
+    [("time_ms", 1e3), ("stamp_us", 1e6), ("Timestamp_ns", 1e9), ("t_s", 1.0), ("elapsed", 1.0)],
+)
+def test_a_time_with_its_unit(table, save, tmp_path, name, factor):
+    frame = table.assign(**{name: factor * table["t"]}).drop(columns="t")
+    _, columns = mapped(save(frame, "log.csv"), tmp_path)
+    np.testing.assert_allclose(
+        records.load(tmp_path / "log.csv", columns).force_t, table.dropna(subset="f_n")["t"], atol=1e-9
+    )
