@@ -41,6 +41,7 @@ slipgym {{ board.versions.slipgym }}, numpy {{ board.versions.numpy }}</p>
 {% endfor %}{% else %}<p>No entries yet.</p>
 {% endfor %}</html>
 """
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 KEYS = ("played", "versions", "rows")
 CELL = ("task", "level")
 
@@ -64,6 +65,7 @@ def board(path: Path) -> dict:
         raise ValueError(f"{path}: no leaderboard.json of slipgym policy-leaderboard ({error!r})") from error
 
 
+@app.command()
 def main(
     folder: Annotated[Path, typer.Argument(help="Folder of the entries' files, NAME.json.")],
     output: Annotated[Path, typer.Option(help="The page.")] = Path("build/board.html"),
@@ -84,4 +86,4 @@ def main(
 
 
 if __name__ == "__main__":
-    typer.run(main)
+    app()
