@@ -22,7 +22,14 @@ def referenced(name: str) -> Any:
     try:
         imported = importlib.import_module(module)
     except ModuleNotFoundError as error:
-        raise ValueError(f"{name!r}: {error}") from error
+        if error.name != module.partition(".")[0] and not module.endswith(".py"):
+            raise ValueError(f"{name!r}: {error}") from error
+        remedy = f"write {module.removesuffix('.py').replace('/', '.')}:{attribute}, and " * module.endswith(
+            ".py"
+        )
+        raise ValueError(
+            f"{name!r}: no module {module!r} on Python's path; {remedy}add its folder to PYTHONPATH"
+        ) from error
     if not hasattr(imported, attribute):
         raise ValueError(f"{name!r}: module {module!r} has no attribute {attribute!r}")
     return getattr(imported, attribute)

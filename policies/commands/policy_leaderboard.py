@@ -14,7 +14,7 @@ Examples:\n
   slipgym policy-leaderboard
   slipgym policy-leaderboard hold --level hard --sensors lab
   slipgym policy-leaderboard rotational_slip --level hard --sensors lab --without scale
-  slipgym policy-leaderboard hold --policy grips:Catch
+  slipgym policy-leaderboard hold --policy grips:Wary
   slipgym policy-leaderboard hold --engine bullet --episodes 50
   slipgym policy-leaderboard hold --level hard --worlds
 \n
@@ -57,7 +57,7 @@ def main(
 
     from policies.leaderboard.one_imperfection import without as lacking
     from policies.leaderboard.tables import markdown
-    from policies.policy_leaderboard.entries import entered, opponents
+    from policies.policy_leaderboard.entries import check_task, entered, opponents
     from policies.policy_leaderboard.folder import write, write_table
     from policies.policy_leaderboard.run import by_level, outcomes, play_all
     from policies.policy_leaderboard.worlds import generalisation
@@ -81,6 +81,8 @@ def main(
             raise ValueError(f"--engine {engine}: --worlds plays on both engines")
         engine = resolved(one_of("engine", engine, ENGINES))
         mine = entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
+        for task in tasks or TASKS:
+            check_task(mine, task)
         found, worths = [], []
         for task in tasks or TASKS:
             for name in level or level_names(find(task).key):

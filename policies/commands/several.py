@@ -53,15 +53,18 @@ def taking_several(*names: str) -> type[TyperCommand]:
 def environment_arguments(texts: Sequence[str]) -> dict[str, Any]:
     """Reads `name=value` pairs; `friction_source=true` is a name, which YAML takes for a truth value.
 
+    Dotted keys are those of nested values, and "environment." may stand before them as in a training.
+
     Args:
-        texts: Such as ["friction_source=true", "engine=planar"].
+        texts: Such as ["friction_source=true", "config.tasks.hold.tolerance=0.001"].
 
     Raises:
         ValueError: One has no "=", or its value is no YAML.
     """
     from estimator.records import parse_settings
+    from policies.training.files import with_values
 
-    values = parse_settings(texts)
+    values = with_values({}, parse_settings([text.removeprefix("environment.") for text in texts]))
     if values.get("friction_source") is True:
         values["friction_source"] = "true"
     return values

@@ -137,8 +137,10 @@ class Columns:
         return self._observations[:, at].astype(np.float64)
 
     def has(self, name: str) -> bool:
-        """Whether the environment shows a column of the task."""
+        """Whether the environment shows a column of the task; `name in columns` says the same."""
         return self._at.get(name, np.inf) < self._observations.shape[1]
+
+    __contains__ = has
 
     def _unmeasured(self, name: str) -> np.ndarray:
         """A column that these sensors do not have: from those of wrist and motor, or 0, (n,) float64.
@@ -247,8 +249,18 @@ class ForcePolicy(ABC):
         if observations.ndim not in (1, 2):
             raise ValueError(f"observation must have shape (m,) or (n, m), got {observations.shape}")
         columns = Columns(np.atleast_2d(observations), self.index, self.needs_slip)
-        commands, state = self.control(columns, self._memory(state, episode_start, len(columns)))
-        actions = self._action(commands, columns)
+        returned = self.control(columns, self._memory(state, episode_start, len(columns)))
+        if (
+            not isinstance(returned, tuple)
+            or len(returned) != 2
+            or np.shape(returned[0])[:1] != (len(columns),)
+        ):
+            raise ValueError(
+                f"{type(self).__name__}.control must return the commands of {len(columns)} rows and the "
+                f"memory, got {returned!r:.80}"
+            )
+        commands, state = returned
+        actions = self._action(np.asarray(commands), columns)
         return (actions if observations.ndim == 2 else actions[0]), state
 
     def _memory(self, state: State | None, episode_start: np.ndarray | None, n: int) -> State:

@@ -57,16 +57,23 @@ class PolicyChoice(Frozen):
         return self.label or Path(self.name).name
 
 
+def _named(value: object) -> object:
+    """A name alone as the mapping that it stands for."""
+    return {"name": value} if isinstance(value, str) else value
+
+
 class FrictionChoice(Frozen):
     """Friction information of a policy."""
 
     source: str = Field(description="friction_source of the environment [-]")
-    estimator: Mapping[str, Any] | None = Field(
+    estimator: Annotated[Mapping[str, Any] | None, BeforeValidator(_named)] = Field(
         default={"name": DEFAULT_ESTIMATOR},
-        description="Name and parameters of the estimator; null: none [-]",
+        description="Name of the estimator, or a mapping of it and its parameters; null: none [-]",
     )
 
-    label: str = Field(default="", description="How tables and figures call it; empty: by its source [-]")
+    label: str = Field(
+        default="", description="How tables and figures call it; empty: by source and estimator [-]"
+    )
 
     @model_validator(mode="after")
     def _exists(self) -> Self:
@@ -78,8 +85,9 @@ class FrictionChoice(Frozen):
 
     @property
     def title(self) -> str:
-        """Name in tables and figures."""
-        return self.label or self.source
+        """Name in tables and figures: the label, or the source and an estimator other than the default."""
+        name = (self.estimator or {}).get("name", DEFAULT_ESTIMATOR)
+        return self.label or (self.source if name == DEFAULT_ESTIMATOR else f"{self.source}, {name}")
 
     @property
     def argument(self) -> dict[str, Any] | None:

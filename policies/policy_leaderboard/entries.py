@@ -148,6 +148,9 @@ def entered(names: Sequence[str], source: str) -> list[Member]:
         names: As `policies.load` takes them: "module:class", or folders of learned policies.
         source: Friction source of their observations.
 
+    Returns:
+        Members whose names end with the source.
+
     Raises:
         FileNotFoundError: There is no such policy.
         ValueError: What lies there is no policy.
@@ -155,8 +158,19 @@ def entered(names: Sequence[str], source: str) -> list[Member]:
     members = []
     for name in names:
         policy = registry.load(name)
-        members.append(Member(name, policy, {"friction_source": source, **registry.modes(policy)}))
+        arguments = {"friction_source": source, **registry.modes(policy)}
+        members.append(Member(f"{name}, {source}", policy, arguments))
     return members
+
+
+def check_task(members: Sequence[Member], task: str) -> None:
+    """Raise ValueError if a policy is for another task, whose observations may be as long."""
+    for member in members:
+        own = getattr(member.policy, "task", None)
+        if isinstance(member.policy, LearnedPolicy):
+            own = member.policy.description.environment.id
+        if own is not None and find(own).id != find(task).id:
+            raise ValueError(f"task {task!r}: the policy {member.name!r} is for {find(own).name}")
 
 
 def opponents(

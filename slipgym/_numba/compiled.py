@@ -60,7 +60,7 @@ inlined_sum = _decorator(forceinline=True, fastmath={"reassoc"})
 def _explain() -> None:
     """Say once in a process that the compiler runs, why, and for how long."""
     reason = why_compiling()
-    sys.stderr.write(f"slipgym: compiling for this machine, once, for about a minute{reason}\n")
+    sys.stderr.write(f"slipgym: compiling for this machine, once per kind of task, about a minute{reason}\n")
     sys.stderr.flush()
 
 

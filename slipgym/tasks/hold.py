@@ -14,7 +14,7 @@ The mean counts the whole episode: shaking, pushes, and falls of friction and ch
 friction that varies over the surface is left out. `grip_limit_start` leaves the beginning out of the mean,
 so that a policy can find friction out. The mean counts, and not the peak, so that the grip may answer a push
 for a moment. Neither the least grip nor the mean allowed is observed. The levels "standard" and "hard" set
-`grip_limit`, to 1.75 and 1.5.
+`grip_limit`, to 1.75 and 1.4.
 
 ## Starting State
 

@@ -1,5 +1,6 @@
 """The README's examples run as they are printed."""
 
+import math
 import re
 import subprocess
 import sys
@@ -37,7 +38,7 @@ def claim() -> str:
         "| --- | --- | ---: | ---: | ---: | ---: | ---: |",
     ]
     for task, _, name, without, estimated, true, *own in realistic:
-        cells = [f"{number(value):.0f}" for value in (without, estimated, true)]
+        cells = [f"{rounded(value):.0f}" for value in (without, estimated, true)]
         lines.append(f"| {task} | {name} | {' | '.join([*cells, points(*own), points(*gain[task])])} |")
     return "\n".join(lines)
 
@@ -46,9 +47,14 @@ def number(text: str) -> float:
     return float(text.replace("−", "-"))
 
 
+def rounded(text: str) -> float:
+    """To whole numbers, halves away from zero."""
+    return math.trunc(number(text) + math.copysign(0.5, number(text)))
+
+
 def points(mean: str, low: str, high: str) -> str:
     """A gain; bold if its interval leaves 0 out."""
-    shown = f"{number(mean):+.0f}".replace("-", "−")
+    shown = f"{rounded(mean):+.0f}".replace("-", "−")
     return f"**{shown}**" if number(low) * number(high) > 0.0 else shown
 
 

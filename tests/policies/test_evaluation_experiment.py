@@ -48,6 +48,24 @@ def test_what_is_wrong_is_named_with_what_is_valid(small, change, message):
         small(**change)
 
 
+def test_an_estimator_may_be_a_name_and_is_named_in_tables(small):
+    choices = small(friction=[{"source": "estimated"}, {"source": "estimated", "estimator": "rls"}]).friction
+    assert [each.title for each in choices] == ["estimated", "estimated, rls"]
+    assert choices[1].argument == {"name": "rls"}
+
+
+@pytest.mark.parametrize(
+    ("name", "remedy"),
+    [
+        ("nowhere:PI", "'nowhere' on Python's path; add its folder to PYTHONPATH"),
+        ("nowhere.py:PI", "write nowhere:PI, and add its folder to PYTHONPATH"),
+    ],
+)
+def test_a_module_that_is_not_found_is_named_with_the_remedy(small, name, remedy):
+    with pytest.raises(ValueError, match=remedy):
+        small(policies=[{"name": name}])
+
+
 def test_unknown_experiments_and_missing_files(tmp_path):
     with pytest.raises(ValueError, match=r"'demmo'; did you mean 'demo'"):
         load_experiment("demmo")

@@ -80,7 +80,22 @@ def test_without_the_friction_part_the_error_says_so():
     narrow = rows(1)[:, : WIDTH - len(observation.FRICTION_COLUMNS)]
     with pytest.raises(ValueError, match="friction_source='none'"):
         Counter().predict(narrow)
-    assert Columns(narrow, Counter().index)["f_n_1"] == 0.0
+    columns = Columns(narrow, Counter().index)
+    assert columns["f_n_1"] == 0.0
+    assert "f_n_1" in columns
+    assert "mu_c" not in columns
+
+
+@pytest.mark.parametrize(
+    "returned", [np.ones(2), (np.ones(2),), (1.0, np.ones((2, 1))), (np.ones(3), np.ones((2, 1)))]
+)
+def test_what_control_has_to_return_is_named(returned):
+    class Wrong(Counter):
+        def control(self, columns, state):
+            return returned
+
+    with pytest.raises(ValueError, match=r"Wrong\.control must return the commands of 2 rows and the memory"):
+        Wrong().predict(rows(2))
 
 
 @pytest.mark.parametrize("shape", [(), (2, 3, WIDTH), (2, WIDTH + 1)])

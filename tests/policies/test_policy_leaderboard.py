@@ -101,6 +101,7 @@ def test_opponents_and_entries():
     ]
     assert further("hold") == []
     (mine,) = entered(["policies.controllers.hold:HoldPolicy"], "true")
+    assert mine.name == "policies.controllers.hold:HoldPolicy, true"
     assert mine.arguments["friction_source"] == "true"
     assert mine.arguments["observation_mode"] == "deviations"
     with pytest.raises(FileNotFoundError, match="no policy at 'nowhere'"):
@@ -163,6 +164,8 @@ def test_a_folder_has_table_and_picture(tmp_path):
         (["hold", "--engine", "mujoco"], "mujoco"),
         (["hold", "--policy", "nowhere"], "nowhere"),
         (["hold", "--level", "hardest"], "hardest"),
+        (["linear_slip", "--policy", "policies.controllers.hold:HoldPolicy"], "is for Hold"),
+        (["linear_slip", "--policy", str(pretrained.folders()["hold_scratch"])], "is for Hold"),
     ],
 )
 def test_wrong_arguments_are_named(arguments, said, tmp_path):

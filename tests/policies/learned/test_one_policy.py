@@ -5,6 +5,7 @@ from typer.testing import CliRunner
 
 import policies
 from policies.commands.evaluate import app
+from policies.commands.several import environment_arguments
 from policies.evaluation.one_policy import environment_of, episodes
 from policies.learned import pretrained
 from policies.training import seeds
@@ -73,3 +74,11 @@ def test_mistakes_are_explained(policy_folder, arguments, message):
 def test_what_comes_with_slipgym_acts_in_the_environment_of_its_training(name):
     (outcome,) = episodes(name, 1)
     assert outcome.time > 0.0
+
+
+def test_settings_of_the_environment_may_be_dotted_as_in_a_training():
+    texts = ["environment.config.tasks.hold.tolerance=0.001", "config.tasks.hold.duration=2.0", "level=hard"]
+    assert environment_arguments(texts) == {
+        "config": {"tasks": {"hold": {"tolerance": 0.001, "duration": 2.0}}},
+        "level": "hard",
+    }
