@@ -16,7 +16,17 @@ from estimator.records.extras import extra
 from estimator.records.record import Array
 from estimator.records.sources import read_columns
 from estimator.records.table import unit_in_name
-from estimator.records.units import FINGERS, POSITIONS, REQUIRED, TIME, TRUTH, UNITS, VELOCITY_TIME, units_of
+from estimator.records.units import (
+    FINGERS,
+    POSITIONS,
+    REQUIRED,
+    TIME,
+    TRUTH,
+    UNITS,
+    VELOCITY_TIME,
+    units_of,
+    without_unit,
+)
 
 _AXES = {"x": ("x", "0"), "y": ("y", "1"), "z": ("z", "2")}
 _WORDS = {
@@ -219,6 +229,11 @@ def _by_name(lengths: Mapping[str, int]) -> dict[str, str]:
 
 def _score(key: str, name: str) -> int:
     """How well a name says that a column is what a key means: 4 its key, 3 whole, 2 its end, 1 an axis."""
+    shorter = without_unit(key, name)
+    return _said(key, name) or (_said(key, shorter[0]) if shorter else 0)
+
+
+def _said(key: str, name: str) -> int:
     plain = _UNIT.sub("", name).strip().lower().replace(" ", "_").replace("-", "_")
     if plain == key:
         return 4
@@ -241,7 +256,8 @@ def _unit(
     key: str, name: str, values: Array, alike: list[Array], found: Mapping[str, Proposal]
 ) -> tuple[str, int, str]:
     """Unit, sign and their reason; the largest of the columns of a kind decides the unit of all."""
-    stated, units = unit_in_name(key, name), UNITS[key]
+    shorter = None if _said(key, name) else without_unit(key, name)
+    stated, units = shorter[1] if shorter else unit_in_name(key, name), UNITS[key]
     x = values[np.isfinite(values)]
     if key in (TIME, VELOCITY_TIME):
         step = float(np.median(np.abs(np.diff(np.unique(x))))) if len(x) > 1 else 0.0
@@ -285,9 +301,3 @@ def plot(proposals: list[Proposal], path: Path) -> None:
     figure.tight_layout()
     figure.savefig(path, dpi=100)
     pyplot.close(figure)
-
-
-def columns_left(names: list[Any], most: int = 12) -> str:
-    """Names of columns that have no place, shortened."""
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(str(name) for name in names[:most]) + more

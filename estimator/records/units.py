@@ -63,3 +63,14 @@ def unit_in(key: str, text: str, position: bool = False) -> str | None:
     """The unit of a key that a text such as "[Nmm]", "(mm/s)" or "µs" means; None: none of its units."""
     written = text.translate(_WRITTEN)
     return next((unit for unit in units_of(key, position) if unit.translate(_WRITTEN) == written), None)
+
+
+def without_unit(key: str, name: str) -> tuple[str, str] | None:
+    """A name such as "vx_mm_s" or "Tz_Nmm" without the unit that it ends with, and the unit; None if none."""
+    for unit in units_of(key):
+        for over in ("_", "_per_"):
+            for space in ("", "_"):
+                end = "_" + unit.replace("/", over).replace(" ", space)
+                if name.endswith(end) and name != end:
+                    return name.removesuffix(end), unit
+    return None

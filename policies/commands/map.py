@@ -37,6 +37,7 @@ def main(
         from estimator.records import load, load_columns, proposal
         from estimator.records.alignment import align
         from estimator.records.summary import faults
+        from estimator.records.table import listed
         from estimator.records.units import BENCH
         from slipgym.atomic_io import new_file, write
 
@@ -49,7 +50,7 @@ def main(
                 proposal.plot([each for own in found.values() for each in own], part)
     except (ModuleNotFoundError, ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
-    typer.echo(text + (f"\nnot used: {proposal.columns_left(left)}" if left else ""))
+    typer.echo(text + (f"\nnot used: {listed(left)}" if left else ""))
     for path in (output, plot):
         if path is not None:
             typer.echo(f"written: {path}")
