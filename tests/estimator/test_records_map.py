@@ -89,15 +89,15 @@ def test_a_time_with_its_unit(table, save, tmp_path, name, factor):
 
 
 def test_names_that_end_with_their_unit(table, save, tmp_path):
-    frame = pd.DataFrame({"time_ms": 1e3 * table["t"], "cmd_grip_N": 5.0, "robot_vx_mm_s": 0.0})
+    frame = pd.DataFrame({"time_ms": 1e3 * table["t"], "GripCmd_N": 5.0, "robot_vx_mm_s": 0.0})
     for name, key, factor in (
         ("Fx_N", "f_x", 1.0),
         ("Fy_N", "f_y", 1.0),
         ("F_N", "f_n", 1.0),  # a name of the normal force itself, not one that ends with a unit
         ("Tz_Nmm", "tau", 1e3),
-        ("slip_vx_mm_per_s", "v_x", 1e3),
+        ("slipX_mm_per_s", "v_x", 1e3),
         ("slip_vy_mm_s", "v_y", 1e3),
-        ("slip_wz_deg_s", "omega", 180.0 / np.pi),
+        ("slipRot_deg_s", "omega", 180.0 / np.pi),
     ):
         frame[name] = factor * table[key]
     output, columns = mapped(save(frame, "log.csv"), tmp_path)
@@ -105,5 +105,5 @@ def test_names_that_end_with_their_unit(table, save, tmp_path):
     read = records.load(tmp_path / "log.csv", columns)
     np.testing.assert_allclose(read.wrench, table.dropna(subset="f_n")[FORCE], rtol=1e-9)
     np.testing.assert_allclose(read.twist, table.dropna(subset="omega")[TWIST], rtol=1e-9)
-    assert "force: {column: 'cmd_grip_N'" in (tmp_path / "mapping.yaml").read_text()
+    assert "force: {column: 'GripCmd_N'" in (tmp_path / "mapping.yaml").read_text()
     assert "motion_x: {column: 'robot_vx_mm_s'" in (tmp_path / "mapping.yaml").read_text()
