@@ -44,8 +44,8 @@ def _zeroed(record: Record, samples: Samples) -> list[str]:
     if low < -max(_FORCE, 0.1 * high):
         return [
             f"f_n goes down to {low:.3g} N, but nothing pulls at a pad: was it zeroed in the grip? Zero it "
-            f"with the open gripper, or add the grip that it had then by `f_n: {{offset: …}}`: {-low:.3g} N or "
-            "more, which the readings do not show. A smaller one leaves friction too large."
+            f"with the open gripper, or add the grip that it had then by `f_n: {{offset: …}}`: {-low:.3g} N "
+            "or more, which the readings do not show. A smaller one leaves friction too large."
         ]
     slides = (np.hypot(*samples.twist[:, :2].T) > _SLIDES) & (force > _FORCE)
     if np.count_nonzero(slides) < _ENOUGH:
