@@ -250,11 +250,8 @@ class ForcePolicy(ABC):
             raise ValueError(f"observation must have shape (m,) or (n, m), got {observations.shape}")
         columns = Columns(np.atleast_2d(observations), self.index, self.needs_slip)
         returned = self.control(columns, self._memory(state, episode_start, len(columns)))
-        if (
-            not isinstance(returned, tuple)
-            or len(returned) != 2
-            or np.shape(returned[0])[:1] != (len(columns),)
-        ):
+        pair = isinstance(returned, tuple) and len(returned) == 2
+        if not pair or np.shape(returned[0])[:1] != (len(columns),):
             raise ValueError(
                 f"{type(self).__name__}.control must return the commands of {len(columns)} rows and the "
                 f"memory, got {returned!r:.80}"

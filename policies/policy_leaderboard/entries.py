@@ -14,6 +14,7 @@ from policies.controllers.constant_force import ConstantForcePolicy
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.controllers.slip_memory import SlipMemory
 from policies.controllers.table import CLASSES
+from policies.evaluation.one_policy import environment_of
 from policies.evaluation.play import play
 from policies.learned import LearnedPolicy, pretrained
 from policies.registry import Policy
@@ -166,11 +167,7 @@ def entered(names: Sequence[str], source: str) -> list[Member]:
 def check_task(members: Sequence[Member], task: str) -> None:
     """Raise ValueError if a policy is for another task, whose observations may be as long."""
     for member in members:
-        own = getattr(member.policy, "task", None)
-        if isinstance(member.policy, LearnedPolicy):
-            own = member.policy.description.environment.id
-        if own is not None and find(own).id != find(task).id:
-            raise ValueError(f"task {task!r}: the policy {member.name!r} is for {find(own).name}")
+        environment_of(member.name, member.policy, task)
 
 
 def opponents(

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from policies.evaluation.gain import WITHOUT
 from policies.evaluation.play import Played
 from policies.policy_leaderboard.entries import Member
 from policies.study.statistics import Bootstrap
 from slipgym.tasks import find
 
-GROUPS = {"without": ("none", "nominal"), "estimated": ("estimated",), "true": ("true",)}
+GROUPS = {"without": WITHOUT, "estimated": ("estimated",), "true": ("true",)}
 """Friction sources of the policies that a column takes the strongest of."""
 COLUMNS = ("task", "level", "strongest without friction", *GROUPS, "gain", "low", "high")
 """Of the table: episodes solved [%] by the strongest policy of each group; `gain` is "estimated" less

@@ -165,7 +165,7 @@ def test_a_folder_has_table_and_picture(tmp_path):
         (["hold", "--policy", "nowhere"], "nowhere"),
         (["hold", "--level", "hardest"], "hardest"),
         (["linear_slip", "--policy", "policies.controllers.hold:HoldPolicy"], "is for Hold"),
-        (["linear_slip", "--policy", str(pretrained.folders()["hold_scratch"])], "is for Hold"),
+        (["linear_slip", "--policy", str(pretrained.folders()["hold_scratch"])], "trained in"),
     ],
 )
 def test_wrong_arguments_are_named(arguments, said, tmp_path):
