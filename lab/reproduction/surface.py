@@ -13,8 +13,8 @@ from lab.reproduction.fixed_point import disc_bias
 from lab.reproduction.surface_plot import plot_surface
 from lab.validation.patch_surface import friction_error, surface_twists
 from policies.evaluation.folder import stamped
+from policies.evaluation.frames import markdown
 from policies.evaluation.plots.style import STYLE, styled
-from policies.leaderboard.tables import markdown
 from policies.versions import write_versions
 from slipgym.atomic_io import new_folder
 from slipgym.contact.pressure import OUTER_RADII

@@ -6,8 +6,9 @@ is tuned to the distribution of episodes, which nobody could do for a single new
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from contextlib import closing
+from typing import Any, NamedTuple
 
 import gymnasium as gym
 import numpy as np
@@ -18,10 +19,13 @@ from policies.evaluation.batch import row_options
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.plan import plan
 from policies.evaluation.play import Played, play
+from slipgym.config import GripperConfig
 from slipgym.tasks import find
 
 CANDIDATES = 24
 """Forces that are tried, spaced geometrically over the gripper's range."""
+MODES = {"friction_source": "none", "action_mode": "grip_force"}
+"""Arguments of the environments of a constant grip."""
 _SELECTION_SEED = 1000
 """Added to the seed of an experiment: the force is chosen on other episodes than those it is evaluated on."""
 
@@ -35,52 +39,60 @@ class Outcomes(NamedTuple):
     """The episodes."""
 
 
-def best_force(experiment: Experiment, candidates: int = CANDIDATES, progress: bool = True) -> float:
-    """The force with the highest success rate, among equals with the largest mean sum of rewards.
+def candidates(gripper: GripperConfig, number: int = CANDIDATES) -> list[float]:
+    """Forces to try, rounded to 0.01 N [N]."""
+    return np.geomspace(gripper.force_min, gripper.force_max, number).round(2).tolist()
+
+
+def play_forces(
+    task: str,
+    arguments: Mapping[str, Any],
+    forces: Sequence[float],
+    seeds: Sequence[int],
+    options: Sequence[Mapping[str, Any]] | None = None,
+    progress: bool = False,
+) -> list[Outcomes]:
+    """Plays the same episodes with constant forces per finger [N], in one vector environment.
 
     Args:
-        experiment: Says which task and episodes; its policies and friction choices are not used. The episodes
-            have other seeds than its trials and run on the planar engine.
-        candidates: Forces to try.
+        task: As `slipgym.tasks.find` takes it.
+        arguments: Of the environments; their `config` is also that of the policy.
+        forces: Forces per finger [N].
+        seeds: Of the episodes.
+        options: Of reset, for each episode; None: none.
         progress: Whether to show a progress bar.
-
-    Returns:
-        Force per finger, rounded to 0.01 N [N].
     """
-    chosen = experiment.model_copy(update={"seed": experiment.seed + _SELECTION_SEED})
-    gripper = experiment.environment_config().gripper
-    forces = np.geomspace(gripper.force_min, gripper.force_max, candidates).round(2)
-    found = run_constant(chosen, forces.tolist(), progress)
+    config, env_id = arguments.get("config"), f"slipgym:{find(task).id}"
+    bar = tqdm(forces, desc=f"{task}, constant grip", unit="force", disable=not progress)
+    with closing(gym.make_vec(env_id, len(seeds), "vector_entry_point", **{**arguments, **MODES})) as envs:
+        return [
+            Outcomes(force, play(envs, ConstantForcePolicy(force, config), seeds, options)) for force in bar
+        ]
+
+
+def best_of(found: Sequence[Outcomes]) -> float:
+    """The force with the highest success rate, among equals with the largest mean sum of rewards [N]."""
     return max(found, key=lambda one: (one.played.success.mean(), one.played.reward.mean())).force
 
 
-def run_constant(experiment: Experiment, forces: Sequence[float], progress: bool = True) -> list[Outcomes]:
-    """Runs the episodes of an experiment with constant forces, in one vector environment.
+def best_force(experiment: Experiment, number: int = CANDIDATES, progress: bool = True) -> float:
+    """The best of a number of constant forces, rounded to 0.01 N [N]; arguments as for `run_constant`.
 
-    Args:
-        experiment: As for `best_force`; here its own seeds count.
-        forces: Forces per finger [N].
-        progress: Whether to show a progress bar.
+    It is chosen on episodes of other seeds than the experiment's.
+    """
+    chosen = experiment.model_copy(update={"seed": experiment.seed + _SELECTION_SEED})
+    forces = candidates(experiment.environment_config().gripper, number)
+    return best_of(run_constant(chosen, forces, progress))
+
+
+def run_constant(experiment: Experiment, forces: Sequence[float], progress: bool = True) -> list[Outcomes]:
+    """Runs the episodes of an experiment with constant forces per finger [N] on the planar engine.
+
+    The policies and friction choices of the experiment are not used.
     """
     alone = {"policies": experiment.policies[:1], "friction": experiment.friction[:1]}
     trials = plan(experiment.model_copy(update=alone))
     seeds, options = zip(*((trial.seed, row_options(trial)) for trial in trials), strict=True)
-    config = dict(experiment.config)
-    envs = gym.make_vec(
-        f"slipgym:{find(experiment.task).id}",
-        len(trials),
-        "vector_entry_point",
-        action_mode="grip_force",
-        friction_source="none",
-        sensors=experiment.sensors,
-        randomization=experiment.randomization,
-        level=experiment.level,
-        config=config,
-    )
-    try:
-        bar = tqdm(forces, desc=f"{experiment.task}, constant grip", unit="force", disable=not progress)
-        return [
-            Outcomes(force, play(envs, ConstantForcePolicy(force, config), seeds, options)) for force in bar
-        ]
-    finally:
-        envs.close()
+    same = {name: getattr(experiment, name) for name in ("sensors", "randomization", "level")}
+    arguments = {**same, "config": dict(experiment.config)}
+    return play_forces(experiment.task, arguments, forces, seeds, options, progress)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from contextlib import closing
 from importlib import import_module
 from typing import Any, NamedTuple
 
@@ -49,10 +50,11 @@ def demonstrate(
     import_module("minari.dataset.minari_dataset").parse_dataset_id(dataset)
     if dataset in minari.list_local_datasets():
         raise FileExistsError(f"there is a dataset {dataset!r}: minari delete {dataset} removes it")
-    policy, inner = opened(which, task, changes)
-    env = minari.DataCollector(inner, record_infos=False)
-    solved = 0
-    try:
+    solved, collector = 0, minari.DataCollector
+    with (
+        opened(which, task, changes) as (policy, inner),
+        closing(collector(inner, record_infos=False)) as env,
+    ):
         for seed in tqdm(range(first, first + count), disable=None, leave=False):
             observation, info = env.reset(seed=seed)
             for step in steps(env, policy, observation):
@@ -67,6 +69,4 @@ def demonstrate(
             code_permalink="none",
             description=f"{solved} of {count} episodes solved, seeds from {first} on",
         )
-    finally:
-        env.close()
     return Stored(int(made.total_episodes), int(made.total_steps), solved)

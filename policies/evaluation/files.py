@@ -39,14 +39,9 @@ def narrowed(
     friction: Sequence[str] = (),
     level: str | None = None,
 ) -> Experiment:
-    """The experiment with another number of trials, another seed or level, or fewer friction choices.
+    """The experiment with another number of trials, another seed or level; None leaves them.
 
-    Args:
-        experiment: The experiment.
-        trials: Trials per condition; None leaves them.
-        seed: Its seed; None leaves it.
-        friction: Labels or sources to keep; none given keeps all.
-        level: Its level of difficulty; None leaves it.
+    It keeps the friction choices with some labels or sources; none given keeps all.
 
     Raises:
         ValueError: A value is not allowed, or the experiment has no such friction.

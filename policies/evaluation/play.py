@@ -29,7 +29,7 @@ class Played(NamedTuple):
 def play(
     envs: Any, policy: Policy, seeds: Sequence[int], options: Sequence[Mapping[str, Any]] | None = None
 ) -> Played:
-    """Plays the first episode of every environment to its end.
+    """Plays the first episode of every environment of a vector environment to its end.
 
     Args:
         envs: A vector environment of n slipgym environments.

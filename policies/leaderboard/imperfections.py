@@ -42,15 +42,10 @@ class Imperfections:
 
 
 def impaired(record: Record, imperfections: Imperfections, seed: int = 0) -> Record:
-    """A record as a gripper with these imperfections would have taken it.
+    """A record of m fingers as a gripper with these imperfections would have taken it.
 
-    Directions are spread evenly over the m fingers from a random start, signs and instants are random. The
+    Directions are spread evenly over the fingers from a random start, signs and instants are random. The
     first velocities of a delayed sensor are zero. A force between two samples is interpolated.
-
-    Args:
-        record: m fingers, n samples.
-        imperfections: Sizes of the errors.
-        seed: Of what is drawn, >= 0.
     """
     rng = np.random.default_rng(seed)
     m = len(record.wrenches)

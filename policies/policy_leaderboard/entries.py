@@ -6,16 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import gymnasium as gym
-import numpy as np
-
 from policies import registry
 from policies.controllers.constant_force import ConstantForcePolicy
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.controllers.slip_memory import SlipMemory
 from policies.controllers.table import CLASSES
+from policies.evaluation.constant_grip import MODES, best_of, candidates, play_forces
 from policies.evaluation.one_policy import environment_of
-from policies.evaluation.play import play
 from policies.learned import LearnedPolicy, pretrained
 from policies.registry import Policy
 from slipgym.config import load
@@ -43,131 +40,83 @@ class Member(NamedTuple):
 
 def constant(force: float) -> Member:
     """A constant grip force [N]."""
-    arguments = {"friction_source": "none", "action_mode": "grip_force"}
-    return Member(f"constant {force:g} N", ConstantForcePolicy(force), arguments)
+    return Member(f"constant {force:g} N", ConstantForcePolicy(force), MODES)
+
+
+def member(name: str, policy: Policy, source: str) -> Member:
+    """A policy with a friction source; it sets the modes of its environments."""
+    return Member(name, policy, {**registry.modes(policy), "friction_source": source})
 
 
 def controllers(key: str, called: str = "controller") -> list[Member]:
-    """A controller with every friction source.
+    """A controller with every friction source: that of a task's key, or another one of `CLASSES`.
 
-    Args:
-        key: Its name: that of a task, or another one of `policies.controllers.table.CLASSES`.
-        called: How the members' names begin.
+    The members' names begin with what it is called.
     """
-    made, blind = registry.make(key), NoFrictionInfo(key)
-    members = [Member(f"{called}, none", blind, {**registry.modes(blind), "friction_source": "none"})]
-    for source in ("nominal", "estimated", "true"):
-        arguments = {**registry.modes(made), "friction_source": source}
-        members.append(Member(f"{called}, {source}", made, arguments))
-    return members
+    made = registry.make(key)
+    members = [member(f"{called}, {source}", made, source) for source in ("nominal", "estimated", "true")]
+    return [member(f"{called}, none", NoFrictionInfo(key), "none"), *members]
 
 
 def remembering(key: str) -> Member:
-    """A controller without friction information that remembers slips.
-
-    Args:
-        key: Its name.
-    """
-    made = SlipMemory(key)
-    return Member("controller, memory of slips", made, {**made.modes, "friction_source": "none"})
+    """The controller of a name without friction information, which remembers slips."""
+    return member("controller, memory of slips", SlipMemory(key), "none")
 
 
 def learned(key: str) -> list[Member]:
-    """The policies of a task that come with slipgym.
-
-    Args:
-        key: Of the task.
-    """
+    """The policies that come with slipgym for the task of a key."""
     members, shipped = [], pretrained.folders()
     for ending, called in LEARNED.items():
         if (name := f"{key}_{ending}") in shipped:
             policy = LearnedPolicy(shipped[name])
-            source = policy.description.environment.arguments.get("friction_source", "estimated")
-            members.append(Member(f"{called}, {source}", policy, {"friction_source": source, **policy.modes}))
+            source = str(policy.description.environment.arguments.get("friction_source", "estimated"))
+            members.append(member(f"{called}, {source}", policy, source))
     return members
 
 
 def best_constant(task: str, arguments: Mapping[str, Any], episodes: int) -> Member:
     """The constant grip that solves most, among equals the one with the largest mean return.
 
-    It is chosen on other episodes of the same distribution, on the planar engine.
-
-    Args:
-        task: As `slipgym.tasks.find` takes it.
-        arguments: Of the environments: level, randomization, sensors.
-        episodes: How many for each force.
+    It is chosen on a number of other episodes of the same distribution, on the planar engine.
     """
-    gripper = load().gripper
-    forces = np.geomspace(gripper.force_min, gripper.force_max, CANDIDATES).round(2).tolist()
-    found, seeds = [], range(_SELECTION_SEED, _SELECTION_SEED + episodes)
-    made = {**arguments, **constant(forces[0]).arguments}
-    envs = gym.make_vec(f"slipgym:{find(task).id}", episodes, "vector_entry_point", **made)
-    try:
-        for force in forces:
-            played = play(envs, constant(force).policy, seeds)
-            found.append((played.success.mean(), played.reward.mean(), force))
-    finally:
-        envs.close()
-    best = constant(max(found)[2])
-    return best._replace(name=f"best constant ({best.name.removeprefix('constant ')})")
+    forces = candidates(load().gripper, CANDIDATES)
+    seeds = range(_SELECTION_SEED, _SELECTION_SEED + episodes)
+    force = best_of(play_forces(task, arguments, forces, seeds))
+    return constant(force)._replace(name=f"best constant ({force:g} N)")
 
 
 def further(task: str) -> list[Member]:
-    """Controllers of a task beside the one of its name, such as "planar_slip_continuous".
-
-    Args:
-        task: As `slipgym.tasks.find` takes it.
-    """
-    key, name, members = find(task).key, find(task).name, []
-    for other in CLASSES:
-        if other != key and getattr(registry.find(other), "task", None) == name:
-            members += controllers(other, other)
-    return members
+    """Controllers of a task beside the one of its name, such as "planar_slip_continuous"."""
+    found = find(task)
+    others = [name for name in CLASSES if getattr(registry.find(name), "task", None) == found.name]
+    return [each for name in others if name != found.key for each in controllers(name, name)]
 
 
 def imitated(task: str, folder: Path) -> list[Member]:
-    """Policies of `slipgym imitate` for a task.
-
-    Args:
-        task: As `slipgym.tasks.find` takes it.
-        folder: Of its runs, `<task>_<friction source>_<seed>/policy`.
-    """
+    """Policies of `slipgym imitate` for a task, in its folder of `<task>_<friction source>_<seed>/policy`."""
     members = []
     for place in sorted(folder.glob(f"{find(task).key}_*/policy")):
         source = place.parent.name.removeprefix(f"{find(task).key}_").rpartition("_")[0]
         policy = LearnedPolicy(place)
         kind = "recurrent" if policy.description.network.memory is not None else "memoryless"
-        arguments = {"friction_source": source, **policy.modes}
-        members.append(Member(f"imitation, {source}, {kind}", policy, arguments))
+        members.append(member(f"imitation, {source}, {kind}", policy, source))
     return members
 
 
 def entered(names: Sequence[str], source: str) -> list[Member]:
-    """Policies that a user enters.
-
-    Args:
-        names: As `policies.load` takes them: "module:class", or folders of learned policies.
-        source: Friction source of their observations.
-
-    Returns:
-        Members whose names end with the source.
+    """Policies that a user enters, as `policies.load` takes them; their names end with their friction source.
 
     Raises:
         FileNotFoundError: There is no such policy.
         ValueError: What lies there is no policy.
     """
-    members = []
-    for name in names:
-        policy = registry.load(name)
-        arguments = {"friction_source": source, **registry.modes(policy)}
-        members.append(Member(f"{name}, {source}", policy, arguments))
-    return members
+    return [member(f"{name}, {source}", registry.load(name), source) for name in names]
 
 
 def check_task(members: Sequence[Member], task: str) -> None:
     """Raise ValueError if a policy is for another task, whose observations may be as long."""
-    for member in members:
-        environment_of(member.name, member.policy, task)
+    for each in members:
+        environment_of(each.name, each.policy, task)
 
 
 def opponents(
