@@ -58,7 +58,7 @@ def main(
     from policies.evaluation.frames import markdown
     from policies.leaderboard.one_imperfection import without as lacking
     from policies.policy_leaderboard import entries, run
-    from policies.policy_leaderboard.folder import write, write_table
+    from policies.policy_leaderboard.folder import write
     from policies.policy_leaderboard.worlds import generalisation
     from policies.policy_leaderboard.worth import table, worth
     from slipgym.atomic_io import check_folder
@@ -93,7 +93,7 @@ def main(
         raise typer.BadParameter(str(error)) from error
     whole = pd.concat(found, ignore_index=True)
     if worlds:
-        folder = write_table(whole, output, "worlds")
+        folder = write(whole, output, name="worlds")
         typer.echo(f"Solved [%]:\n\n{markdown(whole, 1)}\nLook at:\n  {folder / 'worlds.csv'}")
         return
     folder = write(whole, output, {"episodes": episodes, "engine": engine, **same})

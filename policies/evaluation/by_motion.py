@@ -25,14 +25,16 @@ def measures_by_motion(task: Task) -> Measures:
     measure = partial(measure_motion, motion=motion)
     if motion.axis is None:
         return Measures(measure, _tolerances(task), (*OUTCOME, SLIP, ROTATION, FORCE), FORCE)
-    unit, word, _ = _UNITS[motion.unit]
-    size = Metric(f"final_error_abs_{unit}", f"final error, size [{word}]", brief=True)
-    errors = (
-        Metric(f"final_error_{unit}", f"final error, signed [{word}]", brief=True),
-        size,
-        Metric(f"rms_error_{unit}", f"rms tracking error [{word}]", brief=True),
-    )
-    return Measures(measure, _tolerances(task), (*OUTCOME, *errors, SLIP, FORCE), size)
+    errors = tracking(motion.unit)
+    return Measures(measure, _tolerances(task), (*OUTCOME, *errors, SLIP, FORCE), errors[1])
+
+
+def tracking(unit: str) -> tuple[Metric, ...]:
+    """Final error, its size and the rms error of a motion in [m] or [rad]."""
+    unit, word, _ = _UNITS[unit]
+    names = {"final_error": "final error, signed", "final_error_abs": "final error, size"}
+    names |= {"rms_error": "rms tracking error"}
+    return tuple(Metric(f"{name}_{unit}", f"{words} [{word}]", brief=True) for name, words in names.items())
 
 
 def measure_motion(recording: Recording, motion: Motion) -> dict[str, Any]:

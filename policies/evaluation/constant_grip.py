@@ -93,6 +93,4 @@ def run_constant(experiment: Experiment, forces: Sequence[float], progress: bool
     alone = {"policies": experiment.policies[:1], "friction": experiment.friction[:1]}
     trials = plan(experiment.model_copy(update=alone))
     seeds, options = zip(*((trial.seed, row_options(trial)) for trial in trials), strict=True)
-    same = {name: getattr(experiment, name) for name in ("sensors", "randomization", "level")}
-    arguments = {**same, "config": dict(experiment.config)}
-    return play_forces(experiment.task, arguments, forces, seeds, options, progress)
+    return play_forces(experiment.task, experiment.arguments, forces, seeds, options, progress)

@@ -32,19 +32,13 @@ def demonstrate(
 ) -> Stored:
     """Plays episodes of a policy and stores them as a dataset; nothing is stored before the last one is over.
 
-    Args:
-        which: As `policies.load` takes it.
-        dataset: Name of the dataset, such as "hold/controller-v0".
-        count: Episodes, at least 1.
-        first: Seed of the first one; episode i has the seed `first` + i.
-        task: Needed for a controller that serves every task.
-        changes: Keyword arguments of the environment instead of those of the policy.
+    Policy, task and changes are as for `policies.evaluation.one_policy.episodes`; the dataset has a name
+    such as "hold/controller-v0"; of the `count` episodes, at least 1, number i has the seed `first` + i.
 
     Raises:
         ModuleNotFoundError: Minari is not installed.
         FileExistsError: There is a dataset of that name.
-        FileNotFoundError: There is no such policy.
-        ValueError: A name or value is wrong, or the environment is not one the policy can act in.
+        FileNotFoundError, ValueError: As for `episodes`.
     """
     minari: Any = import_module("minari")
     import_module("minari.dataset.minari_dataset").parse_dataset_id(dataset)

@@ -19,11 +19,9 @@ def experiment_names() -> list[str]:
 
 
 def load_experiment(which: str | os.PathLike[str]) -> Experiment:
-    """Reads an experiment.
+    """Reads an experiment: one of `experiment_names()`, or the YAML file at a path.
 
-    Args:
-        which: One of `experiment_names()`, or the path of a YAML file. A task's own experiment also goes by
-            the task's other names, "LinearSlip" for example.
+    A task's own experiment also goes by the task's other names, "LinearSlip" for example.
 
     Raises:
         FileNotFoundError: It looks like a path, but there is no such file.

@@ -36,7 +36,7 @@ class Entry(NamedTuple):
 
     @property
     def name(self) -> str:
-        """How figures call it."""
+        """Name in figures."""
         plain = {"none": self.policy, "nominal": f"{self.policy}, nominal friction"}
         return plain.get(self.source, f"{self.source} friction")
 

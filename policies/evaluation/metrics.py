@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from policies.evaluation.by_motion import final_error, largest_slip, measures_by_motion
+from policies.evaluation.by_motion import final_error, largest_slip, measures_by_motion, tracking
 from policies.evaluation.columns import FORCE, OUTCOME, ROTATION, SLIP, Measures, Metric, Tolerance
 from policies.evaluation.recording import Recording
 from slipgym.tasks import find
@@ -144,21 +144,11 @@ _DEG, _TILT, _ANGLE = (
     Tolerance(name, "tolerance_deg", math.degrees(1.0))
     for name in ("tolerance", "tilt_tolerance", "angle_tolerance")
 )
-_FINAL = Metric("final_error_abs_mm", "final error, size [mm]", brief=True)
-_FINAL_ANGLE = Metric("final_error_abs_deg", "final error, size [°]", brief=True)
+_SLIDING = (*tracking("m"), Metric("max_sideways_mm", "largest sideways slip [mm]"))
+_TURNING = tracking("rad")
+_FINAL, _FINAL_ANGLE = _SLIDING[1], _TURNING[1]
 _DISTANCE = Metric("final_error_mm", "final distance to the target [mm]", brief=True)
 _TIME = Metric("time_s", "time [s]", brief=True)
-_SLIDING = (
-    Metric("final_error_mm", "final error, signed [mm]", brief=True),
-    _FINAL,
-    Metric("rms_error_mm", "rms tracking error [mm]", brief=True),
-    Metric("max_sideways_mm", "largest sideways slip [mm]"),
-)
-_TURNING = (
-    Metric("final_error_deg", "final error, signed [°]", brief=True),
-    _FINAL_ANGLE,
-    Metric("rms_error_deg", "rms tracking error [°]", brief=True),
-)
 _NEEDED = (
     Metric("needed_force_mean_N", "least needed, mean [N]", brief=True),
     Metric("needed_force_peak_N", "least needed, peak [N]"),

@@ -35,15 +35,10 @@ class Outcome(NamedTuple):
 
 
 def environment_of(which: str, policy: Policy, task: str | None) -> tuple[str, dict[str, Any]]:
-    """The environment that a policy is for.
-
-    Args:
-        which: What it was loaded by, for the message of an error.
-        policy: The policy.
-        task: Its task's name, where it does not say so itself.
+    """The environment that a policy is for; `which` it was loaded by is for the message of an error.
 
     Returns:
-        Id and keyword arguments: those of its training, or what a controller asks for.
+        Id and keyword arguments: those of its training, or what a controller of a task asks for.
 
     Raises:
         ValueError: No task is known, or another one is asked for.

@@ -143,15 +143,12 @@ def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None 
 def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:
     """Keyword arguments of a trial's environment, but for those that the policy decides."""
     return {
+        **experiment.arguments,
+        "engine": experiment.engine,
         "friction_source": trial.friction.source,
         "estimator": trial.friction.argument,
-        "sensors": experiment.sensors,
-        "engine": experiment.engine,
         "material": trial.material,
-        "randomization": experiment.randomization,
-        "level": experiment.level,
         "frame_skip": experiment.frame_skip_of(trial.policy),
-        "config": dict(experiment.config),
     }
 
 

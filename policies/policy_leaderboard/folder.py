@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -27,30 +27,27 @@ WIDTH = 6.7
 """Of the picture: its words keep their size on a page 670 pixels wide [inches]."""
 
 
-def write(table: pd.DataFrame, output: Path, played: Mapping[str, Any] | None = None) -> Path:
-    """Writes the table of all tasks and levels, the picture and how it was played, whole or not at all.
+def write(
+    table: pd.DataFrame, output: Path, played: Mapping[str, Any] | None = None, name: str = "policies"
+) -> Path:
+    """Writes a table into a run's own folder, whole or not at all.
+
+    Args:
+        table: Of all tasks and levels, from `policies.policy_leaderboard.run.outcomes` or another.
+        output: Folder of the run's own folder.
+        played: How the outcomes were played: their number, the engine, arguments of the environments. With it
+            there are a picture and `leaderboard.json`.
+        name: Of the table.
 
     Returns:
-        The run's own folder: `policies.csv`, `policies.png`, `leaderboard.json`, `versions.json`.
+        The folder: `policies.csv`, `versions.json`, and `policies.png` and `leaderboard.json`.
     """
-    return write_table(table, output, "policies", plot_policies, played or {})
-
-
-def write_table(
-    table: pd.DataFrame,
-    output: Path,
-    name: str,
-    plot: Callable[[pd.DataFrame], Figure] | None = None,
-    played: Mapping[str, Any] | None = None,
-) -> Path:
-    """Writes a table, `versions.json` and, if asked, the picture and `leaderboard.json` into a folder."""
     place = stamped(output, name)
     with new_folder(place) as folder:
         table.to_csv(folder / f"{name}.csv", index=False, float_format="%.3f")
-        if plot is not None:
-            with styled():
-                plot(table).savefig(folder / f"{name}.png", dpi=STYLE.dpi)
         if played is not None:
+            with styled():
+                plot_policies(table).savefig(folder / f"{name}.png", dpi=STYLE.dpi)
             rows = json.loads(table.to_json(orient="records", double_precision=3) or "[]")
             board = {"played": dict(played), "versions": versions(), "rows": rows}
             atomic_io.write(folder / "leaderboard.json", (json.dumps(board, indent=1) + "\n").encode())

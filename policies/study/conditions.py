@@ -46,17 +46,10 @@ class Condition:
     @property
     def keys(self) -> dict[str, Any]:
         """Columns that distinguish its episodes from the others', for tables."""
-        return {
-            "world": self.world.label,
-            "task": self.task,
-            "preset": self.preset,
-            "change": self.change.name,
-            "level": self.change.level,
-            "kind": self.kind,
-            "source": self.source,
-            "estimator": self.estimator if self.source == "estimated" else "",
-            "block": self.block,
-        }
+        place = {"world": self.world.label, "task": self.task, "preset": self.preset}
+        change = {"change": self.change.name, "level": self.change.level}
+        friction = {"source": self.source, "estimator": self.estimator if self.source == "estimated" else ""}
+        return {**place, **change, "kind": self.kind, **friction, "block": self.block}
 
     @property
     def name(self) -> str:

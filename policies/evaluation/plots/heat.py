@@ -16,7 +16,7 @@ COLOURS = LinearSegmentedColormap.from_list("cells", ["#A33B00", "#E9A26A", "#F7
 
 
 def places(groups: Sequence[str], gap: float) -> np.ndarray:
-    """Where columns of these groups stand, (n,); there is a gap between groups."""
+    """Places of columns of these groups, (n,), with a gap between groups."""
     return np.arange(len(groups)) + gap * np.cumsum([False, *(a != b for a, b in pairwise(groups))])
 
 

@@ -46,16 +46,6 @@ def plot_tracking(task: str, trials: pd.DataFrame, series: pd.DataFrame) -> Figu
     return figure
 
 
-def _follow(axes: Axes, steps: pd.DataFrame, path: np.ndarray, scale: float, first: bool) -> None:
-    """A path over its reference, which is to be scaled like the path."""
-    time, reference = values(steps, "time"), scale * values(steps, "reference")
-    axes.plot(time, path, color=_SLIP)
-    axes.plot(time, reference, "--", color=STYLE.ink, linewidth=1.0)
-    if first:
-        middle = len(time) // 2
-        note(axes, time[middle], reference[middle], "reference  ", STYLE.ink, ha="right", va="bottom")
-
-
 def _ended(axes: Axes, at: float, trial: Any, words: str, colour: str = _SLIP) -> None:
     """How the trial ended."""
     note(axes, 0.98, at, "dropped" if trial["dropped"] else words, colour, **_CORNER)
@@ -63,16 +53,19 @@ def _ended(axes: Axes, at: float, trial: Any, words: str, colour: str = _SLIP) -
 
 def _path(motion: Motion, axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
     slip = np.column_stack([values(steps, f"slip_{axis}") for axis in ("x", "y", "theta")])
-    if motion.axis is None:
-        axes.plot(values(steps, "time"), motion.path(slip), color=_SLIP)
-    else:
-        _follow(axes, steps, motion.path(slip), motion.target(1.0), first)
-    for column, unit in (("final_error_mm", " mm"), ("final_error_deg", "°")):
-        if motion.axis is not None and column in trial:
-            error = f"final error {trial[column]:+.2f}{unit}".replace("-", "−")
-            _ended(axes, 0.05, trial, error)
+    time, middle = values(steps, "time"), len(steps) // 2
+    axes.plot(time, motion.path(slip), color=_SLIP)
     if first:
         axes.set_ylabel(motion.title)
+    if motion.axis is None:
+        return
+    reference = motion.target(1.0) * values(steps, "reference")
+    axes.plot(time, reference, "--", color=STYLE.ink, linewidth=1.0)
+    if first:
+        note(axes, time[middle], reference[middle], "reference  ", STYLE.ink, ha="right", va="bottom")
+    for column, unit in (("final_error_mm", " mm"), ("final_error_deg", "°")):
+        if column in trial:
+            _ended(axes, 0.05, trial, f"final error {trial[column]:+.2f}{unit}".replace("-", "−"))
 
 
 def _largest_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
