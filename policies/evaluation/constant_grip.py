@@ -6,11 +6,9 @@ is tuned to the distribution of episodes, which nobody could do for a single new
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from contextlib import closing
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
-import gymnasium as gym
 import numpy as np
 from tqdm import tqdm
 
@@ -18,9 +16,8 @@ from policies.controllers.constant_force import ConstantForcePolicy
 from policies.evaluation.batch import row_options
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.plan import plan
-from policies.evaluation.play import Played, play
+from policies.evaluation.play import Played, play_episodes
 from slipgym.config import GripperConfig
-from slipgym.tasks import find
 
 CANDIDATES = 24
 """Forces that are tried, spaced geometrically over the gripper's range."""
@@ -44,37 +41,6 @@ def candidates(gripper: GripperConfig, number: int = CANDIDATES) -> list[float]:
     return np.geomspace(gripper.force_min, gripper.force_max, number).round(2).tolist()
 
 
-def play_forces(
-    task: str,
-    arguments: Mapping[str, Any],
-    forces: Sequence[float],
-    seeds: Sequence[int],
-    options: Sequence[Mapping[str, Any]] | None = None,
-    progress: bool = False,
-) -> list[Outcomes]:
-    """Plays the same episodes with constant forces per finger [N], in one vector environment.
-
-    Args:
-        task: As `slipgym.tasks.find` takes it.
-        arguments: Of the environments; their `config` is also that of the policy.
-        forces: Forces per finger [N].
-        seeds: Of the episodes.
-        options: Of reset, for each episode; None: none.
-        progress: Whether to show a progress bar.
-    """
-    config, env_id = arguments.get("config"), f"slipgym:{find(task).id}"
-    bar = tqdm(forces, desc=f"{task}, constant grip", unit="force", disable=not progress)
-    with closing(gym.make_vec(env_id, len(seeds), "vector_entry_point", **{**arguments, **MODES})) as envs:
-        return [
-            Outcomes(force, play(envs, ConstantForcePolicy(force, config), seeds, options)) for force in bar
-        ]
-
-
-def best_of(found: Sequence[Outcomes]) -> float:
-    """The force with the highest success rate, among equals with the largest mean sum of rewards [N]."""
-    return max(found, key=lambda one: (one.played.success.mean(), one.played.reward.mean())).force
-
-
 def best_force(experiment: Experiment, number: int = CANDIDATES, progress: bool = True) -> float:
     """The best of a number of constant forces, rounded to 0.01 N [N]; arguments as for `run_constant`.
 
@@ -82,7 +48,8 @@ def best_force(experiment: Experiment, number: int = CANDIDATES, progress: bool 
     """
     chosen = experiment.model_copy(update={"seed": experiment.seed + _SELECTION_SEED})
     forces = candidates(experiment.environment_config().gripper, number)
-    return best_of(run_constant(chosen, forces, progress))
+    found = run_constant(chosen, forces, progress)
+    return max(found, key=lambda one: one.played.strength).force
 
 
 def run_constant(experiment: Experiment, forces: Sequence[float], progress: bool = True) -> list[Outcomes]:
@@ -93,4 +60,9 @@ def run_constant(experiment: Experiment, forces: Sequence[float], progress: bool
     alone = {"policies": experiment.policies[:1], "friction": experiment.friction[:1]}
     trials = plan(experiment.model_copy(update=alone))
     seeds, options = zip(*((trial.seed, row_options(trial)) for trial in trials), strict=True)
-    return play_forces(experiment.task, experiment.arguments, forces, seeds, options, progress)
+    arguments, found = {**experiment.arguments, **MODES}, []
+    bar = tqdm(forces, desc=f"{experiment.task}, constant grip", unit="force", disable=not progress)
+    for force in bar:
+        policy = ConstantForcePolicy(force, experiment.config)
+        found.append(Outcomes(force, play_episodes(experiment.task, policy, arguments, seeds, options)))
+    return found

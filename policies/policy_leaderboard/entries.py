@@ -11,8 +11,9 @@ from policies.controllers.constant_force import ConstantForcePolicy
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.controllers.slip_memory import SlipMemory
 from policies.controllers.table import CLASSES
-from policies.evaluation.constant_grip import MODES, best_of, candidates, play_forces
+from policies.evaluation.constant_grip import MODES, candidates
 from policies.evaluation.one_policy import environment_of
+from policies.evaluation.play import play_episodes
 from policies.learned import LearnedPolicy, pretrained
 from policies.registry import Policy
 from slipgym.config import load
@@ -20,6 +21,8 @@ from slipgym.tasks import find
 
 CANDIDATES = 16
 """Constant forces that are tried, spaced geometrically over the gripper's range."""
+SKIPS = 1, 2, 4
+"""Control steps of an action that are tried for a memory of slips."""
 LEARNED = {
     "scratch": "learned from nothing",
     "memory": "recurrent",
@@ -27,7 +30,7 @@ LEARNED = {
 }
 """What the names of shipped policies have behind the task's key -> what tables call them."""
 _SELECTION_SEED = 10_000_000
-"""Of the first episode on which the constant force is chosen."""
+"""Of the first episode on which a constant force or a rate is chosen."""
 
 
 class Member(NamedTuple):
@@ -58,9 +61,17 @@ def controllers(key: str, called: str = "controller") -> list[Member]:
     return [member(f"{called}, none", NoFrictionInfo(key), "none"), *members]
 
 
-def remembering(key: str) -> Member:
-    """The controller of a name without friction information, which remembers slips."""
-    return member("controller, memory of slips", SlipMemory(key), "none")
+def remembering(task: str, arguments: Mapping[str, Any], episodes: int) -> Member:
+    """The task's controller without friction information that remembers slips, at the rate that solves most.
+
+    The rate is chosen as the force of `best_constant` is.
+    """
+    made, rate = SlipMemory(find(task).key), load().physics.control_rate
+    members = []
+    for skip in SKIPS:
+        one = member(f"controller, memory of slips ({rate // skip} Hz)", made, "none")
+        members.append(one._replace(arguments={**one.arguments, "frame_skip": skip}))
+    return _strongest(task, members, arguments, episodes)
 
 
 def learned(key: str) -> list[Member]:
@@ -79,10 +90,17 @@ def best_constant(task: str, arguments: Mapping[str, Any], episodes: int) -> Mem
 
     It is chosen on a number of other episodes of the same distribution, on the planar engine.
     """
-    forces = candidates(load().gripper, CANDIDATES)
+    members = [constant(force) for force in candidates(load().gripper, CANDIDATES)]
+    best = _strongest(task, members, arguments, episodes)
+    return best._replace(name=f"best constant ({best.name.removeprefix('constant ')})")
+
+
+def _strongest(task: str, members: Sequence[Member], arguments: Mapping[str, Any], episodes: int) -> Member:
+    """The member that solves most, among equals with the largest mean return, on episodes of its own."""
     seeds = range(_SELECTION_SEED, _SELECTION_SEED + episodes)
-    force = best_of(play_forces(task, arguments, forces, seeds))
-    return constant(force)._replace(name=f"best constant ({force:g} N)")
+    played = (play_episodes(task, each.policy, {**arguments, **each.arguments}, seeds) for each in members)
+    strength = [found.strength for found in played]
+    return members[strength.index(max(strength))]
 
 
 def further(task: str) -> list[Member]:
@@ -127,10 +145,10 @@ def opponents(
     Args:
         task: As `slipgym.tasks.find` takes it.
         arguments: Of the environments: level, randomization, sensors.
-        episodes: On which the constant grip is chosen, for each force.
+        episodes: On which the constant grip and the rate of the memory are chosen, for each.
         folder: Of the runs of `slipgym imitate`; None: none.
     """
     key = find(task).key
-    found = [best_constant(task, arguments, episodes), remembering(key), *controllers(key), *further(task)]
-    found += learned(key)
+    found = [best_constant(task, arguments, episodes), remembering(task, arguments, episodes)]
+    found += [*controllers(key), *further(task), *learned(key)]
     return found if folder is None else [*found, *imitated(task, folder)]

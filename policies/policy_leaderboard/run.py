@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import closing
 from typing import Any
 
-import gymnasium as gym
-import numpy as np
 import pandas as pd
 from tqdm import tqdm
 
-from policies.evaluation.play import Played, play
+from policies.evaluation.play import Played, play_episodes
 from policies.evaluation.statistics import share
 from policies.policy_leaderboard.entries import Member
 from slipgym.tasks import find
@@ -21,8 +18,6 @@ COLUMNS = (
     "slid [mm]",
 )  # fmt: skip
 """Of the table: `low` and `high` bound the interval of 95 % of what was solved [%]."""
-ROWS = {"planar": 1000, "bullet": 50}
-"""Most environments side by side; one of PyBullet takes 28 MB."""
 
 
 def episodes_of(
@@ -37,14 +32,8 @@ def episodes_of(
         arguments: Further arguments of the environments, such as `level`.
         engine: "planar" or "bullet".
     """
-    made, parts, mode = {**arguments, **member.arguments}, [], "vector_entry_point"
-    if engine != "planar":
-        made, mode = {**made, "engine": engine, "disable_env_checker": True}, "sync"
-    for first in range(0, episodes, ROWS[engine]):
-        seeds = range(first, min(first + ROWS[engine], episodes))
-        with closing(gym.make_vec(f"slipgym:{find(task).id}", len(seeds), mode, **made)) as envs:
-            parts.append(play(envs, member.policy, seeds))
-    return Played(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+    made = {**arguments, **member.arguments}
+    return play_episodes(task, member.policy, made, range(episodes), engine=engine)
 
 
 def play_all(
