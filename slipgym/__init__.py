@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 __all__ = ["__version__", "register_task"]
 
+_MAKERS = ("gymnasium.make", "gymnasium.make_vec", "policies.make_vec_env")
+"""Functions of other packages that make environments."""
 refuse_hidden("estimator")
 register()
 
@@ -46,7 +48,10 @@ def __getattr__(name: str) -> Any:
         from slipgym.envs import register_task
 
         return register_task
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from estimator.suggestions import asking
+
+    said = f"module {__name__!r} has no attribute {name!r}"
+    raise AttributeError(asking(said, name, [*__dir__(), *_MAKERS]))
 
 
 def __dir__() -> list[str]:

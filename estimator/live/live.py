@@ -12,11 +12,14 @@ from estimator.live.hand import Hand, Output
 from estimator.live.source import Source
 from estimator.online import TWIST, WRENCH, OnlineEstimator, make
 from estimator.registry import DEFAULT
+from estimator.suggestions import asking
 
 CLOCKS = ("stamps", "arrival")
 KINDS = {"wrench": "force", "twist": "velocity"}
 APART = 0.05
 """Difference of the clocks of a finger's sensors that is a warning [s]; networks delay by less."""
+OFF = 0.1
+"""Difference of a sensor's rate from the one that was stated, over this, that is a warning."""
 
 
 class Live:
@@ -54,7 +57,9 @@ class Live:
         if fingers not in (1, 2):
             raise ValueError(f"fingers = {fingers!r}: expected 1 or 2")
         if clocks not in CLOCKS:
-            raise ValueError(f"clocks = {clocks!r}: expected one of {', '.join(CLOCKS)}")
+            raise ValueError(
+                asking(f"clocks = {clocks!r}: expected one of {', '.join(CLOCKS)}", clocks, CLOCKS)
+            )
         for name, rate in zip(("force", "velocity"), rates, strict=True):
             if not 1.0 <= rate <= 25e3:
                 raise ValueError(f"rate of {name} = {rate!r} Hz: expected 1 to 25000")
@@ -161,9 +166,19 @@ class Live:
         """Of each sensor, the receiver's clock less its own, with the smallest recent delay [s]."""
         return {source.name: source.offset for source in self._sources()}
 
-    def warnings(self) -> dict[int, str]:
-        """Of each finger whose sensors' clocks differ, or by arrival have drifted apart, by how much."""
-        lines = {}
+    def warnings(self) -> dict[int | str, str]:
+        """Of each finger whose sensors' clocks differ, or by arrival have drifted apart, by how much.
+
+        Of each sensor, by its name, whose rate is another than the one that was stated, at which rate it is.
+        """
+        lines: dict[int | str, str] = {
+            source.name: (
+                f"{source.name} comes at {source.rate:.4g} Hz, not at {1.0 / source.period:.4g} Hz, the rate "
+                "that was stated: gaps are judged by that, and a policy acts too fast or too slowly"
+            )
+            for source in self._sources()
+            if abs(source.rate * source.period - 1.0) > OFF
+        }
         for hand in self._hands.values():
             apart = hand.force.ahead - hand.velocity.ahead
             if abs(apart) > APART:

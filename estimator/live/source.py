@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Sequence
+from operator import sub
+from statistics import median
 
 from estimator.sample import LARGEST
 
@@ -20,6 +22,8 @@ CAPACITY = 4096
 _CAME = ("accepted", "not_finite", "too_large", "width", "late", "overflow")
 """What became of samples that a sensor took at its rate."""
 _BUCKET = 5.0  # [s]
+_STAMPS = 50
+"""Samples that the rate is taken from."""
 
 
 class Source:
@@ -49,6 +53,7 @@ class Source:
         self._others, self._learned = 0, 0 if by_arrival else LEARNED
         self._by_arrival, self._shift = by_arrival, math.inf if by_arrival else 0.0
         self._buckets = (-math.inf, math.inf, math.inf)  # begin, smallest in it, smallest in the one before
+        self._stamps: deque[float] = deque(maxlen=_STAMPS)
 
     def judge(self, stamp: float, arrival: float, values: Sequence[float], done: float) -> tuple[str, float]:
         """Decides on a sample.
@@ -78,6 +83,9 @@ class Source:
             restart, self._buckets = True, (-math.inf, math.inf, math.inf)
             if self._by_arrival:
                 self._learned, self._shift = 0, math.inf
+        if restart:
+            self._stamps.clear()
+        self._stamps.append(stamp)
         self._others, self._stamp = 0, stamp
         self._measure(arrival, arrival - stamp)
         if self._learned < LEARNED:
@@ -101,6 +109,12 @@ class Source:
             begin, smallest, before = arrival, math.inf, smallest
         self._buckets = begin, min(smallest, offset), before
         self.offset = min(self._buckets[1:])
+
+    @property
+    def rate(self) -> float:
+        """Of the last samples, by their usual distance [Hz]; the stated one before there are enough."""
+        stamps = sorted(set(self._stamps))
+        return 1.0 / (median(map(sub, stamps[1:], stamps)) if len(stamps) > _STAMPS // 2 else self.period)
 
     @property
     def ahead(self) -> float:

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from estimator import DEFAULT
-from policies.commands.several import taking_several
+from policies.commands.several import ready, taking_several
 
 EPILOG = """
 Examples:\n
@@ -20,6 +20,7 @@ The door udp takes JSON lines, {"finger": 1, "t": 0.001, "wrench": [f_x, f_y, f_
 v_y, omega], and answers with estimates and commands. docs/live.md describes them, and examples/live/ has
 clients in Python and C.
 """
+DOORS = ("udp", "ros2", "rosbridge")
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
@@ -67,9 +68,10 @@ def main(
     from estimator.live import Live, Log
     from estimator.live.session import Session
     from estimator.records import parse_settings
+    from estimator.suggestions import unknown
 
-    if door not in ("udp", "ros2", "rosbridge"):
-        raise typer.BadParameter(f"{door!r}: expected udp, ros2 or rosbridge", param_hint="--door")
+    if door not in DOORS:
+        raise typer.BadParameter(unknown("unknown door", door, DOORS), param_hint="--door")
     if mcap is not None and log is None:
         raise typer.BadParameter("--mcap converts the log: give --log")
     book = None
@@ -79,6 +81,7 @@ def main(
             raise ValueError("--column is for a --policy")
         book = None if log is None else Log(log)
         rates = force_rate, velocity_rate
+        ready(estimator)
         live = Live(estimator, fingers, rates, lateness, clocks, book, **parse_settings(set_ or ()))
         if policy is not None:
             from policies.live import PolicyPilot
