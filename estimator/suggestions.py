@@ -22,14 +22,7 @@ def guess(name: object, valid: Iterable[str]) -> str:
 
 
 def unknown(what: str, name: object, valid: Iterable[str], also: Iterable[str] = ()) -> str:
-    """The message for a name that is not a valid one, with a guess at the one that was meant.
-
-    Args:
-        what: What it is the name of.
-        name: The name.
-        valid: The valid ones, which the message lists.
-        also: Further ones that may have been meant.
-    """
+    """The message for a name that is not a valid one, with a guess at the one or `also` that was meant."""
     valid = list(valid)
     return f"{what} {f'{name!r}'[:_LONGEST]}; {guess(name, [*valid, *also])}valid: {', '.join(valid)}"
 

@@ -37,8 +37,6 @@ if TYPE_CHECKING:
 
 __all__ = ["__version__", "register_task"]
 
-_MAKERS = ("gymnasium.make", "gymnasium.make_vec", "policies.make_vec_env")
-"""Functions of other packages that make environments."""
 refuse_hidden("estimator")
 register()
 
@@ -50,8 +48,8 @@ def __getattr__(name: str) -> Any:
         return register_task
     from estimator.suggestions import asking
 
-    said = f"module {__name__!r} has no attribute {name!r}"
-    raise AttributeError(asking(said, name, [*__dir__(), *_MAKERS]))
+    meant = [*__dir__(), "gymnasium.make", "gymnasium.make_vec", "policies.make_vec_env"]
+    raise AttributeError(asking(f"module {__name__!r} has no attribute {name!r}", name, meant))
 
 
 def __dir__() -> list[str]:

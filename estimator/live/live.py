@@ -18,8 +18,7 @@ CLOCKS = ("stamps", "arrival")
 KINDS = {"wrench": "force", "twist": "velocity"}
 APART = 0.05
 """Difference of the clocks of a finger's sensors that is a warning [s]; networks delay by less."""
-OFF = 0.1
-"""Difference of a sensor's rate from the one that was stated, over this, that is a warning."""
+OFF = 0.1  # the same of a rate from the one that was stated, over it
 
 
 class Live:
@@ -172,10 +171,8 @@ class Live:
         Of each sensor, by its name, whose rate is another than the one that was stated, at which rate it is.
         """
         lines: dict[int | str, str] = {
-            source.name: (
-                f"{source.name} comes at {source.rate:.4g} Hz, not at {1.0 / source.period:.4g} Hz, the rate "
-                "that was stated: gaps are judged by that, and a policy acts too fast or too slowly"
-            )
+            source.name: f"{source.name} comes at {source.rate:.4g} Hz, but {1.0 / source.period:.4g} Hz "
+            "were stated: a policy acts too fast or too slowly"
             for source in self._sources()
             if abs(source.rate * source.period - 1.0) > OFF
         }

@@ -22,8 +22,6 @@ CAPACITY = 4096
 _CAME = ("accepted", "not_finite", "too_large", "width", "late", "overflow")
 """What became of samples that a sensor took at its rate."""
 _BUCKET = 5.0  # [s]
-_STAMPS = 50
-"""Samples that the rate is taken from."""
 
 
 class Source:
@@ -53,7 +51,7 @@ class Source:
         self._others, self._learned = 0, 0 if by_arrival else LEARNED
         self._by_arrival, self._shift = by_arrival, math.inf if by_arrival else 0.0
         self._buckets = (-math.inf, math.inf, math.inf)  # begin, smallest in it, smallest in the one before
-        self._stamps: deque[float] = deque(maxlen=_STAMPS)
+        self._stamps: deque[float] = deque(maxlen=LEARNED)
 
     def judge(self, stamp: float, arrival: float, values: Sequence[float], done: float) -> tuple[str, float]:
         """Decides on a sample.
@@ -83,8 +81,6 @@ class Source:
             restart, self._buckets = True, (-math.inf, math.inf, math.inf)
             if self._by_arrival:
                 self._learned, self._shift = 0, math.inf
-        if restart:
-            self._stamps.clear()
         self._stamps.append(stamp)
         self._others, self._stamp = 0, stamp
         self._measure(arrival, arrival - stamp)
@@ -114,7 +110,7 @@ class Source:
     def rate(self) -> float:
         """Of the last samples, by their usual distance [Hz]; the stated one before there are enough."""
         stamps = sorted(set(self._stamps))
-        return 1.0 / (median(map(sub, stamps[1:], stamps)) if len(stamps) > _STAMPS // 2 else self.period)
+        return 1.0 / (median(map(sub, stamps[1:], stamps)) if len(stamps) > LEARNED // 2 else self.period)
 
     @property
     def ahead(self) -> float:

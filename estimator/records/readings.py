@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from estimator.online import TWIST, WRENCH
 from estimator.records.alignment import Samples, period
 from estimator.records.checks import USUAL_LEVER, USUAL_SPEED
-from estimator.records.reading import CONTACT
 from estimator.records.record import Array, Record, seconds
 from estimator.records.units import likely_unit
 
@@ -36,10 +35,9 @@ _FORCE, _TORQUE = 0.1, 2e-3
 """Force [N] and torque [N m] above noise and zero errors."""
 _LEVERS = (0.001, 0.003)
 """Torque over force from which r may be too small, or too large [m]: an offset of the CoP makes r large."""
-_LONGEST, _FASTEST = 0.04, 0.4
-"""Torque over normal force [m], and speed of half of a slip [m/s], that no grip has."""
-_DOUBTED = 0.4
-"""Share of these that is too much already where the radius is too large, too."""
+_LONGEST, _FASTEST, _DOUBTED = 0.04, 0.4, 0.4
+"""Torque over normal force [m] and speed [m/s] that no grip has; the share of them from which they are named
+where the radius is too large, too."""
 _ENOUGH = 20  # samples
 
 
@@ -159,22 +157,19 @@ def _units(samples: Samples) -> list[str]:
     """
     smallest, largest = _radius(samples, _LEVERS[0]), _radius(samples, _LEVERS[1])
     wide = largest is not None and largest > _RADII[1]
-    most = _DOUBTED if wide else 1.0
-    f_n, v_t = samples.wrench[:, 2], np.hypot(*samples.twist[:, :2].T)
-    pressed, slides = f_n > CONTACT, v_t > _SLIDES
-    if np.count_nonzero(pressed) >= _ENOUGH:
-        lever = float(np.quantile(np.abs(samples.wrench[pressed, 3]), 0.95) / np.quantile(f_n[pressed], 0.95))
-        if lever > most * _LONGEST:
-            unit = likely_unit("tau", lever, USUAL_LEVER)
-            return [
-                f"tau is {1e3 * lever:.3g} mm times f_n, a longer lever than a pad has: is it in {unit}? "
-                f"`tau: {{unit: {unit}}}` in the mapping says so. Or was it taken far from the pad, without "
-                "its CoP?"
-            ]
-    if np.count_nonzero(slides) >= _ENOUGH and (speed := float(np.median(v_t[slides]))) > most * _FASTEST:
-        unit = likely_unit("v_x", speed, USUAL_SPEED)
+    longest, fastest = (_DOUBTED if wide else 1.0) * np.array([_LONGEST, _FASTEST])
+    force, torque = np.quantile(np.abs(samples.wrench[:, 2:]), 0.95, axis=0)
+    if (lever := float(torque / max(force, 1.0))) > longest:
+        unit = likely_unit("tau", lever, USUAL_LEVER)
         return [
-            f"the object slips at {speed:.3g} m/s, faster than in a grip: are v_x and v_y in {unit}? `v_x: "
+            f"tau is {1e3 * lever:.3g} mm times f_n, a longer lever than a pad has: is it in {unit}? `tau: "
+            f"{{unit: {unit}}}` in the mapping says so. Or was it taken far from the pad, without its CoP?"
+        ]
+    v_t = np.hypot(*samples.twist[:, :2].T)
+    if np.count_nonzero(v_t > fastest) >= max(_ENOUGH, 0.5 * np.count_nonzero(v_t > _SLIDES)):
+        unit = likely_unit("v_x", float(np.median(v_t[v_t > fastest])), USUAL_SPEED)
+        return [
+            f"most slip is faster than {fastest:.2g} m/s, as in no grip: are v_x and v_y in {unit}? `v_x: "
             f"{{unit: {unit}}}` and `v_y: {{unit: {unit}}}` in the mapping say so."
         ]
     if wide:

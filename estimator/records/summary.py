@@ -55,10 +55,7 @@ def markdown(result: Result) -> str:
 
 
 def final_rows(result: Result) -> list[list[str]]:
-    """A heading, then mu_s, mu_c and r as cells: value ± sd, confidence, data, ground truth if known.
-
-    A start value has no sd, because no data stand behind it.
-    """
+    """A heading, then mu_s, mu_c, r as cells: value ± sd if data set it, confidence, data, truth if known."""
     last, truth = result.estimates[-1], result.samples.truth
     known = truth is not None and not np.isnan(truth[-1]).all()
     rows = [["", "final ± sd", "confidence", "data", *(["true", "error"] if known else [])]]

@@ -60,13 +60,7 @@ def units_of(key: str, position: bool = False) -> dict[str, float]:
 
 
 def likely_unit(key: str, size: float, usual: float) -> str:
-    """The unit, smaller than the SI unit, in which a size comes nearest to the usual one.
-
-    Args:
-        key: Of a mapping.
-        size: Larger than it can be in the SI unit, in which it was read.
-        usual: In the SI unit.
-    """
+    """The smaller unit in which a size, too large for the SI unit, is nearest to the usual one in that."""
     smaller = {unit: factor for unit, factor in UNITS[key].items() if factor < 1.0}
     return min(smaller, key=lambda unit: abs(math.log(size * smaller[unit] / usual)))
 

@@ -11,7 +11,6 @@ from functools import cache
 
 import numpy as np
 
-from estimator.suggestions import unknown
 from slipgym.contact.limit_surface import LimitSurface
 
 LEG = 0.150
@@ -49,7 +48,7 @@ def points(support: str) -> tuple[np.ndarray, np.ndarray]:
         positions = _triangles() * LEG - CENTRE
         return positions, np.full(len(positions), 1.0 / len(positions))
     if support not in FEET:
-        raise ValueError(unknown("unknown support", support, (*FEET, PATCH)))
+        raise ValueError(f"unknown support {support!r}; valid: {', '.join((*FEET, PATCH))}")
     positions = 1e-3 * np.array(FEET[support]).T - CENTRE
     balance = np.vstack((np.ones(3), positions.T))  # sum of loads, and their moments about the centre of mass
     return positions, np.linalg.solve(balance, [1.0, 0.0, 0.0])

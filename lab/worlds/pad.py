@@ -8,8 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.suggestions import unknown
-
 RINGS, SECTORS = 6, 12
 """Of the disc and of Hertz's pressure: the limit surface is within 2 %."""
 RIM = 16
@@ -51,7 +49,7 @@ def pad(shape: str) -> Pad:
         load = 1.0 - fall**3
         moment = 3.0 / 8.0 * (np.arcsin(edges) - edges * fall * (1.0 - 2.0 * edges**2))
     else:
-        raise ValueError(unknown("unknown shape", shape, ("disc", "hertz", "ring", "ellipsoid")))
+        raise ValueError(f"unknown shape {shape!r}; valid: disc, hertz, ring, ellipsoid")
     weights = np.diff(load)
     return _cells(np.diff(moment) / weights, weights, SECTORS)
 

@@ -20,7 +20,6 @@ The door udp takes JSON lines, {"finger": 1, "t": 0.001, "wrench": [f_x, f_y, f_
 v_y, omega], and answers with estimates and commands. docs/live.md describes them, and examples/live/ has
 clients in Python and C.
 """
-DOORS = ("udp", "ros2", "rosbridge")
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
@@ -68,10 +67,9 @@ def main(
     from estimator.live import Live, Log
     from estimator.live.session import Session
     from estimator.records import parse_settings
-    from estimator.suggestions import unknown
 
-    if door not in DOORS:
-        raise typer.BadParameter(unknown("unknown door", door, DOORS), param_hint="--door")
+    if door not in ("udp", "ros2", "rosbridge"):
+        raise typer.BadParameter(f"{door!r}: expected udp, ros2 or rosbridge", param_hint="--door")
     if mcap is not None and log is None:
         raise typer.BadParameter("--mcap converts the log: give --log")
     book = None

@@ -51,11 +51,7 @@ def taking_several(*names: str) -> type[TyperCommand]:
 
 
 def ready(estimator: str) -> None:
-    """Load an estimator; say why it takes so long if it has to be compiled.
-
-    Raises:
-        ValueError: There is none of this name.
-    """
+    """Load an estimator; say why it takes so long if it has to be compiled."""
     from estimator.registry import specification
     from slipgym._numba.compiled import patience
 

@@ -106,13 +106,12 @@ def _step(env_id: str, options: dict[str, Any]) -> None:
 def _elsewhere(target: str | None, into: Path | None, tasks: list[str], engines: list[str]) -> None:
     """Compile for other processors or into another folder, in a process that numba starts up for that."""
     from estimator._numba.folders import ABOUT, versions
-    from estimator.suggestions import unknown
     from slipgym.atomic_io import write
 
     environment = dict(os.environ)
     if target is not None:
         if target not in TARGETS:
-            raise typer.BadParameter(unknown("unknown target", target, TARGETS), param_hint="--target")
+            raise typer.BadParameter(f"--target: {target!r} must be one of {', '.join(TARGETS)}")
         environment |= {"NUMBA_CPU_NAME": target, "NUMBA_CPU_FEATURES": ""}
     if into is not None:
         into.mkdir(parents=True, exist_ok=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from slipgym.config import Config, Overrides, Ranges, TaskConfig
@@ -24,9 +24,7 @@ _PLACES = {
 def warn_of_drawn(
     overrides: Overrides | None, ranges: Ranges, settings: TaskConfig, task: str, material: str
 ) -> None:
-    """Warn of keys of a configuration given in part that have no effect, since their values are drawn.
-
-    A whole configuration, as a run writes it, has all keys; nobody wrote a single one of them.
+    """Warn of keys of a configuration given in part that are drawn; nobody wrote a single key of a whole one.
 
     Args:
         overrides: The configuration, as given.
@@ -38,28 +36,17 @@ def warn_of_drawn(
     source, values = ("", {}) if overrides is None else read_overrides(overrides)
     if values.keys() >= Config.model_fields.keys():
         return
-    for key, why in _drawn(values, ranges, settings, task, material):
-        warnings.warn(f"{source}: {key} has no effect: {why}", stacklevel=2)
-
-
-def _drawn(
-    values: Mapping[str, Any], ranges: Ranges, settings: TaskConfig, task: str, material: str
-) -> Iterator[tuple[str, str]]:
-    """Keys that are drawn, and why."""
-    for name, key in _PLACES.items():
-        if getattr(ranges, name) is not None and _has(values, key):
-            yield key, f"the randomization or the level draws {name}; null there keeps the configuration's"
-    own = f"tasks.{task}.friction_range"
-    if ranges.mu_c is not None and _has(values, own):
-        yield own, "the randomization or the level draws mu_c; null there keeps the task's"
-    by = "the randomization or the level" if ranges.mu_c is not None else f"{own} = {settings.friction_range}"
+    places = {**_PLACES, "mu_c": f"tasks.{task}.friction_range"}
+    drawn = {places[name]: f"the randomization or the level draws {name}" for name in places
+             if getattr(ranges, name) is not None}  # fmt: skip
     if material == "random" and (ranges.mu_c is not None or settings.friction_range is not None):
-        for name, given in values.get("materials", {}).items():
-            if "mu_c" in given:
-                yield f"materials.{name}.mu_c", f"{by} draws mu_c, unless material={name!r} is given"
+        for name in values.get("materials", {}):
+            drawn[f"materials.{name}"] = f"its friction is drawn, unless material={name!r} is given"
+    for key, why in drawn.items():
+        if _has(values, key):
+            warnings.warn(f"{source}: {key} has no effect: {why}", stacklevel=2)
 
 
 def _has(values: Mapping[str, Any], key: str) -> bool:
     group, _, rest = key.partition(".")
-    inside = values.get(group)
-    return group in values and (not rest or (isinstance(inside, Mapping) and _has(inside, rest)))
+    return group in values and (not rest or _has(values[group], rest))

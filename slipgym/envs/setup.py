@@ -57,9 +57,8 @@ class Setup:
         randomization = load_randomization(values["randomization"], keys)
         self.randomization = level.level.applied_to(randomization, task.key)
         self.material = one_of("material", values["material"], ("random", *self.config.materials))
-        warn_of_drawn(
-            values["config"], self.randomization.of(task.key), self.settings, task.key, self.material
-        )
+        ranges = self.randomization.of(task.key)
+        warn_of_drawn(values["config"], ranges, self.settings, task.key, self.material)
         values["action_mode"] = values["action_mode"] or task.action_mode
         if values["estimator"] is None:
             _check_guess(task, values["action_mode"])

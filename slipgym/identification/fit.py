@@ -221,8 +221,7 @@ def _result(problem: _Problem, point: np.ndarray, scale: np.ndarray, block: np.n
     before, after = roll(
         values_of(np.stack([START, written])), log.rate, log.command, log.motion, problem.contact
     )
-    left = (log.readings - after)[~problem.fitted]
-    count = np.isfinite(left).sum(axis=0)
+    left = np.ma.masked_invalid((log.readings - after)[~problem.fitted])
     return Result(
         log=log,
         contact=problem.contact,
@@ -230,7 +229,7 @@ def _result(problem: _Problem, point: np.ndarray, scale: np.ndarray, block: np.n
         deviation=np.where(shown, deviation, DEVIATION),
         shown=shown,
         noise=log.noise(),
-        held_out=np.sqrt(np.nansum(left**2, axis=0) / np.where(count > 0, count, np.nan)),
+        held_out=np.sqrt((left**2).mean(axis=0).filled(np.nan)),
         before=before,
         after=after,
         information=information,

@@ -35,9 +35,8 @@ def configure(
         task: The task.
         overrides: Values that replace defaults, as a mapping or as the path of a YAML file. Its group
             "tasks" holds settings by the tasks' keys: `{"tasks": {"hold": {"duration": 2.0}}}`. Settings of
-            other tasks are checked and then ignored. A configuration that is given in part acts in place of
-            what the task would take or draw instead, unless "tasks" says that, too: `{"object": {"mass":
-            0.3}}` fixes the mass. An object with a size replaces the task's own; one without changes it.
+            other tasks are checked and then ignored. What is given in part acts in place of what the task
+            takes or draws: `{"object": {"mass": 0.3}}`. An object with a size replaces the task's own.
         sensors: Sensor preset, see `slipgym.config.load`.
         contact: Friction model, see `slipgym.config.load`.
         level: Its settings replace the task's defaults; None: none.

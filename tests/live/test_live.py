@@ -230,7 +230,7 @@ def test_a_rate_that_is_not_the_stated_one_is_told(rate):
     feed(live, sorted(kept, key=lambda row: row[1] + rng.uniform(0.0, 0.0099)))
     ((name, line),) = live.warnings().items()
     assert name == "velocity 1"
-    assert f"comes at 120 Hz, not at {rate:g} Hz" in line
+    assert f"comes at 120 Hz, but {rate:g} Hz" in line
 
 
 def test_by_arrival_clocks_that_drift_apart_are_told():

@@ -11,8 +11,6 @@ from numbers import Real
 
 import numpy as np
 
-from estimator.suggestions import unknown
-
 POKE_TIME = 0.05
 """Duration of a poke [s]."""
 LEVER = 0.05
@@ -69,7 +67,7 @@ def poke(episode: np.void, direction: str, impulse: float) -> None:
         ValueError: The direction is unknown, or the impulse is not positive and finite.
     """
     if not isinstance(direction, str) or direction not in DIRECTIONS:
-        raise ValueError(unknown("unknown direction", direction, DIRECTIONS))
+        raise ValueError(f"unknown direction {direction!r}; valid: {', '.join(DIRECTIONS)}")
     now, count = int(episode["step"]), int(episode["pushes"])
     steps = max(1, round(POKE_TIME / float(episode["step_time"])))
     force = checked("impulse", impulse) / (steps * float(episode["step_time"]))
