@@ -10,7 +10,7 @@ from estimator.records.alignment import Samples
 _AXES = ((0, 0), (1, 1), (3, 2))
 """Components of the wrench and of the twist that go along with each other."""
 _SLIDES, _TURNS, _FORCE, _TORQUE, _LEVER = 3e-3, 0.1, 0.5, 3e-3, 0.003
-"""Speed [m/s], rate [rad/s], force [N], torque [N m] and torque over force [m] above the errors of sensors."""
+"""Speed [m/s], rate [rad/s], force [N], torque [N m] torque over force [m] above the errors of sensors."""
 _PART, _USUAL, _ENOUGH, _MOST = 0.6, 0.008, 20, 0.8
 """Share of the axis in the motion, by the usual radius r [m]; samples, and the share that shows the sign."""
 
