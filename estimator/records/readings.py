@@ -155,8 +155,8 @@ def _units(samples: Samples) -> list[str]:
 
     A torque in another unit changes the lever and r, a velocity the speed and r, a rate r alone.
     """
-    smallest, largest = _radius(samples, _LEVERS[0]), _radius(samples, _LEVERS[1])
-    wide = largest is not None and largest > _RADII[1]
+    smallest, largest = _radius(samples, _LEVERS[0]), _radius(samples, _LEVERS[1]) or 0.0
+    wide = largest > _RADII[1]
     longest, fastest = (_DOUBTED if wide else 1.0) * np.array([_LONGEST, _FASTEST])
     force, torque = np.quantile(np.abs(samples.wrench[:, 2:]), 0.95, axis=0)
     if (lever := float(torque / max(force, 1.0))) > longest:

@@ -28,7 +28,9 @@ def summarise(trials: pd.DataFrame, task: str) -> pd.DataFrame:
         "difference of ..." for the mean over pairs of what a friction choice has over the first one. What
         all trials lack has no row.
     """
-    metrics = [m for m in measures(task).summary if trials[m.column].notna().any()]
+    metrics = [
+        m for m in measures(task).summary if not np.isnan(values(trials, m.column).astype(float)).all()
+    ]
     metrics += [Metric(c, "") for c in FRICTION if c in trials]
     rows = []
     for whole in (True, False):

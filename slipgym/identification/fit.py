@@ -134,7 +134,8 @@ def identify(log: Log, contact: str = "distributed", seed: int = 0) -> Result:
     with patience("the rollouts"):
         roll(values_of(START[None]), log.rate, log.command[:2], log.motion[:2], contact)
     block = (np.arange(len(log.command)) / (BLOCK * log.rate)).astype(int)
-    problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, ~np.isnan(log.readings).all(axis=0))
+    there = np.array([np.isfinite(each).any() for each in log.readings.T])
+    problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, there)
     point = _start(problem, np.random.default_rng(seed))
     for _ in range(2):
         scale = problem.noise(problem.residuals(problem.predict(point[None])[0]))
