@@ -47,7 +47,7 @@ OF_THE_LABORATORY = {
     "rank", "reproduce", "sensor-bounds", "sensor-costs", "ship", "study-report", "train-estimator",
     "validate-parts", "validate-real",
 }  # fmt: skip
-"""Their names, which an installation without them tells from misspelt ones."""
+"""Their names, for a message where they are not installed."""
 EPILOG = """
 Examples:\n
 \b

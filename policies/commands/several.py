@@ -50,15 +50,6 @@ def taking_several(*names: str) -> type[TyperCommand]:
     return Command
 
 
-def ready(estimator: str) -> None:
-    """Load an estimator; say why it takes so long if it has to be compiled."""
-    from estimator.registry import specification
-    from slipgym._numba.compiled import patience
-
-    with patience(f"the estimator {estimator}"):
-        specification(estimator)
-
-
 def environment_arguments(texts: Sequence[str]) -> dict[str, Any]:
     """Reads `name=value` pairs; `friction_source=true` is a name, which YAML takes for a truth value.
 
