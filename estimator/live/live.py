@@ -18,7 +18,6 @@ CLOCKS = ("stamps", "arrival")
 KINDS = {"wrench": "force", "twist": "velocity"}
 APART = 0.05
 """Difference of the clocks of a finger's sensors that is a warning [s]; networks delay by less."""
-OFF = 0.1  # the same of a rate from the one that was stated, over it
 
 
 class Live:
@@ -171,10 +170,10 @@ class Live:
         Of each sensor, by its name, whose rate is another than the one that was stated, at which rate it is.
         """
         lines: dict[int | str, str] = {
-            source.name: f"{source.name} comes at {source.rate:.4g} Hz, but {1.0 / source.period:.4g} Hz "
-            "were stated: a policy acts too fast or too slowly"
+            source.name: f"{source.name} comes at {rate:.4g} Hz, but {1.0 / source.period:.4g} Hz were "
+            "stated: a policy acts too fast or too slowly"
             for source in self._sources()
-            if abs(source.rate * source.period - 1.0) > OFF
+            if (rate := source.other_rate())
         }
         for hand in self._hands.values():
             apart = hand.force.ahead - hand.velocity.ahead

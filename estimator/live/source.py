@@ -7,7 +7,7 @@ from bisect import bisect_left
 from collections import Counter, deque
 from collections.abc import Sequence
 from operator import sub
-from statistics import median
+from statistics import fmean, median
 
 from estimator.sample import LARGEST
 
@@ -106,11 +106,12 @@ class Source:
         self._buckets = begin, min(smallest, offset), before
         self.offset = min(self._buckets[1:])
 
-    @property
-    def rate(self) -> float:
-        """Of the last samples, by their usual distance [Hz]; the stated one before there are enough."""
+    def other_rate(self) -> float | None:
+        """Of the last samples [Hz], if it is off by 10 %, by mean and median: losses and bursts change one."""
         stamps = sorted(set(self._stamps))
-        return 1.0 / (median(map(sub, stamps[1:], stamps)) if len(stamps) > LEARNED // 2 else self.period)
+        steps = [*map(sub, stamps[1:], stamps)] if len(stamps) > LEARNED // 2 else [self.period]
+        off = all(abs(self.period / step - 1.0) > 0.1 for step in (median(steps), fmean(steps)))
+        return 1.0 / median(steps) if off else None
 
     @property
     def ahead(self) -> float:

@@ -233,6 +233,12 @@ def test_a_rate_that_is_not_the_stated_one_is_told(rate):
     assert f"comes at 120 Hz, but {rate:g} Hz" in line
 
 
+def test_bursts_of_stamps_are_no_other_rate():
+    live = Live("rls", fingers=1)
+    feed(live, [(kind, t - 0.8 * (t % 0.01), values) for kind, t, values in readings(2.0)])
+    assert live.warnings() == {}
+
+
 def test_by_arrival_clocks_that_drift_apart_are_told():
     live = Live("rls", fingers=1, clocks="arrival")
     drifted = [(kind, t * (1.0 + 0.01 * (kind == "twist")), values, t) for kind, t, values in readings(20.0)]
