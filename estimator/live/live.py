@@ -165,10 +165,7 @@ class Live:
         return {source.name: source.offset for source in self._sources()}
 
     def warnings(self) -> dict[int | str, str]:
-        """Of each finger whose sensors' clocks differ, or by arrival have drifted apart, by how much.
-
-        Of each sensor, by its name, whose rate is another than the one that was stated, at which rate it is.
-        """
+        """By finger, how much its clocks differ or by arrival drifted apart; by sensor, another rate."""
         lines: dict[int | str, str] = {
             source.name: f"{source.name} comes at {rate:.4g} Hz, but {1.0 / source.period:.4g} Hz were "
             "stated: a policy acts too fast or too slowly"

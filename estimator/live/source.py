@@ -107,7 +107,7 @@ class Source:
         self.offset = min(self._buckets[1:])
 
     def other_rate(self) -> float | None:
-        """Of the last samples [Hz], if it is off by 10 %, by mean and median: losses and bursts change one."""
+        """Of the last samples [Hz], if it is off by 10 %, by mean and median: losses or bursts change one."""
         stamps = sorted(set(self._stamps))
         steps = [*map(sub, stamps[1:], stamps)] if len(stamps) > LEARNED // 2 else [self.period]
         off = all(abs(self.period / step - 1.0) > 0.1 for step in (median(steps), fmean(steps)))
