@@ -11,10 +11,11 @@ import pandas as pd
 
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.folder import INCOMPLETE, stamped, write_origin
+from policies.evaluation.frames import markdown as grid
 from policies.evaluation.gain import compare
 from policies.evaluation.plan import plan
 from policies.evaluation.plots import draw, draw_gain
-from policies.evaluation.tables import page, summarise
+from policies.evaluation.tables import claims, markdown, summarise
 from policies.evaluation.trial import Result, recordings, run_trials
 from slipgym.atomic_io import check_folder, new_files, new_folder
 
@@ -84,7 +85,8 @@ def write_results(experiment: Experiment, results: Sequence[Result], folder: Pat
     trials, series = write_trials(results, folder)
     summary = summarise(trials, experiment.task)
     summary.to_csv(folder / "summary.csv", index=False)
-    (folder / "summary.md").write_text(page(trials, summary, experiment.task), encoding="utf-8")
+    page = markdown(summary, experiment.task, len(trials), claims(trials, "## {}", grid))
+    (folder / "summary.md").write_text(page, encoding="utf-8")
     draw(experiment.task, trials, series, folder)
     if (gain := compare(trials)) is not None:
         run = plan(experiment)

@@ -10,7 +10,8 @@ import yaml
 
 from policies.evaluation.columns import Metric
 from policies.evaluation.folder import INCOMPLETE
-from policies.evaluation.frames import aligned, distinct, groups, markdown, text, values, where
+from policies.evaluation.frames import aligned, distinct, groups, text, values, where
+from policies.evaluation.frames import markdown as grid
 from policies.evaluation.gain import TRUTH, against_truth, compare
 from policies.evaluation.metrics import measures
 from policies.evaluation.statistics import mean_interval, share
@@ -26,12 +27,15 @@ def summarise(trials: pd.DataFrame, task: str) -> pd.DataFrame:
 
     Returns:
         Columns `COLUMNS`: value with its interval low to high; material is "all" for all trials, metric
-        "difference of ..." for the mean over pairs of what a friction choice has over the first one.
+        "difference of ..." for the mean over pairs of what a friction choice has over the first one. What
+        all trials lack has no row.
     """
+    metrics = [m for m in measures(task).summary if not pd.isna(values(trials, m.column)).all()]
+    metrics += [Metric(name, "") for name in FRICTION if name in trials]
     rows = []
     for grouped in (trials.assign(material="all"), trials):
         for keys, group in groups(grouped, [*KEYS, "material"]):
-            for m in [*measures(task).summary, *(Metric(name, "") for name in FRICTION if name in trials)]:
+            for m in metrics:
                 found = (share if m.share else mean_interval)(values(group, m.column))
                 rows.append((*keys, m.column, len(group), *found))
     metric = measures(task).compared.column
@@ -44,23 +48,23 @@ def summarise(trials: pd.DataFrame, task: str) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=pd.Index(COLUMNS))
 
 
-def page(trials: pd.DataFrame, summary: pd.DataFrame, task: str) -> str:
-    """The gain, the comparison with the truth and the summary of a table of trials as a page."""
+def markdown(summary: pd.DataFrame, task: str, n_trials: int, claims: Sequence[str] = ()) -> str:
+    """The summary of a number of trials as a page that begins with some claims."""
     overall, compared = where(summary, material="all"), measures(task).compared
-    parts = [f"# {task}: {len(trials)} trials", *_claims(trials, "## {}", markdown)]
+    parts = [f"# {task}: {n_trials} trials", *claims]
     parts += ["## Means", "With 95 % confidence intervals (bootstrap; shares: Wilson)."]
-    parts.append(markdown(shown(overall, {m.column: m.heading for m in measures(task).summary})))
+    parts.append(grid(shown(overall, {m.column: m.heading for m in measures(task).summary})))
     paired = where(overall, metric=f"difference of {compared.column}")
     if len(paired):
         heading = {f"difference of {compared.column}": f"difference of {compared.heading}"}
         parts.append(f"## Against {distinct(overall, 'friction')[0]!r}, trial by trial")
-        parts.append(markdown(shown(paired, heading)))
-    headings = {name: _words(name) for name in FRICTION if name in set(summary["metric"])}
+        parts.append(grid(shown(paired, heading)))
+    headings = {name: _words(name) for name in FRICTION}
     by_material = summary.loc[values(summary, "material") != "all"]
     parts += [
         "## Estimated friction by material",
         "Mean of both fingers: over the cruise of the reference, and at the end.",
-        markdown(shown(by_material, headings, [*KEYS, "material"])),
+        grid(shown(by_material, headings, [*KEYS, "material"])),
     ]
     return "\n\n".join(part.rstrip() for part in parts) + "\n"
 
@@ -80,7 +84,7 @@ def report(folder: Path) -> str:
         pd.read_csv(folder / f"{name}.csv", dtype=names, keep_default_na=False, na_values=[""])  # type: ignore[arg-type]
         for name in ("summary", "trials")
     )
-    parts = [line for part in _claims(trials, "{}:", aligned) for line in (part, "")]
+    parts = [line for part in claims(trials) for line in (part, "")]
     headings = {m.column: m.heading for m in measures(task).summary if m.brief}
     parts.append(aligned(shown(where(summary, material="all"), headings)))
     parts += ["(95 % confidence intervals in brackets)", "", "Look at:"]
@@ -88,7 +92,9 @@ def report(folder: Path) -> str:
     return "\n".join([*parts, *(f"  {path}" for path in paths)])
 
 
-def _claims(trials: pd.DataFrame, title: str, table: Callable[[pd.DataFrame], str]) -> list[str]:
+def claims(
+    trials: pd.DataFrame, title: str = "{}:", table: Callable[[pd.DataFrame], str] = aligned
+) -> list[str]:
     """The gain over the strongest policy without friction, and the estimate beside the truth, if any."""
     gain, truth = compare(trials), against_truth(trials)
     parts = [] if gain is None else [gain.words()]
@@ -96,7 +102,8 @@ def _claims(trials: pd.DataFrame, title: str, table: Callable[[pd.DataFrame], st
 
 
 def shown(summary: pd.DataFrame, headings: Mapping[str, str], keys: Sequence[str] = KEYS) -> pd.DataFrame:
-    """Rows of a summary in words by some of its columns, with a column for each metric under its heading."""
+    """Rows of a summary in words by some of its columns, a column for each metric that is there."""
+    headings = {name: words for name, words in headings.items() if name in set(summary["metric"])}
     rows = []
     for key, group in groups(summary, keys):
         ends = group[["value", "low", "high"]].itertuples(index=False, name=None)
