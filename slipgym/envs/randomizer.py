@@ -292,7 +292,7 @@ class Drawn:
 @lru_cache
 def _columns(known: tuple[str, ...]) -> tuple[list[str], list[int]]:
     """Names and places of the numbers of FIRST and of some fields of VALUES in a row."""
-    names, columns = list(FIRST), list(range(len(FIRST)))
+    names, columns = list[str](FIRST), list(range(len(FIRST)))
     for name in known[len(FIRST) :]:
         own = PLACES[name]
         names += labels(name)

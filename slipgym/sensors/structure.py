@@ -24,7 +24,7 @@ READ, RATE, LOAD = range(3)
 
 
 def mode(frequency: float, damping: float, period: float) -> tuple[float, ...]:
-    """What a sample of a mode needs: its lag, and how d and its change per sample follow from the last ones.
+    """Returns the coefficients of a sample: the lag, and how d and its change follow from the last ones.
 
     Args:
         frequency: omega / 2 pi [Hz].
