@@ -73,4 +73,4 @@ def test_the_sensor_of_the_other_finger_may_be_later():
     first, second = (frame["t"][frame["f_x"].notna()].iloc[0] for frame in found)
     assert second > first + 0.01
     slips = [frame.loc[frame["v_x"].notna(), list(TWIST)].to_numpy() for frame in found]
-    np.testing.assert_array_equal(*slips)
+    np.testing.assert_allclose(*slips, atol=1e-12)  # the mirror rounds
