@@ -165,7 +165,10 @@ def test_tied_exponents_begin_at_the_configured_pad(radius_exponent):
     """At scale s a fraction s of the way from the configuration to the pad drawn at scale 1."""
     first = {"radius_exponent": radius_exponent, "load_exponent": 0.2}
     arguments = {"config": {"contact": {"pad": first}}, "randomization": AREA, "engine": "planar"}
-    env = gym.make(f"slipgym:{LINEAR}", disable_env_checker=True, **arguments)
+    with pytest.warns(UserWarning, match="has no effect") as warned:
+        env = gym.make(f"slipgym:{LINEAR}", disable_env_checker=True, **arguments)
+    given = " ".join(str(each.message) for each in warned)
+    assert all(f"contact.pad.{name} has no effect" in given for name in first)
     found = []
     for scale in (0.0, 0.3, 1.0):
         drawn = env.reset(seed=4, options={"randomization_scale": scale})[1]["drawn"]
