@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import Annotated, Self
+from typing import Annotated, Any, NamedTuple, Self
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 
 from slipgym.config.base import Frozen, PositiveInterval, as_tuple, ordered
 
@@ -91,3 +91,32 @@ def _within(low: float, high: float, drawn: Distribution | None) -> Distribution
 def within(low: float, high: float) -> AfterValidator:
     """Validator of a distribution whose values must lie within bounds."""
     return AfterValidator(partial(_within, low, high))
+
+
+Drawn = Distribution | None
+"""Type of a field of `Ranged`."""
+
+
+class _Bounds(NamedTuple):
+    """Metadata of a field: bounds of its values."""
+
+    low: float
+    high: float
+
+    def __call__(self, schema: dict[str, Any]) -> None:
+        """Pydantic calls this for a JSON schema, to which it adds nothing."""
+
+
+def ranged(low: float, high: float, meaning: str) -> Any:
+    """Declare a field of `Ranged`: a distribution whose values lie within bounds; null: not sampled."""
+    return Field(default=None, description=meaning, json_schema_extra=_Bounds(low, high))
+
+
+class Ranged(Frozen):
+    """Base class of models with distributions that `ranged` declares."""
+
+    @field_validator("*")
+    @classmethod
+    def _values_lie_within(cls, value: Any, info: ValidationInfo) -> Any:
+        bounds = cls.model_fields[info.field_name or ""].json_schema_extra
+        return _within(*bounds, value) if isinstance(bounds, _Bounds) else value
