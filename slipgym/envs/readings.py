@@ -64,15 +64,7 @@ def row_writer(
 
 
 def choice_reader(name: str, reads: Sequence[str], arrays: Sequence[str], file: str, doc: str) -> Any:
-    """Generate a compiled function (k, i, *arrays) that returns the value of `reads[k]`.
-
-    Args:
-        name: Name of the function.
-        reads: Expressions for environment i.
-        arrays: Names of the arrays in the expressions.
-        file: `__file__` of the module with the table.
-        doc: Docstring.
-    """
+    """Generate a compiled function (k, i, *arrays) that returns `reads[k]`, see `row_writer`."""
     body = []
     for k, read in enumerate(reads):
         body += [f"if k == {k}:", f"    return {read}"]
@@ -80,14 +72,6 @@ def choice_reader(name: str, reads: Sequence[str], arrays: Sequence[str], file: 
 
 
 def finite_check(name: str, reads: Sequence[str], arrays: Sequence[str], file: str, doc: str) -> Any:
-    """Generate a compiled function (i, *arrays) that returns whether the sum of all `reads` is finite.
-
-    Args:
-        name: Name of the function.
-        reads: Expressions for environment i.
-        arrays: Names of the arrays in the expressions.
-        file: `__file__` of the module with the table.
-        doc: Docstring.
-    """
+    """Generate a compiled function (i, *arrays): whether the sum of `reads` is finite, see `row_writer`."""
     body = ["total = 0.0", *(f"total += {read}" for read in reads), "return isfinite(total)"]
     return generate(name, ("i", *arrays), body, {"isfinite": math.isfinite}, compiled, file, doc)

@@ -67,12 +67,7 @@ class EpisodeSampler:
     """
 
     def __init__(
-        self,
-        config: Config,
-        settings: TaskConfig,
-        task: Task,
-        randomizer: Randomizer,
-        episode: np.ndarray,
+        self, config: Config, settings: TaskConfig, task: Task, randomizer: Randomizer, episode: np.ndarray
     ) -> None:
         n = len(episode)
         self._config, self._task, self._randomizer = config, task, randomizer
@@ -161,15 +156,9 @@ class EpisodeSampler:
             "material": -1 if name == "random" else self._names.index(name),
             **{each: getattr(options, each) for each in ("mu_s", "mu_c", "r", "object_mass")},
             "object_com": options.com_offset,
-            "mass": default.mass,
-            "mass_range": settings.mass_range,
-            "friction_range": settings.friction_range,
-            "radius_range": settings.radius_range,
+            **{each: getattr(settings, each) for each in ("mass_range", "friction_range", "radius_range")},
+            **{each: getattr(default, each) for each in ("mass", "com_offset", "grasp_offset", "inertia")},
             "size": options.object_size or default.size,
-            "com_offset": default.com_offset,
-            "grasp_offset": default.grasp_offset,
-            "inertia": default.inertia,
-            "pad_radius": config.gripper.pad_radius,
         }
         given = np.zeros(1, GIVEN)
         for each, value in fields.items():

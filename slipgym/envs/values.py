@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from slipgym.config import Config
+from slipgym.config import Config, Ranges
 from slipgym.config.pad import EFFECTS
 from slipgym.tasks.options import EpisodeOptions
 
@@ -67,28 +67,11 @@ FRICTION = ("mu_c", "mu_s", "friction_ratio")
 """Fields without a value of their own in the configuration: NaN unless they are sampled, then at scale 1."""
 NAMES = ("materials", "pressure")
 """Fields that are names: their place among the materials, or -1, and among `Randomizer.pressures`."""
-_NUMBERS = (
-    "friction_drift",
-    "stribeck_velocity",
-    "speed_slope",
-    "sigma_0",
-    "radius_scale",
-    "mass_scale",
-    "size_scale",
-    "com_x",
-    "com_z",
-    "lag",
-    "dead_time",
-    "stiction",
-    "noise_scale",
-    "bias_scale",
-    "slip_latency",
-    *EFFECTS,
-)
 VALUES = np.dtype(
     [
-        *((name, "f8") for name in (*_NUMBERS, *FRICTION, *NAMES)),
-        *((name, "f8", len(own.parts)) for name, own in DIFFERENCES.items()),
+        (name, "f8", len(DIFFERENCES[name].parts)) if name in DIFFERENCES else (name, "f8")
+        for name in Ranges.model_fields
+        if name != "disturbances"
     ]
 )
 """Fields of `slipgym.config.Ranges` but `disturbances`, sampled or not."""
