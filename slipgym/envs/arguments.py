@@ -223,7 +223,9 @@ def complete(kind: type, given: Mapping[str, Any]) -> dict[str, Any]:
         ValueError: The value of an argument is not allowed.
     """
     known = fields(kind)
-    refuse_unknown(given, known)
+    for name in given:
+        if name not in known:
+            raise TypeError(unknown("keyword argument", name, known))
     values = {name: plain(given.get(name, field.default)) for name, field in known.items()}
     for name, value in values.items():
         known[name].check(value)
@@ -240,13 +242,6 @@ def one_of(name: str, value: object, valid: Iterable[str]) -> str:
     if not isinstance(value, str) or value not in tuple(valid):
         raise ValueError(unknown(name, value, valid))
     return value
-
-
-def refuse_unknown(given: Iterable[str], known: Iterable[str]) -> None:
-    """Raise TypeError if an unknown keyword argument was given."""
-    for name in given:
-        if name not in known:
-            raise TypeError(unknown("keyword argument", name, known))
 
 
 def whole(name: str, value: object, least: int, most: int | None = None) -> int:

@@ -20,11 +20,6 @@ _FRICTION = either_way(_pad_friction)
 _TORQUE = either_way(lambda config: _pad_friction(config) * config.gripper.pad_radius)
 
 
-def _true(k: int) -> Reading:
-    """Row k of the friction part, from the ground truth in place of the estimates."""
-    return FRICTION[k]._replace(read=f"friction[i, {k}]")
-
-
 def _pad(f: int) -> tuple[Reading, ...]:
     wrench, of = f"pads[i, {f - 1}].wrench", f"friction of pad {f} on the object, pad frame"
     return (
@@ -67,7 +62,7 @@ def _own(f: int) -> tuple[Reading, ...]:
 
 
 PRIVILEGED = (
-    *(_true(k) for k in range(3)),
+    *(row._replace(read=f"friction[i, {k}]") for k, row in enumerate(FRICTION[:3])),
     Reading("slip_x", (-1.0, 1.0), "m", "slip displacement since the grasp, pad frame", "worlds[i].slip[0]"),
     Reading("slip_y", (-1.0, 1.0), "m", "the same along the pad's y axis", "worlds[i].slip[1]"),
     Reading("slip_theta", (-10.0, 10.0), "rad", "the same about the grip axis", "worlds[i].slip[2]"),

@@ -259,16 +259,14 @@ class Simulation(ABC):
                 array[rows] = state.arrays[name][rows]
         for i in np.flatnonzero(ready).tolist():
             self.materials[i], self.boxes[i] = state.materials[i], state.boxes[i]
-        self._write_infos()
+        self.stages.report(
+            self.state, self.infos.numbers, self.infos.flags, 0, self.n
+        )  # but the reward terms
 
     def hand_over_infos(self) -> InfoBuffer:
         """Return the infos, which the caller then owns; the next step fills new arrays."""
         infos, self.infos = self.infos, self.infos.empty_like()
         return infos
-
-    def _write_infos(self) -> None:
-        """Fill in the infos except the reward terms."""
-        self.stages.report(self.state, self.infos.numbers, self.infos.flags, 0, self.n)
 
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that persist from one control step to the next."""

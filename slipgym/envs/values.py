@@ -8,7 +8,6 @@ import numpy as np
 
 from slipgym.config import Config, Ranges
 from slipgym.config.pad import EFFECTS
-from slipgym.tasks.options import EpisodeOptions
 
 
 class Difference(NamedTuple):
@@ -29,38 +28,6 @@ DIFFERENCES = {
     "force_gain": Difference(_PER_FINGER, "gripper"),
 }
 """Name in the configuration, in `Ranges` and among the reset options -> what it consists of."""
-
-
-def fixed_differences(config: Config, options: EpisodeOptions) -> dict[str, np.ndarray]:
-    """Numbers of `DIFFERENCES` that options fix.
-
-    Raises:
-        ValueError: A centre of pressure does not lie on its pad.
-    """
-    if options.cop_offset is not None:
-        config.check_cop_offset("option cop_offset", options.cop_offset)
-    given = {name: getattr(options, name) for name in DIFFERENCES}
-    return {name: np.ravel(value) for name, value in given.items() if value is not None}
-
-
-def check_contacts(config: Config, options: EpisodeOptions, r: float, factors: tuple[float, ...]) -> None:
-    """Check that the contacts of both fingers fit on their pads.
-
-    Args:
-        config: Configuration with the episode's pressure profile.
-        options: Reset options.
-        r: Radius of the equivalent rim contact [m].
-        factors: Radius of each finger over r [-].
-
-    Raises:
-        ValueError: One does not.
-    """
-    config.check_patch("option r", r)
-    largest = r * max(factors)
-    if options.finger_radius is not None:
-        config.check_radius("option finger_radius: the larger radius r", largest)
-    elif largest != r:
-        config.check_patch("option r times finger_radius", largest)
 
 
 FRICTION = ("mu_c", "mu_s", "friction_ratio")
