@@ -81,20 +81,8 @@ def quantile(
     return min(low + share * span, high)
 
 
-def _within(low: float, high: float, drawn: Distribution | None) -> Distribution | None:
-    if drawn is not None and not low <= drawn.ends[0] <= drawn.ends[1] <= high:
-        least, most = drawn.ends
-        raise ValueError(f"must lie within {low:g} to {high:g}, got {least:g} to {most:g}")
-    return drawn
-
-
-def within(low: float, high: float) -> AfterValidator:
-    """Validator of a distribution whose values must lie within bounds."""
-    return AfterValidator(partial(_within, low, high))
-
-
 Drawn = Distribution | None
-"""Type of a field of `Ranged`."""
+"""Type of a field of `Ranged` that need not be given: null is not sampled."""
 
 
 class _Bounds(NamedTuple):
@@ -107,16 +95,25 @@ class _Bounds(NamedTuple):
         """Pydantic calls this for a JSON schema, to which it adds nothing."""
 
 
-def ranged(low: float, high: float, meaning: str) -> Any:
-    """Declare a field of `Ranged`: a distribution whose values lie within bounds; null: not sampled."""
-    return Field(default=None, description=meaning, json_schema_extra=_Bounds(low, high))
+def within(low: float, high: float, meaning: str, default: Any = ...) -> Any:
+    """Declare a field of `Ranged`: a distribution whose values lie within bounds."""
+    return Field(default, description=meaning, json_schema_extra=_Bounds(low, high))
+
+
+ranged = partial(within, default=None)
+"""`within`, of a distribution that need not be given."""
 
 
 class Ranged(Frozen):
-    """Base class of models with distributions that `ranged` declares."""
+    """Base class of models with distributions whose bounds `within` and `ranged` declare."""
 
     @field_validator("*")
     @classmethod
     def _values_lie_within(cls, value: Any, info: ValidationInfo) -> Any:
         bounds = cls.model_fields[info.field_name or ""].json_schema_extra
-        return _within(*bounds, value) if isinstance(bounds, _Bounds) else value
+        if isinstance(bounds, _Bounds) and value is not None:
+            least, most = value.ends
+            if not bounds.low <= least <= most <= bounds.high:
+                valid = f"{bounds.low:g} to {bounds.high:g}"
+                raise ValueError(f"must lie within {valid}, got {least:g} to {most:g}")
+        return value
