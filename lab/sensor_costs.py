@@ -6,6 +6,7 @@ no figure. `--policy` enters learned policies, see `slipgym train --set environm
 
 from __future__ import annotations
 
+import contextlib
 from typing import Annotated
 
 import pandas as pd
@@ -17,18 +18,16 @@ from slipgym.tasks import find
 
 PRESETS = "realistic", "lab", "markers", "wrist", "motor"
 TASKS = "Hold", "FragileHold", "Carry"
-SHOWN = "controller, estimated", "controller, none", "controller, memory of slips"
+SHOWN = "controller, estimated", "controller, none"
 
 
 def members(task: str, arguments: dict[str, str], episodes: int, names: list[str]) -> list[Member]:
     """The best constant grip with these sensors, the task's controller with them, and the user's policies."""
     key = find(task).key
-    own = [*controllers(key), remembering(key)]
-    return [
-        best_constant(task, arguments, episodes),
-        *(each for each in own if each.name in SHOWN),
-        *entered(names, "none"),
-    ]
+    own = [each for each in controllers(key) if each.name in SHOWN]
+    with contextlib.suppress(ValueError):  # these sensors measure no slip
+        own.append(remembering(task, arguments, episodes))
+    return [best_constant(task, arguments, episodes), *own, *entered(names, "none")]
 
 
 def main(

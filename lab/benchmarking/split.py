@@ -78,7 +78,7 @@ class Split:
         self._run: dict[str, Callable[[], None]] = {
             "begin": partial(calls["begin"], linked.script_wrist, state, self._action, *rows),
             "": self._advance,
-            "measure": partial(calls["measure"], state, sensors, *rows),
+            "measure": partial(calls["measure"], state, simulation.plant.cells, sensors, *rows),
             "estimate": partial(calls["estimate"], linked.update, state, *rows),
             "evaluate": partial(calls["evaluate"], linked.evaluate_step, state, *rows),
             "look": partial(calls["look"], state, buffers, *rows),

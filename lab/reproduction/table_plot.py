@@ -43,7 +43,7 @@ def plot_table(table: pd.DataFrame, experiment: str) -> Figure:
         axes.set_xticks(range(len(materials)), materials)
         axes.set(ylabel=label, ylim=(0.0, None))
     handles, names = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside lower center", ncols=len(names), fontsize=8.0)
+    figure.legend(handles, names, loc="outside lower center", ncols=(len(names) + 1) // 2, fontsize=8.0)
     figure.suptitle(
         "mean over trials, bars: standard deviation between trials, dashed: true",
         x=0.01,

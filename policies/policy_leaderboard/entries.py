@@ -23,6 +23,8 @@ from slipgym.tasks import find
 
 CANDIDATES = 16
 """Constant forces that are tried, spaced geometrically over the gripper's range."""
+SKIPS = 1, 2, 4
+"""Control steps of an action that are tried for a memory of slips."""
 LEARNED = {
     "scratch": "learned from nothing",
     "memory": "recurrent",
@@ -30,7 +32,7 @@ LEARNED = {
 }
 """What the names of shipped policies have behind the task's key -> what tables call them."""
 _SELECTION_SEED = 10_000_000
-"""Of the first episode on which the constant force is chosen."""
+"""Of the first episode on which a constant force or a rate is chosen."""
 
 
 class Member(NamedTuple):
@@ -62,14 +64,17 @@ def controllers(key: str, called: str = "controller") -> list[Member]:
     return members
 
 
-def remembering(key: str) -> Member:
-    """A controller without friction information that remembers slips.
+def remembering(task: str, arguments: Mapping[str, Any], episodes: int) -> Member:
+    """The task's controller without friction information that remembers slips, at the rate that solves most.
 
-    Args:
-        key: Its name.
+    The rate is chosen as the force of `best_constant` is, which describes the arguments.
     """
-    made = SlipMemory(key)
-    return Member("controller, memory of slips", made, {**made.modes, "friction_source": "none"})
+    made, rate = SlipMemory(find(task).key), load().physics.control_rate
+    members = []
+    for skip in SKIPS:
+        given = {**made.modes, "friction_source": "none", "frame_skip": skip}
+        members.append(Member(f"controller, memory of slips ({rate // skip} Hz)", made, given))
+    return _strongest(task, members, arguments, episodes)
 
 
 def learned(key: str) -> list[Member]:
@@ -99,17 +104,22 @@ def best_constant(task: str, arguments: Mapping[str, Any], episodes: int) -> Mem
     """
     gripper = load().gripper
     forces = np.geomspace(gripper.force_min, gripper.force_max, CANDIDATES).round(2).tolist()
-    found, seeds = [], range(_SELECTION_SEED, _SELECTION_SEED + episodes)
-    made = {**arguments, **constant(forces[0]).arguments}
-    envs = gym.make_vec(f"slipgym:{find(task).id}", episodes, "vector_entry_point", **made)
-    try:
-        for force in forces:
-            played = play(envs, constant(force).policy, seeds)
-            found.append((played.success.mean(), played.reward.mean(), force))
-    finally:
-        envs.close()
-    best = constant(max(found)[2])
+    best = _strongest(task, [constant(force) for force in forces], arguments, episodes)
     return best._replace(name=f"best constant ({best.name.removeprefix('constant ')})")
+
+
+def _strongest(task: str, members: Sequence[Member], arguments: Mapping[str, Any], episodes: int) -> Member:
+    """The member that solves most, among equals with the largest mean return, on episodes of its own."""
+    seeds, found = range(_SELECTION_SEED, _SELECTION_SEED + episodes), []
+    for member in members:
+        made = {**arguments, **member.arguments}
+        envs = gym.make_vec(f"slipgym:{find(task).id}", episodes, "vector_entry_point", **made)
+        try:
+            found.append(play(envs, member.policy, seeds))
+        finally:
+            envs.close()
+    rank = [(played.success.mean(), played.reward.mean()) for played in found]
+    return members[max(range(len(members)), key=rank.__getitem__)]
 
 
 def further(task: str) -> list[Member]:
@@ -178,10 +188,10 @@ def opponents(
     Args:
         task: As `slipgym.tasks.find` takes it.
         arguments: Of the environments: level, randomization, sensors.
-        episodes: On which the constant grip is chosen, for each force.
+        episodes: On which the constant grip and the rate of the memory are chosen, for each.
         folder: Of the runs of `slipgym imitate`; None: none.
     """
     key = find(task).key
-    found = [best_constant(task, arguments, episodes), remembering(key), *controllers(key), *further(task)]
-    found += learned(key)
+    found = [best_constant(task, arguments, episodes), remembering(task, arguments, episodes)]
+    found += [*controllers(key), *further(task), *learned(key)]
     return found if folder is None else [*found, *imitated(task, folder)]
