@@ -151,8 +151,6 @@ def look_at(look_rows, rows, state, buffers):
 @pointed
 def report(state, numbers, flags, lo, hi):
     """Write the infos to `numbers` and `flags` of an `InfoBuffer`."""
-    rows = slice(lo, hi)
-    write_infos(
-        numbers[rows], flags[rows], state.worlds[rows], state.pads[rows], state.fingers[rows],
-        state.episodes[rows], state.ground_truth[rows], state.estimated[rows], state.per_finger[rows],
-    )  # fmt: skip
+    state = lent(state)
+    for i in range(lo, hi):
+        write_infos(state, numbers, flags, i)

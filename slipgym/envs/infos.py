@@ -176,14 +176,12 @@ _write_flags = row_writer(
 
 
 @compiled
-def write_infos(numbers, flags, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger):
-    """Write all infos but the reward terms.
-
-    Output are `numbers` and `flags` of an `InfoBuffer`, the others arrays of a `BatchState`: the same rows.
-    """
-    for i in range(numbers.shape[0]):
-        _write_numbers(numbers[i], i, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger)
-        _write_flags(flags[i], i, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger)
+def write_infos(state, numbers, flags, i):
+    """Write the infos of environment i of a `BatchState` but the reward terms to arrays of `InfoBuffer`."""
+    worlds, pads, fingers, episodes = state.worlds, state.pads, state.fingers, state.episodes
+    truth, estimated, per_finger = state.ground_truth, state.estimated, state.per_finger
+    _write_numbers(numbers[i], i, worlds, pads, fingers, episodes, truth, estimated, per_finger)
+    _write_flags(flags[i], i, worlds, pads, fingers, episodes, truth, estimated, per_finger)
 
 
 InfoReader: TypeAlias = Callable[[], tuple[dict[str, Any], float, bool, bool]]

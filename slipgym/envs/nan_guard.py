@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from slipgym._numba.compiled import pointed
+from slipgym._numba.compiled import compiled, pointed
+from slipgym._numba.generate import generate
 from slipgym.envs.dumps import write_dump
-from slipgym.envs.readings import finite_check, row_writer
+from slipgym.envs.readings import row_writer
 
 KEPT = 120
 """Number of control steps whose quantities are kept: one second."""
@@ -85,10 +86,13 @@ _write_quantities = row_writer(
     __file__,
     "Write `QUANTITIES` of environment i.",
 )
-sound = finite_check(
+_SUM = [f"total += {quantity.read}" for quantity in QUANTITIES if not quantity.measured]
+sound = generate(
     "sound",
-    [quantity.read for quantity in QUANTITIES if not quantity.measured],
-    ("worlds", "pads", "fingers", "per_finger", "episodes"),
+    ("i", "worlds", "pads", "fingers", "per_finger", "episodes"),
+    ["total = 0.0", *_SUM, "return isfinite(total)"],
+    {"isfinite": math.isfinite},
+    compiled,
     __file__,
     "Whether the `QUANTITIES` of environment i are finite; measurements are left out.",
 )

@@ -6,7 +6,6 @@ row k to place k, so that names and values cannot be mixed up.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
@@ -69,9 +68,3 @@ def choice_reader(name: str, reads: Sequence[str], arrays: Sequence[str], file: 
     for k, read in enumerate(reads):
         body += [f"if k == {k}:", f"    return {read}"]
     return generate(name, ("k", "i", *arrays), [*body, "return 0.0"], {}, compiled, file, doc)
-
-
-def finite_check(name: str, reads: Sequence[str], arrays: Sequence[str], file: str, doc: str) -> Any:
-    """Generate a compiled function (i, *arrays): whether the sum of `reads` is finite, see `row_writer`."""
-    body = ["total = 0.0", *(f"total += {read}" for read in reads), "return isfinite(total)"]
-    return generate(name, ("i", *arrays), body, {"isfinite": math.isfinite}, compiled, file, doc)
