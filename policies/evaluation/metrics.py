@@ -100,14 +100,15 @@ def measure_planar_slip(recording: Recording) -> dict[str, Any]:
 
 
 def measure_hold(recording: Recording) -> dict[str, Any]:
-    """Slip of the object, and ratio of the grip force to the least one."""
-    needed = recording.needed_force
+    """Slip of the object, grip force beside the least one, and the mean allowed one; NaN: any is allowed."""
+    needed, allowed = recording.needed_force, recording.reference[-1, 0].item()
     force = recording.grip_force.mean(axis=1)
     return {
         "largest_slip_mm": largest_slip(recording),
         "needed_force_mean_N": needed.mean().item(),
         "needed_force_peak_N": needed.max().item(),
         "force_ratio": (force.mean() / needed.mean()).item(),
+        "allowed_force_N": allowed or math.nan,
     }
 
 
@@ -225,6 +226,7 @@ MEASURES: dict[str, Measures] = {
             SLIP,
             ROTATION,
             FORCE,
+            Metric("allowed_force_N", "allowed, mean [N]", brief=True),
             Metric("needed_force_mean_N", "least needed, mean [N]", brief=True),
             Metric("needed_force_peak_N", "least needed, peak [N]"),
             Metric("force_ratio", "grip / least needed"),

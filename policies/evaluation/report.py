@@ -30,7 +30,7 @@ def report(folder: Path) -> str:
     # as text: a column of nothing but "true" would turn into booleans
     names: dict[Hashable, type[str]] = dict.fromkeys((*KEYS, "material", "metric"), str)
     summary = pd.read_csv(folder / "summary.csv", dtype=names, keep_default_na=False, na_values=[""])
-    metrics = [m for m in measures(task).summary if m.brief]
+    metrics = [m for m in measures(task).summary if m.brief and m.column in set(summary["metric"])]
     rows = []
     for keys, group in groups(where(summary, material="all"), KEYS):
         found = by_metric(group)

@@ -25,9 +25,13 @@ def summarise(trials: pd.DataFrame, task: str) -> pd.DataFrame:
 
     Returns:
         Columns `COLUMNS`: value with its interval low to high; material is "all" for all trials, metric
-        "difference of ..." for the mean over pairs of what a friction choice has over the first one.
+        "difference of ..." for the mean over pairs of what a friction choice has over the first one. What
+        all trials lack has no row.
     """
-    metrics = [*measures(task).summary, *(Metric(c, "") for c in FRICTION if c in trials)]
+    metrics = [
+        m for m in measures(task).summary if not np.isnan(values(trials, m.column).astype(float)).all()
+    ]
+    metrics += [Metric(c, "") for c in FRICTION if c in trials]
     rows = []
     for whole in (True, False):
         grouped = trials.assign(material="all") if whole else trials
@@ -70,8 +74,9 @@ def markdown(summary: pd.DataFrame, task: str, n_trials: int) -> str:
         n_trials: How many trials stand behind it.
     """
     overall = where(summary, material="all")
-    headings = {m.column: m.heading for m in measures(task).summary}
-    estimated = [column for column in FRICTION if column in set(summary["metric"])]
+    there = set(summary["metric"])
+    headings = {m.column: m.heading for m in measures(task).summary if m.column in there}
+    estimated = [column for column in FRICTION if column in there]
     parts = [
         f"# {task}: {n_trials} trials",
         "Means with 95 % confidence intervals (BCa bootstrap; shares: Wilson).",
