@@ -88,7 +88,8 @@ class _Tap:
             )
         self._start = int(simulation.plant.world["tick"][0])
         force, world = simulation.plant.force_torque[0, finger], simulation.plant.world[0]
-        needed = int((world["control_ticks"] + force["delay"]) // force["period"]) + 2
+        latest = simulation.plant.force_torque["delay"][0].max()  # the other finger's reading goes on, too
+        needed = int((world["control_ticks"] + latest) // force["period"]) + 2
         if needed > HISTORY:
             rate = simulation.config.sensors.force_torque.rate
             raise ValueError(

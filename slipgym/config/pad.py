@@ -1,15 +1,22 @@
 """Configuration models of what a pad of rubber adds to its friction, and of its distributions."""
 
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from slipgym.config.base import Frozen, number
 from slipgym.config.distribution import Drawn, Ranged, ranged
 
+LEAST = 0.25
+"""Smallest `radius_exponent` with `friction_by_area`: the largest `load_exponent` belongs to it."""
+
 
 class PadRanges(Ranged):
-    """Distributions of fields of `PadConfig`; both pads have the same values."""
+    """Distributions of fields of `PadConfig`; both pads have the same values.
+
+    Friction in proportion to the contact's area (Schallamach, Proc. Phys. Soc. B 65, 1952) ties two of them:
+    mu f_n grows as r^2, so that load_exponent = 1 - 2 radius_exponent; Hertz has 1/3 for both.
+    """
 
     load_exponent: Drawn = ranged(
         -0.4, 0.5, "Exponent with which friction falls with the normal force; it may rise"
@@ -26,10 +33,18 @@ class PadRanges(Ranged):
     anisotropy: Drawn = ranged(
         -0.49, 0.49, "Relative difference of the friction along the pad's x from the mean"
     )
+    friction_by_area: bool | None = Field(
+        default=None, description="Whether load_exponent is 1 - 2 radius_exponent instead of free"
+    )
 
-
-EFFECTS = tuple(PadRanges.model_fields)
-"""Fields of `PadConfig` that switch an effect off when they are 0: those that can be randomized."""
+    @model_validator(mode="after")
+    def _exponents_are_told_once(self) -> Self:
+        radius = self.radius_exponent
+        if self.friction_by_area and self.load_exponent is not None:
+            raise ValueError("load_exponent and friction_by_area exclude each other")
+        if self.friction_by_area and (radius is None or radius.ends[0] < LEAST):
+            raise ValueError(f"friction_by_area needs a radius_exponent from {LEAST:g} to 0.333333")
+        return self
 
 
 class PadConfig(Frozen):
@@ -70,3 +85,7 @@ class PadConfig(Frozen):
     def hard(self) -> bool:
         """Whether each effect is switched off."""
         return not any(getattr(self, name) for name in EFFECTS)
+
+
+EFFECTS = tuple(name for name in PadRanges.model_fields if name in PadConfig.model_fields)
+"""Fields of `PadConfig` that switch an effect off when they are 0: those that can be randomized."""

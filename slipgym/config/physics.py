@@ -45,7 +45,7 @@ class ContactConfig(Frozen):
 
     model: ContactModel = Field(description="Friction model of the pads: a name")
     pressure: PressureName = Field(
-        description="Pressure over the patch: constant, Hertz's, or on its edge alone"
+        description="Pressure over the patch: constant, Hertz's, on its edge alone, or of a flat punch"
     )
     cells: int = number(2, 101, "Cells along each side of a distributed patch; 11 are four times as fast [-]")
     sigma_0: float = number(1e5, 1e8, "Bristle stiffness; soft ones appear as slip in stick [1/m]")

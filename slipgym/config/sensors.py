@@ -31,10 +31,17 @@ class ForceTorqueConfig(Frozen):
     torque_range: float = number(1e-6, 1e6, "Saturation of the torque, either sign [N m]")
     latency: float = number(0.0, 10.0, "Smallest latency of a reading [s]")
     latency_spread: float = number(0.0, 10.0, "Largest latency on top of that, sampled per episode [s]")
+    own_latency: bool = Field(
+        description="Whether each finger's sensor samples its own latency: true or false"
+    )
     tip_mass: float = number(0.0, 1.0, "Smallest mass of the fingertip in front of the sensor [kg]")
     tip_mass_spread: float = number(
         0.0, 1.0, "Largest mass on top of that, sampled per episode and finger [kg]"
     )
+    mode_frequency: Annotated[float, Field(ge=1.0, le=1e4)] | None = Field(
+        description="Natural frequency of the finger, see `slipgym.sensors.structure`; null: it is rigid [Hz]"
+    )
+    mode_damping: float = number(1e-3, 0.5, "Damping of that vibration over the critical; size assumed [-]")
     dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
     tilt: float = number(0.0, 0.5, "Largest tilt of the frame about x and y, per episode [rad]")
     crosstalk: float = number(

@@ -39,6 +39,8 @@ def warn_of_drawn(
     places = {**_PLACES, "mu_c": f"tasks.{task}.friction_range"}
     drawn = {places[name]: f"the randomization or the level draws {name}" for name in places
              if getattr(ranges, name) is not None}  # fmt: skip
+    if ranges.friction_by_area:
+        drawn[places["load_exponent"]] = "friction_by_area takes it from the radius_exponent that is drawn"
     if material == "random" and (ranges.mu_c is not None or settings.friction_range is not None):
         for name in values.get("materials", {}):
             drawn[f"materials.{name}"] = f"its friction is drawn, unless material={name!r} is given"

@@ -73,14 +73,14 @@ class Randomizer:
         self.drawn = tuple(name for name in VALUES.names or () if self.draws(name))
         self.kinds = tuple(disturbance.kind for disturbance in ranges.disturbances)
         self._tabulate(sorted(config.materials))
+        self.drawn += ("load_exponent",) if ranges.friction_by_area else ()
         if ranges.cop_offset is not None:
-            least, most = ranges.cop_offset.ends
-            farthest = max(abs(least), abs(most))
+            farthest = max(map(abs, ranges.cop_offset.ends))
             config.check_cop_offset("randomization.cop_offset: the farthest", [(farthest, farthest)])
         pad = config.gripper.pad_radius
         most = settings.radius_range[1] if settings.radius_range else settings.radius
         for variant in self.variants.values() if self.active else ():
-            r = self.most("radius_scale") * (most or variant.contact_radius) * self.most("finger_radius")
+            r = self.most("radius_scale") * self.most("finger_radius") * (most or variant.contact_radius)
             if r > pad * (1.0 + 1e-9):
                 limit = f"must not exceed gripper.pad_radius = {pad:g} m"
                 raise ValueError(f"randomization: the largest radius r = {r:g} m {limit}")
@@ -105,6 +105,9 @@ class Randomizer:
         """
         values = np.empty(len(shares), VALUES)
         sample_values(shares, self._numbers, self._choices, scale, flat(values))
+        if self._ranges.friction_by_area:  # what is sampled of the exponents lies on n = 1 - 2 b
+            sampled = values["radius_exponent"] - (1.0 - scale) * self._nominal["radius_exponent"]
+            values["load_exponent"] = (1.0 - scale) * self._nominal["load_exponent"] + scale - 2.0 * sampled
         return values
 
     def schedule(
@@ -279,8 +282,7 @@ class Drawn:
 @lru_cache
 def _columns(known: tuple[str, ...]) -> tuple[list[str], list[int]]:
     """Names and places of the numbers of FIRST and of some fields of VALUES in a row."""
-    names: list[str] = list(FIRST)
-    columns = list(range(len(FIRST)))
+    names, columns = list[str](FIRST), list(range(len(FIRST)))
     for name in known[len(FIRST) :]:
         own = PLACES[name]
         names += labels(name)

@@ -38,10 +38,10 @@ VALUES = np.dtype(
     [
         (name, "f8", len(DIFFERENCES[name].parts)) if name in DIFFERENCES else (name, "f8")
         for name in Ranges.model_fields
-        if name != "disturbances"
+        if name not in ("disturbances", "friction_by_area")
     ]
 )
-"""Fields of `slipgym.config.Ranges` but `disturbances`, sampled or not."""
+"""Fields of `slipgym.config.Ranges` that are numbers or names, sampled or not."""
 SIZE = VALUES.itemsize // 8
 """Numbers in `VALUES`."""
 _ENDS = np.cumsum([VALUES[name].itemsize // 8 for name in VALUES.names or ()]).tolist()
