@@ -7,7 +7,6 @@ friction know nothing of it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -142,9 +141,4 @@ def _band(x: np.ndarray, z: np.ndarray, thick: float, y: float) -> solids.Triang
     return np.concatenate([solids.quad(np.array(each)) for each in corners])
 
 
-_PRINTS: dict[str, Callable[[tuple[float, float], float], list[Part]]] = {
-    "wood": _wood,
-    "case": _case,
-    "plastic": _plastic,
-    "cardboard": _cardboard,
-}
+_PRINTS = {"wood": _wood, "case": _case, "plastic": _plastic, "cardboard": _cardboard}

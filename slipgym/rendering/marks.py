@@ -41,10 +41,8 @@ def arrow(
     shaft = np.vstack([seen[:keep], neck])
     parts = []
     for extra, paint in ((_CASING * fine, PAPER), (0.0, colour)) if cased else ((0.0, colour),):
-        body = _ribbon(shaft, size / 2 + extra)
-        parts.append(
-            _painted(np.concatenate([body, _head(neck, tip, _SPREAD * size, extra)]), paint, opacity)
-        )
+        shape = _ribbon(shaft, size / 2 + extra), _head(neck, tip, _SPREAD * size, extra)
+        parts.append(_painted(np.concatenate(shape), paint, opacity))
     return _joined(parts)
 
 

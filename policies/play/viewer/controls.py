@@ -39,13 +39,10 @@ _LEGEND = (
 
 
 class Controls:
-    """The panel with the controls.
+    """The panel with the controls of a session, in the container of `viser.ViserServer.gui` that is open.
 
-    Args:
-        gui: `viser.ViserServer.gui`, inside the container that shall hold them.
-        session: What they act on.
-        names: Names of the policies on offer, the present one among them.
-        record: Called with True to begin a video, with False to end it; it returns whether one is being made.
+    The names are those of the policies on offer, the present one among them. `record` is called with True to
+    begin a video, with False to end it; it returns whether one is being made.
     """
 
     def __init__(

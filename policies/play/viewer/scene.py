@@ -11,17 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.rendering import palette
+from slipgym.rendering import palette, stage
 from slipgym.rendering.camera import framing
 from slipgym.rendering.look import AT_THE_GRASP, Pose, View, feel, look
-from slipgym.rendering.stage import (
-    PAD_THICKNESS,
-    SEE_THROUGH,
-    footprint,
-    gripper_triangles,
-    mirrored,
-    object_triangles,
-)
 
 PUSH: palette.Colour = (0xAA, 0x33, 0x77)
 """Colour of external forces."""
@@ -60,16 +52,17 @@ class Scene:
             body.remove()
         view = look(simulation, 0)
         x, z = view.box.com_offset
-        palm, finger = gripper_triangles(view.pad_radius, view.side)
-        offset = np.array([0.0, view.box.size[1] / 2 + PAD_THICKNESS / 2, 0.0])
+        palm, finger = stage.gripper_triangles(view.pad_radius, view.side)
+        offset = np.array([0.0, view.box.size[1] / 2 + stage.PAD_THICKNESS / 2, 0.0])
         self._gripper = self._scene.add_frame("/world/gripper", show_axes=False)
         self._object = self._scene.add_frame("/world/object", show_axes=False)
         self._bodies = [self._gripper, self._object]
-        triangles, colours = object_triangles(view.box, view.material, view.body)
+        triangles, colours = stage.object_triangles(view.box, view.material, view.body)
         self._add("/world/object/body", triangles - (x, 0.0, z), colours)
         self._add("/world/gripper/palm", palm[0], palm[1])
         self._add("/world/gripper/finger_1", finger[0] + offset, finger[1])
-        self._add("/world/gripper/finger_2", mirrored(finger[0], 1) - offset, finger[1], SEE_THROUGH)
+        near = stage.mirrored(finger[0], 1) - offset
+        self._add("/world/gripper/finger_2", near, finger[1], stage.SEE_THROUGH)
         self._outline("/world/gripper/grasp", view, AT_THE_GRASP, palette.SLIP)
         target = simulation.task.motion.pose(simulation.episode[0])
         if target is not None:
@@ -78,7 +71,7 @@ class Scene:
         self._add_arrow("/world/gripper/grip_1", palette.INK)
         self._add_arrow("/world/gripper/grip_2", palette.INK)
         x, z, pitch = simulation.episode["wrist_start"][0].tolist()
-        self._framed = framing(footprint(view, (x, z, pitch), target, ()))
+        self._framed = framing(stage.footprint(view, (x, z, pitch), target, ()))
         middle = np.array([self._framed.target[0], 0.0, self._framed.target[1]])
         self._camera.look_at = tuple(middle.tolist())
         self._camera.position = tuple((middle + _AWAY * self._framed.span).tolist())
@@ -101,7 +94,7 @@ class Scene:
         (f_x, f_z), _, grip = feel(simulation, 0)
         self._point("/world/gripper/friction", (0.0, -half - 0.002, 0.0), (f_x, 0.0, f_z), FORCE_LENGTH)
         for name, side, force in zip(("grip_1", "grip_2"), (1.0, -1.0), grip, strict=True):
-            back = side * (half + PAD_THICKNESS + 0.012 + min(GRIP_LENGTH * force, _LONGEST))
+            back = side * (half + stage.PAD_THICKNESS + 0.012 + min(GRIP_LENGTH * force, _LONGEST))
             self._point(f"/world/gripper/{name}", (0.0, back, 0.0), (0.0, -side * force, 0.0), GRIP_LENGTH)
         push_x, push_z, turn = world["external"].tolist()
         start = view.position - (0.0, half + 0.004, 0.0)
