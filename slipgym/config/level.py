@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from pydantic import Field
 
+from estimator.suggestions import yaml_beside
 from slipgym.config import files
 from slipgym.config.base import Frozen
 from slipgym.config.errors import unknown
@@ -101,7 +102,7 @@ def load_level(choice: Choice, task: str) -> Chosen:
         return _own(files.read(path), os.fspath(path))
     known = _levels(task)
     if choice not in known:
-        raise ValueError(unknown(f"level of {task}", str(choice), known))
+        raise ValueError(unknown(f"level of {task}", str(choice), known, yaml_beside(path)))
     source = os.fspath(files.folder() / _FOLDER / f"{task}.yaml")
     return Chosen(validate(known[str(choice)], Level, source, prefix=(str(choice),)), source, str(choice))
 

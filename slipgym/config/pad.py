@@ -7,9 +7,6 @@ from pydantic import Field
 from slipgym.config.base import Frozen
 from slipgym.config.pad_ranges import PadRanges
 
-EFFECTS = tuple(PadRanges.model_fields)
-"""Fields of `PadConfig` that switch an effect off when they are 0: those that can be randomized."""
-
 
 class PadConfig(Frozen):
     """Load dependence, shear, creep, age and anisotropy of both pads: `slipgym.contact.soft_pad`.
@@ -59,3 +56,7 @@ class PadConfig(Frozen):
     def hard(self) -> bool:
         """Whether each effect is switched off."""
         return not any(getattr(self, name) for name in EFFECTS)
+
+
+EFFECTS = tuple(name for name in PadRanges.model_fields if name in PadConfig.model_fields)
+"""Fields of `PadConfig` that switch an effect off when they are 0: those that can be randomized."""

@@ -51,7 +51,7 @@ class ContactConfig(Frozen):
 
     model: ContactModel = Field(description="Friction model of the pads: a name")
     pressure: PressureName = Field(
-        description="Pressure over the patch: constant, Hertz's, or on its edge alone"
+        description="Pressure over the patch: constant, Hertz's, on its edge alone, or of a flat punch"
     )
     cells: int = Field(
         ge=2,

@@ -51,11 +51,20 @@ class ForceTorqueConfig(Frozen):
     latency_spread: float = Field(
         ge=0.0, le=10.0, description="Largest latency on top of that, sampled per episode [s]"
     )
+    own_latency: bool = Field(
+        description="Whether each finger's sensor samples its own latency: true or false"
+    )
     tip_mass: float = Field(
         ge=0.0, le=1.0, description="Smallest mass of the fingertip in front of the sensor [kg]"
     )
     tip_mass_spread: float = Field(
         ge=0.0, le=1.0, description="Largest mass on top of that, sampled per episode and finger [kg]"
+    )
+    mode_frequency: Annotated[float, Field(ge=1.0, le=1e4)] | None = Field(
+        description="Natural frequency of the finger, see `slipgym.sensors.structure`; null: it is rigid [Hz]"
+    )
+    mode_damping: float = Field(
+        ge=1e-3, le=0.5, description="Damping of that vibration over the critical; size assumed [-]"
     )
     dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
     tilt: float = Field(

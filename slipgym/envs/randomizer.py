@@ -69,18 +69,16 @@ class Randomizer:
         pressures = dict.fromkeys((config.contact.pressure, *(ranges.pressure or ())))
         self.variants = {pressure: with_pressure(config, pressure) for pressure in pressures}
         self._nominal = nominal_values(config)
-        names = (name for name in Ranges.model_fields if name != "disturbances" and self.draws(name))
-        self.drawn = tuple(names)
+        self.drawn = tuple(name for name in Ranges.model_fields if name in PLACES and self.draws(name))
         self.kinds = tuple(disturbance.kind for disturbance in ranges.disturbances)
         self._tabulate(sorted(config.materials))
+        self.drawn += ("load_exponent",) if ranges.friction_by_area else ()
         if ranges.cop_offset is not None:
-            least, most = ranges.cop_offset.ends
-            farthest = max(abs(least), abs(most))
+            farthest = max(map(abs, ranges.cop_offset.ends))
             config.check_cop_offset("randomization.cop_offset: the farthest", [(farthest, farthest)])
         for variant in self.variants.values():
             most = settings.radius_range[1] if settings.radius_range else settings.radius
-            r = self.most("radius_scale") * (most or variant.contact_radius)
-            r *= self.most("finger_radius")
+            r = self.most("radius_scale") * self.most("finger_radius") * (most or variant.contact_radius)
             if self.active:
                 _check_radius(variant, r)
 
@@ -103,6 +101,9 @@ class Randomizer:
         """
         values = np.empty(len(shares), VALUES)
         sample_values(shares, self._numbers, self._choices, scale, flat(values))
+        if self._ranges.friction_by_area:  # what is sampled of the exponents lies on n = 1 - 2 b
+            sampled = values["radius_exponent"] - (1.0 - scale) * self._nominal["radius_exponent"]
+            values["load_exponent"] = (1.0 - scale) * self._nominal["load_exponent"] + scale - 2.0 * sampled
         return values
 
     def schedule(
@@ -291,8 +292,7 @@ class Drawn:
 @lru_cache
 def _columns(known: tuple[str, ...]) -> tuple[list[str], list[int]]:
     """Names and places of the numbers of FIRST and of some fields of VALUES in a row."""
-    names: list[str] = list(FIRST)
-    columns = list(range(len(FIRST)))
+    names, columns = list[str](FIRST), list(range(len(FIRST)))
     for name in known[len(FIRST) :]:
         own = PLACES[name]
         names += labels(name)
