@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -17,12 +16,6 @@ from slipgym.config.errors import unknown
 from slipgym.rendering import palette
 
 _SIGNS = palette.INK, palette.MUTED, palette.SLIP, palette.GRIP_2, palette.MU_C, palette.MU_S
-
-
-class _Writer(Protocol):
-    def add(self, picture: np.ndarray) -> None: ...
-
-    def finish(self) -> None: ...
 
 
 class _Mp4:
@@ -47,12 +40,7 @@ class _Mp4:
 
 
 class Gif:
-    """Frames reduced to the first one's colours and the plots', the same for all: what rests stays still.
-
-    Args:
-        path: The file.
-        rate: Frames per second.
-    """
+    """Frames reduced to the first one's colours and the plots', the same for all: what rests stays still."""
 
     def __init__(self, path: Path, rate: int) -> None:
         self._path, self._rate = path, rate
@@ -63,8 +51,8 @@ class Gif:
         """Append a frame (height, width, 3) uint8."""
         image = Image.fromarray(picture)
         if not self._frames:
-            pale = [(channel + 255) // 2 for sign in _SIGNS for channel in sign]
-            signs = [channel for sign in _SIGNS for channel in sign] + pale
+            signs = [channel for sign in _SIGNS for channel in sign]
+            signs += [(channel + 255) // 2 for channel in signs]  # and their edges
             most = image.quantize(256 - len(signs) // 3).getpalette() or []
             self._colours.putpalette(most[: 768 - len(signs)] + signs)
         self._frames.append(image.quantize(palette=self._colours, dither=Image.Dither.NONE))
@@ -73,12 +61,11 @@ class Gif:
         """Write the file."""
         if self._frames:
             first, *rest = self._frames
-            first.save(
-                self._path, save_all=True, append_images=rest, duration=1000 // self._rate, loop=0, disposal=1
-            )
+            shown: dict[str, Any] = {"duration": 1000 // self._rate, "loop": 0, "disposal": 1}
+            first.save(self._path, save_all=True, append_images=rest, **shown)
 
 
-VIDEO_TYPES: dict[str, tuple[Callable[[Path, int], _Writer], int]] = {".mp4": (_Mp4, 30), ".gif": (Gif, 25)}
+VIDEO_TYPES: dict[str, tuple[type[_Mp4 | Gif], int]] = {".mp4": (_Mp4, 30), ".gif": (Gif, 25)}
 """File type -> writer and frames per second; a GIF counts time in hundredths of a second."""
 
 

@@ -48,6 +48,12 @@ class Outcome:
     reward: float
     """Sum over the episode."""
 
+    @classmethod
+    def of(cls, seed: int, info: Mapping[str, Any], reward: float) -> Outcome:
+        """Outcome of an episode by its last info."""
+        slip = tuple(info["slip"].tolist())
+        return cls(seed, info["time"], info["is_success"], info["dropped"], slip, reward)
+
     @property
     def ending(self) -> str:
         """In words: dropped, success or no success."""
@@ -63,13 +69,7 @@ class Outcome:
 
 
 class Keyboard:
-    """A policy by hand: the up key grips harder, the down key more loosely.
-
-    Args:
-        window: Where the keys are read.
-        config: Of the environment.
-        force: Grip force per finger at the start [N].
-    """
+    """A policy by hand: from a force per finger [N], up grips harder and down more loosely."""
 
     action_mode = "grip_force"
 
@@ -139,20 +139,15 @@ def watch(
         check_file(Path(video))
     outcomes = []
     with ExitStack() as stack:
-        player: Policy | None = None if policy == KEYBOARD else _policy(policy or own_policy(task))
-        keywords = {**policies.modes(player or Keyboard), **keywords}
-        policies.check_estimates(policy or own_policy(task), player, keywords)
-        env: Any = gym.make(
-            f"slipgym:{env_id}", render_mode="rgb_array", disable_env_checker=True, **keywords
-        ).unwrapped
+        name = policy or own_policy(task)
+        player: Any = Keyboard if policy == KEYBOARD else _policy(name)
+        env: Any = environment(env_id, name, player, keywords)
         stack.callback(env.close)
-        if isinstance(player, LearnedPolicy):
-            player.check(env)
         if video is None:
             window = Window(f"slipgym {task}", keywords.get("render_size") or (WIDTH, HEIGHT))
             stack.callback(window.close)
-            force = env.settings.initial_force
-            player = player or Keyboard(window, env.config, force)
+            if player is Keyboard:
+                player = Keyboard(window, env.config, env.settings.initial_force)
             rate: float = WINDOW_RATE
 
             def show(picture: np.ndarray) -> bool:
@@ -173,6 +168,25 @@ def watch(
                 break
             outcomes.append(outcome)
     return outcomes
+
+
+def environment(env_id: str, name: str | Policy, policy: Any, keywords: Mapping[str, Any]) -> Any:
+    """Makes the environment that a policy of some name, or a class of policies, acts in.
+
+    Raises:
+        ValueError: A keyword is not allowed, or the policy does not fit.
+    """
+    keywords = {**policies.modes(policy), **keywords}
+    policies.check_estimates(name, policy, keywords)
+    env_id = f"slipgym:{env_id}"
+    env: Any = gym.make(env_id, render_mode="rgb_array", disable_env_checker=True, **keywords).unwrapped
+    try:
+        if isinstance(policy, LearnedPolicy):
+            policy.check(env)
+    except BaseException:
+        env.close()
+        raise
+    return env
 
 
 def _episode(
@@ -206,8 +220,7 @@ def _episode(
             if not step.over and not show_due(info["time"]):
                 return None
     show(env.render())  # type: ignore[arg-type]
-    slip = tuple(info["slip"].tolist())
-    return Outcome(seed, info["time"], info["is_success"], info["dropped"], slip, reward)
+    return Outcome.of(seed, info, reward)
 
 
 def _policy(name: str | Policy) -> Policy:

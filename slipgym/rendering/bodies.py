@@ -1,4 +1,4 @@
-"""Draws the object as what it stands for: a box, a bottle, a tool.
+"""Draws the object as what it stands for: a box, a bottle, a tool, of a material with a colour and a print.
 
 The drawn body lies within the box that is simulated, and has its thickness along the grip axis. Pads and
 friction know nothing of it.
@@ -6,14 +6,16 @@ friction know nothing of it.
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from slipgym.rendering import materials, solids
-from slipgym.rendering.materials import Part, Shade
+from slipgym.rendering import solids
 from slipgym.world.scene import Box
+
+Shade = tuple[float, float, float]
+Part = tuple[solids.Triangles, Shade]
 
 
 class Section(NamedTuple):
@@ -44,38 +46,40 @@ BODIES: dict[str, tuple[Section, ...]] = {
     ),
 }
 """Name -> its sections, from the bottom up or from the end that is grasped; the longest one has the print."""
+_BASE: dict[str, Shade] = {
+    "wood": (0.79, 0.60, 0.39),
+    "case": (0.38, 0.49, 0.60),
+    "plastic": (0.72, 0.64, 0.80),
+    "cardboard": (0.85, 0.76, 0.59),
+}
+"""Colour by the material's name."""
+_OTHER: Shade = (0.60, 0.69, 0.58)
 _METAL: Shade = (0.55, 0.58, 0.62)
 
 
 def draw_body(name: str, box: Box, material: str, face: float) -> list[Part]:
-    """Parts of a body, from the geometric centre of the box.
+    """Parts of a body of `BODIES` in the simulated box, from the geometric centre of the box.
 
-    Args:
-        name: One of `BODIES`. A tool lies along the longer side of the box and is grasped by its handle.
-        box: The simulated object.
-        material: Name of its material.
-        face: y of what is printed on the broad face that is seen [m].
+    A tool lies along the longer side of the box and is grasped by its handle. What is printed on the broad
+    face that is seen has y = face [m].
     """
     lying = name == "tool" and box.size[0] > box.size[2]
     length, width = (box.size[0], box.size[2]) if lying else (box.size[2], box.size[0])
-    grasp = box.grasp_offset[0 if lying else 1]
-    turned = name == "tool" and grasp > 0.0
-    base = np.array(materials.BASE.get(material, materials.OTHER))
+    turned = name == "tool" and box.grasp_offset[0 if lying else 1] > 0.0
+    base = np.array(_BASE.get(material, _OTHER))
     sections, parts = BODIES[name], []
     for section in sections:
-        along = 0.5 * length * np.array(section.ends)
-        across = 0.5 * width * np.array(section.widths)
+        along, across = 0.5 * length * np.array(section.ends), 0.5 * width * np.array(section.widths)
         shape = solids.frustum(along, across, 0.5 * box.size[1])
         red, green, blue = (base * section.shade if section.shade else np.array(_METAL)).tolist()
         parts.append((_placed(shape, lying, turned), (red, green, blue)))
     main = max(sections, key=lambda section: section.ends[1] - section.ends[0])
     if main.shade:
-        extent = 0.5 * length * (main.ends[1] - main.ends[0])
-        middle = 0.25 * length * (main.ends[1] + main.ends[0])
-        half_box = replace(box, size=(width * min(main.widths), box.size[1], extent))
-        printed = materials.printed(material, half_box, face)
-        shift = np.array([0.0, 0.0, middle])
-        parts += [(_placed(shape + shift, lying, turned), shade) for shape, shade in printed]
+        low, high = main.ends
+        half = 0.5 * width * min(main.widths), 0.25 * length * (high - low)
+        shift = np.array([0.0, 0.0, 0.25 * length * (high + low)])
+        for shape, shade in _PRINTS[material](half, face) if material in _PRINTS else ():
+            parts.append((_placed(shape + shift, lying, turned), shade))
     return parts
 
 
@@ -84,3 +88,57 @@ def _placed(shape: solids.Triangles, lying: bool, turned: bool) -> solids.Triang
     if turned:
         shape = shape * (-1.0, 1.0, -1.0)
     return shape[..., [2, 1, 0]] * (1.0, 1.0, -1.0) if lying else shape
+
+
+def _darker(material: str, fraction: float) -> Shade:
+    red, green, blue = (fraction * part for part in _BASE[material])
+    return red, green, blue
+
+
+def _wood(half: tuple[float, float], face: float) -> list[Part]:
+    """Grain along z."""
+    z = np.linspace(-half[1], half[1], 25)
+    parts = []
+    for k, at in enumerate(np.linspace(-0.92, 0.92, 13)):
+        wave = 0.02 * np.sin(9.0 * z / half[1] * (0.3 + 0.05 * (k % 5)) + 1.7 * k)
+        x = half[0] * (at + wave)
+        thick = half[0] * (0.007 + 0.006 * math.sin(2.4 * k) ** 2)
+        parts.append((_band(x, z, thick, face), _darker("wood", 0.84 + 0.05 * (k % 3))))
+    return parts
+
+
+def _cardboard(half: tuple[float, float], face: float) -> list[Part]:
+    """Flutes across, and a tape along the middle."""
+    flutes = [
+        solids.patch((-half[0], half[0]), (z - 3e-4, z + 3e-4), face)
+        for z in np.arange(-half[1] + 0.004, half[1], 0.004)
+    ]
+    tape = solids.patch((-0.3 * half[0], 0.3 * half[0]), (-half[1], half[1]), face - 5e-5)
+    return [(np.concatenate(flutes), _darker("cardboard", 0.95)), (tape, (0.92, 0.86, 0.73))]
+
+
+def _plastic(half: tuple[float, float], face: float) -> list[Part]:
+    """Two streaks of light aslant."""
+    parts: list[Part] = []
+    z, lean = np.array([-half[1], half[1]]), 0.35 * half[0] * np.array([-1.0, 1.0])
+    for at, thick in ((-0.35, 0.14), (0.02, 0.05)):
+        parts.append((_band(at * half[0] + lean, z, thick * half[0], face), (0.82, 0.76, 0.88)))
+    return parts
+
+
+def _case(half: tuple[float, float], face: float) -> list[Part]:
+    """A recessed rim."""
+    edge, line = 0.12 * min(half), 0.02 * min(half)
+    (x, z), (across, along) = (half[0] - edge, half[1] - edge), (half[0] - edge - line, half[1] - edge - line)
+    field = solids.patch((-across, across), (-along, along), face - 5e-5)
+    return [(solids.patch((-x, x), (-z, z), face), _darker("case", 0.72)), (field, (0.43, 0.55, 0.66))]
+
+
+def _band(x: np.ndarray, z: np.ndarray, thick: float, y: float) -> solids.Triangles:
+    """A band around a line x(z) in the plane of that y, seen from -y."""
+    left, right = (np.column_stack([x + d, np.full_like(z, y), z]) for d in (-thick, thick))
+    corners = zip(left, right, right[1:], left[1:], strict=False)
+    return np.concatenate([solids.quad(np.array(each)) for each in corners])
+
+
+_PRINTS = {"wood": _wood, "case": _case, "plastic": _plastic, "cardboard": _cardboard}

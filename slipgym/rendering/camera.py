@@ -56,11 +56,8 @@ class Camera:
     def point(self, x: float, y: float) -> np.ndarray:
         """World point (3,) [m] that is seen at x and y [pixels], as far from the camera as the target."""
         right, down = x - self.layout.width / 2, y - self.layout.height / 2
-        return np.array([self.target[0], 0.0, self.target[1]]) + _AXES @ (
-            self.pixel * right,
-            -self.pixel * down,
-            0,
-        )
+        middle = np.array([self.target[0], 0.0, self.target[1]])
+        return middle + _AXES @ (self.pixel * right, -self.pixel * down, 0)
 
     def follow(self, way: np.ndarray) -> Camera:
         """Camera after the gripper has moved by (x, z) [m]; small moves are seen, and it stays."""
@@ -69,12 +66,7 @@ class Camera:
 
 
 def framing(points: np.ndarray, layout: Layout = DEFAULT) -> Camera:
-    """Make a camera that has all points in the part of the view that is free of words, as large as possible.
-
-    Args:
-        points: (n, 3) [m].
-        layout: Sizes of the picture.
-    """
+    """Make a camera that shows points (n, 3) [m] as large as possible where the view is free of words."""
     above, below = (layout.scale * size if layout.strip else 0.0 for size in _WORDS)
     middle = np.array([layout.width, layout.height + above - below]) / 2
     free = np.array([layout.width, layout.height - above - below]) * (1.0 - 2.0 * _MARGIN)

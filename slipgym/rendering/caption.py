@@ -7,9 +7,8 @@ import math
 import numpy as np
 from PIL import Image
 
-from slipgym.rendering.forces import Contact
+from slipgym.rendering.look import Contact
 from slipgym.rendering.palette import FRICTION, GRIP, INK, MUTED, PAPER, SLIP, TARGET, Colour
-from slipgym.rendering.poses import Pose
 from slipgym.rendering.text import write
 
 _FOOT = 46  # height of the band with the keys [pixels]
@@ -17,53 +16,40 @@ _FOOT = 46  # height of the band with the keys [pixels]
 
 def caption(
     picture: Image.Image,
-    title: str,
-    about: str,
-    time: float,
-    state: str,
+    words: tuple[str, str, str, str],
     contact: Contact,
     slip: np.ndarray,
-    target: Pose | None = None,
-    scale: float = 1.0,
+    target: bool,
+    scale: float,
 ) -> None:
-    """Write text over the view.
+    """Write text over a view, RGB: title and description at the left, time and state at the right; the keys.
 
-    Args:
-        picture: The view, RGB, written into.
-        title: Title, the name of the task.
-        about: Description of the object.
-        time: Time since the start [s].
-        state: State of the object, such as whether it slips.
-        contact: Forces of the pads on the object.
-        slip: Slip displacement (x, y, theta) [m, m, rad].
-        target: The one that the task asks for; None: none.
-        scale: Size of the words, over that in a picture of the usual size.
+    The slip is a displacement (x, y, theta) [m, m, rad]; there may be a target for it.
     """
     right, bottom = picture.width / scale - 14, picture.height / scale - _FOOT
 
     def put(x: float, y: float, words: str, colour: Colour, size: float = 13, align: float = 0.0) -> None:
         write(picture, scale * x, scale * y, words, colour, scale * size, align)
 
-    put(14, 26, title, INK, 17)
-    put(14, 45, about, MUTED)
-    put(right, 26, f"{time:.2f} s", INK, 17, align=1.0)
-    put(right, 45, state, MUTED, align=1.0)
+    put(14, 26, words[0], INK, 17)
+    put(14, 45, words[1], MUTED)
+    put(right, 26, words[2], INK, 17, align=1.0)
+    put(right, 45, words[3], MUTED, align=1.0)
     put(14, bottom - 10, "dashed:", MUTED)
     put(66, bottom - 10, "grasp", SLIP)
-    if target is not None:
+    if target:
         put(106, bottom - 10, "target", TARGET)
     foot = 0, round(scale * bottom), picture.width, picture.height
     picture.paste(PAPER, foot, Image.new("L", (foot[2], foot[3] - foot[1]), 191))
     friction, torque = math.hypot(*contact.friction), 1e3 * contact.torque
     sliding, turn = 1e3 * math.hypot(slip[0], slip[1]), math.degrees(slip[2])
     keys = (
-        ("grip force", GRIP, f"{contact.grip[0]:.1f} N", f"{contact.grip[1]:.1f} N"),
-        ("friction on the object", FRICTION, f"{friction:.2f} N", f"{_signed(torque, 0)} mN m"),
-        ("slip since the grasp", SLIP, f"{sliding:.1f} mm", f"{_signed(turn, 1)}°"),
+        (14, "grip force", GRIP, f"{contact.grip[0]:.1f} N", f"{contact.grip[1]:.1f} N"),
+        (142, "friction on the object", FRICTION, f"{friction:.2f} N", f"{_signed(torque, 0)} mN m"),
+        (310, "slip since the grasp", SLIP, f"{sliding:.1f} mm", f"{_signed(turn, 1)}°"),
     )
-    for k, (words, colour, first, second) in enumerate(keys):
-        x = 14 + (0, 128, 296)[k]
-        put(x, bottom + 19, words, colour)
+    for x, key, colour, first, second in keys:
+        put(x, bottom + 19, key, colour)
         put(x, bottom + 36, first, INK)
         put(x + 58, bottom + 36, second, INK)
 

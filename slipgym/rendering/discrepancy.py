@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from estimator.estimate import Estimate
 from estimator.reasons import NEEDS, causes, doubts
 from slipgym.rendering.history import History
-from slipgym.rendering.source import Source
+
+if TYPE_CHECKING:
+    from slipgym.envs.simulation import Simulation
 
 VISIBLE = 0.02
 """Error over the true value from which it is seen in a picture, and named."""
@@ -30,19 +32,12 @@ class Discrepancy(NamedTuple):
     """Why."""
 
 
-def discrepancies(simulation: Source, row: int, history: History) -> list[Discrepancy]:
+def discrepancies(simulation: Simulation, row: int, history: History) -> list[Discrepancy]:
     """Estimates of an environment that are off, or have no data; none if there are no estimators.
 
     An estimate is off if it differs from the truth by more than its stated standard deviation, or by
-    more than `LARGE`.
-
-    The reasons are those of the estimator (`estimator.reasons`), how old its newest data are, and what it
-    does not know: whether the true friction has changed since.
-
-    Args:
-        simulation: The environments' simulation.
-        row: Index of the environment.
-        history: The episode so far.
+    more than `LARGE`. The reasons are those of the estimator (`estimator.reasons`), how old its newest data
+    are, and what it does not know: whether the true friction has changed since.
     """
     found: list[Discrepancy] = []
     if not hasattr(simulation, "estimator"):
@@ -63,7 +58,7 @@ def discrepancies(simulation: Source, row: int, history: History) -> list[Discre
     return found
 
 
-def _reason(simulation: Source, row: int, history: History, name: str, within: bool) -> str:
+def _reason(simulation: Simulation, row: int, history: History, name: str, within: bool) -> str:
     """Why an estimate with data is off, or that it is `within` its deviation: the first that applies."""
     true = history.column(f"true_{name}")
     errors = np.abs(history.column(name) / true - 1.0)
@@ -83,7 +78,7 @@ def _reason(simulation: Source, row: int, history: History, name: str, within: b
     return "more than it states: errors of sensors or model"
 
 
-def _causes(simulation: Source, row: int, name: str) -> tuple[str, ...]:
+def _causes(simulation: Simulation, row: int, name: str) -> tuple[str, ...]:
     """The causes but the deviation, which is named already; of the finger with more confidence."""
     batch = simulation.estimator
     fingers = range(2 * row, 2 * row + 2)

@@ -3,26 +3,17 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from slipgym.rendering.source import Source
 from slipgym.tasks.motion import Motion
 
-COLUMNS = (
-    "grip_1",
-    "grip_2",
-    "path",
-    "reference",
-    "mu_c",
-    "mu_s",
-    "true_mu_c",
-    "true_mu_s",
-    "data_mu_c",
-    "data_mu_s",
-    "sd_mu_c",
-    "sd_mu_s",
-)
+if TYPE_CHECKING:
+    from slipgym.envs.simulation import Simulation
+
+_FRICTIONS = "mu_c", "mu_s", "true_mu_c", "true_mu_s", "data_mu_c", "data_mu_s", "sd_mu_c", "sd_mu_s"
+COLUMNS = "grip_1", "grip_2", "path", "reference", *_FRICTIONS
 """Quantities of a row [N, N, mm or degrees, mm or degrees, -, ...]; estimates without data are NaN. `data_*`
 counts the samples and events behind an estimate, of both fingers; `sd_*` is its deviation."""
 
@@ -36,11 +27,8 @@ class History:
         motion: The motion that defines path and reference.
     """
 
-    def __init__(self, simulation: Source, row: int, motion: Motion) -> None:
+    def __init__(self, simulation: Simulation, row: int, motion: Motion) -> None:
         self._simulation, self._row, self._motion = simulation, row, motion
-        pair = slice(2 * row, 2 * row + 2)
-        batch = getattr(simulation, "estimator", None)
-        self._estimates = None if batch is None else batch.estimates[pair]
         self.rows = np.full((int(simulation.episode["steps"][row]) + 1, len(COLUMNS)), math.nan)
         self.step_time = float(simulation.episode["step_time"][row])
         self.keep()
@@ -68,18 +56,17 @@ class History:
         """Record the present values."""
         simulation, i = self._simulation, self._row
         mu_s, mu_c, _, confidence_s, confidence_c = simulation.estimated[i, :5]
-        slip, reference = (
-            simulation.plant.world["slip"][i],
-            simulation.episode["reference"][i, self._motion.entry],
-        )
+        reference = simulation.episode["reference"][i, self._motion.entry]
         if self.step >= len(self.rows):  # somebody steps on beyond the end of the episode
             self.rows = np.concatenate([self.rows, np.full_like(self.rows, math.nan)])
         row = self.rows[self.step]
         row[:2] = simulation.plant.fingers["force"][i]
-        row[2], row[3] = self._motion.path(slip), self._motion.target(reference)
+        row[2] = self._motion.path(simulation.plant.world["slip"][i])
+        row[3] = self._motion.target(reference)
         row[4] = mu_c if confidence_c > 0.0 else math.nan
         row[5] = mu_s if confidence_s > 0.0 else math.nan
         row[7], row[6] = simulation.ground_truth[i, :2]
-        if self._estimates is not None:
+        if simulation.estimating:
             row[11], row[10] = simulation.estimated[i, 6:8]
-            row[8], row[9] = self._estimates["updates_mu_c"].sum(), self._estimates["events_mu_s"].sum()
+            fingers = simulation.estimator.estimates[2 * i : 2 * i + 2]
+            row[8], row[9] = fingers["updates_mu_c"].sum(), fingers["events_mu_s"].sum()

@@ -28,14 +28,9 @@ class Layout:
 
 
 def arrange(mode: str, size: Sequence[int] | None) -> Layout:
-    """Lay a picture out.
+    """Lay a picture of a render mode out; its size is width and height [pixels], None for the mode's own.
 
-    Args:
-        mode: Render mode; a "depth_array" is the view alone.
-        size: Width and height of the picture [pixels]; None: the render mode's own.
-
-    Returns:
-        The view alone where words would be too small to read.
+    The view stands alone in a "depth_array", and where words would be too small to read.
     """
     width, height = size or (WIDTH - STRIP * (mode == "depth_array"), HEIGHT)
     scale = min(width / WIDTH, height / HEIGHT)

@@ -24,18 +24,10 @@ Marks = tuple[np.ndarray, np.ndarray]
 def arrow(
     camera: Camera, path: np.ndarray, colour: Colour, width: float, opacity: float = 1.0, cased: bool = True
 ) -> Marks:
-    """An arrow along a path, its tip at the last point.
+    """An arrow along world points (n, 3) [m]; thinner if it is short, nothing if it has no length.
 
-    Args:
-        camera: The camera.
-        path: World points (n, 3) [m].
-        colour: Its colour.
-        width: Of the shaft [pixels, in a picture of the usual size].
-        opacity: 0 to 1.
-        cased: Whether it has a white edge against the background; for marks that are `stacked`.
-
-    Returns:
-        Thinner if it is short; nothing if it has no length.
+    The width of its shaft is in pixels of a picture of the usual size. A cased one has a white edge against
+    the background; for marks that are `stacked`.
     """
     seen = camera.project(path)
     left = np.cumsum(np.linalg.norm(np.diff(seen[::-1, :2], axis=0), axis=1))
@@ -49,12 +41,9 @@ def arrow(
     shaft = np.vstack([seen[:keep], neck])
     parts = []
     for extra, paint in ((_CASING * fine, PAPER), (0.0, colour)) if cased else ((0.0, colour),):
-        body = _ribbon(shaft, size / 2 + extra)
-        head = _head(neck, tip, _SPREAD * size, extra)
-        corners = np.concatenate([body, head])
-        parts.append((corners, _paint(len(corners), paint, opacity)))
-    corners, colours = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return corners, colours
+        shape = _ribbon(shaft, size / 2 + extra), _head(neck, tip, _SPREAD * size, extra)
+        parts.append(_painted(np.concatenate(shape), paint, opacity))
+    return _joined(parts)
 
 
 def outline(camera: Camera, path: np.ndarray, colour: Colour, width: float, dash: float) -> Marks:
@@ -66,8 +55,8 @@ def outline(camera: Camera, path: np.ndarray, colour: Colour, width: float, dash
         at = start + np.linspace(0.0, 1.0, count + 1)[:, None] * (end - start)
         ends.append(at.reshape(-1, 2, 3))
     both = np.concatenate(ends)
-    corners = _band(both[:, 0], both[:, 1], _normals(both[:, 1] - both[:, 0]) * fine * width / 2)
-    return corners, _paint(len(corners), colour, 1.0)
+    side = _normals(both[:, 1] - both[:, 0]) * fine * width / 2
+    return _painted(_band(both[:, 0], both[:, 1], side, side), colour, 1.0)
 
 
 def arc(centre: np.ndarray, radius: float, start: float, sweep: float) -> np.ndarray:
@@ -78,7 +67,7 @@ def arc(centre: np.ndarray, radius: float, start: float, sweep: float) -> np.nda
 
 def stacked(parts: list[Marks]) -> Marks:
     """Combine marks into one; each covers those before it, whatever their depth."""
-    corners, colours = (np.concatenate(column) for column in zip(*parts, strict=True))
+    corners, colours = _joined(parts)
     corners[..., 2] = np.arange(1.0, len(corners) + 1.0)[:, None]
     return corners, colours
 
@@ -101,26 +90,27 @@ def _normals(along: np.ndarray) -> np.ndarray:
     return side / np.maximum(np.linalg.norm(side, axis=1, keepdims=True), 1e-9)
 
 
-def _band(
-    start: np.ndarray, end: np.ndarray, side: np.ndarray, side_end: np.ndarray | None = None
-) -> np.ndarray:
-    """Two triangles for each piece from start to end, extended by `side` to each side, all (n, 3)."""
-    last = side if side_end is None else side_end
+def _band(start: np.ndarray, end: np.ndarray, side: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """Two triangles for each piece from start to end, with what is beside them at each end, all (n, 3)."""
     one, other, far, corner = start + side, start - side, end - last, end + last
     return np.concatenate([np.stack([one, corner, far], axis=1), np.stack([one, far, other], axis=1)])
 
 
 def _head(neck: np.ndarray, tip: np.ndarray, half: float, extra: float) -> np.ndarray:
     """The triangle at an arrow's tip, `extra` larger on each side."""
-    along = (tip - neck)[:2] / np.linalg.norm((tip - neck)[:2])
     length = float(np.linalg.norm((tip - neck)[:2]))
-    slope = math.hypot(length, half) / half  # how far the tip moves when the flanks move by one
-    side = np.array([-along[1], along[0], 0.0])
-    forward = np.array([along[0], along[1], 0.0])
-    broad = half + extra * (half + math.hypot(length, half)) / length
+    x, y = (tip - neck)[:2] / length
+    flank = math.hypot(length, half)
+    slope = flank / half  # how far the tip moves when the flanks move by one
+    side, forward = np.array([-y, x, 0.0]), np.array([x, y, 0.0])
+    broad = half + extra * (half + flank) / length
     base = neck - extra * forward
     return np.stack([base + broad * side, tip + extra * slope * forward, base - broad * side])[None]
 
 
-def _paint(count: int, colour: Colour, opacity: float) -> np.ndarray:
-    return np.broadcast_to((*map(float, colour), opacity), (count, 4))
+def _painted(corners: np.ndarray, colour: Colour, opacity: float) -> Marks:
+    return corners, np.broadcast_to((*map(float, colour), opacity), (len(corners), 4))
+
+
+def _joined(parts: list[Marks]) -> Marks:
+    return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -10,8 +11,8 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from slipgym.rendering.camera import FINE
-from slipgym.rendering.palette import INK, MUTED, RULE, Colour
-from slipgym.rendering.text import breadth, write
+from slipgym.rendering.palette import MUTED, RULE, Colour
+from slipgym.rendering.text import write
 
 _TICKS = 4  # intervals at most
 _ABOVE = 4  # how far a curve may be beyond the plot's frame [pixels]
@@ -47,23 +48,14 @@ class Plot:
     scale: float = 1.0
     """Size of words and lines."""
 
-    def draw(self, picture: Image.Image, times: np.ndarray, curves: list[Curve], clock: bool) -> None:
-        """Draw frame, labels and curves.
-
-        Args:
-            picture: RGB, drawn into.
-            times: Of the curves' values, (n,) [s].
-            curves: Curves; later ones are drawn over earlier ones.
-            clock: Whether the time axis has labels.
-        """
+    def draw(self, picture: Image.Image, times: np.ndarray, curves: Sequence[Curve], clock: bool) -> None:
+        """Draw frame, labels (with a clock those of time) and curves over times (n,) [s], in their order."""
         pen, step, scale = ImageDraw.Draw(picture), spacing(self.high - self.low), self.scale
         thin, above = max(1, round(scale)), round(_ABOVE * scale)
         for k in range(math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9) + 1):
-            y = round(self._y(k * step))
+            y, words = round(self._y(k * step)), f"{k * step:g}"
             pen.line((self.left, y, self.right - 1, y), MUTED if k == 0 else RULE, thin)
-            write(
-                picture, self.left - 6 * scale, y + 4 * scale, f"{k * step:g}", MUTED, 11 * scale, align=1.0
-            )
+            write(picture, self.left - 6 * scale, y + 4 * scale, words, MUTED, 11 * scale, align=1.0)
         second = spacing(self.end)
         for k in range(math.floor(self.end / second + 1e-9) + 1):
             x = round(self._x(k * second))
@@ -92,20 +84,16 @@ class Plot:
         return self.left + (self.right - self.left) * np.asarray(time) / self.end
 
     def _y(self, value: Any) -> Any:
-        return self.bottom - (self.bottom - self.top) * (np.asarray(value) - self.low) / (
-            self.high - self.low
-        )
+        share = (self.bottom - self.top) * (np.asarray(value) - self.low) / (self.high - self.low)
+        return self.bottom - share
 
 
 def pieces(points: np.ndarray, dash: float) -> list[np.ndarray]:
-    """The parts of a line that are drawn.
+    """The parts (k, 2) of a line that are drawn; a point that is not finite breaks it.
 
     Args:
-        points: (n, 2): x, which grows, and y [samples]; a point that is not finite breaks the line.
+        points: (n, 2): x, which grows, and y [samples].
         dash: Length of dashes and gaps along x [samples]; 0 for none.
-
-    Returns:
-        Arrays (k, 2) of at least two points.
     """
     drawn: Any = np.isfinite(points).all(axis=1)
     if dash and drawn.any():
@@ -132,20 +120,3 @@ def limits(values: list[np.ndarray], least: float) -> tuple[float, float]:
         low = 0.0
     step = spacing(high - low) / 2
     return step * math.floor(low / step + 1e-9), step * math.ceil(high / step - 1e-9)
-
-
-def heading(
-    picture: Image.Image,
-    left: float,
-    right: float,
-    y: float,
-    title: str,
-    keys: list[tuple[str, Colour]],
-    scale: float = 1.0,
-) -> None:
-    """Draw a plot's title, and at the right its legend in the curves' colours."""
-    write(picture, left, y, title, INK, 13 * scale)
-    x = float(right)
-    for words, colour in reversed(keys):
-        write(picture, x, y, words, colour, 12 * scale, align=1.0)
-        x -= 10.0 * scale + breadth(words, 12 * scale)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,14 +11,15 @@ from slipgym.rendering import strip
 from slipgym.rendering.camera import Camera, framing
 from slipgym.rendering.caption import caption
 from slipgym.rendering.discrepancy import Discrepancy, discrepancies
-from slipgym.rendering.forces import Contact
 from slipgym.rendering.history import History
 from slipgym.rendering.layout import arrange
-from slipgym.rendering.look import look, slips
+from slipgym.rendering.look import View, about, feel, look, moves
 from slipgym.rendering.scene import draw_scene, measure_depth
-from slipgym.rendering.source import Source
-from slipgym.rendering.stage import View, footprint
+from slipgym.rendering.stage import footprint
 from slipgym.rendering.window import Window
+
+if TYPE_CHECKING:
+    from slipgym.envs.simulation import Simulation
 
 WINDOW_RATE = 30
 """Pictures per second in a window."""
@@ -34,7 +36,7 @@ class Renderer:
     """
 
     def __init__(
-        self, mode: str, simulation: Source, row: int = 0, size: Sequence[int] | None = None
+        self, mode: str, simulation: Simulation, row: int = 0, size: Sequence[int] | None = None
     ) -> None:
         self._mode, self._simulation, self._row = mode, simulation, row
         self._motion, self._layout = simulation.task.motion, arrange(mode, size)
@@ -59,10 +61,9 @@ class Renderer:
     def keep(self) -> None:
         """Record the present control step for the plots; update the window `WINDOW_RATE` times a second."""
         self._history.keep()
-        if self._window is not None:
-            every = max(1, round(1.0 / (WINDOW_RATE * self._history.step_time)))
-            if self._history.step % every == 0:
-                self._show()
+        every = max(1, round(1.0 / (WINDOW_RATE * self._history.step_time)))
+        if self._history.step % every == 0:
+            self._show()
 
     def render(self) -> np.ndarray | None:
         """Return a picture (height, width, 3) uint8 or depths, or show the window and return None."""
@@ -75,17 +76,17 @@ class Renderer:
 
     def picture(self) -> np.ndarray:
         """Return a new picture (height, width, 3) uint8."""
-        simulation = self._simulation
-        contact = self._contact()
-        row, world = self._row, simulation.plant.world[self._row]
-        target = self._motion.pose(simulation.episode[row])
+        simulation, row = self._simulation, self._row
+        contact, episode = feel(simulation, row), simulation.episode[row]
+        target = self._motion.pose(episode)
         view = draw_scene(self._view(), contact, self._camera, target)
         if not self._layout.strip:
-            return np.asarray(view).copy()
-        about = f"{simulation.materials[row]}, {1e3 * world['mass']:.0f} g"
-        slip = world["slip"]
-        words = simulation.task.name, about, self._history.time, self._state()
-        caption(view, *words, contact, slip, target, self._layout.scale)
+            return np.array(view)
+        state = "dropped" if episode["dropped"] else "success" if episode["success"] else ""
+        corners = simulation.task.name, about(simulation, row), f"{self._history.time:.2f} s"
+        words = *corners, state or moves(simulation, row)
+        slip = simulation.plant.world["slip"][row]
+        caption(view, words, contact, slip, target is not None, self._layout.scale)
         off = self.discrepancies()
         beside = strip.draw_strip(self._history, self._motion, self._goal, off, self._layout)
         return np.hstack([np.asarray(view), np.asarray(beside)])
@@ -111,16 +112,3 @@ class Renderer:
 
     def _view(self) -> View:
         return look(self._simulation, self._row)
-
-    def _contact(self) -> Contact:
-        x, y, torque = self._simulation.plant.pads["wrench"][self._row].sum(axis=0).tolist()
-        first, second = self._simulation.plant.fingers["contact_force"][self._row].tolist()
-        return Contact((x, y), torque, (first, second))
-
-    def _state(self) -> str:
-        simulation, row = self._simulation, self._row
-        if simulation.episode["dropped"][row]:
-            return "dropped"
-        if simulation.episode["success"][row]:
-            return "success"
-        return "slips" if slips(simulation.plant.world["slip_twist"][row]) else "sticks"

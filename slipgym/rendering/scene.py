@@ -8,12 +8,11 @@ from functools import lru_cache
 import numpy as np
 from PIL import Image
 
-from slipgym.rendering import forces
 from slipgym.rendering.camera import FINE, Camera
-from slipgym.rendering.forces import Contact
-from slipgym.rendering.poses import Pose, name_gravity
+from slipgym.rendering.look import Contact, Pose, View
+from slipgym.rendering.poses import above, name_gravity, push
 from slipgym.rendering.raster import fill
-from slipgym.rendering.stage import View, assemble, grid
+from slipgym.rendering.stage import assemble, grid
 
 _LIGHT = np.array([-0.25, -0.75, 0.61])
 _AMBIENT = 0.6
@@ -21,22 +20,15 @@ _TOP, _BOTTOM = np.array([249.0, 250.0, 251.0]), np.array([229.0, 232.0, 237.0])
 
 
 def draw_scene(view: View, contact: Contact, camera: Camera, target: Pose | None = None) -> Image.Image:
-    """Draw the scene, RGB, in the size of the camera's view.
-
-    Args:
-        view: Poses of object and gripper.
-        contact: Forces of the pads on the object.
-        camera: The camera.
-        target: Slip displacement that the task asks for; None: none is drawn.
-    """
+    """Draw the scene, RGB, in the size of the camera's view, with the pose that the task asks for if any."""
     corners, colours = assemble(view)
     shaded = colours.copy()
     shaded[:, :3] *= 255.0 * _brightness(corners)[:, None]
     image, nearness = _backdrop(camera).copy(), _empty(camera)
     fill(camera.project(corners), shaded, image, nearness)
-    fill(*forces.before(view, contact, camera), image, nearness)
+    fill(*push(view, contact, 0, camera), image, nearness)  # nearer bodies hide it
     nearness[:] = 0.0
-    fill(*forces.above(view, contact, camera, target), image, nearness)
+    fill(*above(view, contact, camera, target), image, nearness)
     picture = Image.fromarray(image).reduce(FINE)
     if camera.layout.strip:
         name_gravity(picture, camera)
@@ -46,10 +38,9 @@ def draw_scene(view: View, contact: Contact, camera: Camera, target: Pose | None
 def measure_depth(view: View, camera: Camera) -> np.ndarray:
     """Distances along the camera's axis, (height, width) float32 [m]; the background is infinite."""
     corners, colours = assemble(view)
-    solid = colours.copy()
-    solid[:, 3] = 1.0
     nearness = _empty(camera)
-    fill(camera.project(corners), solid, np.zeros((*nearness.shape, 3), np.uint8), nearness)
+    image = np.zeros((*nearness.shape, 3), np.uint8)
+    fill(camera.project(corners), np.ones_like(colours), image, nearness)
     rows = np.maximum(nearness[::FINE], nearness[1::FINE])
     nearest = np.maximum(rows[:, ::FINE], rows[:, 1::FINE])
     return np.divide(1.0, nearest, out=np.full_like(nearest, math.inf), where=nearest > 0.0)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 Triangles = NDArray[np.float64]
 """(n, 3, 3): triangle, corner, coordinate (x, y, z) [m]."""
 
-_CORNERS = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 _SIDES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
 
@@ -21,21 +20,14 @@ def quad(corners: np.ndarray) -> Triangles:
 
 def box(half: tuple[float, float, float], centre: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Triangles:
     """An upright box by its half extents."""
-    corners = _CORNERS * half + np.asarray(centre)
-    return np.concatenate([quad(corners[list(side)]) for side in _SIDES])
+    x, y, z = half
+    return frustum(np.array([-z, z]), np.array([x, x]), y) + np.asarray(centre)
 
 
 def frustum(along: np.ndarray, across: np.ndarray, thick: float) -> Triangles:
-    """A solid along z that is symmetric in x and as thick everywhere.
-
-    Args:
-        along: Its two ends, lower first (2,) [m].
-        across: Half width there (2,) [m].
-        thick: Half thickness along y [m].
-    """
-    corners = np.array(
-        [(sign * across[end], y, along[end]) for sign in (-1, 1) for y in (-thick, thick) for end in range(2)]
-    )
+    """A solid along z, symmetric in x: two ends, lower first, and half widths there (2,), half depth [m]."""
+    ends = list(zip(across, along, strict=True))
+    corners = np.array([(sign * x, y, z) for sign in (-1, 1) for y in (-thick, thick) for x, z in ends])
     return np.concatenate([quad(corners[list(side)]) for side in _SIDES])
 
 
@@ -53,11 +45,9 @@ def cylinder(radius: float, length: float, sides: int = 24) -> Triangles:
     back = disc(radius, length / 2, sides)[:, ::-1]
     here, there = front[:, 1], front[:, 2]
     along = np.array([0.0, length, 0.0])
-    mantle = [
-        np.stack([there, here, here + along], axis=1),
-        np.stack([there, here + along, there + along], axis=1),
-    ]
-    return np.concatenate([front, back, *mantle])
+    left = np.stack([there, here, here + along], axis=1)
+    right = np.stack([there, here + along, there + along], axis=1)
+    return np.concatenate([front, back, left, right])
 
 
 def patch(x: tuple[float, float], z: tuple[float, float], y: float) -> Triangles:

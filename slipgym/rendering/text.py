@@ -19,16 +19,9 @@ def write(
     size: float = 12,
     align: float = 0.0,
 ) -> None:
-    """Write one line.
+    """Write one line of ASCII and a few signs more (° and ·) into a picture, RGB.
 
-    Args:
-        picture: RGB, written into.
-        x: Position of the line [pixels], see `align`.
-        y: Baseline [pixels].
-        words: ASCII and a few signs more (° and ·).
-        colour: Their colour.
-        size: Height of the typeface [pixels].
-        align: 0: x is the left end; 0.5: the middle; 1: the right end.
+    Its baseline is at y [pixels]; x is its left end (align 0), its middle (0.5) or its right end (1).
     """
     mask, rise = _mask(words, size)
     picture.paste(colour, (round(x - align * mask.width), round(y) - rise), mask)

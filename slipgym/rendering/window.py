@@ -42,12 +42,7 @@ class Window:
         """Whether the user closed the window or pressed Escape."""
 
     def show(self, picture: np.ndarray, rate: float) -> None:
-        """Show a picture, no sooner than 1/rate after the last one.
-
-        Args:
-            picture: (height, width, 3) uint8.
-            rate: Pictures per second, at most.
-        """
+        """Show a picture (height, width, 3) uint8, no sooner than 1/rate [s] after the last one."""
         pygame = self._pygame
         for event in pygame.event.get():
             escaped = event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE

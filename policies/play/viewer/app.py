@@ -30,19 +30,7 @@ MISSING = "the viewer needs viser: pip install 'slipgym[viewer]'"
 
 
 class Viewer:
-    """A session in a browser.
-
-    Args:
-        session: What it shows.
-        video: Path for recordings, MP4 or GIF.
-        port: Of the server; the next free one if it is taken.
-        host: Address that the server listens on. Whoever opens its page there can move the sliders.
-
-    Raises:
-        ModuleNotFoundError: viser is not installed.
-        RuntimeError: This version of viser does not let pages be checked.
-        ValueError: The type of the video is unknown.
-    """
+    """A session in a browser; arguments and errors are those of `open_viewer`."""
 
     def __init__(
         self,
@@ -61,12 +49,8 @@ class Viewer:
         self.scene = Scene(self.server.scene, self.server.initial_camera)
         gui.main_panel.dock_left()
         gui.main_panel.set_width(300)
-        self.controls = Controls(
-            gui,
-            session,
-            [*{session.policy: 0, **dict.fromkeys(policies_for(session.task))}],
-            self._ask_to_record,
-        )
+        names = dict.fromkeys([session.policy, *policies_for(session.task)])
+        self.controls = Controls(gui, session, [*names], self._ask_to_record)
         panel = gui.add_panel()
         with panel.add_tab("plots"):
             self.plots = Plots(gui, session)
@@ -180,16 +164,14 @@ def _viser() -> Any:
 
 def policies_for(task: Task) -> list[str]:
     """Names of the policies for a task: its controllers, and the learned ones trained in it."""
-    found = []
-    for name in policies.names():
+
+    def fits(name: str) -> bool:
         if policies.is_controller(name):
-            if controllers.find(name).task in (None, task.name):
-                found.append(name)
-        else:
-            policy = policies.load(name)
-            if isinstance(policy, LearnedPolicy) and policy.description.environment.id == task.id:
-                found.append(name)
-    return found
+            return controllers.find(name).task in (None, task.name)
+        policy = policies.load(name)
+        return isinstance(policy, LearnedPolicy) and policy.description.environment.id == task.id
+
+    return [*filter(fits, policies.names())]
 
 
 def open_viewer(
@@ -210,12 +192,13 @@ def open_viewer(
         video: MP4 or GIF for recordings; None: slipgym_<task>.mp4 in the working directory.
         seed: Of the first episode; the others' follow.
         options: Of every reset.
-        port: See `Viewer`.
-        host: See `Viewer`.
+        port: Of the server; the next free one if it is taken.
+        host: Address that the server listens on. Whoever opens its page there can move the sliders.
         **keywords: Of the environment.
 
     Raises:
         ModuleNotFoundError: viser or the engine is not installed.
+        RuntimeError: This version of viser does not let pages be checked.
         ValueError: A value is unknown or not allowed.
         FileNotFoundError: There is no policy at the path.
         OSError: The video cannot be written.

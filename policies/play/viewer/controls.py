@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from policies.play.viewer.interventions import PUSHES, TURNS
@@ -12,7 +13,7 @@ from policies.play.viewer.offers import Offer, number, one_of, switch
 from policies.play.viewer.scene import PUSH
 from policies.play.viewer.session import Session
 from slipgym.rendering import palette
-from slipgym.rendering.look import slips
+from slipgym.rendering.look import about, moves
 
 SPEEDS = ("0.1x", "0.25x", "0.5x", "1x", "2x")
 """Seconds of simulation per second of watching."""
@@ -21,13 +22,7 @@ LATEST = 12
 FRICTIONS, MASSES = (0.05, 1.5), (10.0, 1000.0)
 """Ranges of the sliders for mu_c [-] and the mass [g]."""
 BY_HAND = "grip by hand"
-_COLOURS = {
-    "sticks": "#0072B2",
-    "slips": "#D55E00",
-    "success": "#009E73",
-    "dropped": "#C0392B",
-    "no success": "#767676",
-}
+_COLOURS = {"sticks": "#0072B2", "slips": "#D55E00", "success": "#009E73", "dropped": "#C0392B"}
 _MARKS = (
     ("friction on the object", palette.FRICTION),
     ("grip force", palette.INK),
@@ -44,13 +39,10 @@ _LEGEND = (
 
 
 class Controls:
-    """The panel with the controls.
+    """The panel with the controls of a session, in the container of `viser.ViserServer.gui` that is open.
 
-    Args:
-        gui: `viser.ViserServer.gui`, inside the container that shall hold them.
-        session: What they act on.
-        names: Names of the policies on offer, the present one among them.
-        record: Called with True to begin a video, with False to end it; it returns whether one is being made.
+    The names are those of the policies on offer, the present one among them. `record` is called with True to
+    begin a video, with False to end it; it returns whether one is being made.
     """
 
     def __init__(
@@ -58,45 +50,50 @@ class Controls:
     ) -> None:
         self._session = session
         self.speed, self.paused = 1.0, False
-        gripper = session.env.config.gripper
+        gripper, submit = session.env.config.gripper, session.submit
 
-        def offer(handle: Any, label: str, take: Callable[[Any], Any]) -> Offer:
-            return Offer(handle, label, take, session.refuse)
+        def offer(handle: Any, label: str, take: Callable[[Any], Any], act: Callable[[Any], Any]) -> Offer:
+            made = Offer(handle, label, take, session.refuse)
+            made.on_change(act)
+            return made
 
-        def slider(label: str, low: float, high: float, step: float, value: float) -> Offer:
+        def slider(label: str, low: float, high: float, step: float, value: float, act: Any) -> Offer:
             take = number(low, high, isinstance(step, int))
-            return offer(gui.add_slider(label, low, high, step, value), label, take)
+            return offer(gui.add_slider(label, low, high, step, value), label, take, act)
 
         self._status = gui.add_html("")
         with gui.add_folder("acts at once"):
             hint = "The slider replaces the policy's grip."
-            self._hand = offer(gui.add_checkbox(BY_HAND, False, hint=hint), BY_HAND, switch)
+            box = gui.add_checkbox(BY_HAND, False, hint=hint)
+            hold = partial(submit, "grip_force")
+            self._hand = offer(box, BY_HAND, switch, lambda on: hold(self._grip.value if on else None))
             self._range = gripper.force_min, gripper.force_max
             initial = session.env.settings.initial_force
-            self._grip = slider("grip force [N]", *self._range, 0.1, initial)
-            self._friction = slider("friction mu_c", *FRICTIONS, 0.01, 0.5)
-            self._mass = slider("mass [g]", *MASSES, 5.0, 200.0)
-            self._impulse = slider("poke [mN s]", 1.0, 100.0, 1.0, 10.0)
-            self._pokes = [
-                offer(gui.add_button_group(label, names), label, one_of(names))
-                for label, names in (("push", PUSHES), ("turn", TURNS))
-            ]
+            self._grip = slider("grip force [N]", *self._range, 0.1, initial, self._take_over)
+            self._friction = slider("friction mu_c", *FRICTIONS, 0.01, 0.5, partial(submit, "mu_c"))
+            self._mass = slider("mass [g]", *MASSES, 5.0, 200.0, lambda grams: submit("mass", 1e-3 * grams))
+            impulse = slider("poke [mN s]", 1.0, 100.0, 1.0, 10.0, lambda _: None)  # acts with the next push
+            for label, ways in (("push", PUSHES), ("turn", TURNS)):
+                group = Offer(gui.add_button_group(label, ways), label, one_of(ways), session.refuse)
+                group.on_click(lambda way: session.poke(way, 1e-3 * impulse.value))
         with gui.add_folder("begins with the next episode"):
             menu = gui.add_dropdown("policy", names, initial_value=session.policy)
-            self._policy = offer(menu, "policy", one_of(names))
-            latency = min(session.env.config.sensors.slip.latency_samples, LATEST)
-            self._latency = slider("latency [samples]", 0, LATEST, 1, latency)
-            self._restart = gui.add_button("next episode", color="orange")
-            self._free = gui.add_button("undo all sliders", color="gray")
+            self._policy = offer(menu, "policy", one_of(names), partial(submit, "policy"))
+            latency = partial(submit, "latency")
+            self._latency = slider("latency [samples]", 0, LATEST, 1, self._samples, latency)
+            restart = gui.add_button("next episode", color="orange")
+            restart.on_click(lambda _: session.request_restart())
+            gui.add_button("undo all sliders", color="gray").on_click(lambda _: self._undo())
         with gui.add_folder("play"):
             menu = gui.add_dropdown("speed", SPEEDS, initial_value="1x")
-            self._speed = offer(menu, "speed", one_of(SPEEDS))
-            self._pause = offer(gui.add_checkbox("pause", False), "pause", switch)
-            box = gui.add_checkbox("record MP4", False) if record else None
-            self._record = None if box is None else offer(box, "record MP4", switch)
+            offer(menu, "speed", one_of(SPEEDS), lambda v: setattr(self, "speed", float(v.rstrip("x"))))
+            box = gui.add_checkbox("pause", False)
+            offer(box, "pause", switch, lambda on: setattr(self, "paused", on))
+            if record is not None:
+                box = gui.add_checkbox("record MP4", False)
+                made = offer(box, "record MP4", switch, lambda on: setattr(made, "value", record(on)))
         with gui.add_folder("in the picture"):
             gui.add_html(_LEGEND)
-        self._connect(record)
         self.begin()
 
     def begin(self) -> None:
@@ -107,7 +104,7 @@ class Controls:
         if "mass" not in session.values:
             self._mass.value = _within(round(1e3 * float(episode["mass"]), 1), *MASSES)
         if "latency" not in session.values:
-            self._latency.value = min(session.env.config.sensors.slip.latency_samples, LATEST)
+            self._latency.value = self._samples
         self._policy.value = session.policy
         self.update()
 
@@ -119,24 +116,9 @@ class Controls:
             self._grip.value = round(_within(grip, *self._range), 1)
         self._status.content = status(session)
 
-    def _connect(self, record: Callable[[bool], bool] | None) -> None:
-        session = self._session
-        self._hand.on_change(lambda on: session.submit("grip_force", self._grip.value if on else None))
-        self._grip.on_change(self._take_over)
-        self._friction.on_change(lambda value: session.submit("mu_c", value))
-        self._mass.on_change(lambda value: session.submit("mass", 1e-3 * value))
-        self._latency.on_change(lambda value: session.submit("latency", value))
-        self._policy.on_change(lambda value: session.submit("policy", value))
-        for group in self._pokes:
-            group.on_click(lambda direction: session.poke(direction, 1e-3 * self._impulse.value))
-        self._impulse.on_change(lambda _: None)  # it is checked now and acts with the next push
-        self._restart.on_click(lambda _: session.request_restart())
-        self._free.on_click(lambda _: self._undo())
-        self._speed.on_change(lambda value: setattr(self, "speed", float(value.rstrip("x"))))
-        self._pause.on_change(lambda value: setattr(self, "paused", value))
-        if record is not None and self._record is not None:
-            box = self._record
-            box.on_change(lambda value: setattr(box, "value", record(value)))
+    @property
+    def _samples(self) -> int:
+        return min(self._session.env.config.sensors.slip.latency_samples, LATEST)
 
     def _take_over(self, force: float) -> None:
         """The grip slider was moved: the hand acts from now on."""
@@ -158,21 +140,20 @@ def _within(value: float, low: float, high: float) -> float:
 def status(session: Session) -> str:
     """State of the episode as HTML: time, object, slip, friction and changes for the next one."""
     simulation, info = session.env.simulation, session.info
-    state = session.outcome.ending if session.outcome else "slips" if slips(info["slip_twist"]) else "sticks"
-    about = f"{simulation.materials[0]}, {1e3 * float(simulation.plant.world['mass'][0]):.0f} g"
+    state = session.outcome.ending if session.outcome else moves(simulation, 0)
     slip, true, estimated = info["slip"], info["true"], simulation.estimated[0]
     turn = round(math.degrees(slip[2]), 1) + 0.0  # no minus before a zero
     estimate = f"{estimated[1]:.3f} ± {estimated[7]:.3f}" if estimated[4] > 0.0 else "no data yet"
     rows = (
         ("policy", session.policy),
-        ("object", about),
+        ("object", about(simulation, 0)),
         ("slip", f"{1e3 * math.hypot(slip[0], slip[1]):.1f} mm, {turn:.1f}&deg;"),
         ("mu_c true", f"{true[1]:.3f}"),
         ("mu_c estimated", estimate if simulation.estimating else "no estimator"),
         ("set by hand", ", ".join(sorted(set(session.values) - session.pending)) or "nothing"),
         ("next episode", ", ".join(sorted(session.pending)) or "as this one"),
     )
-    solved = sum(outcome.success for outcome in session.finished)
+    solved, colour = sum(outcome.success for outcome in session.finished), _COLOURS.get(state, "#767676")
     cells = "".join(
         f'<tr><td style="color:#767676;padding-right:10px;white-space:nowrap">{name}</td>'
         f'<td data-name="{name}">{value if "&deg;" in value else html.escape(value)}</td></tr>'
@@ -181,7 +162,7 @@ def status(session: Session) -> str:
     return (
         '<div style="font-size:13px;line-height:1.45;padding:4px 14px 4px 10px">'
         f'<b style="font-size:16px">{session.task.name}</b> '
-        f'<span data-name="state" style="background:{_COLOURS[state]};color:white;border-radius:9px;'
+        f'<span data-name="state" style="background:{colour};color:white;border-radius:9px;'
         f'padding:1px 9px;margin:0 6px">{state}</span>'
         f'<span data-name="time" style="float:right;font-variant-numeric:tabular-nums">'
         f"{info['time']:.2f} s</span>"

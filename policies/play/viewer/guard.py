@@ -34,11 +34,12 @@ def is_own_page(hosts: list[str], origins: list[str], host: str) -> bool:
         return False
     try:
         origin, name = urlsplit(origins[0]), urlsplit(f"//{hosts[0]}").hostname
-    except ValueError:
+        if origin.scheme not in ("http", "https") or origin.netloc.lower() != hosts[0].lower() or not name:
+            return False
+        names = "localhost", host.lower(), socket.gethostname().lower()
+        return name in names or ipaddress.ip_address(name) is not None
+    except ValueError:  # of an address, or of a name that is none
         return False
-    if origin.scheme not in ("http", "https") or origin.netloc.lower() != hosts[0].lower() or not name:
-        return False
-    return name in ("localhost", host.lower(), socket.gethostname().lower()) or _is_number(name)
 
 
 def guard(server: Any, host: str) -> None:
@@ -88,12 +89,3 @@ def guard(server: Any, host: str) -> None:
     on_connect(check)
     # the server has run since it was made: who came in before there was a check leaves again
     asyncio.run_coroutine_threadsafe(sweep(), server.get_event_loop()).result()
-
-
-def _is_number(name: str) -> bool:
-    """Whether a name is an IP address."""
-    try:
-        ipaddress.ip_address(name)
-    except ValueError:
-        return False
-    return True

@@ -45,13 +45,10 @@ def switch(value: Any) -> bool:
 
 
 class Offer:
-    """A control of the page.
+    """A control of the page; viser has the handle, and messages name it by its label.
 
-    Args:
-        handle: The control, of viser.
-        label: Its name in messages.
-        take: Gives the value that is taken for one that was sent, see `number`.
-        refuse: Called with a message if what was sent is not on offer.
+    `take` gives the value that is taken for one that was sent, see `number`; if that is not on offer,
+    `refuse` is called with a message.
     """
 
     def __init__(

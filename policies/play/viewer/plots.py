@@ -28,58 +28,30 @@ _KEY = (
 
 
 class Plots:
-    """The plots.
-
-    Args:
-        gui: `viser.ViserServer.gui`, inside the container that shall hold them.
-        session: What they show.
-    """
+    """The plots of a session, in the container of `viser.ViserServer.gui` that is open."""
 
     def __init__(self, gui: Any, session: Session) -> None:
         self._session, self._surface = session, SurfacePlot()
         history, motion = session.history, session.env.task.motion
-        edge = {"label": "", "auto": False, "stroke": "rgba(0,0,0,0)", "width": 0, "points": {"show": False}}
-        self._friction = gui.add_uplot(
-            _friction(history),
-            (
-                {"label": "t"},
-                *(edge, edge, edge, edge),
-                *(_line("mu_c estimated", ORANGE, 2), _line("mu_s estimated", GREEN, 2)),
-                *(_line("mu_c true", ORANGE, 1.2, [6, 4]), _line("mu_s true", GREEN, 1.2, [6, 4])),
-                *({**edge, "auto": True}, {**edge, "auto": True}),
-            ),
-            title="friction [-]: estimated ± one deviation, true dashed",
-            bands=(_band(2, 1, "rgba(213,94,0,0.22)"), _band(4, 3, "rgba(0,158,115,0.18)")),
-            scales=_SCALES,
-            axes=_axes(),
-            legend={"show": False},
-            padding=(8, 16, 0, 0),
-            height=155,
+        edge = _line("", "rgba(0,0,0,0)", 0)
+        edges = [{**edge, "auto": False}] * 4
+        bands = (_band(2, 1, "rgba(213,94,0,0.22)"), _band(4, 3, "rgba(0,158,115,0.18)"))
+        frictions = (
+            *(_line("mu_c estimated", ORANGE, 2), _line("mu_s estimated", GREEN, 2)),
+            *(_line("mu_c true", ORANGE, 1.2, [6, 4]), _line("mu_s true", GREEN, 1.2, [6, 4])),
+        )
+        title = "friction [-]: estimated ± one deviation, true dashed"
+        self._friction = _plot(
+            gui, _friction(history), (*edges, *frictions, edge, edge), title, 155, bands=bands
         )
         self._off = gui.add_html("")
         with gui.add_folder("limit surface of both pads"):
             self._dome = gui.add_html("")
             gui.add_html(_KEY)
-        self._grip = gui.add_uplot(
-            curves(history, *_GRIP),
-            ({"label": "t"}, _line("finger 1", GREY, 2), _line("finger 2", LIGHT, 1.5)),
-            title="grip force [N]",
-            scales=_SCALES,
-            axes=_axes(),
-            legend={"show": False},
-            padding=(8, 16, 0, 0),
-            height=100,
-        )
-        self._path = gui.add_uplot(
-            curves(history, *_PATH),
-            ({"label": "t"}, _line(motion.title, BLUE, 2), _line("reference", BLUE, 1.2, [6, 4])),
-            title=motion.title,
-            scales=_SCALES,
-            axes=_axes(),
-            legend={"show": False},
-            padding=(8, 16, 0, 0),
-            height=100,
-        )
+        fingers = _line("finger 1", GREY, 2), _line("finger 2", LIGHT, 1.5)
+        self._grip = _plot(gui, curves(history, *_GRIP), fingers, "grip force [N]", 100)
+        paths = _line(motion.title, BLUE, 2), _line("reference", BLUE, 1.2, [6, 4])
+        self._path = _plot(gui, curves(history, *_PATH), paths, motion.title, 100)
         self.update()
 
     def begin(self) -> None:
@@ -98,12 +70,7 @@ class Plots:
 
 
 def curves(history: History, *names: str) -> tuple[np.ndarray, ...]:
-    """Time [s] and some quantities of an episode, thinned to `RATE`, each (n,).
-
-    Args:
-        history: The episode so far.
-        *names: Of `slipgym.rendering.history.COLUMNS`.
-    """
+    """Time [s] and some of `slipgym.rendering.history.COLUMNS`, thinned to `RATE`, each (n,)."""
     kept = np.flatnonzero(np.isfinite(history.column("grip_1")))  # frame_skip leaves rows out
     every = max(1, round(1.0 / (RATE * history.step_time)))
     kept = kept[np.unique(kept // every, return_index=True)[1]]
@@ -136,25 +103,26 @@ def _notes(off: Sequence[Discrepancy], estimating: bool) -> str:
     return f'<div style="{style}">{"".join(lines)}</div>'
 
 
+def _plot(gui: Any, data: Any, lines: Any, title: str, height: int, **more: Any) -> Any:
+    grid = {"stroke": "rgba(136,136,136,0.25)", "width": 1}
+    axis = {"stroke": GREY, "grid": grid, "ticks": {"show": False}, "font": "11px sans-serif"}
+    return gui.add_uplot(
+        data,
+        ({"label": "t"}, *lines),
+        title=title,
+        scales={"x": {"time": False, "auto": True}, "y": {"auto": True}},
+        axes=({**axis, "size": 28}, {**axis, "size": 44}),
+        legend={"show": False},
+        padding=(8, 16, 0, 0),
+        height=height,
+        **more,
+    )
+
+
 def _line(label: str, colour: str, width: float, dash: list[int] | None = None) -> dict[str, Any]:
-    line = {
-        "label": label,
-        "auto": "estimated" not in label,
-        "stroke": colour,
-        "width": width,
-        "points": {"show": False},
-    }
-    return line if dash is None else {**line, "dash": dash}
+    line = {"label": label, "auto": "estimated" not in label, "stroke": colour, "width": width}
+    return {**line, "points": {"show": False}, **({"dash": dash} if dash else {})}
 
 
 def _band(high: int, low: int, colour: str) -> dict[str, Any]:
     return {"series": [high, low], "fill": colour}
-
-
-def _axes() -> tuple[dict[str, Any], ...]:
-    grid = {"stroke": "rgba(136,136,136,0.25)", "width": 1}
-    axis = {"stroke": GREY, "grid": grid, "ticks": {"show": False}, "font": "11px sans-serif"}
-    return {**axis, "size": 28}, {**axis, "size": 44}
-
-
-_SCALES: dict[str, Any] = {"x": {"time": False, "auto": True}, "y": {"auto": True}}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -18,19 +17,14 @@ class Recording:
 
     Attributes:
         paths: Videos that are complete.
+        running: Whether a video is being made.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        self._path = Path(path)
-        Video(path)  # whether its type is known
+        self._path, self._due = Path(path), 0.0
+        self._video = Video(path)
         self.paths: list[Path] = []
-        self._stack: ExitStack | None = None
-        self._due = 0.0
-
-    @property
-    def running(self) -> bool:
-        """Whether a video is being made."""
-        return self._stack is not None
+        self.running = False
 
     def begin(self) -> None:
         """Begin a video.
@@ -42,10 +36,8 @@ class Recording:
         number = len(self.paths) + 1
         name = self._path.name if number == 1 else f"{self._path.stem}_{number}{self._path.suffix}"
         self._file = self._path.with_name(name)
-        with ExitStack() as stack:
-            self._video = stack.enter_context(Video(self._file))
-            self._stack = stack.pop_all()
-        self._due = 0.0
+        self._video = Video(self._file).__enter__()
+        self._due, self.running = 0.0, True
 
     def add(self, env: Any, seconds: float) -> None:
         """Append the pictures for a stretch of watching time [s], at the video's rate."""
@@ -59,9 +51,9 @@ class Recording:
 
     def end(self) -> Path | None:
         """Complete the video; its path, or None if there is none."""
-        if self._stack is None:
+        if not self.running:
             return None
-        stack, self._stack = self._stack, None
-        stack.close()
+        self.running = False
+        self._video.__exit__(None, None, None)
         self.paths.append(self._file)
         return self._file

@@ -11,22 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.rendering import palette
+from slipgym.rendering import palette, stage
 from slipgym.rendering.camera import framing
-from slipgym.rendering.look import look
-from slipgym.rendering.stage import (
-    SEE_THROUGH,
-    View,
-    footprint,
-    gripper_triangles,
-    mirrored,
-    object_triangles,
-)
+from slipgym.rendering.look import AT_THE_GRASP, Pose, View, feel, look
 
 PUSH: palette.Colour = (0xAA, 0x33, 0x77)
 """Colour of external forces."""
-PAD = 0.01
-"""Thickness of a pad [m]."""
 GRIP_LENGTH, FORCE_LENGTH = 0.004, 0.025
 """Length of an arrow for 1 N of grip force, and of other forces [m]."""
 _LONGEST, _SHORTEST = 0.12, 0.002  # [m] of an arrow
@@ -36,12 +26,7 @@ _AWAY = np.array([0.5, -0.81, 0.3]) * 1.3 / math.tan(_FIELD / 2)  # to the camer
 
 
 class Scene:
-    """The 3-D view.
-
-    Args:
-        scene: `viser.ViserServer.scene`.
-        camera: `viser.ViserServer.initial_camera`.
-    """
+    """The 3-D view: `scene` and `initial_camera` of a `viser.ViserServer`."""
 
     def __init__(self, scene: Any, camera: Any) -> None:
         self._scene = scene
@@ -55,13 +40,9 @@ class Scene:
         scene.add_grid("/world/floor", 2.4, 2.4, **place, **grid)
         self._camera = camera
         camera.fov, camera.near = _FIELD, 0.01
-        self._arrows = {
-            "/gravity": self._arrow("/gravity", palette.MUTED),
-            "/world/push": self._arrow("/world/push", PUSH),
-            "/world/gripper/friction": self._arrow("/world/gripper/friction", palette.FRICTION),
-            "/world/gripper/grip_1": self._arrow("/world/gripper/grip_1", palette.INK),
-            "/world/gripper/grip_2": self._arrow("/world/gripper/grip_2", palette.INK),
-        }
+        self._arrows: dict[str, Any] = {}
+        self._add_arrow("/gravity", palette.MUTED)
+        self._add_arrow("/world/push", PUSH)
         self._name = scene.add_label("/gravity_name", "g")
         self._bodies: list[Any] = []
 
@@ -71,25 +52,26 @@ class Scene:
             body.remove()
         view = look(simulation, 0)
         x, z = view.box.com_offset
-        palm, finger = gripper_triangles(view.pad_radius, view.side)
-        offset = np.array([0.0, view.box.size[1] / 2 + PAD / 2, 0.0])
+        palm, finger = stage.gripper_triangles(view.pad_radius, view.side)
+        offset = np.array([0.0, view.box.size[1] / 2 + stage.PAD_THICKNESS / 2, 0.0])
         self._gripper = self._scene.add_frame("/world/gripper", show_axes=False)
         self._object = self._scene.add_frame("/world/object", show_axes=False)
         self._bodies = [self._gripper, self._object]
-        triangles, colours = object_triangles(view.box, view.material, view.body)
+        triangles, colours = stage.object_triangles(view.box, view.material, view.body)
         self._add("/world/object/body", triangles - (x, 0.0, z), colours)
         self._add("/world/gripper/palm", palm[0], palm[1])
         self._add("/world/gripper/finger_1", finger[0] + offset, finger[1])
-        self._add("/world/gripper/finger_2", mirrored(finger[0], 1) - offset, finger[1], SEE_THROUGH)
-        self._outline("/world/gripper/grasp", view, (0.0, 0.0, 0.0), palette.SLIP)
+        near = stage.mirrored(finger[0], 1) - offset
+        self._add("/world/gripper/finger_2", near, finger[1], stage.SEE_THROUGH)
+        self._outline("/world/gripper/grasp", view, AT_THE_GRASP, palette.SLIP)
         target = simulation.task.motion.pose(simulation.episode[0])
         if target is not None:
             self._outline("/world/gripper/target", view, target, palette.TARGET)
-        for name in ("friction", "grip_1", "grip_2"):  # they went with their parent
-            colour = palette.FRICTION if name == "friction" else palette.INK
-            self._arrows[f"/world/gripper/{name}"] = self._arrow(f"/world/gripper/{name}", colour)
+        self._add_arrow("/world/gripper/friction", palette.FRICTION)
+        self._add_arrow("/world/gripper/grip_1", palette.INK)
+        self._add_arrow("/world/gripper/grip_2", palette.INK)
         x, z, pitch = simulation.episode["wrist_start"][0].tolist()
-        self._framed = framing(footprint(view, (x, z, pitch), target, ()))
+        self._framed = framing(stage.footprint(view, (x, z, pitch), target, ()))
         middle = np.array([self._framed.target[0], 0.0, self._framed.target[1]])
         self._camera.look_at = tuple(middle.tolist())
         self._camera.position = tuple((middle + _AWAY * self._framed.span).tolist())
@@ -101,33 +83,30 @@ class Scene:
 
     def update(self, simulation: Any) -> None:
         """Move the bodies and arrows to where they are now, and the world so that one sees them."""
-        view, plant = look(simulation, 0), simulation.plant
+        view, world = look(simulation, 0), simulation.plant.world[0]
         seen = self._framed.follow(np.array(view.wrist[:2]) - self._start)
         x, z = np.subtract(self._framed.target, seen.target).tolist()
         self._world.position = (x, 0.0, z)
-        world = plant.world[0]
         self._object.position, self._object.wxyz = view.position, turned(float(world["angle"]))
         self._gripper.position = (view.wrist[0], 0.0, view.wrist[1])
         self._gripper.wxyz = turned(view.wrist[2])
         half = view.box.size[1] / 2
-        f_x, f_z, _ = plant.pads["wrench"][0].sum(axis=0).tolist()
+        (f_x, f_z), _, grip = feel(simulation, 0)
         self._point("/world/gripper/friction", (0.0, -half - 0.002, 0.0), (f_x, 0.0, f_z), FORCE_LENGTH)
-        for side, force in zip((1.0, -1.0), plant.fingers["contact_force"][0].tolist(), strict=True):
-            back = side * (half + PAD + 0.012 + min(GRIP_LENGTH * force, _LONGEST))
-            name = "/world/gripper/grip_1" if side > 0.0 else "/world/gripper/grip_2"
-            self._point(name, (0.0, back, 0.0), (0.0, -side * force, 0.0), GRIP_LENGTH)
+        for name, side, force in zip(("grip_1", "grip_2"), (1.0, -1.0), grip, strict=True):
+            back = side * (half + stage.PAD_THICKNESS + 0.012 + min(GRIP_LENGTH * force, _LONGEST))
+            self._point(f"/world/gripper/{name}", (0.0, back, 0.0), (0.0, -side * force, 0.0), GRIP_LENGTH)
         push_x, push_z, turn = world["external"].tolist()
         start = view.position - (0.0, half + 0.004, 0.0)
         if turn:  # a couple, as the force at its lever
             start, push_z = np.add(start, (0.03, 0.0, 0.0)), push_z + turn / 0.03
         self._point("/world/push", start, (push_x, 0.0, push_z), FORCE_LENGTH)
 
-    def _arrow(self, name: str, colour: palette.Colour) -> Any:
+    def _add_arrow(self, name: str, colour: palette.Colour) -> None:
         shape = {"shaft_radius": 0.0016, "head_radius": 0.0042, "head_length": 0.010}
         linear = tuple(round(255 * (part / 255) ** 2.2) for part in colour)  # viser takes it so for arrows
-        return self._scene.add_arrows(
-            name, np.array([[(0, 0, 0), (0, 0, 0.01)]]), linear, visible=False, **shape
-        )
+        ends = np.array([[(0, 0, 0), (0, 0, 0.01)]])
+        self._arrows[name] = self._scene.add_arrows(name, ends, linear, visible=False, **shape)
 
     def _point(self, name: str, start: Any, force: Any, scale: float) -> None:
         """Show a force as an arrow of limited length, unless it is tiny."""
@@ -145,17 +124,12 @@ class Scene:
         """Add triangles (n, 3, 3) with colours (n, 4) as one mesh for each colour."""
         kinds, which = np.unique(colours[:, :3], axis=0, return_inverse=True)
         for k, colour in enumerate(kinds):
-            corners = triangles[which.reshape(-1) == k].reshape(-1, 3)
-            self._scene.add_mesh_simple(
-                f"{name}/{k}",
-                corners.astype(np.float32),
-                np.arange(len(corners), dtype=np.uint32).reshape(-1, 3),
-                color=tuple(round(255 * part) for part in colour),
-                opacity=opacity,
-                flat_shading=True,
-            )
+            corners = triangles[which.reshape(-1) == k].reshape(-1, 3).astype(np.float32)
+            faces = np.arange(len(corners), dtype=np.uint32).reshape(-1, 3)
+            paint = {"color": tuple(round(255 * part) for part in colour), "opacity": opacity}
+            self._scene.add_mesh_simple(f"{name}/{k}", corners, faces, **paint, flat_shading=True)
 
-    def _outline(self, name: str, view: View, pose: tuple[float, float, float], colour: Any) -> None:
+    def _outline(self, name: str, view: View, pose: Pose, colour: Any) -> None:
         """Dashed outline of the object's front at a pose in the grip."""
         ends = dashes(view.front(pose) - (0.0, 0.001, 0.0))
         self._scene.add_line_segments(name, ends.astype(np.float32), colour, thickness=0.0011)

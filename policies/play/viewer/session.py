@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping
-from queue import Empty, SimpleQueue
+from queue import SimpleQueue
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 
 import policies
-from policies.learned import LearnedPolicy
 from policies.play.viewer import interventions
-from policies.play.watch import Outcome
-from policies.registry import Policy
+from policies.play.watch import Outcome, environment
 from policies.task_names import own_policy
 from slipgym.config.errors import unknown
 from slipgym.config.load import merge, read_overrides
@@ -38,14 +35,8 @@ class Refused(ValueError):
 class Session:
     """An environment with the policy that acts in it, episode after episode.
 
-    `submit` may be called from any thread; everything else belongs to the thread that calls `advance`.
-
-    Args:
-        task: As `slipgym.tasks.find` takes it.
-        policy: A name of `policies.names()` or the folder of a learned policy; None for the task's own.
-        seed: Of the first episode; the others' follow.
-        options: Of every reset.
-        **keywords: Of the environment.
+    `submit`, `poke`, `refuse` and `request_restart` may be called from any thread; everything else belongs to
+    the thread that calls `advance`. Arguments and errors are those of `open_viewer`.
 
     Attributes:
         env: The environment.
@@ -58,11 +49,6 @@ class Session:
         outcome: How the episode ended; None while it runs.
         failed: Whether an error ended the episode; `restart` begins the next one.
         finished: How the episodes so far ended, in their order.
-
-    Raises:
-        ValueError: A value is unknown or not allowed.
-        FileNotFoundError: There is no policy at the path.
-        ModuleNotFoundError: The engine is not installed.
     """
 
     def __init__(
@@ -83,7 +69,7 @@ class Session:
         self.failed = False
         self._options, self._keywords = dict(options or {}), keywords
         self._changes: SimpleQueue[Callable[[], None]] = SimpleQueue()
-        self._left, self._ratio = 0.0, 1.0
+        self._ratio = 1.0
         self._make()
         self.restart()
 
@@ -127,17 +113,13 @@ class Session:
             Refused: A change is not allowed; those after it wait for the next call.
             Exception: Whatever the policy or the environment raises; see `give_up`.
         """
-        while True:
+        while not self._changes.empty():
             try:
-                change = self._changes.get_nowait()
-            except Empty:
-                break
-            try:
-                change()
+                self._changes.get()()
             except (ValueError, OSError, ImportError) as error:
                 raise Refused(str(error)) from error
         self._left = min(self._left + seconds, _LONGEST)
-        steps, step_time = 0, self.env.simulation.step_time * self._skip
+        steps, step_time = 0, 1.0 / self.env.metadata["render_fps"]
         while self.outcome is None and not self.failed and self._left >= step_time * (1.0 - 1e-9):
             self._left -= step_time
             self._step()
@@ -205,10 +187,7 @@ class Session:
         self._reward += float(reward)
         self.history.keep()
         if terminated or truncated:
-            info, slip = self.info, tuple(self.info["slip"].tolist())
-            self.outcome = Outcome(
-                self.seed, info["time"], info["is_success"], info["dropped"], slip, self._reward
-            )
+            self.outcome = Outcome.of(self.seed, self.info, self._reward)
             self.finished.append(self.outcome)
 
     def _grip_action(self, force: float) -> float:
@@ -220,8 +199,15 @@ class Session:
 
     def _make(self) -> None:
         """Make policy and environment from the values that are set; on an error the old ones stay."""
+        name = self.values.get("policy", self.policy)
         try:
-            name, policy, env = self._made()
+            policy = policies.load(name)
+            keywords = {**policies.modes(policy), **self._keywords}
+            if "latency" in self.values:
+                given = keywords.get("config")
+                overrides = {"sensors": {"slip": {"latency_samples": self.values["latency"]}}}
+                keywords["config"] = merge({} if given is None else read_overrides(given)[1], overrides)
+            env = environment(self.task.id, name, policy, keywords)
         except Exception:
             for each in self.pending:
                 self.values.pop(each, None)
@@ -233,23 +219,3 @@ class Session:
         self.env, self.policy, self._player = env, name, policy
         names = [column.name for column in env.action_columns]
         self._grip = next(names.index(name) for name in _GRIPS if name in names)
-
-    def _made(self) -> tuple[str, Policy, Any]:
-        name = self.values.get("policy", self.policy)
-        policy = policies.load(name)
-        keywords = {**policies.modes(policy), **self._keywords}
-        policies.check_estimates(name, policy, keywords)
-        if "latency" in self.values:
-            given = keywords.get("config")
-            overrides = {"sensors": {"slip": {"latency_samples": self.values["latency"]}}}
-            keywords["config"] = merge({} if given is None else read_overrides(given)[1], overrides)
-        env_id = f"slipgym:{self.task.id}"
-        env: Any = gym.make(env_id, render_mode="rgb_array", disable_env_checker=True, **keywords).unwrapped
-        if isinstance(policy, LearnedPolicy):
-            try:
-                policy.check(env)
-            except BaseException:
-                env.close()
-                raise
-        self._skip = int(keywords.get("frame_skip", 1))
-        return name, policy, env

@@ -16,11 +16,17 @@ from typing import Any
 
 import numpy as np
 
+from slipgym.rendering.look import feel
+
 WIDTH, HEIGHT = 400, 190
 _LEFT, _RIGHT, _TOP, _BOTTOM = 46, 12, 6, 36
 _RATIOS = np.tan(np.linspace(-0.5, 0.5, 41)[1:-1] * math.pi)  # r omega / v
 _STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 _TRAIL = 20
+_HEAD = (
+    f'<svg class="ls" viewBox="0 0 {WIDTH} {HEIGHT}" style="--truth:#767676;width:100%;display:block">'
+    "<style>.ls text{font:11px sans-serif;fill:#767676}.ls .rule{stroke:#8884;stroke-width:1}</style>"
+)
 
 
 def boundary(mu: np.ndarray, normal: np.ndarray, radius: np.ndarray) -> np.ndarray:
@@ -44,39 +50,33 @@ class SurfacePlot:
     """The limit surface at present: true, estimated with its deviation, and the load's last positions."""
 
     def __init__(self) -> None:
-        self._trail: deque[tuple[float, float]] = deque(maxlen=_TRAIL)
-        self._reach = [0.0, 0.0]
+        self.begin()
 
     def begin(self) -> None:
         """Forget the last episode."""
-        self._trail.clear()
+        self._trail: deque[tuple[float, float]] = deque(maxlen=_TRAIL)
         self._reach = [0.0, 0.0]
 
     def draw(self, simulation: Any, info: Any) -> str:
         """An SVG element of the present state; each call appends the load to its trail."""
-        normal = simulation.plant.fingers["contact_force"][0]
-        truth = np.asarray(info["true_per_finger"])
-        x, y, tau = simulation.plant.pads["wrench"][0].sum(axis=0).tolist()
-        self._trail.append((tau, math.hypot(x, y)))
+        friction, torque, grip = feel(simulation, 0)
+        normal, truth = np.array(grip), np.asarray(info["true_per_finger"])
+        self._trail.append((torque, math.hypot(*friction)))
         static = boundary(truth[:, 0], normal, truth[:, 2])
         coulomb = boundary(truth[:, 1], normal, truth[:, 2])
         _, mu_c, r, _, confidence = simulation.estimated[0, :5].tolist()
         deviation = float(simulation.estimated[0, 7])
         self._grow(static)
-        shapes = [
-            self._path(static, "var(--truth)", "4 3", 1.2),
-            self._path(coulomb, "var(--truth)", "", 1.8),
-        ]
+        grey = "var(--truth)"
+        shapes = [self._path(static, grey, "4 3", 1.2), self._path(coulomb, grey, "", 1.8)]
         if confidence > 0.0:
-            pair = np.ones(2)
-            low, middle, high = (
-                boundary(max(mu, 0.0) * pair, normal, r * pair)
-                for mu in (mu_c - deviation, mu_c, mu_c + deviation)
-            )
+            values = np.maximum([mu_c - deviation, mu_c, mu_c + deviation], 0.0)
+            low, middle, high = (boundary(np.full(2, mu), normal, np.full(2, r)) for mu in values)
             if deviation < 1.0:
-                shapes.insert(0, self._band(low, high))
+                around = self._points(np.concatenate([low, high[::-1]]))
+                shapes.insert(0, f'<polygon points="{around}" fill="#D55E00" fill-opacity="0.22"/>')
             shapes.append(self._path(middle, "#D55E00", "", 2.2))
-        return _frame(self._axes() + "".join(shapes) + self._load())
+        return f"{_HEAD}{self._axes()}{''.join(shapes)}{self._load()}</svg>"
 
     def _grow(self, curve: np.ndarray) -> None:
         """Choose round limits of the axes, which follow the surface without jitter."""
@@ -94,20 +94,18 @@ class SurfacePlot:
 
     def _path(self, curve: np.ndarray, colour: str, dash: str, width: float) -> str:
         style = f'fill="none" stroke="{colour}" stroke-width="{width}" stroke-dasharray="{dash}"'
-        return f'<polyline points="{_points(self._place(curve))}" {style}/>'
+        return f'<polyline points="{self._points(curve)}" {style}/>'
 
-    def _band(self, low: np.ndarray, high: np.ndarray) -> str:
-        around = np.concatenate([self._place(low), self._place(high)[::-1]])
-        return f'<polygon points="{_points(around)}" fill="#D55E00" fill-opacity="0.22"/>'
+    def _points(self, curve: np.ndarray) -> str:
+        return " ".join(f"{x:.1f},{y:.1f}" for x, y in self._place(curve).tolist())
 
     def _load(self) -> str:
-        places = self._place(list(self._trail))
-        dots = [
-            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2" fill="#0072B2" fill-opacity="{k / len(places):.2f}"/>'
-            for k, (x, y) in enumerate(places[:-1].tolist())
-        ]
-        x, y = places[-1].tolist()
-        return "".join(dots) + f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="#0072B2" stroke="white"/>'
+        places, count, parts = self._place(list(self._trail)).tolist(), len(self._trail), []
+        for k, (x, y) in enumerate(places, 1):
+            style = f'r="2" fill="#0072B2" fill-opacity="{(k - 1) / count:.2f}"'
+            style = style if k < count else 'r="5" fill="#0072B2" stroke="white"'
+            parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" {style}/>')
+        return "".join(parts)
 
     def _axes(self) -> str:
         parts = []
@@ -125,18 +123,6 @@ class SurfacePlot:
         upright = f'transform="translate(13 {(_TOP + bottom) / 2}) rotate(-90)" text-anchor="middle"'
         parts.append(f"<text {upright}>tangential force [N]</text>")
         return "".join(parts)
-
-
-def _frame(content: str) -> str:
-    style = "<style>.ls text{font:11px sans-serif;fill:#767676}.ls .rule{stroke:#8884;stroke-width:1}</style>"
-    return (
-        f'<svg class="ls" viewBox="0 0 {WIDTH} {HEIGHT}" style="--truth:#767676;width:100%;display:block">'
-        f"{style}{content}</svg>"
-    )
-
-
-def _points(places: np.ndarray) -> str:
-    return " ".join(f"{x:.1f},{y:.1f}" for x, y in places.tolist())
 
 
 def _ticks(low: float, high: float) -> list[float]:
