@@ -81,14 +81,9 @@ def read_description(path: str | os.PathLike[str]) -> Description:
 
 
 def read(path: str | os.PathLike[str], name: str = WEIGHTS) -> tuple[Description, dict[str, np.ndarray]]:
-    """Reads a policy.
+    """Reads the description of a policy and a file of its tensors, WEIGHTS or TRAINING.
 
-    Args:
-        path: Its folder.
-        name: The file of tensors to read with its description: WEIGHTS or TRAINING.
-
-    Returns:
-        What it is, and its tensors, by name. Those of WEIGHTS are checked to be the network's.
+    Those of WEIGHTS are checked to be the network's.
 
     Raises:
         FileNotFoundError: There is nothing at the path.

@@ -72,14 +72,9 @@ class SlipVecEnv(VecEnv):
         self._actions = np.zeros(env.action_space.shape or (), dtype=np.float32)
 
     def reset(self) -> VecEnvObs:
-        """Start episodes in all environments, with the seeds and options set before.
-
-        Returns:
-            Observations (n, k), or such an array per group.
-        """
-        rows: Any = self._options
-        if self._scenarios is not None:
-            rows = [{**fixed, **asked} for fixed, asked in zip(self._scenarios, self._options, strict=True)]
+        """Start episodes with the seeds and options set before; observations (n, k), or one per group."""
+        fixed = self._scenarios or [{}] * self.num_envs
+        rows = [{**always, **asked} for always, asked in zip(fixed, self._options, strict=True)]
         options = {"rows": rows} if any(rows) else None
         observations, infos = self.env.reset(seed=self._seeds, options=options)
         self._reset_seeds()
@@ -135,17 +130,12 @@ class SlipVecEnv(VecEnv):
         """An attribute for each of some environments: they share those of the batch, but for the spaces.
 
         Raises:
-            AttributeError: There is none.
             ValueError: There is no such environment.
         """
         return [getattr(self.env, _OF_ONE.get(attr_name, attr_name))] * len(self._rows(indices))
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        """Set an attribute of the batch.
-
-        Raises:
-            ValueError: `indices` leaves environments out, which share the attribute.
-        """
+        """Set an attribute of the batch; ValueError if `indices` leaves out environments that share it."""
         self._everyone(f"attribute {attr_name!r}", indices)
         setattr(self.env, attr_name, value)
 
@@ -155,7 +145,6 @@ class SlipVecEnv(VecEnv):
         """Call a method of the batch once; what it returns stands for each environment.
 
         Raises:
-            AttributeError: There is none.
             ValueError: `indices` leaves environments out, which share the method.
         """
         count = self._everyone(f"method {method_name!r}", indices)
@@ -203,10 +192,9 @@ class SlipVecEnv(VecEnv):
     def _everyone(self, shared: str, indices: VecEnvIndices) -> int:
         """How many indices there are, which must name every environment."""
         rows = self._rows(indices)
-        if {row % self.num_envs for row in rows} != set(range(self.num_envs)):
-            raise ValueError(
-                f"indices = {indices!r}: all {self.num_envs} environments share the {shared}; give None"
-            )
+        if len({row % self.num_envs for row in rows}) < self.num_envs:
+            n = self.num_envs
+            raise ValueError(f"indices = {indices!r}: all {n} environments share the {shared}; give None")
         return len(rows)
 
 
@@ -230,14 +218,11 @@ def make_vec_env(
             operating system. A learner that is given a seed sets its own.
         threads: Threads that share the environments; None: as many as processors, if there is work for them.
         normalise: Keyword arguments of a `VecNormalize` around them, {} for its own; None: there is none.
-        scenarios: Options of reset of each environment, for all its episodes; None: there are none.
-        spread: Whether a reset leaves the environments at times spread over their episodes, see `SlipVecEnv`.
+        scenarios: See `SlipVecEnv`.
+        spread: See there.
         privileged: Whether the learner keeps the group "privileged" from its actor: without, observations may
             not be a dict, which Stable-Baselines3 shows the actor whole.
         **keywords: Of the environment.
-
-    Returns:
-        `SlipVecEnv` in a `VecMonitor`, maybe in a `VecNormalize`.
 
     Raises:
         ValueError: The value of an argument is unknown or not allowed.

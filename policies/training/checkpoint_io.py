@@ -43,10 +43,6 @@ def write(path: Path, tree: Any) -> None:
 
     The file appears whole under its name, or not at all; what was there is replaced.
 
-    Args:
-        path: The file.
-        tree: What to write.
-
     Raises:
         TypeError: Something in the tree is none of these.
         OSError: It cannot be written.

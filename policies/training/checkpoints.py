@@ -42,12 +42,11 @@ def last(run: Path) -> Any:
     Raises:
         ValueError: There are checkpoints, and all are damaged.
     """
-    damage = None
-    for path in reversed(kept(run)):
+    found = kept(run)
+    while found:
         try:
-            return checkpoint_io.read(path)
-        except ValueError as error:
-            damage = error
-    if damage is not None:
-        raise damage
+            return checkpoint_io.read(found.pop())
+        except ValueError:
+            if not found:
+                raise
     return None

@@ -35,13 +35,7 @@ def chosen(name: str | None, options: Mapping[str, Any], texts: Sequence[str]) -
 
 
 def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Callable[[], str]:
-    """The command that continues a run or study.
-
-    Args:
-        path: Its folder.
-        others: Further options by name, none of which may be given.
-        jobs: Runs at once.
-        ray: See `policies.parallel.results`.
+    """What continues the run or study of a folder, beside which no other option may be given.
 
     Raises:
         FileNotFoundError: The folder holds no run.
@@ -49,9 +43,8 @@ def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Calla
     """
     from policies.training import run_set
 
-    for name, value in others.items():
-        if value:
-            raise ValueError(f"--resume goes on as the run was begun: leave out {name}")
+    for name in (name for name, value in others.items() if value):
+        raise ValueError(f"--resume goes on as the run was begun: leave out {name}")
     folder.runs(path)
     return partial(run_set.train_all, path, jobs, ray)
 
@@ -65,7 +58,7 @@ def begun(
     jobs: int,
     ray: str,
 ) -> tuple[Path, Callable[[], str]]:
-    """The folder of a new study or sweep, and what carries it out.
+    """The folder of a new study or sweep in `output`, and what carries it out.
 
     Args:
         config: What to train.
@@ -73,8 +66,8 @@ def begun(
         sources: Friction sources; none given: the configuration's.
         trials: Runs of a sweep; 0: no sweep.
         output: Folder that the new one goes to.
-        jobs: Runs at once.
-        ray: See `policies.parallel.results`.
+        jobs: Runs at once, see `policies.parallel.results`.
+        ray: See there.
 
     Raises:
         ModuleNotFoundError: Ray is asked for and not installed.

@@ -73,11 +73,8 @@ def plot(curves: Mapping[str, Sequence[Sequence[Row]]]) -> Figure:
     shades = colours(list(curves))
     for axes, (name, label, scale) in zip(panels, _PANELS, strict=True):
         for condition, seeds in curves.items():
-            _lines(
-                axes,
-                [[(row.steps, scale * getattr(row, name)) for row in rows] for rows in seeds],
-                shades[condition],
-            )
+            points = [[(row.steps, scale * getattr(row, name)) for row in rows] for rows in seeds]
+            _lines(axes, points, shades[condition])
         axes.set_ylabel(label)
         if scale == 100.0:
             axes.set_ylim(-3.0, 103.0)

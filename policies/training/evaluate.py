@@ -14,12 +14,9 @@ from policies.training.curve import Row
 
 
 def evaluate(config: Training, model: Any, envs: VecEnv) -> Row:
-    """Runs episodes without exploration, always the same ones.
+    """Runs episodes without exploration, always the same ones, in environments not of the training.
 
-    Args:
-        config: The run.
-        model: The learner; its statistics are used as they are.
-        envs: Environments to run in, not those of the training.
+    The learner's statistics are used as they are.
     """
     frozen: Any = envs
     if config.algorithm != "privileged_ppo":

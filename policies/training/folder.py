@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import yaml
 
 from policies.training import checkpoints, seeds
@@ -71,11 +70,8 @@ def runs(folder: Path) -> list[Path]:
 
 def write_curve(folder: Path, curve: Sequence[Row]) -> None:
     """Writes curve.csv: a row for each evaluation."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, [field.name for field in fields(Row)], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(asdict(row) for row in curve)
-    atomic_io.write(folder / _CURVE, text.getvalue().encode())
+    table = pd.DataFrame(list(curve), columns=[field.name for field in fields(Row)])
+    atomic_io.write(folder / _CURVE, table.to_csv(index=False, lineterminator="\n").encode())
 
 
 def read_curve(folder: Path) -> list[Row]:
@@ -83,11 +79,7 @@ def read_curve(folder: Path) -> list[Row]:
     path = folder / _CURVE
     if not path.is_file():
         return []
-    with path.open(newline="", encoding="utf-8") as file:
-        return [
-            Row(int(row.pop("steps")), **{name: float(value) for name, value in row.items()})
-            for row in csv.DictReader(file)
-        ]
+    return [Row(*row) for row in pd.read_csv(path, float_precision="round_trip").itertuples(index=False)]
 
 
 def write_result(folder: Path, result: dict[str, Any]) -> None:

@@ -18,13 +18,9 @@ from slipgym.tasks import find
 
 
 def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output: Path) -> Path:
-    """Makes the folder of a study, with one for every run in it.
+    """Makes a study's folder in `output`, with one for every run: each friction source with every seed.
 
-    Args:
-        config: What the runs share.
-        seeds: Seeds of the runs.
-        sources: Friction sources, each with every seed; none given: the configuration's.
-        output: Folder that the study's own folder goes to.
+    Without any source, that of the configuration is trained with.
 
     Raises:
         ValueError: A source is unknown or a seed out of range.
@@ -42,16 +38,9 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
 
 
 def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -> str:
-    """Trains every run of a study that is not over yet, and draws their curves.
+    """Trains every run in a folder, or the run it is of, that is not over yet, and draws their curves.
 
-    Args:
-        path: The study's folder, or that of one run.
-        jobs: Runs at once; -1 for one per core.
-        ray: See `policies.parallel.results`.
-        progress: Whether to show progress bars.
-
-    Returns:
-        What came out, as text.
+    For `jobs` and `ray` see `policies.parallel.results`. Returns what came out, as text.
 
     Raises:
         FileNotFoundError: There is no run in the folder.

@@ -20,9 +20,7 @@ from slipgym.tasks import find
 class Scenario(TaskEnd):
     """An environment whose episodes all have some options, and terminate at their full length.
 
-    Args:
-        env: The environment.
-        options: Of its reset; those of a single reset come on top.
+    Options of a single reset come on top.
     """
 
     def __init__(self, env: gym.Env, options: Mapping[str, Any]) -> None:
@@ -37,13 +35,9 @@ class Scenario(TaskEnd):
 
 
 def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool = False) -> VecEnv:
-    """The environments of a run.
+    """The environments of a run, or those in which it learns (`shaped`).
 
-    Args:
-        config: The run.
-        seed: Of the first environment; environment i is seeded `seed` + i at the first reset.
-        num_envs: How many; None: as many as the run trains in.
-        shaped: Whether they are those in which it learns.
+    Environment i is seeded `seed` + i at the first reset.
     """
     keywords = (config.shaped if shaped else config.environment).model_dump()
     privileged = config.algorithm == "privileged_ppo"
@@ -51,23 +45,21 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
         keywords["observation_mode"] = "dict"
     count = config.num_envs if num_envs is None else num_envs
     combinations = config.combinations()
-    scenarios = [combinations[i % len(combinations)] for i in range(count)]
+    envs: VecEnv
     if config.engine == "planar":
-        varied = scenarios if config.vary else None
-        made = make_vec_env(
+        envs = make_vec_env(
             config.task,
             count,
             seed,
             config.engine_threads,
-            scenarios=varied,
+            scenarios=[combinations[i % len(combinations)] for i in range(count)] if config.vary else None,
             spread=config.spread and shaped,
             privileged=privileged,
             **keywords,
         )
     else:
-        made = scalar(config.task, count, combinations, config.processes, **keywords)
-        made.seed(seed)
-    envs: VecEnv = made
+        envs = scalar(config.task, count, combinations, config.processes, **keywords)
+        envs.seed(seed)
     if config.derived and not privileged:
         envs = DerivedVecEnv(envs, config.derived, config.environment.history)
     return envs
@@ -76,20 +68,15 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
 def scalar(
     task: str, count: int, combinations: Sequence[Mapping[str, Any]], processes: bool, **keywords: Any
 ) -> VecMonitor:
-    """Scalar environments side by side.
+    """Scalar environments side by side, maybe each in its own process.
 
-    Args:
-        task: Their task.
-        count: How many.
-        combinations: Options of reset; environment i has combination i modulo their number.
-        processes: Whether each has its own process.
-        **keywords: Of the environments.
+    Environment i has combination i modulo their number of options of reset.
     """
-    env_id = _id(task)
+    module = task.partition(":")[0] if is_reference(task) else "slipgym"  # the one that registers it
+    env_id = f"{module}:{find(task).id}"
 
     def one(options: Mapping[str, Any]) -> gym.Env:
-        env = gym.make(env_id, disable_env_checker=True, **keywords)
-        return Scenario(env.unwrapped, options)
+        return Scenario(gym.make(env_id, disable_env_checker=True, **keywords).unwrapped, options)
 
     makers = [partial(one, combinations[i % len(combinations)]) for i in range(count)]
     return VecMonitor(SubprocVecEnv(makers) if processes else DummyVecEnv(makers))
@@ -128,9 +115,3 @@ def set_state(envs: Any, state: dict[str, Any]) -> None:
 def _is_batch(envs: VecMonitor) -> bool:
     """Whether one state is that of all environments."""
     return isinstance(envs.venv, SlipVecEnv)
-
-
-def _id(task: str) -> str:
-    """The id of a task's environment, with the module that registers it."""
-    module = task.partition(":")[0] if is_reference(task) else "slipgym"
-    return f"{module}:{find(task).id}"

@@ -21,14 +21,13 @@ from tqdm import tqdm
 
 from policies.learned import files
 from policies.learned.description import Column
-from policies.learned.export import described
+from policies.learned.export import described, origin
 from policies.learned.fitting import column_of
 from policies.learned.forward import Network
 from policies.training import seeds
 from policies.training.imitation.config import Imitation
 from policies.training.imitation.episodes import Demonstrations, Scene, arguments, demonstrate
 from policies.training.imitation.student import NORMALISATION, Student, network_of
-from policies.versions import versions
 from slipgym import atomic_io
 from slipgym.tasks import find
 
@@ -65,8 +64,7 @@ def imitate(
 
     Returns:
         The run's folder, which holds the folder "policy" and curve.csv, and the share of held-out episodes
-        that the policy solves. Until the run is over the policy of the last round is in the folder
-        "unfinished" in place of "policy".
+        that the policy solves. Until the run is over the policy of the last round is in "unfinished" instead.
 
     Raises:
         FileExistsError: The run's folder is there already.
@@ -77,19 +75,11 @@ def imitate(
     where = described(find(config.task).id, arguments(config))
 
     def write(path: Path, outcome: Outcome) -> None:
-        origin = {
-            "algorithm": "DAgger",
-            "command": command,
-            "steps": outcome.steps,
-            "seeds": [seed],
-            "versions": versions(),
-            "critic": None,
-        }
         description = {
             "environment": where,
             "network": network_of(config).model_dump(mode="json"),
             "normalisation": NORMALISATION.model_dump(mode="json"),
-            "origin": origin,
+            "origin": origin("DAgger", command, outcome.steps, [seed], critic=None),
         }
         files.write(path, description, outcome.weights)
         curve = pd.DataFrame(outcome.curve).to_csv(index=False, lineterminator="\n")
@@ -145,9 +135,8 @@ def run(
                 fit = fit or Fit(config, data[0], columns)
                 loss = fit.update(data, rng)
                 solved = float("nan") if network is None else float(data[-1].solved[acts].mean())
-                curve.append(
-                    {"round": number, "episodes": len(data) * config.rows, "solved": solved, "loss": loss}
-                )
+                episodes = len(data) * config.rows
+                curve.append({"round": number, "episodes": episodes, "solved": solved, "loss": loss})
                 bar.set_postfix(loss=f"{loss:.3g}", solved=f"{solved:.0%}")
                 if keep is not None:
                     keep(Outcome(fit.student.tensors(), curve, math.nan, _steps(data)))
@@ -174,13 +163,7 @@ def judged(config: Imitation, network: Network) -> float:
 
 
 class Fit:
-    """Fits the network to the episodes of all rounds so far.
-
-    Args:
-        config: The imitation.
-        first: Episodes of the first round, which normalise the observations.
-        components: Of an action.
-    """
+    """Fits the network to the episodes of all rounds; those of the first one normalise the observations."""
 
     def __init__(self, config: Imitation, first: Demonstrations, components: Sequence[Column]) -> None:
         running = np.arange(len(first.observations))[:, None] < first.lengths
