@@ -111,15 +111,8 @@ class Network(Frozen):
     ) -> Network:
         """One with `stacked` LSTM layers of `memory` units; 0: none."""
         lstm = {"size": memory, "layers": stacked} if memory else None
-        return cls.model_validate(
-            {
-                "kind": "lstm" if lstm else "mlp",
-                "memory": lstm,
-                "layers": layers,
-                "activation": activation,
-                "squash": squash,
-            }
-        )
+        dense = {"layers": layers, "activation": activation, "squash": squash}
+        return cls.model_validate({"kind": "lstm" if lstm else "mlp", "memory": lstm, **dense})
 
 
 class Normalisation(Frozen):

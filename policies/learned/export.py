@@ -53,6 +53,7 @@ def save(
     ):
         if space.shape != shape:
             raise ValueError(f"the model's {what} has shape {space.shape}, that of {environment} {shape}")
+    critic = critic_of(model).model_dump(mode="json") if training else None
     weights, normalised = acting_tensors(model), None
     kept = {f"policy.{name}": array(tensor) for name, tensor in model.policy.state_dict().items()}
     if getattr(model, "log_ent_coef", None) is not None:
@@ -68,13 +69,7 @@ def save(
         "environment": where,
         "network": network.model_dump(mode="json"),
         "normalisation": normalised,
-        "origin": origin(
-            algorithm,
-            command,
-            model.num_timesteps,
-            seeds,
-            critic=critic_of(model).model_dump(mode="json") if training else None,
-        ),
+        "origin": origin(algorithm, command, model.num_timesteps, seeds, critic=critic),
     }
     return files.write(path, description, weights, kept if training else None)
 
@@ -82,13 +77,9 @@ def save(
 def build(path: str | os.PathLike[str], env: Any, **hyperparameters: Any) -> Any:
     """Rebuilds the model that a policy was saved from, for more training.
 
-    Networks, critics and, in SAC and TQC, the tuned entropy coefficient are those saved; optimisers start
-    afresh. Observations that were normalised must be so again: see `normaliser`.
-
-    Args:
-        path: The policy's folder; needs its `training.safetensors`.
-        env: Environment of the model, as Stable-Baselines3 takes it.
-        **hyperparameters: Of the algorithm's class.
+    Networks, critics and, in SAC and TQC, the tuned entropy coefficient are those saved, in the folder's
+    `training.safetensors`; optimisers start afresh. Hyperparameters are those of the algorithm's class.
+    Observations that were normalised must be so again: see `normaliser`.
 
     Raises:
         ValueError: The folder is no policy, or its tensors are not exactly the model's.
@@ -118,12 +109,9 @@ def build(path: str | os.PathLike[str], env: Any, **hyperparameters: Any) -> Any
 
 
 def normaliser(path: str | os.PathLike[str], env: Any, **options: Any) -> Any:
-    """A `VecNormalize` that goes on where that of the training ended.
+    """A `VecNormalize` around a `VecEnv` that goes on where that of the training ended.
 
-    Args:
-        path: The policy's folder; needs its `training.safetensors`.
-        env: The `VecEnv` to wrap.
-        **options: Further arguments of `VecNormalize`.
+    The folder needs its `training.safetensors`; options are further arguments of `VecNormalize`.
 
     Raises:
         ValueError: The folder is no policy, or was trained without.
@@ -153,9 +141,8 @@ def described(environment: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
         ValueError: The id or an argument is not allowed.
     """
     engine = {} if find_spec("pybullet") else {"engine": "planar"}  # the columns are the same
-    env: Any = gym.make(
-        f"slipgym:{environment}", disable_env_checker=True, **{**engine, **arguments}
-    ).unwrapped
+    given = {"disable_env_checker": True, **engine, **arguments}
+    env: Any = gym.make(f"slipgym:{environment}", **given).unwrapped
     with env:
         values = {
             "id": environment,

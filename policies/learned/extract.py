@@ -30,11 +30,8 @@ _LSTM = {
 def places(names: Collection[str], hidden: str, memory: str, *last: str) -> dict[str, str]:
     """Name of a tensor in a policy's file -> its name among those of a module of torch.
 
-    Args:
-        names: All tensors of the module.
-        hidden: Its sequence of dense layers and nonlinearities.
-        memory: Its LSTM layers, if there are some.
-        *last: Dense layers behind the sequence.
+    The module has a sequence `hidden` of dense layers and nonlinearities, maybe LSTM layers `memory` ahead of
+    it and dense layers `last` behind it.
     """
     found, count = {}, 0
     while f"{memory}.weight_hh_l{count}" in names:

@@ -31,11 +31,8 @@ def write(
 ) -> Path:
     """Writes the folder of a policy; it appears when it is complete, or not at all.
 
-    Args:
-        path: Where it shall appear.
-        description: As in `Description`, without `format` and `files`.
-        weights: The tensors it acts with.
-        training: All that training adapts; None leaves it out.
+    The description is as in `Description`, without `format` and `files`; it acts with the weights, `training`
+    is all that training adapts.
 
     Raises:
         FileExistsError: Something is there already.

@@ -83,23 +83,6 @@ def check_environment(trained: Environment, env: Any) -> None:
         raise ValueError(f"the policy was trained at {trained.rate:g} steps per second, here are {rate:g}")
 
 
-def check_width(names: Sequence[str], history: int, width: int) -> None:
-    """Refuse observations of another length than those of `names`, with `history` earlier ones along.
-
-    Raises:
-        ValueError: The length is another one; the message names the first column that is missing or follows.
-    """
-    wanted = (history + 1) * len(names)
-    if width == wanted:
-        return
-    message = f"observation has {width} columns, the policy needs {wanted} (history={history})"
-    if history == 0 and width < wanted:
-        message += f"; the first that it lacks at its end is {names[width]!r}"
-    elif history == 0:
-        message += f"; the last one known is {names[-1]!r}"
-    raise ValueError(message)
-
-
 def column_of(column: Any) -> Column:
     """A column of an environment as policies keep it."""
     return Column(name=column.name, low=float(column.low), high=float(column.high), unit=column.unit)

@@ -41,15 +41,7 @@ class Network:
             self._scale = np.sqrt(tensors["observation.var"] + self._normalisation.epsilon)
 
     def forward(self, observations: np.ndarray, memory: Memory | None) -> tuple[np.ndarray, Memory | None]:
-        """Actions for a batch.
-
-        Args:
-            observations: (n, m).
-            memory: None for a network without LSTM layers.
-
-        Returns:
-            Actions (n, k), float32 within [-1, 1], and the new memory.
-        """
+        """Actions (n, k), float32 within [-1, 1], for observations (n, m), and the new memory."""
         x = self._normalised(observations)
         if memory is not None:
             x, memory = self._remember(x, memory)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from policies.learned import files
-from policies.learned.fitting import check_environment, check_width, layout, selection
+from policies.learned.fitting import check_environment, layout, selection
 from policies.learned.forward import Memory, Network
 
 MODES = ("action_mode", "observation_mode", "load_columns", "history", "frame_skip")
@@ -17,10 +17,7 @@ MODES = ("action_mode", "observation_mode", "load_columns", "history", "frame_sk
 
 
 class LearnedPolicy:
-    """A policy read from its folder; never changes, so one serves many episodes.
-
-    Args:
-        path: The folder; see docs/policy_files.md.
+    """A policy read from its folder (docs/policy_files.md); never changes, so one serves many episodes.
 
     Attributes:
         description: What policy.json says.
@@ -99,7 +96,14 @@ class LearnedPolicy:
         observations = np.asarray(observation)
         if observations.ndim not in (1, 2):
             raise ValueError(f"observation must have shape (m,) or (n, m), got {observations.shape}")
-        check_width(self.names, self.description.environment.history, observations.shape[-1])
+        width, history = observations.shape[-1], self.description.environment.history
+        if width != self.width:
+            said = f"observation has {width} columns, the policy needs {self.width} (history={history})"
+            if history == 0 and width < self.width:
+                said += f"; the first that it lacks at its end is {self.names[width]!r}"
+            elif history == 0:
+                said += f"; the last one known is {self.names[-1]!r}"
+            raise ValueError(said)
         if not np.isfinite(observations).all():
             column = int(np.argwhere(~np.isfinite(np.atleast_2d(observations)))[0, 1])
             name = self.names[column % len(self.names)]

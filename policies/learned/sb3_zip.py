@@ -43,11 +43,7 @@ def import_zip(
     A `VecNormalize` is not part of such a zip: a policy that was trained with one does not act well without
     it. `policies.learned.export.save`, called where it was trained, keeps it.
 
-    Args:
-        source: The zip.
-        path: Where the folder shall appear.
-        environment: Id of the environment it was trained in, such as "slipgym/Hold-v0".
-        arguments: Keyword arguments of that environment.
+    The environment it was trained in is given by id, such as "slipgym/Hold-v0", and keyword arguments.
 
     Raises:
         FileNotFoundError: There is no zip.
@@ -77,19 +73,16 @@ def import_zip(
             raise ValueError(f"{source}: {_WEIGHTS!r} has no {theirs} of {axes} axes")
         weights[ours] = value
     stacked = [value.shape[1] for name, value in weights.items() if name.endswith("hidden_weight")]
-    layers = [
-        len(value) for name, value in weights.items() if name.startswith("layers") and name.endswith("bias")
-    ]
+    layers = [len(value) for name, value in weights.items() if re.match(r"layers\..*bias", name)]
     where = described(environment, arguments)
     reads, acts = (where["history"] + 1) * len(where["observation"]), len(where["action"])
     first = "memory.0.input_weight" if stacked else "layers.0.weight"
-    for what, found, wanted in (
-        ("observation", weights[first].shape[1], reads),
-        ("action", layers[-1], acts),
-    ):
+    sizes = ("observation", weights[first].shape[1], reads), ("action", layers[-1], acts)
+    for what, found, wanted in sizes:
         if found != wanted:
             message = f"the model's {what} has {found} numbers, that of {environment} {wanted}"
             raise ValueError(f"{source}: {message}")
+    algorithm = "RecurrentPPO" if stacked else kind
     description = {
         "environment": where,
         "network": {
@@ -100,13 +93,7 @@ def import_zip(
             "squash": kind == "SAC",
         },
         "normalisation": None,
-        "origin": origin(
-            "RecurrentPPO" if stacked else kind,
-            f"imported from {source.name}",
-            data["steps"],
-            [],
-            critic=None,
-        ),
+        "origin": origin(algorithm, f"imported from {source.name}", data["steps"], [], critic=None),
     }
     return files.write(path, description, weights)
 

@@ -57,10 +57,7 @@ class SlipVecEnv(VecEnv):
     """
 
     def __init__(
-        self,
-        env: SlipVectorEnv,
-        scenarios: Sequence[Mapping[str, Any]] | None = None,
-        spread: bool = False,
+        self, env: SlipVectorEnv, scenarios: Sequence[Mapping[str, Any]] | None = None, spread: bool = False
     ) -> None:
         mode, needed = env.metadata["autoreset_mode"], _AUTORESET[scenarios is not None]
         if mode is not needed:
@@ -127,26 +124,18 @@ class SlipVecEnv(VecEnv):
         return self.env.render() or ()
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
-        """An attribute for each of some environments: they share those of the batch, but for the spaces.
-
-        Raises:
-            ValueError: There is no such environment.
-        """
+        """An attribute for each of some environments: they share those of the batch, but for the spaces."""
         return [getattr(self.env, _OF_ONE.get(attr_name, attr_name))] * len(self._rows(indices))
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        """Set an attribute of the batch; ValueError if `indices` leaves out environments that share it."""
+        """Set an attribute of the batch, which all environments share."""
         self._everyone(f"attribute {attr_name!r}", indices)
         setattr(self.env, attr_name, value)
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: VecEnvIndices = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Call a method of the batch once; what it returns stands for each environment.
-
-        Raises:
-            ValueError: `indices` leaves environments out, which share the method.
-        """
+        """Call a method of the batch once, for all environments; its result stands for each of them."""
         count = self._everyone(f"method {method_name!r}", indices)
         return [getattr(self.env, method_name)(*method_args, **method_kwargs)] * count
 
@@ -190,7 +179,7 @@ class SlipVecEnv(VecEnv):
         return rows
 
     def _everyone(self, shared: str, indices: VecEnvIndices) -> int:
-        """How many indices there are, which must name every environment."""
+        """How many indices there are; ValueError unless they name every environment."""
         rows = self._rows(indices)
         if len({row % self.num_envs for row in rows}) < self.num_envs:
             n = self.num_envs

@@ -80,9 +80,9 @@ class TrainingCallback(BaseCallback):
             self.ended = "budget"
         if self.ended or steps >= self._next_evaluation:
             self._evaluate()
-            self._next_evaluation = _after(steps, self._config.evaluation.every)
+            self._next_evaluation = (steps // (every := self._config.evaluation.every) + 1) * every
         if self.ended or steps >= self._next_checkpoint:
-            self._next_checkpoint = _after(steps, self._config.checkpoints.every)
+            self._next_checkpoint = (steps // (every := self._config.checkpoints.every) + 1) * every
             state = {"record": self.get_state(), "learner": learners.get_state(self.model)}
             checkpoints.save(self._path, steps, state, self._config.checkpoints.keep)
 
@@ -107,8 +107,3 @@ class TrainingCallback(BaseCallback):
             warnings.warn(STOPS_UNTRAINED.format(row.success, stop.success), stacklevel=2)
         if len(last) == stop.evaluations and all(reached):
             self.ended = "success"
-
-
-def _after(steps: int, every: int) -> int:
-    """The first multiple of `every` beyond `steps`."""
-    return (steps // every + 1) * every

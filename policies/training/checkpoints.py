@@ -26,11 +26,7 @@ def kept(run: Path) -> list[Path]:
 
 
 def save(run: Path, steps: int, state: Any, keep: int) -> None:
-    """Writes a checkpoint, then removes those before the last `keep`.
-
-    Raises:
-        OSError: It cannot be written.
-    """
+    """Writes a checkpoint, then removes those before the last `keep`; OSError if it cannot be written."""
     checkpoint_io.write(folder(run) / f"{steps:012d}{_SUFFIX}", state)
     for path in kept(run)[:-keep]:
         path.unlink()

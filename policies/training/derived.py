@@ -44,17 +44,10 @@ def coefficients(derived: Derived, columns: Sequence[Any], history: int, width: 
 def folded(
     weight: np.ndarray, bias: np.ndarray, matrix: np.ndarray, mean: np.ndarray, scale: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """First layer of a network that reads the normalised observation alone and computes the same.
+    """Weight (m, k) and bias (m,) of a layer that reads the observation alone and computes the same.
 
-    Args:
-        weight: Of the layer that reads the derived columns behind the observation, (m, k + d).
-        bias: (m,).
-        matrix: See `coefficients`.
-        mean: Of the columns, subtracted from them in their normalisation, (k + d,).
-        scale: What they are then divided by.
-
-    Returns:
-        Weight (m, k) and bias (m,).
+    The given layer, weight (m, k + d) and bias (m,), reads the derived columns of `coefficients` (d, k)
+    behind the observation, after their mean (k + d,) was subtracted and they were divided by their scale.
     """
     count = matrix.shape[1]
     own, derived = weight[:, :count].astype(np.float64), weight[:, count:].astype(np.float64)
@@ -116,12 +109,8 @@ def fold(
 ) -> dict[str, torch.Tensor]:
     """Parameters of a network that reads the observation alone and computes the same.
 
-    The clipping of normalised derived columns is left out.
-
-    Args:
-        parameters: State of an "MlpPolicy" of PPO, by name.
-        normalisation: Of its observations (k + d columns).
-        matrix: What turns an observation into its derived columns, (d, k).
+    The clipping of normalised derived columns is left out. Parameters are the state of an "MlpPolicy" of PPO,
+    its observations are normalised (k + d columns), and derived by `matrix`, (d, k).
     """
     mean, scale = np.zeros(sum(matrix.shape)), np.ones(sum(matrix.shape))
     if normalisation.norm_obs:

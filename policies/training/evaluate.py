@@ -14,10 +14,7 @@ from policies.training.curve import Row
 
 
 def evaluate(config: Training, model: Any, envs: VecEnv) -> Row:
-    """Runs episodes without exploration, always the same ones, in environments not of the training.
-
-    The learner's statistics are used as they are.
-    """
+    """Runs episodes without exploration, always the same ones, with the learner's statistics as they are."""
     frozen: Any = envs
     if config.algorithm != "privileged_ppo":
         frozen = learners.normalised(config, envs, training=False)

@@ -23,13 +23,7 @@ def write(
 ) -> Path:
     """Writes the policy of a run (docs/policy_files.md) in its folder, unless it is there already.
 
-    Args:
-        model: The learner with the best parameters of the run.
-        normalisation: Statistics to normalise observations with, as from `model.normalisation`.
-        config: What it was trained as.
-        folder: The run's folder.
-        seed: Of the run.
-        command: What started it, for the record.
+    Its observations are normalised with statistics as from `model.normalisation`.
     """
     path = folder / POLICY
     if path.exists():
@@ -42,9 +36,8 @@ def write(
         if config.derived:
             model, envs = _folded(model, envs, config)
         return export.save(model, path, env_id, arguments, envs, command, [seed])
-    clip, moments = config.normalisation.clip, None
-    if config.normalisation.observation:
-        moments = model.moments["policy"]
+    clip = config.normalisation.clip
+    moments = model.moments["policy"] if config.normalisation.observation else None
     description = {
         "environment": export.described(env_id, arguments),
         "network": policy_tensors.network(config).model_dump(mode="json"),

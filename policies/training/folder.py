@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
@@ -20,6 +21,7 @@ from slipgym import atomic_io
 from slipgym.config import files
 
 _ORDER, _RESULT, _CURVE = "run.yaml", "result.json", "curve.csv"
+_NONE = f"{{}} holds no training run: there is no {_ORDER} in it"
 
 
 def begin(folder: Path, config: Training, seed: int) -> None:
@@ -46,7 +48,7 @@ def order(folder: Path) -> tuple[Training, int]:
     """
     path = folder / _ORDER
     if not path.is_file():
-        raise FileNotFoundError(f"{folder} holds no training run: there is no {_ORDER} in it")
+        raise FileNotFoundError(_NONE.format(folder))
     values = files.read(path)
     training, seed = values.get("training"), values.get("seed")
     if not isinstance(training, Mapping) or type(seed) is not int:
@@ -64,7 +66,7 @@ def runs(folder: Path) -> list[Path]:
         return [folder]
     found = sorted(path.parent for path in folder.glob(f"*/{_ORDER}"))
     if not found:
-        raise FileNotFoundError(f"{folder} holds no training run: there is no {_ORDER} in it")
+        raise FileNotFoundError(_NONE.format(folder))
     return found
 
 
@@ -79,7 +81,8 @@ def read_curve(folder: Path) -> list[Row]:
     path = folder / _CURVE
     if not path.is_file():
         return []
-    return [Row(*row) for row in pd.read_csv(path, float_precision="round_trip").itertuples(index=False)]
+    lines = path.read_text(encoding="utf-8").splitlines()[1:]
+    return [Row(int(steps), *map(float, means)) for steps, *means in csv.reader(lines)]
 
 
 def write_result(folder: Path, result: dict[str, Any]) -> None:

@@ -32,10 +32,7 @@ def network(config: Training) -> Network:
 def take(actor: Any, moments: Any, matrix: np.ndarray) -> dict[str, np.ndarray]:
     """Tensors of an actor by their names in a file, and the moments of its observations.
 
-    Args:
-        actor: It reads derived columns behind the observation.
-        moments: None without.
-        matrix: What turns an observation into its derived columns, (d, k).
+    The actor reads derived columns, of `matrix` (d, k), behind the observation.
     """
     found, state = {}, actor.state_dict()
     if moments is not None:

@@ -67,7 +67,7 @@ class PrivilegedPPO:
         )
         common = {"hidden_dims": list(chosen.net_arch), "activation": chosen.activation}
         noise = {"class_name": "rsl_rl.modules.distribution:GaussianDistribution", "std_type": "log"}
-        noise["init_std"] = float(np.exp(chosen.log_std_init))
+        noise |= {"init_std": float(np.exp(chosen.log_std_init))}
         dense = {"class_name": "rsl_rl.models.mlp_model:MLPModel"}
         memory = {"class_name": "rsl_rl.models.rnn_model:RNNModel", "rnn_type": "lstm"}
         memory |= {"rnn_hidden_dim": chosen.memory, "rnn_num_layers": 1}

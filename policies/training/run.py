@@ -31,15 +31,9 @@ class _Logs(TensorBoardOutputFormat):
 
 
 def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any]:
-    """Trains what a folder from `folder.begin` asks for, on from its last checkpoint.
+    """Trains what a folder from `folder.begin` asks for, on from its last checkpoint; returns its result.
 
-    Args:
-        path: The run's folder.
-        progress: Whether to show a progress bar.
-        position: Its line on the screen, counted from 0.
-
-    Returns:
-        How it ended, as in result.json.
+    A progress bar is shown on a line of the screen, counted from 0.
 
     Raises:
         FileNotFoundError: The folder holds no run.
@@ -62,9 +56,8 @@ def _train(path: Path, config: Training, seed: int, progress: bool, position: in
         steps = model.num_timesteps
         writer = _Logs(path / "tensorboard", steps)
         model.set_logger(Logger(None, [writer]))
-        with tqdm(
-            total=config.budget, initial=steps, desc=path.name, position=position, disable=not progress
-        ) as bar:
+        shown = {"desc": path.name, "position": position, "disable": not progress}
+        with tqdm(total=config.budget, initial=steps, **shown) as bar:
             callback = TrainingCallback(config, path, held_out, bar)
             if state:
                 with fits(f"{path}: the last checkpoint"):
@@ -100,12 +93,7 @@ def _finish(
     export.write(model, best["learner"]["normalisation"], config, path, seed, _COMMAND.format(path.name))
     with styled():
         curve.plot({path.name: [callback.curve]}).savefig(path / "curve.png", dpi=STYLE.dpi)
-    result = {
-        "ended": callback.ended,
-        "steps": callback.curve[-1].steps,
-        "seconds": callback.seconds,
-        "cpu_seconds": callback.cpu_seconds,
-        "best": best["row"],
-    }
+    times = {"seconds": callback.seconds, "cpu_seconds": callback.cpu_seconds}
+    result = {"ended": callback.ended, "steps": callback.curve[-1].steps, **times, "best": best["row"]}
     folder.write_result(path, result)
     return result

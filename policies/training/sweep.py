@@ -68,7 +68,6 @@ def trial(path: Path, config: Training, seed: int, number: int, progress: bool) 
         train(run, progress, number)
         return area(folder.read_curve(run), config)
 
-    optuna.logging.set_verbosity(optuna.logging.WARNING)
     study.optimize(objective, n_trials=1)
 
 
@@ -97,6 +96,7 @@ def _values(parameters: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _study(path: Path, sampler: Any = None) -> optuna.Study:
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
     storage = JournalStorage(JournalFileBackend(str(path / "optuna.journal")))
     return optuna.create_study(
         storage=storage, study_name="sweep", direction="maximize", sampler=sampler, load_if_exists=True

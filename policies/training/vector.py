@@ -35,10 +35,7 @@ class Scenario(TaskEnd):
 
 
 def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool = False) -> VecEnv:
-    """The environments of a run, or those in which it learns (`shaped`).
-
-    Environment i is seeded `seed` + i at the first reset.
-    """
+    """The environments of a run, or those it learns in (`shaped`); at first environment i has `seed` + i."""
     keywords = (config.shaped if shaped else config.environment).model_dump()
     privileged = config.algorithm == "privileged_ppo"
     if privileged:
@@ -84,11 +81,8 @@ def scalar(
 
 def get_state(envs: Any) -> dict[str, Any]:
     """Everything that decides what the environments do next, as plain data."""
-    if isinstance(envs, DerivedVecEnv):
-        return get_state(envs.venv)
-    states = envs.env_method("get_state")
     return {
-        "envs": states[:1] if _is_batch(envs) else states,
+        "envs": envs.env_method("get_state")[: _states(envs)],
         "returns": envs.episode_returns.copy(),
         "lengths": envs.episode_lengths.copy(),
     }
@@ -100,18 +94,16 @@ def set_state(envs: Any, state: dict[str, Any]) -> None:
     Raises:
         ValueError: It is of other environments.
     """
-    if isinstance(envs, DerivedVecEnv):
-        set_state(envs.venv, state)
-        return
+    envs = envs.venv if isinstance(envs, DerivedVecEnv) else envs
     own = {"returns": envs.episode_returns, "lengths": envs.episode_lengths}
     check_like("environments", {name: state[name] for name in own}, own)
-    if len(state["envs"]) != (1 if _is_batch(envs) else envs.num_envs):
+    if len(state["envs"]) != _states(envs):
         raise ValueError(f"environments.envs holds {len(state['envs'])} states")
     for index, one in enumerate(state["envs"]):
-        envs.env_method("set_state", one, indices=None if _is_batch(envs) else index)
+        envs.env_method("set_state", one, indices=index if _states(envs) == envs.num_envs else None)
     envs.episode_returns, envs.episode_lengths = state["returns"].copy(), state["lengths"].copy()
 
 
-def _is_batch(envs: VecMonitor) -> bool:
-    """Whether one state is that of all environments."""
-    return isinstance(envs.venv, SlipVecEnv)
+def _states(envs: VecEnv) -> int:
+    """How many states environments have: a batch has one."""
+    return 1 if isinstance(envs.unwrapped, SlipVecEnv) else envs.num_envs

@@ -71,13 +71,11 @@ class Imitation(Frozen):
         if self.teacher != "truth" and given.estimator is None:
             raise ValueError(f"teacher {self.teacher!r} acts on estimates: environment.estimator is null")
         if given.observation_mode == "sensor":
-            said = "environment.observation_mode must be 'flat'; friction_source 'none' shows sensors"
-            raise ValueError(said)
+            flat = "must be 'flat'; friction_source 'none' shows sensors"
+            raise ValueError(f"environment.observation_mode {flat}")
         if not (given.action_mode or LOGARITHMIC).startswith(LOGARITHMIC):
-            said = (
-                "environment.action_mode must be null, the controller's, or the same with a logarithmic grip"
-            )
-            raise ValueError(said)
+            own = "null, the controller's, or the same with a logarithmic grip"
+            raise ValueError(f"environment.action_mode must be {own}")
         if self.rounds * self.rows > seeds.ROWS:
             raise ValueError(f"rounds * rows = {self.rounds * self.rows} episodes; at most {seeds.ROWS}")
         return self

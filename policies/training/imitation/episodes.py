@@ -26,16 +26,19 @@ KNOWN = 0.05
 
 @dataclass(frozen=True)
 class Demonstrations:
-    """n episodes of at most T steps; those that ended early are filled with zeros."""
+    """n episodes of at most T steps; those that ended early are filled with zeros.
+
+    Attributes:
+        observations: What the network observes, (T, n, m) float32.
+        actions: What the controller would do in its place, (T, n, k) float32.
+        lengths: Steps of each episode, (n,).
+        solved: Whether each was a success, (n,) bool.
+    """
 
     observations: np.ndarray
-    """What the network observes, (T, n, m) float32."""
     actions: np.ndarray
-    """What the controller would do in its place, (T, n, k) float32."""
     lengths: np.ndarray
-    """Steps of each episode, (n,)."""
     solved: np.ndarray
-    """Whether each was a success, (n,) bool."""
 
 
 def arguments(config: Imitation) -> dict[str, Any]:

@@ -11,8 +11,10 @@ import math
 import os
 import shutil
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from contextlib import closing
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -39,16 +41,19 @@ LIMIT = 1.0
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of an imitation."""
+    """Result of an imitation.
+
+    Attributes:
+        weights: Tensors of the network, see `policies.learned.tensors.expected`.
+        curve: Of each round: its number, episodes so far, share that the network solved, loss at its end.
+        solved: Share of the held-out episodes that the network solves; NaN without any.
+        steps: Steps of experience.
+    """
 
     weights: dict[str, np.ndarray]
-    """Tensors of the network, see `policies.learned.tensors.expected`."""
     curve: list[dict[str, float]]
-    """Of each round: its number, episodes so far, share that the network solved, loss after the updates."""
     solved: float
-    """Share of the held-out episodes that the network solves; NaN without any."""
     steps: int
-    """Steps of experience."""
 
 
 def imitate(
@@ -56,15 +61,9 @@ def imitate(
 ) -> tuple[Path, float]:
     """Trains a network and writes it as a policy (docs/policy_files.md), with its curve beside it.
 
-    Args:
-        config: The imitation.
-        output: Folder for the run's own folder.
-        seed: Of episodes, first weights and order.
-        command: What started it, for the record.
-
     Returns:
-        The run's folder, which holds the folder "policy" and curve.csv, and the share of held-out episodes
-        that the policy solves. Until the run is over the policy of the last round is in "unfinished" instead.
+        The run's folder in `output`, which holds the folder "policy" and curve.csv, and the share of held-out
+        episodes that it solves. Until the run is over the last round's policy is in "unfinished" instead.
 
     Raises:
         FileExistsError: The run's folder is there already.
@@ -112,54 +111,44 @@ def destination(config: Imitation, output: str | os.PathLike[str], seed: int) ->
 
 
 def run(
-    config: Imitation,
-    seed: int = 0,
-    progress: bool = True,
-    keep: Callable[[Outcome], None] | None = None,
+    config: Imitation, seed: int = 0, progress: bool = True, keep: Callable[[Outcome], None] | None = None
 ) -> Outcome:
     """Trains a network; see `imitate`. Calls `keep` after each round with what there is."""
     torch.set_num_threads(config.threads)
     torch.manual_seed(seed)
     rng = np.random.default_rng(seed)
-    scene, first = Scene(config, config.rows), seeds.training(seed)
-    columns = [column_of(column) for column in scene.envs.action_columns]
     data: list[Demonstrations] = []
-    fit: Fit | None = None
+    fit: Any = None
     curve = []
-    try:
-        with tqdm(range(config.rounds), desc="rounds", disable=not progress) as bar:
-            for number in bar:
-                acts = np.arange(config.rows) >= config.controlled * config.rows
-                network = None if fit is None else fit.network()
-                data.append(demonstrate(scene, network, acts, first + number * config.rows))
-                fit = fit or Fit(config, data[0], columns)
-                loss = fit.update(data, rng)
-                solved = float("nan") if network is None else float(data[-1].solved[acts].mean())
-                episodes = len(data) * config.rows
-                curve.append({"round": number, "episodes": episodes, "solved": solved, "loss": loss})
-                bar.set_postfix(loss=f"{loss:.3g}", solved=f"{solved:.0%}")
-                if keep is not None:
-                    keep(Outcome(fit.student.tensors(), curve, math.nan, _steps(data)))
-    finally:
-        scene.close()
-    assert fit is not None
-    return Outcome(fit.student.tensors(), curve, judged(config, fit.network()), _steps(data))
-
-
-def _steps(data: Sequence[Demonstrations]) -> int:
-    return int(sum(one.lengths.sum() for one in data))
+    with (
+        closing(Scene(config, config.rows)) as scene,
+        tqdm(range(config.rounds), desc="rounds", disable=not progress) as bar,
+    ):
+        columns = [column_of(column) for column in scene.envs.action_columns]
+        for number in bar:
+            acts = np.arange(config.rows) >= config.controlled * config.rows
+            network = None if fit is None else fit.network()
+            first = seeds.training(seed) + number * config.rows
+            data.append(demonstrate(scene, network, acts, first))
+            fit = fit or Fit(config, data[0], columns)
+            loss = fit.update(data, rng)
+            solved = float("nan") if network is None else float(data[-1].solved[acts].mean())
+            episodes, steps = len(data) * config.rows, int(sum(one.lengths.sum() for one in data))
+            curve.append({"round": number, "episodes": episodes, "solved": solved, "loss": loss})
+            bar.set_postfix(loss=f"{loss:.3g}", solved=f"{solved:.0%}")
+            outcome = Outcome(fit.student.tensors(), curve, math.nan, steps)
+            if keep is not None:
+                keep(outcome)
+    return replace(outcome, solved=judged(config, fit.network()))
 
 
 def judged(config: Imitation, network: Network) -> float:
     """Share of the held-out episodes that a network solves; NaN without any."""
     if not config.held_out:
         return math.nan
-    scene = Scene(config, config.held_out)
-    try:
+    with closing(Scene(config, config.held_out)) as scene:
         everywhere = np.ones(config.held_out, dtype=bool)
         return float(demonstrate(scene, network, everywhere, seeds.held_out(0)).solved.mean())
-    finally:
-        scene.close()
 
 
 class Fit:

@@ -57,10 +57,7 @@ class Student(nn.Module):
     def loss(self, observations: torch.Tensor, wanted: torch.Tensor, lengths: torch.Tensor) -> torch.Tensor:
         """Mean Huber loss of the errors, a force's relative to its size.
 
-        Args:
-            observations: (T, n, m).
-            wanted: Actions (T, n, k).
-            lengths: Steps of each episode, (n,).
+        Observations are (T, n, m), the wanted actions (T, n, k), the episodes' lengths (n,).
         """
         scale = torch.where(self._is_force, wanted + 1.0 + LEAST, torch.tensor(OTHER))
         given, wanted = self(observations) / scale, wanted / scale
