@@ -18,7 +18,7 @@ from slipgym.tasks import find
 
 
 def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output: Path) -> Path:
-    """Makes a study's folder in `output`, with one for each source (none given: the configuration's) and seed.
+    """Makes a study's folder in `output`, with one for each source (none: the configuration's) and seed.
 
     Raises:
         ValueError: A source is unknown or a seed out of range.
