@@ -32,7 +32,7 @@ def chosen(name: str | None, options: Mapping[str, Any], texts: Sequence[str]) -
 
 
 def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Callable[[], str]:
-    """What continues the run or study of a folder, beside which no other option may be given.
+    """The work that continues the run or study of a folder; no other option may be given beside it.
 
     Raises:
         FileNotFoundError: The folder holds no run.
