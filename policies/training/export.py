@@ -21,10 +21,7 @@ POLICY = "policy"
 def write(
     model: Any, normalisation: Mapping[str, Any], config: Training, folder: Path, seed: int, command: str
 ) -> Path:
-    """Writes the policy of a run (docs/policy_files.md) in its folder, unless it is there already.
-
-    Its observations are normalised with statistics as from `model.normalisation`.
-    """
+    """Writes the policy of a run (docs/policy_files.md) in its folder, unless it is there already."""
     path = folder / POLICY
     if path.exists():
         return path

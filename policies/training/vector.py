@@ -69,8 +69,7 @@ def scalar(
 
     Environment i has combination i modulo their number of options of reset.
     """
-    module = task.partition(":")[0] if is_reference(task) else "slipgym"  # the one that registers it
-    env_id = f"{module}:{find(task).id}"
+    env_id = _id(task)
 
     def one(options: Mapping[str, Any]) -> gym.Env:
         return Scenario(gym.make(env_id, disable_env_checker=True, **keywords).unwrapped, options)
@@ -107,3 +106,8 @@ def set_state(envs: Any, state: dict[str, Any]) -> None:
 def _states(envs: VecEnv) -> int:
     """How many states environments have: a batch has one."""
     return 1 if isinstance(envs.unwrapped, SlipVecEnv) else envs.num_envs
+
+
+def _id(task: str) -> str:
+    """The id of a task's environment, with the module that registers it."""
+    return f"{task.partition(':')[0] if is_reference(task) else 'slipgym'}:{find(task).id}"
