@@ -82,7 +82,7 @@ FRICTION: dict[str, Callable[[float], tuple[float, float]]] = {
     "hertz": hertz_friction,
     "rim": rim_friction,
 }
-"""By the names of `slipgym.contact.pressure.PRESSURES`."""
+"""By those names of `slipgym.contact.pressure.PRESSURES` whose surface is known so."""
 
 
 def exact_friction(pressure: str, twists: ArrayLike) -> np.ndarray:

@@ -66,9 +66,10 @@ class PolicyPilot:
         every = live.rates[1] / self._rate
         self._every = round(every)
         if self._every < 1 or abs(every - self._every) > 0.02:
+            valid = ", ".join(f"{k * self._rate:g}" for k in (1, 2, 3, 4))
             raise ValueError(
-                f"the policy acts at {self._rate:g} Hz: velocities must come at that rate or a multiple, not "
-                f"at {live.rates[1]:g} Hz"
+                f"the policy acts at {self._rate:g} Hz: velocities must come at that rate or a multiple "
+                f"({valid}, ... Hz), not at {live.rates[1]:g} Hz (--velocity-rate)"
             )
         self._episode = np.zeros(1, EPISODE)
         for name in ("force_min", "force_max", "pad_radius"):

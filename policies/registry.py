@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from estimator.reference import is_reference
-from estimator.suggestions import asking
+from estimator.suggestions import unknown
 from policies.controllers import table as controllers
 from policies.learned import LearnedPolicy, pretrained
 
@@ -114,8 +114,6 @@ def load(which: str | os.PathLike[str], **parameters: Any) -> Policy:
     if which in names() or (isinstance(which, str) and is_reference(which)):
         return make(str(which), **parameters)
     if not Path(which).exists():
-        known = ", ".join(names())
-        said = f"no policy at {os.fspath(which)!r}; policies.make knows by name: {known}"
-        raise FileNotFoundError(asking(said, os.fspath(which), names()))
+        raise FileNotFoundError(unknown("no policy at", os.fspath(which), names()))
     controllers.refuse(os.fspath(which), parameters, [])
     return LearnedPolicy(which)

@@ -3,11 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 
+import gymnasium as gym
 import numpy as np
 
+from policies.learned import LearnedPolicy
 from policies.registry import Policy
+
+
+@contextmanager
+def environment_for(policy: Policy, env_id: str, **arguments: Any) -> Iterator[gym.Env]:
+    """Makes an environment that a policy can act in, and closes it at the end of the `with` block.
+
+    Args:
+        policy: Who acts.
+        env_id: Id of the environment.
+        **arguments: Of the environment.
+
+    Raises:
+        ValueError: An argument is wrong, or a learned policy was trained for another environment.
+    """
+    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **arguments)
+    try:
+        if isinstance(policy, LearnedPolicy):
+            policy.check(env)
+        yield env
+    finally:
+        env.close()
 
 
 class Step(NamedTuple):

@@ -46,7 +46,10 @@ def __getattr__(name: str) -> Any:
         from slipgym.envs import register_task
 
         return register_task
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from estimator.suggestions import asking
+
+    meant = [*__dir__(), "gymnasium.make", "gymnasium.make_vec", "policies.make_vec_env"]
+    raise AttributeError(asking(f"module {__name__!r} has no attribute {name!r}", name, meant))
 
 
 def __dir__() -> list[str]:

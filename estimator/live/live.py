@@ -12,6 +12,7 @@ from estimator.live.hand import Hand, Output
 from estimator.live.source import Source
 from estimator.online import TWIST, WRENCH, OnlineEstimator, make
 from estimator.registry import DEFAULT
+from estimator.suggestions import asking
 
 CLOCKS = ("stamps", "arrival")
 KINDS = {"wrench": "force", "twist": "velocity"}
@@ -54,7 +55,9 @@ class Live:
         if fingers not in (1, 2):
             raise ValueError(f"fingers = {fingers!r}: expected 1 or 2")
         if clocks not in CLOCKS:
-            raise ValueError(f"clocks = {clocks!r}: expected one of {', '.join(CLOCKS)}")
+            raise ValueError(
+                asking(f"clocks = {clocks!r}: expected one of {', '.join(CLOCKS)}", clocks, CLOCKS)
+            )
         for name, rate in zip(("force", "velocity"), rates, strict=True):
             if not 1.0 <= rate <= 25e3:
                 raise ValueError(f"rate of {name} = {rate!r} Hz: expected 1 to 25000")
@@ -161,9 +164,14 @@ class Live:
         """Of each sensor, the receiver's clock less its own, with the smallest recent delay [s]."""
         return {source.name: source.offset for source in self._sources()}
 
-    def warnings(self) -> dict[int, str]:
-        """Of each finger whose sensors' clocks differ, or by arrival have drifted apart, by how much."""
-        lines = {}
+    def warnings(self) -> dict[int | str, str]:
+        """By finger, how much its clocks differ or by arrival drifted apart; by sensor, another rate."""
+        lines: dict[int | str, str] = {
+            source.name: f"{source.name} comes at {rate:.4g} Hz, but {1.0 / source.period:.4g} Hz were "
+            "stated: a policy acts too fast or too slowly"
+            for source in self._sources()
+            if (rate := source.other_rate())
+        }
         for hand in self._hands.values():
             apart = hand.force.ahead - hand.velocity.ahead
             if abs(apart) > APART:

@@ -13,7 +13,7 @@ import numpy as np
 from estimator.online import TWIST, WRENCH
 from estimator.records.columns import Column
 from estimator.records.record import Array, Rows, seconds
-from estimator.records.units import ROWS, UNITS
+from estimator.records.units import ROWS, UNITS, likely_unit
 
 _FORCE_MAX = 500.0  # median force [N]
 _FORCE_PEAK = 2e4  # [N]
@@ -21,6 +21,8 @@ _SPEED_MAX = 5.0  # [m/s]
 _SPIN_MAX = 200.0  # [rad/s]
 _COP_MAX = 0.5  # median distance of the centre of pressure from the origin [m]
 _LEVER_MAX = 0.1  # torque at the centre of pressure over normal force [m]
+USUAL_FORCE, USUAL_SPEED, _USUAL_SPIN, USUAL_LEVER = 10.0, 0.05, 3.0, 0.004
+"""Peaks that a grip has [N, m/s, rad/s], and torque over normal force [m], by which a unit is guessed."""
 _RISES = 0.3  # correlation of friction with f_n that shows its sign
 OPPOSITE = 0.3
 """Least correlation that shows that a sign is wrong [-]."""
@@ -124,7 +126,7 @@ def check_wrench(source: str, wrench: Array, rows: Rows) -> None:
             raise ValueError(
                 f"{source}: median of {name} is {typical:.4g} N; in mN? `{name}: {{unit: mN}}` says so"
             )
-    _bounded(source, WRENCH[:3], wrench, rows, ((_FORCE_PEAK, "N", "mN"),) * 3)
+    _bounded(source, WRENCH[:3], wrench, rows, ((_FORCE_PEAK, USUAL_FORCE),) * 3)
 
 
 def check_torque(source: str, wrench: Array) -> None:
@@ -139,10 +141,11 @@ def check_torque(source: str, wrench: Array) -> None:
     """
     force, torque = (np.quantile(np.abs(wrench[:, k]), 0.95) for k in (2, 3))
     if torque > _LEVER_MAX * max(force, 1.0):
+        unit = likely_unit("tau", float(torque), USUAL_LEVER * max(force, 1.0))
         raise ValueError(
             f"{source}: tau reaches {torque:.4g} N m where f_n reaches {force:.4g} N, more than a finger pad "
-            "can hold; in N mm? `tau: {unit: N mm}` says so. Taken far from the pad? Then the record needs "
-            "the CoP (cop_x, cop_y) or the tilting torques (tau_x, tau_y)"
+            f"can hold; in {unit}? `tau: {{unit: {unit}}}` says so. Taken far from the pad? Then the record "
+            "needs the CoP (cop_x, cop_y) or the tilting torques (tau_x, tau_y)"
         )
 
 
@@ -157,14 +160,14 @@ def check_twist(source: str, twist: Array, rows: Rows) -> None:
     Raises:
         ValueError: As said.
     """
-    bounds = ((_SPEED_MAX, "m/s", "mm/s"), (_SPEED_MAX, "m/s", "mm/s"), (_SPIN_MAX, "rad/s", "deg/s"))
-    _bounded(source, TWIST, twist, rows, bounds)
+    _bounded(source, TWIST, twist, rows, (*((_SPEED_MAX, USUAL_SPEED),) * 2, (_SPIN_MAX, _USUAL_SPIN)))
 
 
 def _bounded(source: str, names: Sequence[str], values: Array, rows: Rows, bounds: Any) -> None:
-    for k, (bound, unit, meant) in enumerate(bounds):
-        worst = int(np.argmax(np.abs(values[:, k])))
+    for k, (bound, usual) in enumerate(bounds):
+        worst, unit = int(np.argmax(np.abs(values[:, k]))), next(iter(UNITS[names[k]]))
         if abs(values[worst, k]) > bound:
+            meant = likely_unit(names[k], float(abs(values[worst, k])), usual)
             raise ValueError(
                 f"{source}: row {rows[worst]}: {names[k]} = {values[worst, k]:.4g} {unit}, "
                 f"above {bound:g}; in {meant}? `{names[k]}: {{unit: {meant}}}` says so"

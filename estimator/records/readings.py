@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from estimator.online import TWIST, WRENCH
 from estimator.records.alignment import Samples, period
+from estimator.records.checks import USUAL_LEVER, USUAL_SPEED
 from estimator.records.record import Array, Record, seconds
+from estimator.records.units import likely_unit
 
 _SHARE = 0.01
 """Share of the samples at an extreme value from which it may be the end of the range."""
@@ -33,9 +35,10 @@ _FORCE, _TORQUE = 0.1, 2e-3
 """Force [N] and torque [N m] above noise and zero errors."""
 _LEVERS = (0.001, 0.003)
 """Torque over force from which r may be too small, or too large [m]: an offset of the CoP makes r large."""
+_LONGEST, _FASTEST, _DOUBTED = 0.04, 0.4, 0.4
+"""Torque over normal force [m] and speed [m/s] that no grip has; the share of them from which they are named
+where the radius is too large, too."""
 _ENOUGH = 20  # samples
-_UNITS = {"deg/s": 180.0 / np.pi, "mrad/s": 1e3}
-"""Unit of a rate -> factor by which it is too large if taken for rad/s."""
 
 
 def reading_warnings(record: Record, samples: Samples) -> list[str]:
@@ -55,7 +58,7 @@ def reading_warnings(record: Record, samples: Samples) -> list[str]:
         *_frozen_velocity(record),
         *_alike(names, force),
         *_alike(TWIST, record.twist),
-        *_unit_of_rate(samples),
+        *_units(samples),
     ]
     return [f"Warning: {line}" for line in lines]
 
@@ -147,17 +150,36 @@ def _alike(names: tuple[str, ...], values: Array) -> list[str]:
     return lines
 
 
-def _unit_of_rate(samples: Samples) -> list[str]:
-    """Compares r^2 = tau v_t / (f_t omega), which any limit surface has about, with the pads of grippers."""
-    smallest, largest = _radius(samples, _LEVERS[0]), _radius(samples, _LEVERS[1])
-    if largest is not None and largest > _RADII[1]:
+def _units(samples: Samples) -> list[str]:
+    """Compares torque, speed and r^2 = tau v_t / (f_t omega), which any limit surface has about, with pads.
+
+    A torque in another unit changes the lever and r, a velocity the speed and r, a rate r alone.
+    """
+    smallest, largest = _radius(samples, _LEVERS[0]), _radius(samples, _LEVERS[1]) or 0.0
+    wide = largest > _RADII[1]
+    longest, fastest = (_DOUBTED if wide else 1.0) * np.array([_LONGEST, _FASTEST])
+    force, torque = np.quantile(np.abs(samples.wrench[:, 2:]), 0.95, axis=0)
+    if (lever := float(torque / max(force, 1.0))) > longest:
+        unit = likely_unit("tau", lever, USUAL_LEVER)
+        return [
+            f"tau is {1e3 * lever:.3g} mm times f_n, a longer lever than a pad has: is it in {unit}? `tau: "
+            f"{{unit: {unit}}}` in the mapping says so. Or was it taken far from the pad, without its CoP?"
+        ]
+    v_t = np.hypot(*samples.twist[:, :2].T)
+    if np.count_nonzero(v_t > fastest) >= max(_ENOUGH, 0.5 * np.count_nonzero(v_t > _SLIDES)):
+        unit = likely_unit("v_x", float(np.median(v_t[v_t > fastest])), USUAL_SPEED)
+        return [
+            f"most slip is faster than {fastest:.2g} m/s, as in no grip: are v_x and v_y in {unit}? `v_x: "
+            f"{{unit: {unit}}}` and `v_y: {{unit: {unit}}}` in the mapping say so."
+        ]
+    if wide:
         return [
             f"rate, velocity and forces fit a radius r of {1e3 * largest:.3g} mm, more than a pad has: is "
             "omega too small by its unit, are v_x and v_y too large by theirs, or is the CoP wrong?"
         ]
     if smallest is None or smallest >= _RADII[0]:
         return []
-    unit = min(_UNITS, key=lambda name: abs(np.log(smallest * np.sqrt(_UNITS[name]) / _USUAL)))
+    unit = likely_unit("omega", (_USUAL / smallest) ** 2, 1.0)
     return [
         f"rate, velocity and forces fit a radius r of {1e3 * smallest:.3g} mm, less than a pad has: is omega "
         f"in {unit}? `omega: {{unit: {unit}}}` in the mapping says so."

@@ -16,6 +16,7 @@ from estimator.records.reading import CONTACT
 from estimator.records.readings import reading_warnings
 from estimator.records.record import Record
 from estimator.records.run import Result
+from estimator.records.signs import sign_warnings
 
 _NAMES = ("mu_s", "mu_c", "r")
 
@@ -54,17 +55,17 @@ def markdown(result: Result) -> str:
 
 
 def final_rows(result: Result) -> list[list[str]]:
-    """A heading, then mu_s, mu_c and r as cells: value, confidence, data behind it, ground truth if known."""
+    """A heading, then mu_s, mu_c, r as cells: value ± sd if data set it, confidence, data, truth if known."""
     last, truth = result.estimates[-1], result.samples.truth
     known = truth is not None and not np.isnan(truth[-1]).all()
-    rows = [["", "final", "confidence", "data", *(["true", "error"] if known else [])]]
+    rows = [["", "final ± sd", "confidence", "data", *(["true", "error"] if known else [])]]
     for k, name in enumerate(_NAMES):
         scale, digits = (1e3, 2) if name == "r" else (1.0, 3)
         data = f"{last[COUNTS[name]]} {'events' if name == 'mu_s' else 'samples'}"
-        value = scale * float(last[name])
+        value, sd = scale * float(last[name]), scale * float(last[f"sd_{name}"])
         cells = [
             "r [mm]" if name == "r" else name,
-            f"{value:.{digits}f}",
+            f"{value:.{digits}f}" + (f" ± {sd:.{digits}f}" if last[COUNTS[name]] else ""),
             f"{last[f'confidence_{name}']:.2f}",
             data,
         ]
@@ -85,7 +86,7 @@ def findings(result: Result) -> list[str]:
 
 def faults(record: Record, samples: Samples) -> list[str]:
     """Warnings about the readings alone, whatever an estimator makes of them."""
-    return [*reading_warnings(record, samples), *fault_warnings(record, samples)]
+    return [*reading_warnings(record, samples), *fault_warnings(record, samples), *sign_warnings(samples)]
 
 
 def not_observable(result: Result) -> list[str]:

@@ -59,6 +59,12 @@ def units_of(key: str, position: bool = False) -> dict[str, float]:
     return (POSITIONS if position else UNITS)[key]
 
 
+def likely_unit(key: str, size: float, usual: float) -> str:
+    """The smaller unit in which a size, too large for the SI unit, is nearest to the usual one in that."""
+    smaller = {unit: factor for unit, factor in UNITS[key].items() if factor < 1.0}
+    return min(smaller, key=lambda unit: abs(math.log(size * smaller[unit] / usual)))
+
+
 def unit_in(key: str, text: str, position: bool = False) -> str | None:
     """The unit of a key that a text such as "[Nmm]", "(mm/s)" or "µs" means; None: none of its units."""
     written = text.translate(_WRITTEN)

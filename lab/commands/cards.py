@@ -32,7 +32,7 @@ def main(
     "train" and "eval_ood", with the sensors and pads of "lab", on the distributed contact, in PyBullet.
     """
     from lab.cards import cards
-    from policies.leaderboard.tables import markdown
+    from policies.evaluation.frames import markdown
 
     try:
         if into is not None:

@@ -72,7 +72,7 @@ def report(
     import estimator
     from estimator.records import parse_settings
     from lab.leaderboard.closed_loop import closed_loop, pooled
-    from policies.leaderboard.tables import markdown
+    from policies.evaluation.frames import markdown
 
     try:
         changed = parse_settings(parameters or [])

@@ -31,7 +31,7 @@ def main(
     """Prints how far apart the episodes of both engines end, and how often they succeed."""
     from lab.engines import compare
     from policies.evaluation import load_experiment
-    from policies.leaderboard.tables import markdown
+    from policies.evaluation.frames import markdown
 
     try:
         changes = {"sensors": sensors, "randomization": randomization}

@@ -36,7 +36,7 @@ def main(
     from lab.learned_estimator import config
     from lab.learned_estimator.compare import compare, wide
     from lab.learned_estimator.gru import NAME
-    from policies.leaderboard.tables import markdown
+    from policies.evaluation.frames import markdown
 
     own = {"gru": (NAME, {"weights": weights})}
     entrants = {name: own.get(name, (name, {})) for name in estimators or [*estimator.names(), *own]}

@@ -16,7 +16,7 @@ app = application()
 def main(quick: Quick = False, seed: Seed = 0) -> None:
     """Print the mean error of mu_c for each age of the velocities."""
     from lab.leaderboard.delays import delays
+    from policies.evaluation.frames import markdown
     from policies.leaderboard.scenarios import effort_of
-    from policies.leaderboard.tables import markdown
 
     typer.echo(markdown(delays(effort_of(quick, seed)), 1))

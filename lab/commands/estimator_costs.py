@@ -16,6 +16,6 @@ app = application()
 def main() -> None:
     """Print the time of an update."""
     from lab.leaderboard.cost import costs
-    from policies.leaderboard.tables import markdown
+    from policies.evaluation.frames import markdown
 
     typer.echo(markdown(costs(), 1))

@@ -27,7 +27,7 @@ def main(
 ) -> None:
     """Print the errors of estimators on records of an independent simulator, by kind of the pads [%]."""
     from lab.worlds import errors, table
-    from policies.leaderboard.tables import markdown
+    from policies.evaluation.frames import markdown
 
     with wrong_arguments():
         found = errors(first, last, estimators or [DEFAULT])

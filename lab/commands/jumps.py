@@ -24,7 +24,7 @@ def main(
     """Print the time of slip until mu_c is right, for LinearSlip and PlanarSlip if no task is named."""
     from estimator.records import parse_settings
     from lab.leaderboard.jumps import TASKS, jumps
-    from policies.leaderboard.tables import markdown
+    from policies.evaluation.frames import markdown
 
     with wrong_arguments():
         chosen = {"name": "adaptive", **parse_settings(parameter or [])}

@@ -34,7 +34,7 @@ def main(
     """Print success and mean return of many policies, and how often both have the same order."""
     from lab.reward_order.run import compared, played, sentence
     from lab.reward_order.zoo import zoo
-    from policies.leaderboard.tables import markdown
+    from policies.evaluation.frames import markdown
     from slipgym.config.level import level_names
     from slipgym.tasks import find
 

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, field_validator
 
 from slipgym.config import files, load_randomization
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
-from slipgym.config.pad_ranges import PadRanges
+from slipgym.config.pad import PadRanges
 from slipgym.config.yaml_model import Choice, validate
 from slipgym.tasks import find
 

@@ -13,7 +13,7 @@ from lab.pushes.extract import Pushes
 from lab.pushes.fit import fit, friction_of_each, harmonic, misfit
 from lab.pushes.replay import replay
 from lab.pushes.support import surface
-from policies.leaderboard.tables import markdown
+from policies.evaluation.frames import markdown
 
 PUBLISHED = {"board": 0.282, "wood": 0.336}
 """mu_c that the authors of the logs use; its origin is not stated."""

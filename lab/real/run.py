@@ -11,7 +11,7 @@ import pandas as pd
 from lab import pushes
 from lab.real import silicone, tugs
 from policies.data.sets import SETS
-from policies.leaderboard.tables import markdown
+from policies.evaluation.frames import markdown
 from slipgym import atomic_io
 
 LICENCES = "the licence's text is in LICENSES.txt"

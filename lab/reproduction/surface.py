@@ -9,15 +9,15 @@ import numpy as np
 import pandas as pd
 from tqdm import tqdm
 
+from lab.limit_surface_exact import FRICTION
 from lab.reproduction.fixed_point import disc_bias
 from lab.reproduction.surface_plot import plot_surface
 from lab.validation.patch_surface import friction_error, surface_twists
 from policies.evaluation.folder import stamped
+from policies.evaluation.frames import markdown
 from policies.evaluation.plots.style import STYLE, styled
-from policies.leaderboard.tables import markdown
 from policies.versions import write_versions
 from slipgym.atomic_io import new_folder
-from slipgym.contact.pressure import OUTER_RADII
 
 CELLS = (11, 15, 21, 31, 41, 81)
 GAMMAS = (0.3, 0.5, 0.707, 0.8, 0.9)
@@ -54,7 +54,7 @@ def convergence(progress: bool = True) -> pd.DataFrame:
     """
     twists = surface_twists()
     rows = []
-    jobs = [(pressure, cells) for pressure in OUTER_RADII for cells in CELLS]
+    jobs = [(pressure, cells) for pressure in FRICTION for cells in CELLS]
     for pressure, cells in tqdm(jobs, desc="cells", unit="patch", disable=not progress):
         error = 100.0 * friction_error(pressure, cells, twists)
         surface = np.abs((error * twists).sum(axis=1)).max()

@@ -35,8 +35,8 @@ def plot_surface(gammas: Sequence[float]) -> Figure:
 def _surfaces(ax: Axes, gammas: Sequence[float]) -> None:
     dense, few = surface_twists(721, 1), surface_twists(19, 1)
     ax.plot(dense[:, 0], dense[:, 2], "--", color=STYLE.muted, label="ellipsoid")
-    for (name, outer), colour in zip(OUTER_RADII.items(), STYLE.palette, strict=False):
-        scale = 1.0, 1.0, outer
+    for name, colour in zip(MARKS, STYLE.palette, strict=False):
+        scale = 1.0, 1.0, OUTER_RADII[name]
         curve = -exact_friction(name, dense * scale) * scale
         ax.plot(curve[:, 0], curve[:, 2], color=colour, label=f"{name}, exact")
         contact = DistributedContact(RADIUS, CELLS, name, MU_C, MU_C, sigma_2=0.0)

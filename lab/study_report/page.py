@@ -20,7 +20,7 @@ from lab.study_report.inline import inline
 from lab.study_report.sentences import answers
 from lab.study_report.success import plot_estimators, plot_success
 from lab.study_report.videos import Scene, scene
-from policies.evaluation.frames import distinct, records, where
+from policies.evaluation.frames import distinct, groups, records, where
 from policies.evaluation.plots.style import styled
 from policies.study import load_study, tables
 from policies.study.benefit import benefits
@@ -28,7 +28,7 @@ from policies.study.conditions import conditions
 from policies.study.config import Study
 from policies.study.learned import missing, policies_of
 from policies.study.store import sources
-from policies.study.tables import ALL, by
+from policies.study.tables import ALL
 from policies.versions import versions
 from slipgym import atomic_io
 
@@ -101,9 +101,9 @@ def render(
         {
             "world": world,
             "preset": preset,
-            "tasks": [(task, records(rows)) for (task,), rows in by(group, ["task"])],
+            "tasks": [(task, records(rows)) for (task,), rows in groups(group, ["task"])],
         }
-        for (world, preset), group in by(without(plain, "task", ALL), ["world", "preset"])
+        for (world, preset), group in groups(without(plain, "task", ALL), ["world", "preset"])
     ]
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
     environment.filters.update(FILTERS)
@@ -133,7 +133,7 @@ def render(
 def _tiles(main: pd.DataFrame) -> list[tuple[str, str, list[dict[str, Any]]]]:
     """Kind, task and the rows of its sources, if there are several: of all tasks, or of the only one."""
     tiles = []
-    for (kind,), group in by(main, ["kind"]):
+    for (kind,), group in groups(main, ["kind"]):
         task = ALL if ALL in distinct(group, "task") else distinct(group, "task")[0]
         rows = where(group, task=task).drop_duplicates("source")
         if len(rows) > 1:
@@ -155,7 +155,7 @@ def _pictures(
     }
     estimator, *others = study.estimators
     with styled():
-        for (preset,), group in by(first, ["preset"]):
+        for (preset,), group in groups(first, ["preset"]):
             success = plot_success(group, estimator)
             pictures["success"][preset] = inline(success, f"Episodes solved, {preset}")
             if others:
@@ -163,7 +163,7 @@ def _pictures(
                 pictures["estimators"][preset] = inline(compared, f"Episodes solved by estimator, {preset}")
             if len(part := where(fractions, preset=preset)):
                 pictures["shares"][preset] = inline(plot_shares(part), f"Share of the truth, {preset}")
-        for (kind,), group in by(changed, ["kind"]):
+        for (kind,), group in groups(changed, ["kind"]):
             worse = plot_degradation(group)
             pictures["degradation"][kind] = inline(worse, f"Episodes solved as things get worse, {kind}")
         if len(transfer):

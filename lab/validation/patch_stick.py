@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from lab.limit_surface_exact import FRICTION
 from lab.validation.patch_surface import MU_C, MU_S, NORMAL, RADIUS, ROUNDING
 from slipgym.contact import DistributedContact
-from slipgym.contact.pressure import OUTER_RADII
 from slipgym.validation.figure import Figure
 
 SIGMA_0, SIGMA_1, SIGMA_2 = 1e6, 80.0, 0.2
@@ -117,6 +117,6 @@ def patch_stick() -> Iterator[Figure]:
         )
         residue = 100.0 * loop_residue(direction)
         yield Figure(f"patch: friction after elastic loops, {name}", ROUNDING, residue, "%")
-    for name in OUTER_RADII:
+    for name in FRICTION:
         gain = max(energy_gain(seed, name) for seed in range(20))
         yield Figure(f"patch, {name}: energy gained, 20 random motions", 1e-12, gain, "store")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from lab.limit_surface_exact import exact_friction
+from lab.limit_surface_exact import FRICTION, exact_friction
 from slipgym.contact import DistributedContact
 from slipgym.contact.pressure import OUTER_RADII
 from slipgym.validation.figure import Figure
@@ -96,7 +96,8 @@ def surface_figures(pressure: str) -> Iterator[Figure]:
 
 def patch_surface() -> Iterator[Figure]:
     """Translation, spin, and all directions between, of the named pressures."""
-    for name, outer in OUTER_RADII.items():
+    for name in FRICTION:
+        outer = OUTER_RADII[name]
         contact = DistributedContact(RADIUS, 21, name, MU_C, MU_C, sigma_2=0.0)
         away = steady_friction(contact, np.array([[0.6, 0.8, 0.0]]))[0] + (0.6, 0.8, 0.0)
         yield Figure(f"patch, {name}: translation", ROUNDING, 100.0 * float(np.abs(away).max()), "%")

@@ -61,6 +61,7 @@ def main(
     """
     try:
         from estimator import records
+        from slipgym import loading
         from slipgym.atomic_io import check_folder, new_folder
 
         check_folder(output)
@@ -69,6 +70,7 @@ def main(
         for finger, own in (mapping.fingers or {"": mapping}).items():
             with _named(finger):
                 record = records.load(log, own, velocity)
+                loading.ready(estimator)
                 results[finger] = records.estimate(record, estimator, allow_gaps, **settings)
         path = output.expanduser().resolve() / records.run_name(log)
         with new_folder(path) as folder:

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 try:
     import typer
+    from typer.core import TyperGroup
 except ModuleNotFoundError as error:
     raise SystemExit("typer is not installed: pip install 'slipgym[eval]'") from error
 
@@ -40,6 +41,13 @@ COMMANDS = {
 """Name of each sub-command and its line of help."""
 LABORATORY = "lab.commands"
 """Sub-commands that only a clone of the repository has."""
+OF_THE_LABORATORY = {
+    "benchmark-parts", "cards", "closed-loop", "compare-engines", "compare-estimators", "compare-simulators",
+    "delays", "estimator-costs", "fuzz", "hidden-grippers", "imperfections", "jumps", "live-bars", "pushes",
+    "rank", "reproduce", "sensor-bounds", "sensor-costs", "ship", "study-report", "train-estimator",
+    "validate-parts", "validate-real",
+}  # fmt: skip
+"""Their names, for a message where they are not installed."""
 EPILOG = """
 Examples:\n
 \b
@@ -53,7 +61,22 @@ slipgym COMMAND --help explains a command and shows examples.
 """
 
 
-app = typer.Typer(epilog=EPILOG, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)
+class _Front(TyperGroup):
+    """The sub-commands; one of the laboratory is refused with what it needs."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        for name in (args[0], "-".join(args[:2])):  # "validate real" is validate-real
+            if name in OF_THE_LABORATORY and name not in ALL:
+                ctx.fail(
+                    f"{name!r} is a command of the laboratory, which only a clone of the repository has: "
+                    "pip install -e . there (docs/install.md)"
+                )
+        return super().resolve_command(ctx, args)
+
+
+app = typer.Typer(
+    cls=_Front, epilog=EPILOG, no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False
+)
 
 
 def _of_the_clone() -> dict[str, str]:

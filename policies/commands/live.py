@@ -67,6 +67,7 @@ def main(
     from estimator.live import Live, Log
     from estimator.live.session import Session
     from estimator.records import parse_settings
+    from slipgym import loading
 
     if door not in ("udp", "ros2", "rosbridge"):
         raise typer.BadParameter(f"{door!r}: expected udp, ros2 or rosbridge", param_hint="--door")
@@ -79,11 +80,13 @@ def main(
             raise ValueError("--column is for a --policy")
         book = None if log is None else Log(log)
         rates = force_rate, velocity_rate
+        loading.ready(estimator)
         live = Live(estimator, fingers, rates, lateness, clocks, book, **parse_settings(set_ or ()))
         if policy is not None:
             from policies.live import PolicyPilot
 
-            pilot = PolicyPilot(policy, live, task, columns, firm, timeout)
+            with loading.patience("the policy's observation"):
+                pilot = PolicyPilot(policy, live, task, columns, firm, timeout)
         session = Session(live, pilot, book)
         _serve(session, door, host, port, fingers, seconds)
     except (ValueError, OSError, ModuleNotFoundError) as error:

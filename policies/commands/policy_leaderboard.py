@@ -55,54 +55,48 @@ def main(
     """Print a table of policies by success, and write it with a picture."""
     import pandas as pd
 
+    from policies.evaluation.frames import markdown
     from policies.leaderboard.one_imperfection import without as lacking
-    from policies.leaderboard.tables import markdown
-    from policies.policy_leaderboard.entries import check_task, entered, opponents
-    from policies.policy_leaderboard.folder import write, write_table
-    from policies.policy_leaderboard.run import by_level, outcomes, play_all
+    from policies.policy_leaderboard import entries, run
+    from policies.policy_leaderboard.folder import write
     from policies.policy_leaderboard.worlds import generalisation
-    from policies.policy_leaderboard.worth import table as gains
-    from policies.policy_leaderboard.worth import worth
+    from policies.policy_leaderboard.worth import table, worth
     from slipgym.atomic_io import check_folder
     from slipgym.config.level import level_names
     from slipgym.envs.arguments import ENGINES, FRICTION_SOURCES, one_of
     from slipgym.envs.engines import resolved
     from slipgym.tasks import find
 
-    arguments: dict[str, Any] = {
-        "sensors": sensors,
-        "randomization": randomization,
-        "estimator": estimator,
-    }
+    same: dict[str, Any] = {"sensors": sensors, "randomization": randomization, "estimator": estimator}
+    found, worths = [], []
     try:
         check_folder(output)
-        arguments["config"] = lacking(without or [])
+        same["config"] = lacking(without or [])
         if worlds and engine != "planar":
             raise ValueError(f"--engine {engine}: --worlds plays on both engines")
         engine = resolved(one_of("engine", engine, ENGINES))
-        mine = entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
+        mine = entries.entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
         for task in tasks or TASKS:
-            check_task(mine, task)
-        found, worths = [], []
-        for task in tasks or TASKS:
-            for name in level or level_names(find(task).key):
-                others = opponents(task, {**arguments, "level": name}, max(episodes // 2, 1), imitation)
-                members = [*mine, *others]
-                if worlds:
-                    found.append(generalisation(task, name, members, episodes, arguments))
-                    continue
-                played = play_all(task, name, members, episodes, arguments, engine)
-                found.append(outcomes(task, name, played))
-                worths.append(worth(task, name, members, played))
-                typer.echo(markdown(found[-1], 1))
+            entries.check_task(mine, task)
+        cells = [(task, name) for task in tasks or TASKS for name in level or level_names(find(task).key)]
+        for task, name in cells:
+            others = entries.opponents(task, {**same, "level": name}, max(episodes // 2, 1), imitation)
+            members = [*mine, *others]
+            if worlds:
+                found.append(generalisation(task, name, members, episodes, same))
+                continue
+            played = run.play_all(task, name, members, episodes, same, engine)
+            found.append(run.outcomes(task, name, played))
+            worths.append(worth(task, name, members, played))
+            typer.echo(markdown(found[-1], 1))
     except (ValueError, OSError) as error:
         raise typer.BadParameter(str(error)) from error
-    table = pd.concat(found, ignore_index=True)
+    whole = pd.concat(found, ignore_index=True)
     if worlds:
-        folder = write_table(table, output, "worlds")
-        typer.echo(f"Solved [%]:\n\n{markdown(table, 1)}\nLook at:\n  {folder / 'worlds.csv'}")
+        folder = write(whole, output, name="worlds")
+        typer.echo(f"Solved [%]:\n\n{markdown(whole, 1)}\nLook at:\n  {folder / 'worlds.csv'}")
         return
-    folder = write(table, output, {"episodes": episodes, "engine": engine, **arguments})
-    typer.echo(f"Solved [%], {episodes} episodes each:\n\n{markdown(by_level(table), 1)}")
-    typer.echo(f"Worth of friction: episodes solved [%], {episodes} each\n\n{markdown(gains(worths), 1)}")
+    folder = write(whole, output, {"episodes": episodes, "engine": engine, **same})
+    typer.echo(f"Solved [%], {episodes} episodes each:\n\n{markdown(run.by_level(whole), 1)}")
+    typer.echo(f"Worth of friction: episodes solved [%], {episodes} each\n\n{markdown(table(worths), 1)}")
     typer.echo(f"Look at:\n  {folder / 'policies.png'}")

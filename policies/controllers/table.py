@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from estimator.reference import is_reference, referenced
-from estimator.suggestions import asking
+from estimator.suggestions import asking, unknown
 from policies.controllers.gains import GainPolicy, renamed
 
 CLASSES = {
@@ -49,7 +49,7 @@ def find(name: str, valid: Iterable[str] = tuple(CLASSES)) -> type[Any]:
             raise ValueError(f"{name!r} is no policy: a class with a method predict")
         return policy
     if name not in CLASSES:
-        raise ValueError(f"unknown policy {name!r}; valid: {', '.join(valid)}")
+        raise ValueError(unknown("unknown policy", name, valid))
     return referenced(CLASSES[name])
 
 

@@ -2,7 +2,7 @@
 
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.files import experiment_names, load_experiment, narrowed
-from policies.evaluation.report import report
 from policies.evaluation.run import evaluate
+from policies.evaluation.tables import report
 
 __all__ = ["Experiment", "evaluate", "experiment_names", "load_experiment", "narrowed", "report"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import closing
 from itertools import groupby
 from typing import Any
 
@@ -42,35 +43,29 @@ def record_block(
     """Runs trials of one policy and friction choice side by side, and keeps their steps.
 
     Each episode is that of a single environment with the trial's seed and options on the planar engine, bit
-    for bit if the policy's actions are; those of a learned policy differ by rounding.
-
-    Args:
-        experiment: What the trials are part of.
-        trials: One of `blocks`.
-        policy: Who acts.
-        keywords: Of a single environment of these trials.
+    for bit if the policy's actions are; those of a learned policy differ by rounding. The keywords are of a
+    single environment of these trials, one of `blocks`.
     """
-    modes = policies.modes(policy)
-    given = {
-        name: value for name, value in {**keywords, **modes}.items() if name not in ("engine", "material")
-    }
-    made: Any = gym.make_vec(
-        f"slipgym:{find(experiment.task).id}", len(trials), "vector_entry_point", **given
-    )
-    envs = made.unwrapped
-    try:
+    given = {**keywords, **policies.modes(policy)}
+    given = {name: value for name, value in given.items() if name not in ("engine", "material")}
+    env_id = f"slipgym:{find(experiment.task).id}"
+    made: Any = gym.make_vec(env_id, len(trials), "vector_entry_point", **given)
+    with closing(made.unwrapped) as envs:
         if isinstance(policy, LearnedPolicy):
             policy.check(envs)
         options = {"rows": [row_options(trial) for trial in trials]}
         observations, infos = envs.reset(seed=[trial.seed for trial in trials], options=options)
         recorder = Recorder([column.name for column in envs.columns], drawn(infos, len(trials)))
         for step in batch_steps(envs, policy, observations):
-            seen = step.observations
-            newest = seen["policy"] if isinstance(seen, Mapping) else seen
-            recorder.add(newest[:, -len(envs.columns) :], step.rewards, step.infos, step.running)
-    finally:
-        envs.close()
+            newest = present(step.observations, len(envs.columns))
+            recorder.add(newest, step.rewards, step.infos, step.running)
     return recorder.finish()
+
+
+def present(observations: Any, columns: int) -> np.ndarray:
+    """The newest of the observations that a policy saw, (..., columns), without privileged ones."""
+    seen = observations["policy"] if isinstance(observations, Mapping) else observations
+    return seen[..., -columns:]
 
 
 def row_options(trial: Trial) -> dict[str, Any]:

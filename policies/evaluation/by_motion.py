@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from policies.evaluation.columns import DROPPED, FORCE, ROTATION, SLIP, SUCCESS, Measures, Metric, Tolerance
+from policies.evaluation.columns import FORCE, OUTCOME, ROTATION, SLIP, Measures, Metric, Tolerance
 from policies.evaluation.recording import Recording
 from slipgym.tasks import Task
 from slipgym.tasks.motion import Motion
@@ -24,15 +24,17 @@ def measures_by_motion(task: Task) -> Measures:
     motion = task.motion
     measure = partial(measure_motion, motion=motion)
     if motion.axis is None:
-        return Measures(measure, _tolerances(task), (SUCCESS, DROPPED, SLIP, ROTATION, FORCE), FORCE)
-    unit, word, _ = _UNITS[motion.unit]
-    size = Metric(f"final_error_abs_{unit}", f"final error, size [{word}]", brief=True)
-    errors = (
-        Metric(f"final_error_{unit}", f"final error, signed [{word}]", brief=True),
-        size,
-        Metric(f"rms_error_{unit}", f"rms tracking error [{word}]", brief=True),
-    )
-    return Measures(measure, _tolerances(task), (SUCCESS, DROPPED, *errors, SLIP, FORCE), size)
+        return Measures(measure, _tolerances(task), (*OUTCOME, SLIP, ROTATION, FORCE), FORCE)
+    errors = tracking(motion.unit)
+    return Measures(measure, _tolerances(task), (*OUTCOME, *errors, SLIP, FORCE), errors[1])
+
+
+def tracking(unit: str) -> tuple[Metric, ...]:
+    """Final error, its size and the rms error of a motion in [m] or [rad]."""
+    unit, word, _ = _UNITS[unit]
+    names = {"final_error": "final error, signed", "final_error_abs": "final error, size"}
+    names |= {"rms_error": "rms tracking error"}
+    return tuple(Metric(f"{name}_{unit}", f"{words} [{word}]", brief=True) for name, words in names.items())
 
 
 def measure_motion(recording: Recording, motion: Motion) -> dict[str, Any]:
@@ -41,13 +43,13 @@ def measure_motion(recording: Recording, motion: Motion) -> dict[str, Any]:
     if motion.axis is None:
         return row
     error = motion.path(recording.slip) - motion.target(recording.reference[:, 0])
-    unit, final = _UNITS[motion.unit][0], error[-1].item()
-    return {
-        f"final_error_{unit}": final,
-        f"final_error_abs_{unit}": abs(final),
-        f"rms_error_{unit}": math.sqrt(np.mean(error**2)),
-        **row,
-    }
+    unit = _UNITS[motion.unit][0]
+    return {**final_error(error[-1].item(), unit), f"rms_error_{unit}": math.sqrt(np.mean(error**2)), **row}
+
+
+def final_error(error: float, unit: str) -> dict[str, float]:
+    """An error at the end and its size, in the columns of a unit."""
+    return {f"final_error_{unit}": error, f"final_error_abs_{unit}": abs(error)}
 
 
 def largest_slip(recording: Recording) -> float:

@@ -49,8 +49,10 @@ class Measures:
     """What paired trials are compared by."""
 
 
-SUCCESS = Metric("success", "success [%]", share=True, brief=True)
-DROPPED = Metric("dropped", "dropped [%]", share=True)
+OUTCOME = (
+    Metric("success", "success [%]", share=True, brief=True),
+    Metric("dropped", "dropped [%]", share=True),
+)
 FORCE = Metric("mean_force_N", "grip force [N]", brief=True)
 ROTATION = Metric("max_rotation_deg", "largest rotation [°]")
 SLIP = Metric("largest_slip_mm", "largest slip [mm]", brief=True)

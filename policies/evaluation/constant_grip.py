@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import gymnasium as gym
 import numpy as np
 from tqdm import tqdm
 
@@ -17,11 +16,13 @@ from policies.controllers.constant_force import ConstantForcePolicy
 from policies.evaluation.batch import row_options
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.plan import plan
-from policies.evaluation.play import Played, play
-from slipgym.tasks import find
+from policies.evaluation.play import Played, play_episodes
+from slipgym.config import GripperConfig
 
 CANDIDATES = 24
 """Forces that are tried, spaced geometrically over the gripper's range."""
+MODES = {"friction_source": "none", "action_mode": "grip_force"}
+"""Arguments of the environments of a constant grip."""
 _SELECTION_SEED = 1000
 """Added to the seed of an experiment: the force is chosen on other episodes than those it is evaluated on."""
 
@@ -35,52 +36,33 @@ class Outcomes(NamedTuple):
     """The episodes."""
 
 
-def best_force(experiment: Experiment, candidates: int = CANDIDATES, progress: bool = True) -> float:
-    """The force with the highest success rate, among equals with the largest mean sum of rewards.
+def candidates(gripper: GripperConfig, number: int = CANDIDATES) -> list[float]:
+    """Forces to try, rounded to 0.01 N [N]."""
+    return np.geomspace(gripper.force_min, gripper.force_max, number).round(2).tolist()
 
-    Args:
-        experiment: Says which task and episodes; its policies and friction choices are not used. The episodes
-            have other seeds than its trials and run on the planar engine.
-        candidates: Forces to try.
-        progress: Whether to show a progress bar.
 
-    Returns:
-        Force per finger, rounded to 0.01 N [N].
+def best_force(experiment: Experiment, number: int = CANDIDATES, progress: bool = True) -> float:
+    """The best of a number of constant forces, rounded to 0.01 N [N]; arguments as for `run_constant`.
+
+    It is chosen on episodes of other seeds than the experiment's.
     """
     chosen = experiment.model_copy(update={"seed": experiment.seed + _SELECTION_SEED})
-    gripper = experiment.environment_config().gripper
-    forces = np.geomspace(gripper.force_min, gripper.force_max, candidates).round(2)
-    found = run_constant(chosen, forces.tolist(), progress)
-    return max(found, key=lambda one: (one.played.success.mean(), one.played.reward.mean())).force
+    forces = candidates(experiment.environment_config().gripper, number)
+    found = run_constant(chosen, forces, progress)
+    return max(found, key=lambda one: one.played.strength).force
 
 
 def run_constant(experiment: Experiment, forces: Sequence[float], progress: bool = True) -> list[Outcomes]:
-    """Runs the episodes of an experiment with constant forces, in one vector environment.
+    """Runs the episodes of an experiment with constant forces per finger [N] on the planar engine.
 
-    Args:
-        experiment: As for `best_force`; here its own seeds count.
-        forces: Forces per finger [N].
-        progress: Whether to show a progress bar.
+    The policies and friction choices of the experiment are not used.
     """
     alone = {"policies": experiment.policies[:1], "friction": experiment.friction[:1]}
     trials = plan(experiment.model_copy(update=alone))
     seeds, options = zip(*((trial.seed, row_options(trial)) for trial in trials), strict=True)
-    config = dict(experiment.config)
-    envs = gym.make_vec(
-        f"slipgym:{find(experiment.task).id}",
-        len(trials),
-        "vector_entry_point",
-        action_mode="grip_force",
-        friction_source="none",
-        sensors=experiment.sensors,
-        randomization=experiment.randomization,
-        level=experiment.level,
-        config=config,
-    )
-    try:
-        bar = tqdm(forces, desc=f"{experiment.task}, constant grip", unit="force", disable=not progress)
-        return [
-            Outcomes(force, play(envs, ConstantForcePolicy(force, config), seeds, options)) for force in bar
-        ]
-    finally:
-        envs.close()
+    arguments, found = {**experiment.arguments, **MODES}, []
+    bar = tqdm(forces, desc=f"{experiment.task}, constant grip", unit="force", disable=not progress)
+    for force in bar:
+        policy = ConstantForcePolicy(force, experiment.config)
+        found.append(Outcomes(force, play_episodes(experiment.task, policy, arguments, seeds, options)))
+    return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from contextlib import closing
 from importlib import import_module
 from typing import Any, NamedTuple
 
@@ -31,28 +32,23 @@ def demonstrate(
 ) -> Stored:
     """Plays episodes of a policy and stores them as a dataset; nothing is stored before the last one is over.
 
-    Args:
-        which: As `policies.load` takes it.
-        dataset: Name of the dataset, such as "hold/controller-v0".
-        count: Episodes, at least 1.
-        first: Seed of the first one; episode i has the seed `first` + i.
-        task: Needed for a controller that serves every task.
-        changes: Keyword arguments of the environment instead of those of the policy.
+    Policy, task and changes are as for `policies.evaluation.one_policy.episodes`; the dataset has a name
+    such as "hold/controller-v0"; of the `count` episodes, at least 1, number i has the seed `first` + i.
 
     Raises:
         ModuleNotFoundError: Minari is not installed.
         FileExistsError: There is a dataset of that name.
-        FileNotFoundError: There is no such policy.
-        ValueError: A name or value is wrong, or the environment is not one the policy can act in.
+        FileNotFoundError, ValueError: As for `episodes`.
     """
     minari: Any = import_module("minari")
     import_module("minari.dataset.minari_dataset").parse_dataset_id(dataset)
     if dataset in minari.list_local_datasets():
         raise FileExistsError(f"there is a dataset {dataset!r}: minari delete {dataset} removes it")
-    policy, inner = opened(which, task, changes)
-    env = minari.DataCollector(inner, record_infos=False)
-    solved = 0
-    try:
+    solved, collector = 0, minari.DataCollector
+    with (
+        opened(which, task, changes) as (policy, inner),
+        closing(collector(inner, record_infos=False)) as env,
+    ):
         for seed in tqdm(range(first, first + count), disable=None, leave=False):
             observation, info = env.reset(seed=seed)
             for step in steps(env, policy, observation):
@@ -67,6 +63,4 @@ def demonstrate(
             code_permalink="none",
             description=f"{solved} of {count} episodes solved, seeds from {first} on",
         )
-    finally:
-        env.close()
     return Stored(int(made.total_episodes), int(made.total_steps), solved)

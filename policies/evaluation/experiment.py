@@ -176,6 +176,12 @@ class Experiment(Frozen):
         names = (policy.name for policy in self.policies if policy.frame_skip is None)
         return common_frame_skip(names, self.frame_skip)
 
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """Keyword arguments that the environments of all its trials have in common, on any engine."""
+        same = {name: getattr(self, name) for name in ("sensors", "randomization", "level")}
+        return {**same, "config": dict(self.config)}
+
     def frame_skip_of(self, policy: PolicyChoice) -> int:
         """Control steps per action of one of its policies."""
         return policy.frame_skip or self.steps_per_action

@@ -19,11 +19,9 @@ def experiment_names() -> list[str]:
 
 
 def load_experiment(which: str | os.PathLike[str]) -> Experiment:
-    """Reads an experiment.
+    """Reads an experiment: one of `experiment_names()`, or the YAML file at a path.
 
-    Args:
-        which: One of `experiment_names()`, or the path of a YAML file. A task's own experiment also goes by
-            the task's other names, "LinearSlip" for example.
+    A task's own experiment also goes by the task's other names, "LinearSlip" for example.
 
     Raises:
         FileNotFoundError: It looks like a path, but there is no such file.
@@ -39,14 +37,9 @@ def narrowed(
     friction: Sequence[str] = (),
     level: str | None = None,
 ) -> Experiment:
-    """The experiment with another number of trials, another seed or level, or fewer friction choices.
+    """The experiment with another number of trials, another seed or level; None leaves them.
 
-    Args:
-        experiment: The experiment.
-        trials: Trials per condition; None leaves them.
-        seed: Its seed; None leaves it.
-        friction: Labels or sources to keep; none given keeps all.
-        level: Its level of difficulty; None leaves it.
+    It keeps the friction choices with some labels or sources; none given keeps all.
 
     Raises:
         ValueError: A value is not allowed, or the experiment has no such friction.

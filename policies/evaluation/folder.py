@@ -5,19 +5,15 @@ from __future__ import annotations
 import os
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 import yaml
 
-from policies.evaluation.experiment import Experiment
 from policies.versions import write_versions
+from slipgym import atomic_io
 
 INCOMPLETE = "INCOMPLETE"
 """File in the folder of a run that is not over."""
-
-
-def run_path(experiment: Experiment, output: str | os.PathLike[str]) -> Path:
-    """Folder of a run that starts now: <output>/<experiment>__<seed>__<timestamp>."""
-    return stamped(output, f"{experiment.name}__{experiment.seed}")
 
 
 def stamped(output: str | os.PathLike[str], name: str) -> Path:
@@ -26,10 +22,9 @@ def stamped(output: str | os.PathLike[str], name: str) -> Path:
     return Path(output).expanduser().resolve() / f"{name}__{stamp}"
 
 
-def write_origin(experiment: Experiment, folder: Path) -> None:
-    """Writes where results come from: the experiment, configuration and task settings, the versions."""
-    documents = {"experiment": experiment.model_dump(mode="json"), "environment": experiment.recorded()}
+def write_origin(folder: Path, **documents: Any) -> None:
+    """Writes plain values as YAML files of these names, such as the experiment, and the versions."""
     for name, values in documents.items():
         text = yaml.safe_dump(values, sort_keys=False, allow_unicode=True)
-        (folder / f"{name}.yaml").write_text(text, encoding="utf-8")
+        atomic_io.write(folder / f"{name}.yaml", text.encode())
     write_versions(folder)

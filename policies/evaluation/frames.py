@@ -1,8 +1,8 @@
-"""Small readings of tables."""
+"""Reads small tables, and writes them for pages and terminals."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -29,19 +29,43 @@ def where(frame: pd.DataFrame, **equals: object) -> pd.DataFrame:
 
 def records(frame: pd.DataFrame) -> list[dict[str, Any]]:
     """The rows as plain mappings."""
-    return [
-        dict(zip(map(str, frame.columns), row, strict=True))
-        for row in frame.itertuples(index=False, name=None)
-    ]
+    return frame.to_dict("records")  # type: ignore[return-value]
 
 
-def groups(frame: pd.DataFrame, columns: Sequence[str]) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
-    """The rows by the names in some columns, in order of appearance."""
-    for key in dict.fromkeys(zip(*(map(str, frame[column]) for column in columns), strict=True)):
-        yield key, where(frame, **dict(zip(columns, key, strict=True)))
+def groups(frame: pd.DataFrame, columns: Sequence[str]) -> Iterator[tuple[tuple[Any, ...], pd.DataFrame]]:
+    """The rows by what stands in some columns, in order of appearance."""
+    yield from frame.groupby(list(columns), sort=False)  # type: ignore[misc]
 
 
-def by_metric(summary: pd.DataFrame) -> Mapping[str, tuple[float, float, float]]:
-    """Value and interval of each metric, of rows of a summary that hold each metric once."""
-    rows = zip(*(values(summary, name) for name in ("metric", "value", "low", "high")), strict=True)
-    return {str(name): (float(value), float(low), float(high)) for name, value, low, high in rows}
+def text(interval: Sequence[float], heading: str) -> str:
+    """Value, low and high as words, such as "0.42 (0.40 to 0.44)"; in % where the heading says so."""
+    scale = 100.0 if heading.endswith("[%]") else 1.0
+    value, low, high = (scale * number for number in interval)
+    digits = 0 if scale > 1.0 else 2 if abs(value) < 10.0 else 1
+    if np.isnan(low) or low == high:
+        return f"{value:.{digits}f}"
+    return f"{value:.{digits}f} ({low:.{digits}f} to {high:.{digits}f})"
+
+
+def aligned(table: pd.DataFrame) -> str:
+    """A table of words in columns of even width, with a line below the headings."""
+    rows = [list(map(str, row)) for row in (table.columns, *table.itertuples(index=False, name=None))]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in rows]
+    return "\n".join([lines[0], "-" * max(map(len, lines)), *lines[1:]])
+
+
+def markdown(table: pd.DataFrame, digits: int = 2) -> str:
+    """A table as Markdown with this many digits after the point; NaN is a dash, infinity "never"."""
+
+    def cell(value: object) -> str:
+        if not isinstance(value, float):
+            return str(value)
+        if value == float("inf"):
+            return "never"
+        return "–" if value != value else f"{value:.{digits}f}".replace("-", "−")
+
+    numbers = ["---:" if pd.api.types.is_numeric_dtype(table[name]) else "---" for name in table]
+    rows = [list(map(str, table.columns)), numbers]
+    rows += [[cell(value) for value in row] for row in table.astype(object).itertuples(index=False)]
+    return "".join("| " + " | ".join(row) + " |\n" for row in rows)

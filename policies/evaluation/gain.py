@@ -1,33 +1,44 @@
-"""Compares policies with friction to the strongest one without it, on the same episodes."""
+"""Compares policies with friction to the strongest one without it and to the truth, on the same episodes."""
 
 from __future__ import annotations
 
+from collections.abc import Container, Iterable
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from policies.evaluation.frames import groups, values
+from policies.evaluation.frames import groups, text, values
 from policies.evaluation.statistics import Interval, mean_interval
 
 WITHOUT = "none", "nominal"
 """Friction sources of a policy without friction."""
+TRUTH = "Estimated against true friction, episode by episode"
+"""Title of the table `against_truth`."""
 _EPISODE = ["material", "options", "trial"]
 
 
 class Entry(NamedTuple):
     """A policy with a friction choice, in all its episodes."""
 
-    name: str
-    """How figures call it."""
+    policy: str
+    """How tables call the policy."""
     source: str
     """Its friction source."""
-    rows: np.ndarray
-    """Its rows of the table of trials, in the order of the episodes, (n,)."""
     success: np.ndarray
     """Whether it solved them, (n,) bool."""
     reward: np.ndarray
     """Their returns, (n,)."""
+    friction: str = ""
+    """How tables call the friction choice."""
+    rows: np.ndarray = np.empty(0, np.int64)
+    """Its rows of the table of trials, in the order of the episodes, (n,)."""
+
+    @property
+    def name(self) -> str:
+        """Name in figures."""
+        plain = {"none": self.policy, "nominal": f"{self.policy}, nominal friction"}
+        return plain.get(self.source, f"{self.source} friction")
 
 
 class Gain(NamedTuple):
@@ -55,41 +66,54 @@ class Gain(NamedTuple):
 
     def words(self) -> str:
         """The comparison in two sentences."""
-        true = [entry for entry in self.entries if entry.source == "true"]
-        return sentence(
-            len(self.estimated.success),
-            int(self.estimated.success.sum()),
-            (self.opponent.name, int(self.opponent.success.sum())),
-            int(true[0].success.sum()) if true else None,
-            self.points,
-        )
+        solved = {entry.source: int(entry.success.sum()) for entry in self.entries}
+        opponent = self.opponent.name, int(self.opponent.success.sum())
+        n = len(self.estimated.success)
+        return sentence(n, solved["estimated"], opponent, solved.get("true"), self.points)
+
+
+def ranked(entries: Iterable[Entry], sources: Container[str]) -> list[Entry]:
+    """The policies with these friction sources; the last solves most and, among equals, collects most."""
+    among = [entry for entry in entries if entry.source in sources]
+    return sorted(among, key=lambda entry: (entry.success.mean(), entry.reward.mean()))
+
+
+def difference(one: Entry, other: Entry) -> Interval:
+    """Episodes that one solves less those of the other, with the interval over pairs [%]."""
+    return mean_interval(100.0 * one.success - 100.0 * other.success)
 
 
 def compare(trials: pd.DataFrame) -> Gain | None:
-    """Finds the strongest policy without friction, and what the estimate gains over it.
+    """Finds the strongest policy without friction in a table of trials, and what the estimate gains over it.
 
-    The strongest solves most, among equals it collects most.
-
-    Args:
-        trials: The table of trials.
-
-    Returns:
-        None if no policy has estimated friction, or none is without.
+    None if no policy has estimated friction, or none is without.
     """
-    trials = trials.reset_index(drop=True)
-    found = [
-        _entry(policy, source, group)
-        for (policy, _, source), group in groups(trials, ["policy", "friction", "friction_source"])
-    ]
-    found.sort(key=lambda entry: (entry.success.mean(), entry.reward.mean()))
-    without = [entry for entry in found if entry.source in WITHOUT]
-    best = {entry.source: entry for entry in found}
-    if not without or "estimated" not in best:
+    entries = _entries(trials)
+    without = ranked(entries, WITHOUT)
+    estimated, true = (ranked(entries, [source])[-1:] for source in ("estimated", "true"))
+    if not without or not estimated:
         return None
-    opponent, estimated = without[-1], best["estimated"]
-    points = mean_interval(100.0 * estimated.success - 100.0 * opponent.success)
-    strongest = (best[source] for source in ("estimated", "true") if source in best)
-    return Gain((*without, *strongest), opponent, estimated, points)
+    return Gain(
+        (*without, *estimated, *true), without[-1], estimated[0], difference(estimated[0], without[-1])
+    )
+
+
+def against_truth(trials: pd.DataFrame) -> pd.DataFrame:
+    """Success of each policy with estimated friction beside that of the same policy with the truth, in words.
+
+    A row for each policy and choice of estimated friction in a table of trials: episodes that both solve,
+    only one of them and neither, and the difference with its interval over pairs. No rows without such pairs.
+    """
+    rows, entries = [], _entries(trials)
+    truth = {entry.policy: entry for entry in reversed(entries) if entry.source == "true"}
+    for entry in entries:
+        if entry.source == "estimated" and (true := truth.get(entry.policy)) is not None:
+            either = 2 * entry.success + true.success
+            counts = (int(np.sum(either == each)) for each in (3, 2, 1, 0))
+            points = text([0.01 * end for end in difference(entry, true)], "[%]")
+            rows.append((entry.policy, entry.friction, *counts, points))
+    cells = ["both solve", "estimate alone", "truth alone", "neither", "estimate less truth [points]"]
+    return pd.DataFrame(rows, columns=pd.Index(["policy", "friction", *cells]))
 
 
 def sentence(
@@ -106,31 +130,26 @@ def sentence(
     """
     name, solved = opponent
     with_truth = "" if true is None else f", {true} with the truth"
-    return (
-        f"Of {episodes} episodes, {estimated} are solved with estimated friction, {solved} by the strongest "
-        f"policy without friction ({name}){with_truth}. The estimate {_change(points)}."
-    )
-
-
-def _change(points: Interval) -> str:
-    """A gain or loss with its interval, of which a single episode has none."""
     verb, ends = "gains", points
     if points.value < 0.0:
         verb, ends = "loses", Interval(-points.value, -points.high, -points.low)
-    if np.isnan(points.low):
-        return f"{verb} {round(ends.value)} points"
-    value, low, high = (f"{round(end)}".replace("-", "−") for end in ends)
-    return f"{verb} {value} points ({low} to {high})"
-
-
-def _entry(policy: str, source: str, group: pd.DataFrame) -> Entry:
-    group = group.sort_values(_EPISODE, kind="stable")
-    plain = {"none": policy, "nominal": f"{policy}, nominal friction"}
-    success = values(group, "success").astype(bool)
-    return Entry(
-        plain.get(source, f"{source} friction"),
-        source,
-        np.asarray(group.index),
-        success,
-        values(group, "return"),
+    between = ""  # a single episode has no interval
+    if not np.isnan(points.low):
+        between = " ({} to {})".format(*(f"{round(end)}".replace("-", "−") for end in ends[1:]))
+    return (
+        f"Of {episodes} episodes, {estimated} are solved with estimated friction, {solved} by the strongest "
+        f"policy without friction ({name}){with_truth}. "
+        f"The estimate {verb} {round(ends.value)} points{between}."
     )
+
+
+def _entries(trials: pd.DataFrame) -> list[Entry]:
+    """The policies and friction choices of a table of trials, each with its episodes in the same order."""
+    found = []
+    trials = trials.reset_index(drop=True).sort_values(_EPISODE, kind="stable")
+    for (policy, friction, source), group in groups(trials, ["policy", "friction", "friction_source"]):
+        success = values(group, "success").astype(bool)
+        found.append(
+            Entry(policy, source, success, values(group, "return"), friction, np.asarray(group.index))
+        )
+    return found

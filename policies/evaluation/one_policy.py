@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from contextlib import contextmanager
+from typing import Any, NamedTuple
 
 import gymnasium as gym
 
@@ -13,7 +13,7 @@ import policies
 from estimator.reference import is_reference
 from policies.learned import LearnedPolicy
 from policies.registry import Policy
-from policies.stepping import steps
+from policies.stepping import environment_for, steps
 from policies.training import seeds
 from slipgym.tasks import find
 
@@ -21,8 +21,7 @@ FRESH = 1_000_000
 """Number of the first held-out seed here."""
 
 
-@dataclass(frozen=True)
-class Outcome:
+class Outcome(NamedTuple):
     """Outcome of an episode."""
 
     success: bool
@@ -36,15 +35,10 @@ class Outcome:
 
 
 def environment_of(which: str, policy: Policy, task: str | None) -> tuple[str, dict[str, Any]]:
-    """The environment that a policy is for.
-
-    Args:
-        which: What it was loaded by, for the message of an error.
-        policy: The policy.
-        task: Its task's name, where it does not say so itself.
+    """The environment that a policy is for; `which` it was loaded by is for the message of an error.
 
     Returns:
-        Id and keyword arguments: those of its training, or what a controller asks for.
+        Id and keyword arguments: those of its training, or what a controller of a task asks for.
 
     Raises:
         ValueError: No task is known, or another one is asked for.
@@ -63,10 +57,11 @@ def environment_of(which: str, policy: Policy, task: str | None) -> tuple[str, d
     return env_id, policies.modes(policy)
 
 
+@contextmanager
 def opened(
     which: str | os.PathLike[str], task: str | None = None, changes: Mapping[str, Any] | None = None
-) -> tuple[Policy, gym.Env]:
-    """A policy and the environment that it is for; arguments and errors as for `episodes`."""
+) -> Iterator[tuple[Policy, gym.Env]]:
+    """Opens a policy and the environment that it is for; arguments and errors as for `episodes`."""
     if task is not None:
         find(task)  # first of all: one of your own registers itself
     policy = policies.load(which)
@@ -75,14 +70,8 @@ def opened(
         _check_estimator(arguments.get("estimator"))
     arguments = {**arguments, **(changes or {})}
     policies.check_estimates(os.fspath(which), policy, arguments)
-    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **arguments)
-    if isinstance(policy, LearnedPolicy):
-        try:
-            policy.check(env)
-        except ValueError:
-            env.close()
-            raise
-    return policy, env
+    with environment_for(policy, env_id, **arguments) as env:
+        yield policy, env
 
 
 def episodes(
@@ -106,25 +95,17 @@ def episodes(
         FileNotFoundError: There is no policy at the path.
         ValueError: A name or value is wrong, or the environment is not one the policy can act in.
     """
-    policy, env = opened(which, task, changes)
-    try:
+    with opened(which, task, changes) as (policy, env):
         for number in range(first, first + count):
             observation, info = env.reset(seed=seeds.held_out(number))
             total = 0.0
             for step in steps(env, policy, observation):
                 total, info = total + float(step.reward), step.info
             yield Outcome(info["is_success"], info["dropped"], total, info["time"])
-    finally:
-        env.close()
 
 
 def outcome(which: str, found: Sequence[Outcome]) -> str:
-    """Outcome of episodes, in a line.
-
-    Args:
-        which: What the policy was loaded by.
-        found: From `episodes`, at least one.
-    """
+    """Outcome of episodes from `episodes`, at least one, in a line that begins with the policy's name."""
     n = len(found)
     solved, dropped = sum(one.success for one in found), sum(one.dropped for one in found)
     reward, time = (sum(getattr(one, name) for one in found) / n for name in ("reward", "time"))

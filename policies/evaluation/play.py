@@ -1,14 +1,20 @@
-"""Plays one episode in each environment of a vector environment."""
+"""Plays episodes side by side and keeps their outcomes."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import closing
 from typing import Any, NamedTuple
 
+import gymnasium as gym
 import numpy as np
 
 from policies.registry import Policy
 from policies.stepping import batch_steps
+from slipgym.tasks import find
+
+ROWS = {"planar": 1000, "bullet": 50}
+"""Most environments side by side; one of PyBullet takes 28 MB."""
 
 
 class Played(NamedTuple):
@@ -25,11 +31,44 @@ class Played(NamedTuple):
     slip: np.ndarray
     """Length of the way that the object slid [m]; what the task asks for is part of it."""
 
+    @property
+    def strength(self) -> tuple[float, float]:
+        """Share of the episodes that are solved and mean return, by which policies are ranked."""
+        return float(self.success.mean()), float(self.reward.mean())
+
+
+def play_episodes(
+    task: str,
+    policy: Policy,
+    arguments: Mapping[str, Any],
+    seeds: Sequence[int],
+    options: Sequence[Mapping[str, Any]] | None = None,
+    engine: str = "planar",
+) -> Played:
+    """Plays an episode for each seed.
+
+    Args:
+        task: As `slipgym.tasks.find` takes it.
+        policy: What acts.
+        arguments: Of the environments.
+        seeds: Of the episodes, (n,).
+        options: Options of reset of each episode; None: none.
+        engine: "planar" or "bullet".
+    """
+    made, parts, mode = dict(arguments), [], "vector_entry_point"
+    if engine != "planar":
+        made, mode = {**made, "engine": engine, "disable_env_checker": True}, "sync"
+    for first in range(0, len(seeds), ROWS[engine]):
+        block = slice(first, first + ROWS[engine])
+        with closing(gym.make_vec(f"slipgym:{find(task).id}", len(seeds[block]), mode, **made)) as envs:
+            parts.append(play(envs, policy, seeds[block], None if options is None else options[block]))
+    return Played(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+
 
 def play(
     envs: Any, policy: Policy, seeds: Sequence[int], options: Sequence[Mapping[str, Any]] | None = None
 ) -> Played:
-    """Plays the first episode of every environment to its end.
+    """Plays the first episode of every environment of a vector environment to its end.
 
     Args:
         envs: A vector environment of n slipgym environments.

@@ -16,9 +16,6 @@ from policies.learned.pretrained import locate
 def frame_skip_of(name: str) -> int | None:
     """Control steps per action that a policy was trained with; None for a controller, which takes any.
 
-    Args:
-        name: As `policies.load` takes it.
-
     Raises:
         FileNotFoundError: There is no policy at the path.
         ValueError: What lies there is no policy.

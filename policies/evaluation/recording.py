@@ -79,13 +79,9 @@ class Recorder:
     def add(
         self, observations: np.ndarray, rewards: np.ndarray, infos: Mapping[str, Any], running: np.ndarray
     ) -> None:
-        """Keeps what `step` returned.
+        """Keeps what `step` returned, arrays with a leading axis of n.
 
-        Args:
-            observations: (n, m).
-            rewards: (n,).
-            infos: Name -> array (n, ...).
-            running: Whether each environment's episode was still running before the step, (n,) bool.
+        `running` says whether each environment's episode was still running before the step, (n,) bool.
         """
         kept = {"estimated_per_finger": np.full((len(rewards), 2, 3), np.nan), **infos}
 
@@ -104,21 +100,16 @@ class Recorder:
 
     def _recording(self, i: int, series: Mapping[str, np.ndarray]) -> Recording:
         own = {name: values[: self._lengths[i], i].copy() for name, values in series.items()}
-        true = own["true"]
+        last = {name: own[name][-1] for name in ("true", "goal", "is_success", "dropped")}
         return Recording(
-            time=own["time"],
-            slip=own["slip"],
-            reference=own["reference"],
-            grip_force=own["grip_force"],
-            needed_force=needed_force(own["contact_wrench"], true),
+            **{name: own[name] for name in ("time", "slip", "reference", "grip_force", "reward", "shown")},
+            needed_force=needed_force(own["contact_wrench"], own["true"]),
             estimated=own["estimated_per_finger"],
-            true=true[-1],
-            reward=own["reward"],
-            goal=float(own["goal"][-1]),
-            success=bool(own["is_success"][-1]),
-            dropped=bool(own["dropped"][-1]),
+            true=last["true"],
+            goal=float(last["goal"]),
+            success=bool(last["is_success"]),
+            dropped=bool(last["dropped"]),
             drawn=self._drawn[i],
-            shown=own["shown"],
         )
 
 

@@ -10,12 +10,13 @@ from pathlib import Path
 import pandas as pd
 
 from policies.evaluation.experiment import Experiment
-from policies.evaluation.folder import INCOMPLETE, run_path, write_origin
+from policies.evaluation.folder import INCOMPLETE, stamped, write_origin
+from policies.evaluation.frames import markdown as grid
 from policies.evaluation.gain import compare
 from policies.evaluation.plan import plan
 from policies.evaluation.plots import draw, draw_gain
-from policies.evaluation.tables import markdown, summarise
-from policies.evaluation.trial import Result, run_trials, steps_of
+from policies.evaluation.tables import claims, markdown, summarise
+from policies.evaluation.trial import Result, recordings, run_trials
 from slipgym.atomic_io import check_folder, new_files, new_folder
 
 TRIALS = "trials.parquet"
@@ -47,16 +48,23 @@ def evaluate(
         OSError: The output cannot be written, which is found out before any trial.
         ModuleNotFoundError, ConnectionError: See `policies.parallel.results`.
     """
-    path, trials = run_path(experiment, output), plan(experiment)
+    path, trials = stamped(output, f"{experiment.name}__{experiment.seed}"), plan(experiment)
     check_folder(path.parent)
+
+    def incomplete(finished: int, folder: Path) -> None:
+        words = (
+            f"{finished} of {len(trials)} trials are in the tables; summary and figures come at the end.\n"
+        )
+        (folder / INCOMPLETE).write_text(words, encoding="utf-8")
+
     with new_folder(path) as folder:
-        write_origin(experiment, folder)
-        (folder / INCOMPLETE).write_text(_missing(0, len(trials)), encoding="utf-8")
+        write_origin(folder, experiment=experiment.model_dump(mode="json"), environment=experiment.recorded())
+        incomplete(0, folder)
 
     def keep(results: Sequence[Result]) -> None:
         with new_files(path) as folder:
             write_trials(results, folder)
-            (folder / INCOMPLETE).write_text(_missing(len(results), len(trials)), encoding="utf-8")
+            incomplete(len(results), folder)
 
     try:
         results = run_trials(experiment, trials, jobs, progress, keep, ray)
@@ -72,36 +80,26 @@ def evaluate(
     return path
 
 
-def _missing(finished: int, count: int) -> str:
-    """What the file `INCOMPLETE` says."""
-    return f"{finished} of {count} trials are in the tables; summary and figures are written at the end.\n"
-
-
 def write_results(experiment: Experiment, results: Sequence[Result], folder: Path) -> None:
     """Writes the table of trials, the series of the first trials, the summary and the figures."""
     trials, series = write_trials(results, folder)
     summary = summarise(trials, experiment.task)
     summary.to_csv(folder / "summary.csv", index=False)
-    page = markdown(summary, experiment.task, len(trials))
+    page = markdown(summary, experiment.task, len(trials), claims(trials, "## {}", grid))
     (folder / "summary.md").write_text(page, encoding="utf-8")
     draw(experiment.task, trials, series, folder)
     if (gain := compare(trials)) is not None:
         run = plan(experiment)
-        again = [steps_of(experiment, run[entry.rows[gain.episode()]]) for entry in gain.entries]
+        chosen = [run[entry.rows[gain.episode()]] for entry in gain.entries]
+        again = [recordings(experiment, [trial])[0].series() for trial in chosen]
         draw_gain(experiment.task, trials, gain, again, folder)
 
 
 def write_trials(results: Sequence[Result], folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Writes the table of trials and the series of the first trials, and returns both."""
     trials = pd.DataFrame([result.row for result in results])
-    series = pd.concat(
-        [
-            pd.DataFrame({"row": row, **result.series})
-            for row, result in enumerate(results)
-            if result.series is not None
-        ],
-        ignore_index=True,
-    )
+    kept = ((row, result.series) for row, result in enumerate(results) if result.series is not None)
+    series = pd.concat([pd.DataFrame({"row": row, **steps}) for row, steps in kept], ignore_index=True)
     trials.to_parquet(folder / TRIALS)
     trials.to_csv(folder / "trials.csv", index=False)
     series.to_parquet(folder / "series.parquet")

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 import pandas as pd
 
 import policies
-from policies.learned import LearnedPolicy
-from policies.stepping import steps
+from policies.stepping import environment_for, steps
 from slipgym.envs.bullet_simulation import BulletSimulation
 from slipgym.envs.engines import resolved
 from slipgym.envs.observation import ObservationBuffers
@@ -58,17 +57,11 @@ def record_sensors(
         raise ValueError("engine = 'planar' takes only the samples that are read: record with 'bullet'")
     actor = policies.load(policy)
     policies.check_estimates(policy, actor, keywords)
-    env = gym.make(f"slipgym:{env_id}", disable_env_checker=True, **{**policies.modes(actor), **keywords})
-    try:
-        if isinstance(actor, LearnedPolicy):
-            actor.check(env)
+    with environment_for(actor, env_id, **{**policies.modes(actor), **keywords}) as env:
         observation, _ = env.reset(seed=seed, options=dict(options or {}))
         tap = _Tap(env.unwrapped.simulation, finger - 1)  # type: ignore[attr-defined]
-        for _ in steps(env, actor, observation):
-            pass
+        deque(steps(env, actor, observation), maxlen=0)
         return tap.frame()
-    finally:
-        env.close()
 
 
 class _Tap:
@@ -88,7 +81,8 @@ class _Tap:
             )
         self._start = int(simulation.plant.world["tick"][0])
         force, world = simulation.plant.force_torque[0, finger], simulation.plant.world[0]
-        needed = int((world["control_ticks"] + force["delay"]) // force["period"]) + 2
+        latest = simulation.plant.force_torque["delay"][0].max()  # the other finger's reading goes on, too
+        needed = int((world["control_ticks"] + latest) // force["period"]) + 2
         if needed > HISTORY:
             rate = simulation.config.sensors.force_torque.rate
             raise ValueError(

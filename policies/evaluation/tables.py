@@ -1,14 +1,20 @@
-"""The summary of a table of trials."""
+"""Writes the summary of a table of trials, for a page and for a terminal."""
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
 import pandas as pd
+import yaml
 
 from policies.evaluation.columns import Metric
-from policies.evaluation.frames import by_metric, distinct, groups, values, where
+from policies.evaluation.folder import INCOMPLETE
+from policies.evaluation.frames import aligned, distinct, groups, text, values, where
+from policies.evaluation.frames import markdown as grid
+from policies.evaluation.gain import TRUTH, against_truth, compare
 from policies.evaluation.metrics import measures
-from policies.evaluation.statistics import Interval, mean_interval, share_interval
+from policies.evaluation.statistics import mean_interval, share
 
 KEYS = ["policy", "friction"]
 PAIR = ["policy", "material", "options", "trial"]
@@ -17,120 +23,97 @@ FRICTION = ("true_mu_c", "cruise_mu_c", "final_mu_c", "true_mu_s", "final_mu_s",
 
 
 def summarise(trials: pd.DataFrame, task: str) -> pd.DataFrame:
-    """Every measure of every policy and friction choice, over all trials and by material.
-
-    Args:
-        trials: The table of trials.
-        task: The task they ran.
+    """Every measure of every policy and friction choice of a task's trials, over all of them and by material.
 
     Returns:
         Columns `COLUMNS`: value with its interval low to high; material is "all" for all trials, metric
-        "difference of ..." for the mean over pairs of what a friction choice has over the first one.
+        "difference of ..." for the mean over pairs of what a friction choice has over the first one. What
+        all trials lack has no row.
     """
-    metrics = [*measures(task).summary, *(Metric(c, "") for c in FRICTION if c in trials)]
+    metrics = [m for m in measures(task).summary if not pd.isna(values(trials, m.column)).all()]
+    metrics += [Metric(name, "") for name in FRICTION if name in trials]
     rows = []
-    for whole in (True, False):
-        grouped = trials.assign(material="all") if whole else trials
+    for grouped in (trials.assign(material="all"), trials):
         for keys, group in groups(grouped, [*KEYS, "material"]):
-            rows += [(*keys, m.column, len(group), *interval(group, m)) for m in metrics]
-    rows += differences(trials, measures(task).compared)
-    return pd.DataFrame(rows, columns=COLUMNS)
-
-
-def interval(trials: pd.DataFrame, metric: Metric) -> Interval:
-    """A measure over some trials."""
-    found = values(trials, metric.column)
-    return share_interval(int(found.sum()), len(found)) if metric.share else mean_interval(found)
-
-
-def differences(trials: pd.DataFrame, metric: Metric) -> list[tuple]:
-    """Mean over pairs of trials of the same seed: what a friction choice has over the first one.
-
-    Args:
-        trials: The table of trials.
-        metric: The measure to compare by.
-    """
-    rows = []
+            for m in metrics:
+                found = (share if m.share else mean_interval)(values(group, m.column))
+                rows.append((*keys, m.column, len(group), *found))
+    metric = measures(task).compared.column
     for (policy,), group in groups(trials, ["policy"]):
         first, *others = distinct(group, "friction")
-        paired = group.pivot(index=PAIR, columns="friction", values=metric.column)
+        paired = group.pivot(index=PAIR, columns="friction", values=metric)
         for other in others:
-            difference = values(paired, other) - values(paired, first)
-            name = f"difference of {metric.column}"
-            rows.append((policy, other, "all", name, len(difference), *mean_interval(difference)))
-    return rows
+            found = mean_interval(values(paired, other) - values(paired, first))
+            rows.append((policy, other, "all", f"difference of {metric}", len(paired), *found))
+    return pd.DataFrame(rows, columns=pd.Index(COLUMNS))
 
 
-def markdown(summary: pd.DataFrame, task: str, n_trials: int) -> str:
-    """The summary as a page.
-
-    Args:
-        summary: From `summarise`.
-        task: The task.
-        n_trials: How many trials stand behind it.
-    """
-    overall = where(summary, material="all")
-    headings = {m.column: m.heading for m in measures(task).summary}
-    estimated = [column for column in FRICTION if column in set(summary["metric"])]
-    parts = [
-        f"# {task}: {n_trials} trials",
-        "Means with 95 % confidence intervals (BCa bootstrap; shares: Wilson).",
-        grid(overall, headings),
-    ]
-    compared = measures(task).compared
+def markdown(summary: pd.DataFrame, task: str, n_trials: int, claims: Sequence[str] = ()) -> str:
+    """The summary of a number of trials as a page that begins with some claims."""
+    overall, compared = where(summary, material="all"), measures(task).compared
+    parts = [f"# {task}: {n_trials} trials", *claims]
+    parts += ["## Means", "With 95 % confidence intervals (bootstrap; shares: Wilson)."]
+    parts.append(grid(shown(overall, {m.column: m.heading for m in measures(task).summary})))
     paired = where(overall, metric=f"difference of {compared.column}")
     if len(paired):
-        first = distinct(overall, "friction")[0]
-        parts += [
-            f"## Against {first!r}, trial by trial",
-            grid(paired, {f"difference of {compared.column}": f"difference of {compared.heading}"}),
-        ]
+        heading = {f"difference of {compared.column}": f"difference of {compared.heading}"}
+        parts.append(f"## Against {distinct(overall, 'friction')[0]!r}, trial by trial")
+        parts.append(grid(shown(paired, heading)))
+    headings = {name: _words(name) for name in FRICTION}
+    by_material = summary.loc[values(summary, "material") != "all"]
     parts += [
         "## Estimated friction by material",
         "Mean of both fingers: over the cruise of the reference, and at the end.",
-        grid(
-            summary.loc[values(summary, "material") != "all"],
-            {c: _words(c) for c in estimated},
-            by_material=True,
-        ),
+        grid(shown(by_material, headings, [*KEYS, "material"])),
     ]
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join(part.rstrip() for part in parts) + "\n"
 
 
-def grid(rows: pd.DataFrame, headings: dict[str, str], by_material: bool = False) -> str:
-    """A Markdown table with a column per metric.
+def report(folder: Path) -> str:
+    """A compact table of the run in a folder, and where to look next.
 
-    Args:
-        rows: Of a summary.
-        headings: Metric -> heading.
-        by_material: Whether the material is a column too.
+    Raises:
+        FileNotFoundError: The run is not over.
     """
-    keys = [*KEYS, "material"] if by_material else KEYS
-    lines = [
-        "| " + " | ".join([*keys, *headings.values()]) + " |",
-        "|" + " --- |" * len(keys) + " ---: |" * len(headings),
-    ]
-    for key, group in groups(rows, keys):
-        found = by_metric(group)
-        cells = [
-            text(found[metric], heading) if metric in found else "" for metric, heading in headings.items()
-        ]
-        lines.append("| " + " | ".join([*key, *cells]) + " |")
-    return "\n".join(lines)
+    if (folder / INCOMPLETE).exists():
+        raise FileNotFoundError(f"{folder} is not complete: the run was broken off, or goes on")
+    task = yaml.safe_load((folder / "experiment.yaml").read_text(encoding="utf-8"))["task"]
+    # as text: a column of nothing but "true" would turn into booleans
+    names = dict.fromkeys((*KEYS, "friction_source", "material", "metric"), str)
+    summary, trials = (
+        pd.read_csv(folder / f"{name}.csv", dtype=names, keep_default_na=False, na_values=[""])  # type: ignore[arg-type]
+        for name in ("summary", "trials")
+    )
+    parts = [line for part in claims(trials) for line in (part, "")]
+    headings = {m.column: m.heading for m in measures(task).summary if m.brief}
+    parts.append(aligned(shown(where(summary, material="all"), headings)))
+    parts += ["(95 % confidence intervals in brackets)", "", "Look at:"]
+    paths = [*sorted(folder.glob("*.png")), folder / "summary.md", folder / "trials.csv"]
+    return "\n".join([*parts, *(f"  {path}" for path in paths)])
 
 
-def text(interval: tuple[float, float, float], heading: str) -> str:
-    """Value, low and high as words, such as "0.42 (0.40 to 0.44)"; in % where the heading says so."""
-    scale = 100.0 if heading.endswith("[%]") else 1.0
-    value, low, high = (scale * number for number in interval)
-    digits = 0 if scale > 1.0 else 2 if abs(value) < 10.0 else 1
-    if np.isnan(low) or low == high:
-        return f"{value:.{digits}f}"
-    return f"{value:.{digits}f} ({low:.{digits}f} to {high:.{digits}f})"
+def claims(
+    trials: pd.DataFrame, title: str = "{}:", table: Callable[[pd.DataFrame], str] = aligned
+) -> list[str]:
+    """The gain over the strongest policy without friction, and the estimate beside the truth, if any."""
+    gain, truth = compare(trials), against_truth(trials)
+    parts = [] if gain is None else [gain.words()]
+    return [*parts, title.format(TRUTH), table(truth)] if len(truth) else parts
+
+
+def shown(summary: pd.DataFrame, headings: Mapping[str, str], keys: Sequence[str] = KEYS) -> pd.DataFrame:
+    """Rows of a summary in words by some of its columns, a column for each metric that is there."""
+    headings = {name: words for name, words in headings.items() if name in set(summary["metric"])}
+    rows = []
+    for key, group in groups(summary, keys):
+        ends = group[["value", "low", "high"]].itertuples(index=False, name=None)
+        found = dict(zip(group["metric"], ends, strict=True))
+        cells = (text(found[name], heading) if name in found else "" for name, heading in headings.items())
+        rows.append((*key, *cells))
+    return pd.DataFrame(rows, columns=pd.Index([*keys, *headings.values()]))
 
 
 def _words(column: str) -> str:
     """Heading of a friction column: "final_r_mm" -> "r, final [mm]"."""
     when, _, what = column.partition("_")
-    name, _, unit = what.partition("_mm")
-    return f"{name}, {when}" + (" [mm]" if what != name else unit)
+    return f"{what.removesuffix('_mm')}, {when}" + (" [mm]" if what.endswith("_mm") else "")

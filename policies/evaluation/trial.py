@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 from tqdm import tqdm
 
 import policies
 from policies import parallel
 from policies.controllers.rate import at_rate
-from policies.evaluation.batch import acts_on_batches, blocks, record_block
+from policies.evaluation.batch import acts_on_batches, blocks, present, record_block
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.metrics import measure, measures
 from policies.evaluation.plan import Trial
 from policies.evaluation.recording import INFOS, Recorder, Recording
-from policies.learned import LearnedPolicy
-from policies.stepping import steps
+from policies.stepping import environment_for, steps
 from slipgym.config.level import load_level
 from slipgym.tasks import configure, find
 
@@ -81,38 +80,32 @@ def run_block(experiment: Experiment, trials: Sequence[Trial]) -> list[Result]:
     Raises:
         ValueError: The policy refuses its parameters or the observations.
     """
-    first = trials[0]
-    try:
-        policy = make_policy(experiment, first)
-        if experiment.engine == "planar" and acts_on_batches(policy):
-            recordings = record_block(experiment, trials, policy, environment(experiment, first))
-            return [_result(experiment, *pair) for pair in zip(trials, recordings, strict=True)]
-    except Exception as error:
-        error.add_note(f"in trial {first.keys}")
-        raise
-    return [run_trial(experiment, trial) for trial in trials]
+    pairs = zip(trials, recordings(experiment, trials), strict=True)
+    return [_result(experiment, trial, recording) for trial, recording in pairs]
 
 
 def run_trial(experiment: Experiment, trial: Trial) -> Result:
-    """Runs one trial in an environment of its own.
+    """Runs one trial in an environment of its own; errors as for `run_block`."""
+    return _result(experiment, trial, record(experiment, trial))
 
-    Raises:
-        ValueError: The policy refuses its parameters or the observations.
-    """
+
+def recordings(experiment: Experiment, trials: Sequence[Trial]) -> list[Recording]:
+    """Runs trials as `run_block` does, and keeps their steps."""
+    with _named(trials[0]):
+        policy = make_policy(experiment, trials[0])
+        if experiment.engine == "planar" and acts_on_batches(policy):
+            return record_block(experiment, trials, policy, environment(experiment, trials[0]))
+    return [record(experiment, trial) for trial in trials]
+
+
+@contextmanager
+def _named(trial: Trial) -> Iterator[None]:
+    """Adds the trial to an error."""
     try:
-        recording = record(experiment, trial)
+        yield
     except Exception as error:
         error.add_note(f"in trial {trial.keys}")
         raise
-    return _result(experiment, trial, recording)
-
-
-def steps_of(experiment: Experiment, trial: Trial) -> dict[str, np.ndarray]:
-    """Runs one trial, as `run_block` does, and returns its steps as columns."""
-    policy = make_policy(experiment, trial)
-    if experiment.engine == "planar" and acts_on_batches(policy):
-        return record_block(experiment, [trial], policy, environment(experiment, trial))[0].series()
-    return record(experiment, trial, policy).series()
 
 
 def _result(experiment: Experiment, trial: Trial, recording: Recording) -> Result:
@@ -131,45 +124,31 @@ def _result(experiment: Experiment, trial: Trial, recording: Recording) -> Resul
 
 
 def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None = None) -> Recording:
-    """Runs an episode and keeps its steps.
-
-    Args:
-        experiment: What the trial is part of.
-        trial: The trial.
-        policy: Who acts instead of the trial's own.
-    """
+    """Runs the episode of a trial and keeps its steps; a policy may act instead of the trial's own."""
     task = find(experiment.task)  # first of all: one of your own registers itself, in this process too
-    policy = policy or make_policy(experiment, trial)
-    modes = policies.modes(policy)
-    keywords = {**environment(experiment, trial), **modes}
-    env: Any = gym.make(f"slipgym:{task.id}", disable_env_checker=True, **keywords)
-    try:
-        if isinstance(policy, LearnedPolicy):
-            policy.check(env)
-        observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
-        columns = [column.name for column in env.unwrapped.columns]
-        recorder, running = Recorder(columns, [info.get("drawn", {})]), np.ones(1, dtype=bool)
-        for step in steps(env, policy, observation):
-            newest = _present(env, step.observation)[np.newaxis]
-            infos = {name: np.asarray(step.info[name])[np.newaxis] for name in INFOS if name in step.info}
-            recorder.add(newest, np.array([step.reward]), infos, running)
-    finally:
-        env.close()
+    with _named(trial):
+        policy = policy or make_policy(experiment, trial)
+        keywords = {**environment(experiment, trial), **policies.modes(policy)}
+        with environment_for(policy, task.id, **keywords) as env:
+            observation, info = env.reset(seed=trial.seed, options=dict(trial.options))
+            columns = env.unwrapped.columns  # type: ignore[attr-defined]
+            recorder = Recorder([column.name for column in columns], [info.get("drawn", {})])
+            for step in steps(env, policy, observation):
+                newest = present(step.observation, len(columns))[np.newaxis]
+                infos = {name: np.asarray(step.info[name])[np.newaxis] for name in INFOS if name in step.info}
+                recorder.add(newest, np.array([step.reward]), infos, np.ones(1, dtype=bool))
     return recorder.finish()[0]
 
 
 def environment(experiment: Experiment, trial: Trial) -> dict[str, Any]:
     """Keyword arguments of a trial's environment, but for those that the policy decides."""
     return {
+        **experiment.arguments,
+        "engine": experiment.engine,
         "friction_source": trial.friction.source,
         "estimator": trial.friction.argument,
-        "sensors": experiment.sensors,
-        "engine": experiment.engine,
         "material": trial.material,
-        "randomization": experiment.randomization,
-        "level": experiment.level,
         "frame_skip": experiment.frame_skip_of(trial.policy),
-        "config": dict(experiment.config),
     }
 
 
@@ -186,9 +165,3 @@ def make_policy(experiment: Experiment, trial: Trial) -> policies.Policy:
     policy = policies.load(trial.policy.name, **parameters)
     policies.check_estimates(trial.policy.name, policy, environment(experiment, trial))
     return policy
-
-
-def _present(env: Any, observation: Any) -> np.ndarray:
-    """The newest of the observations, without privileged columns."""
-    newest = observation["policy"] if isinstance(observation, Mapping) else observation
-    return newest[-len(env.unwrapped.columns) :]

@@ -6,9 +6,8 @@ import math
 from collections.abc import Iterator
 
 from policies.leaderboard.imperfections import Imperfections, impaired
-from policies.leaderboard.scenario import Run, Scenario, after
+from policies.leaderboard.scenario import Scenario, after, in_slip, single
 from policies.leaderboard.scenarios import MU_C, MU_S, Effort, closed_loop, patch, turning
-from slipgym.synthetic import sense
 
 AT_ONCE = {"sensors": {"slip": {"latency_samples": 0}}}
 DELAYS = ((0, 0.0), (1, 0.3), (2, 0.0), (2, 0.3))
@@ -29,27 +28,22 @@ def unknown_delay(effort: Effort, material: str = "wood") -> Iterator[Scenario]:
     for delay, jitter in DELAYS:
         runs = []
         for k, trace in enumerate(closed_loop(material, effort.trials)):
-            exact = sense(trace, effort.seeds, effort.seed, config=AT_ONCE)
-            record = impaired(exact, Imperfections(velocity_delay=delay, jitter=jitter), effort.seed + k)
-            moving = (record.phase == "slip") & after(record, 1.0)
-            runs.append(Run(record, {"mu_c": moving, "mu_s": moving}))
+            exact, errors = effort.sense(trace, AT_ONCE), Imperfections(velocity_delay=delay, jitter=jitter)
+            runs.append(in_slip(impaired(exact, errors, effort.seed + k)))
         yield Scenario("unknown delay", f"{delay}, jitter {100 * jitter:.0f} %", tuple(runs))
 
 
 def sensor_errors(effort: Effort) -> Iterator[Scenario]:
     """3 s of planar slip whose direction turns by 1 rad/s, seen by sensors with constant errors."""
-    exact = sense(patch(turning(3.0), effort.cells), effort.seeds, effort.seed, config=AT_ONCE)
+    exact = effort.sense(patch(turning(3.0), effort.cells), AT_ONCE)
     late = after(exact, exact.t[-1] - 0.25)
     for name, imperfections in ERRORS.items():
-        record = impaired(exact, imperfections, effort.seed)
-        yield Scenario("sensor errors", name, (Run(record, {"mu_c": late, "r": late}),))
+        yield single("sensor errors", name, impaired(exact, imperfections, effort.seed), late)
 
 
 def jumps(effort: Effort) -> Iterator[Scenario]:
     """Steady planar slip in which mu_c jumps; evaluated from 0.3 s later to the end."""
     for factor in (0.7, 1.35):
         course = turning(2.0, 0.0).to("planar", 1e-3, mu_c=factor * MU_C, mu_s=factor * MU_S)
-        trace = patch(course.to("planar", 1.0), effort.cells)
-        record = sense(trace, effort.seeds, effort.seed)
-        late = after(record, course.times[-1] + 0.3)
-        yield Scenario("jump", f"× {factor:g}", (Run(record, {"mu_c": late, "r": late}),))
+        record = effort.sense(patch(course.to("planar", 1.0), effort.cells))
+        yield single("jump", f"× {factor:g}", record, after(record, course.times[-1] + 0.3))

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from slipgym.synthetic import Record
 
@@ -42,15 +43,10 @@ class Imperfections:
 
 
 def impaired(record: Record, imperfections: Imperfections, seed: int = 0) -> Record:
-    """A record as a gripper with these imperfections would have taken it.
+    """A record of m fingers as a gripper with these imperfections would have taken it.
 
-    Directions are spread evenly over the m fingers from a random start, signs and instants are random. The
+    Directions are spread evenly over the fingers from a random start, signs and instants are random. The
     first velocities of a delayed sensor are zero. A force between two samples is interpolated.
-
-    Args:
-        record: m fingers, n samples.
-        imperfections: Sizes of the errors.
-        seed: Of what is drawn, >= 0.
     """
     rng = np.random.default_rng(seed)
     m = len(record.wrenches)
@@ -77,24 +73,14 @@ def _impaired_forces(record: Record, imperfections: Imperfections, rng: np.rando
     signals = record.wrenches.swapaxes(1, 2).reshape(4 * m, -1)
     late = np.array([np.interp(past, record.t, signal) for signal in signals])
     wrenches = late.reshape(m, 4, -1).swapaxes(1, 2).copy()
-    axis_x, axis_y = imperfections.tilt * _directions(m, rng)
+    tilts = imperfections.tilt * np.vstack((_directions(m, rng), np.zeros(m)))
     zero_x, zero_y = imperfections.zero * _directions(m, rng)
     zero_n = imperfections.zero_normal * rng.choice((-1.0, 1.0), m)
-    signs = rng.choice((-1.0, 1.0), (m, 3, 3))
-    for i in range(m):
-        off_diagonal = imperfections.cross_talk * signs[i] * (1.0 - np.eye(3))
-        matrix = (np.eye(3) + off_diagonal) @ _rotation(axis_x[i], axis_y[i])
-        wrenches[i, :, :3] = wrenches[i, :, :3] @ matrix.T + (zero_x[i], zero_y[i], zero_n[i])
+    cross_talk = imperfections.cross_talk * rng.choice((-1.0, 1.0), (m, 3, 3)) * (1.0 - np.eye(3))
+    matrices = (np.eye(3) + cross_talk) @ Rotation.from_rotvec(tilts.T).as_matrix()
+    zeros = np.column_stack((zero_x, zero_y, zero_n))[:, None]
+    wrenches[..., :3] = wrenches[..., :3] @ matrices.swapaxes(1, 2) + zeros
     return wrenches
-
-
-def _rotation(x: float, y: float) -> np.ndarray:
-    """Matrix (3, 3) of the rotation vector (x, y, 0) [rad] (Rodrigues)."""
-    skew = np.array([[0.0, 0.0, y], [0.0, 0.0, -x], [-y, x, 0.0]])
-    angle = np.hypot(x, y)
-    if angle == 0.0:
-        return np.eye(3)
-    return np.eye(3) + np.sin(angle) / angle * skew + (1.0 - np.cos(angle)) / angle**2 * skew @ skew
 
 
 def _impaired_velocities(

@@ -27,11 +27,7 @@ IMPERFECTIONS = {
 
 
 def values_of(label: str, preset: str = "lab") -> Values:
-    """Values of a preset of the sensors for an imperfection: sensor -> parameter -> value.
-
-    Args:
-        label: Of `IMPERFECTIONS`.
-        preset: Name of the preset.
+    """Values of a preset of the sensors for one of `IMPERFECTIONS`: sensor -> parameter -> value.
 
     Raises:
         ValueError: There is no such imperfection.
@@ -48,8 +44,7 @@ def values_of(label: str, preset: str = "lab") -> Values:
 def without(labels: Sequence[str]) -> Mapping[str, Any]:
     """Overrides of the configuration that give sensors what "realistic" has instead of some imperfections.
 
-    Args:
-        labels: Of `IMPERFECTIONS`; hyphens may stand for spaces.
+    They are named as in `IMPERFECTIONS`; hyphens may stand for spaces.
 
     Raises:
         ValueError: There is no such imperfection.

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from policies.leaderboard.scenario import Run, Scenario, after
+from policies.leaderboard.scenario import Scenario, after, single
 from policies.leaderboard.scenarios import MU_C, MU_S, Effort, R, patch, turning
-from slipgym.synthetic import Course, sense
+from slipgym.synthetic import Course
 
 DRIFTS = (0.7, 1.35)
 """Factor of the friction at the end of a drift; those of the group "jump"."""
@@ -21,35 +21,30 @@ def drifts(effort: Effort) -> Iterator[Scenario]:
     for factor in DRIFTS:
         steady = turning(1.0, 0.0)
         course = steady.to("planar", DRIFT_TIME, mu_c=factor * MU_C, mu_s=factor * MU_S)
-        record = sense(patch(course, effort.cells), effort.seeds, effort.seed)
-        late = after(record, steady.times[-1] + 0.3)
-        yield Scenario("drift", f"× {factor:g}", (Run(record, {"mu_c": late, "r": late}),))
+        record = effort.sense(patch(course, effort.cells))
+        yield single("drift", f"× {factor:g}", record, after(record, steady.times[-1] + 0.3))
 
 
 def load_dependent(effort: Effort) -> Iterator[Scenario]:
     """Planar slip that turns while the normal force swings; the truth is that at the load of the sample."""
     for friction, radius in effort.exponents:
-        record = sense(patch(swinging(friction, radius), effort.cells), effort.seeds, effort.seed)
-        late = after(record, record.t[-1] - PERIOD)
+        record = effort.sense(patch(swinging(friction, radius), effort.cells))
         names = [f"μ a {friction:g}"] * (friction > 0.0) + ["r ⅓"] * (radius > 0.0)
-        yield Scenario("load", ", ".join(names), (Run(record, {"mu_c": late, "r": late}),))
+        yield single("load", ", ".join(names), record, after(record, record.t[-1] - PERIOD))
 
 
 def anisotropic(effort: Effort) -> Iterator[Scenario]:
     """Planar slip that turns by half a circle, evaluated all over it; the truth is the mean of both axes."""
     for anisotropy in effort.anisotropies:
-        trace = patch(turning(1.0 + math.pi), effort.cells, anisotropy=anisotropy)
-        record = sense(trace, effort.seeds, effort.seed)
+        record = effort.sense(patch(turning(1.0 + math.pi), effort.cells, anisotropy=anisotropy))
         late = after(record, record.t[-1] - math.pi)
-        yield Scenario("anisotropy", f"± {100 * anisotropy:.0f} %", (Run(record, {"mu_c": late, "r": late}),))
+        yield single("anisotropy", f"± {100 * anisotropy:.0f} %", record, late)
 
 
 def swinging(friction: float, radius: float) -> Course:
     """3 s of `turning` under a normal force that swings; friction and r follow it.
 
-    Args:
-        friction: mu falls with the normal force to the power of this [-].
-        radius: r grows with it to the power of this [-].
+    mu falls with the normal force to the power of `friction`, r grows with it to the power of `radius` [-].
     """
     course = turning(3.0)
     points = list(course.points)

@@ -12,46 +12,23 @@ from tqdm import tqdm
 
 import estimator
 from policies.evaluation.folder import stamped
-from policies.evaluation.frames import values
+from policies.evaluation.frames import markdown, values
 from policies.evaluation.plots.style import STYLE, styled
-from policies.leaderboard.imperfect import jumps, sensor_errors, unknown_delay
+from policies.leaderboard import imperfect, rubber, scenarios
 from policies.leaderboard.picture import plot_leaderboard
 from policies.leaderboard.ranking import ranked, winners
 from policies.leaderboard.replay import replay
-from policies.leaderboard.rubber import anisotropic, drifts, load_dependent
 from policies.leaderboard.scenario import FIELDS, Scenario
-from policies.leaderboard.scenarios import (
-    Effort,
-    effort_of,
-    latency,
-    noise,
-    planar,
-    pressure,
-    profiles,
-    spin_first,
-    start_values,
-    stick_slip,
-)
+from policies.leaderboard.scenarios import Effort, effort_of
 from policies.leaderboard.score import FIGURES, score
-from policies.leaderboard.tables import markdown
 from policies.versions import write_versions
 from slipgym.atomic_io import new_folder
 
 GROUPS: tuple[Callable[[Effort], Iterator[Scenario]], ...] = (
-    profiles,
-    stick_slip,
-    planar,
-    start_values,
-    spin_first,
-    noise,
-    pressure,
-    latency,
-    unknown_delay,
-    sensor_errors,
-    jumps,
-    drifts,
-    load_dependent,
-    anisotropic,
+    *(scenarios.profiles, scenarios.stick_slip, scenarios.planar, scenarios.start_values),
+    *(scenarios.spin_first, scenarios.noise, scenarios.pressure, scenarios.latency),
+    *(imperfect.unknown_delay, imperfect.sensor_errors, imperfect.jumps),
+    *(rubber.drifts, rubber.load_dependent, rubber.anisotropic),
 )
 """The groups of scenarios; another one is one more function."""
 Entrants = dict[str, tuple[str, dict[str, object]]]
@@ -61,11 +38,8 @@ Entrants = dict[str, tuple[str, dict[str, object]]]
 def entrants(own: Sequence[str] = ()) -> Entrants:
     """Every estimator as it is made by its name, the paper's without its heuristic, and the user's own.
 
-    Args:
-        own: As `estimator.make` takes them: "module:attribute".
-
     Raises:
-        ValueError: One of them cannot be made.
+        ValueError: One of the user's, "module:attribute", cannot be made.
     """
     for name in own:
         estimator.make(name)

@@ -37,6 +37,17 @@ class Scenario:
     """Start value (`r0`, `mu_c0`) -> one for each of the m records; the first are the truth."""
 
 
+def single(group: str, name: str, record: Record, at: np.ndarray) -> Scenario:
+    """A scenario of one course, of which mu_c and r are evaluated at the same samples, (n,) bool."""
+    return Scenario(group, name, (Run(record, {"mu_c": at, "r": at}),))
+
+
+def in_slip(record: Record) -> Run:
+    """A closed-loop trial, of which mu_c and mu_s are evaluated in slip after the first second."""
+    moving = (record.phase == "slip") & after(record, 1.0)
+    return Run(record, {"mu_c": moving, "mu_s": moving})
+
+
 def ends(record: Record, *labels: str) -> np.ndarray:
     """The last sample of every phase with one of these labels, (n,) bool."""
     last = np.append(record.phase[1:] != record.phase[:-1], True)

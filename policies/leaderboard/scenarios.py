@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
+from typing import Any
 
 import numpy as np
 
 from policies.leaderboard.profile_course import STEADY, STOP, disc, profile, slip
-from policies.leaderboard.scenario import Run, Scenario, after, ends
+from policies.leaderboard.scenario import Run, Scenario, after, ends, in_slip, single
 from policies.leaderboard.stick_slip import linear_slip_trace
 from slipgym.contact import DistributedContact
 from slipgym.synthetic import Course, Record, Trace, integrate, sense
@@ -39,17 +40,16 @@ class Effort:
     """Shares of translation of the start-value grids [-]."""
     radii: int = 9
     """Start values of r in the grids."""
-    exponents: tuple[tuple[float, float], ...] = (
-        (0.15, 0.0),
-        (0.31, 0.0),
-        (0.0, 1.0 / 3.0),
-        (0.31, 1.0 / 3.0),
-    )
+    exponents: tuple[tuple[float, float], ...] = ((0.15, 0.0), (0.31, 0.0), (0.0, 1 / 3), (0.31, 1 / 3))
     """Exponents of `slipgym.contact.soft_pad`: friction falls with the load, r grows with it."""
     anisotropies: tuple[float, ...] = (0.1, 0.2)
     """Friction along x is larger by this, along y smaller [-]."""
     seed: int = 0
     """Of the noise."""
+
+    def sense(self, trace: Trace, config: Mapping[str, Any] | None = None) -> Record:
+        """The trace as sensors of a configuration see it, with each seed."""
+        return sense(trace, self.seeds, self.seed, config=config)
 
 
 QUICK = Effort(2, 11, ("wood",), ((0.02, 2.0),), (5.0,), (0.7,), 3, ((0.31, 1.0 / 3.0),), (0.2,))
@@ -62,7 +62,7 @@ def effort_of(quick: bool, seed: int) -> Effort:
 
 def profiles(effort: Effort) -> Iterator[Scenario]:
     """The velocity profile of `slipgym reproduce profile`."""
-    record = sense(patch(profile(), effort.cells), effort.seeds, effort.seed)
+    record = effort.sense(patch(profile(), effort.cells))
     evaluated = {
         "mu_c": ends(record, *(label for label in STEADY if label != "rotational")),
         "r": ends(record, *(label for label in STEADY if not label.startswith("linear"))),
@@ -81,10 +81,8 @@ def stick_slip(effort: Effort) -> Iterator[Scenario]:
 def planar(effort: Effort) -> Iterator[Scenario]:
     """Steady planar slip on a uniform disc, from the start values."""
     for gamma_t in (0.3, 0.5, 0.7, 0.9):
-        trace = patch(slip(rest(), "planar", 3.0, gamma_t, SPEED), effort.cells)
-        record = sense(trace, effort.seeds, effort.seed)
-        end = ends(record, "planar")
-        yield Scenario("planar", f"γ {gamma_t:g}", (Run(record, {"mu_c": end, "r": end}),))
+        record = effort.sense(patch(slip(rest(), "planar", 3.0, gamma_t, SPEED), effort.cells))
+        yield single("planar", f"γ {gamma_t:g}", record, ends(record, "planar"))
 
 
 def start_values(effort: Effort) -> Iterator[Scenario]:
@@ -105,14 +103,14 @@ def noise(effort: Effort) -> Iterator[Scenario]:
     for scale in (0.5, 1.0, 2.0, 4.0):
         force = {name: scale * sd for name, sd in SIGMA.items()}
         config = {"sensors": {"force_torque": force, "slip": {"count": scale * COUNT}}}
-        record = sense(trace, effort.seeds, effort.seed, config=config)
+        record = effort.sense(trace, config)
         yield Scenario("noise", f"× {scale:g}", (Run(record, mixed_judged(record)),))
 
 
 def pressure(effort: Effort) -> Iterator[Scenario]:
     """The mixed course under other pressure profiles with the same r."""
     for name in ("uniform", "hertz", "rim"):
-        record = sense(patch(mixed(), effort.cells, name), effort.seeds, effort.seed)
+        record = effort.sense(patch(mixed(), effort.cells, name))
         yield Scenario("pressure", name.replace("hertz", "Hertz"), (Run(record, mixed_judged(record)),))
 
 
@@ -130,12 +128,9 @@ def rest(**values: float) -> Course:
 
 
 def turning(duration: float, rate: float = 1.0, gamma_t: float = 0.7) -> Course:
-    """Planar slip of a constant scaled speed whose direction turns, in chords of 0.1 s.
+    """Planar slip [s] of a constant scaled speed whose direction turns at a rate [rad/s], in chords of 0.1 s.
 
-    Args:
-        duration: Of the slip at full speed [s].
-        rate: Of the turn [rad/s].
-        gamma_t: Fraction of translation [-].
+    `gamma_t` is the fraction of translation [-].
     """
     course, omega = rest(), math.sqrt(1.0 - gamma_t**2) * SPEED / R
     for k in range(round(10 * duration) + 1):
@@ -188,8 +183,5 @@ def closed_loop(material: str, trials: tuple[tuple[float, float], ...]) -> tuple
 
 
 def late(trace: Trace, samples: int, effort: Effort) -> Run:
-    """A closed-loop trial with velocities of an age, evaluated in slip after the first second."""
-    config = {"sensors": {"slip": {"latency_samples": samples}}}
-    record = sense(trace, effort.seeds, effort.seed, config=config)
-    moving = (record.phase == "slip") & after(record, 1.0)
-    return Run(record, {"mu_c": moving, "mu_s": moving})
+    """A closed-loop trial with velocities of an age [samples]."""
+    return in_slip(effort.sense(trace, {"sensors": {"slip": {"latency_samples": samples}}}))

@@ -12,16 +12,11 @@ HELD = 24  # samples for which it must stay that close: 0.2 s
 
 
 def score(scenario: Scenario, estimates: list[np.ndarray]) -> dict[str, float]:
-    """Figures of one estimator in one scenario.
-
-    Args:
-        scenario: What it was fed.
-        estimates: ESTIMATE (m, n) for each run.
+    """Figures of one estimator in one scenario, from its ESTIMATE arrays (m, n) of each run.
 
     Returns:
-        For each quantity of `FIELDS`, over all evaluated samples and records: `bias` (mean relative
-        error) [%],
-        `spread` (standard deviation over records) [%], `error` (root mean square relative error) [%],
+        For each quantity of `FIELDS`, over all evaluated samples and records: `bias`, the mean relative
+        error [%], `spread`, its standard deviation over records [%], `error`, its root mean square [%],
         `calibration` (share of truths within one stated deviation) [-]; `time` to 5 % [s], the median over
         records from the first slip, infinite if it is never that close for 0.2 s; `lock_ups`: share of start
         values that end over 5 % away, in mu_c or r, from what the true start value leads to [-].

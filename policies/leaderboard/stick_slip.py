@@ -7,11 +7,10 @@ sample is still that of slip. In closed loop the load stays and the ratio falls.
 
 from __future__ import annotations
 
-import gymnasium as gym
 import numpy as np
 
 import policies
-from policies.stepping import steps
+from policies.stepping import environment_for, steps
 from slipgym.synthetic import Trace
 
 
@@ -19,31 +18,17 @@ def linear_slip_trace(material: str, distance: float, duration: float, seed: int
     """A trial of slipgym/LinearSlip-v0 under its controller, which knows the true friction.
 
     So the motion is the same whatever an estimator says. The contact is the distributed one: a
-    uniform disc, as everywhere in the leaderboard.
-
-    Args:
-        material: Name of the material.
-        distance: To slide [m].
-        duration: Of the reference [s].
-        seed: Of the environment.
+    uniform disc, as everywhere in the leaderboard. The distance is in [m], the duration in [s].
 
     Returns:
         What finger 1 truly felt and saw, at 120 Hz; the phase is "slip" where a sample moved on average
         faster than 1 mm/s, and "stick" elsewhere.
     """
-    env = gym.make(
-        "slipgym:slipgym/LinearSlip-v0",
-        friction_source="true",
-        contact="distributed",
-        material=material,
-        disable_env_checker=True,
-    )
     controller = policies.make("linear_slip_continuous")
-    try:
+    arguments = {"friction_source": "true", "contact": "distributed", "material": material}
+    with environment_for(controller, "slipgym/LinearSlip-v0", **arguments) as env:
         observation, first = env.reset(seed=seed, options={"distance": distance, "duration": duration})
         infos = [step.info for step in steps(env, controller, observation)]
-    finally:
-        env.close()
     t = np.array([info["time"] for info in infos])
     motion = np.diff([info["slip"] for info in [first, *infos]], axis=0)
     speed = np.hypot(*motion[:, :2].T) / np.diff(t, prepend=0.0)

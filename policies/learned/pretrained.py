@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from estimator.suggestions import asking
+from estimator.suggestions import unknown
 from policies.learned.files import DESCRIPTION
 
 FOLDER = Path(__file__).parent / "pretrained_policies"
@@ -23,7 +23,5 @@ def locate(which: str | os.PathLike[str]) -> Path:
     """
     folder = folders().get(os.fspath(which), Path(which))
     if not folder.exists():
-        known = ", ".join(folders()) or "none"
-        said = f"no learned policy at {os.fspath(which)!r}; known by name: {known}"
-        raise FileNotFoundError(asking(said, os.fspath(which), folders()))
+        raise FileNotFoundError(unknown("no learned policy at", os.fspath(which), folders()))
     return folder

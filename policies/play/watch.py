@@ -15,6 +15,7 @@ import numpy as np
 from tqdm import tqdm
 
 import policies
+from estimator.reference import is_reference
 from policies.learned import LearnedPolicy
 from policies.play.video import Video
 from policies.registry import Policy
@@ -213,9 +214,8 @@ def _policy(name: str | Policy) -> Policy:
     """A policy by its name, or from where it was saved; or as it is."""
     if not isinstance(name, str):
         return name
-    known = [KEYBOARD, *policies.names()]
-    if name in known:
-        return policies.make(name)
-    if Path(name).exists() or os.sep in name:
+    if name in policies.names() or is_reference(name) or Path(name).exists() or os.sep in name:
         return policies.load(name)
-    raise ValueError(f"{unknown('policy', name, known)}; or the path of a trained one")
+    raise ValueError(
+        f"{unknown('policy', name, [KEYBOARD, *policies.names()])}; or the path of a trained one"
+    )

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from policies.evaluation.folder import stamped
 from policies.evaluation.frames import distinct
+from policies.evaluation.plots.heat import heat, places
 from policies.evaluation.plots.style import STYLE, styled
 from policies.policy_leaderboard.run import kinds
 from policies.versions import versions, write_versions
@@ -25,38 +25,29 @@ BAND = 3
 """Tasks beside each other."""
 WIDTH = 6.7
 """Of the picture: its words keep their size on a page 670 pixels wide [inches]."""
-COLOURS = LinearSegmentedColormap.from_list("solved", ["#A33B00", "#E9A26A", "#F7F4E9", "#7FC8A9", "#00644A"])
 
 
-def write(table: pd.DataFrame, output: Path, played: Mapping[str, Any] | None = None) -> Path:
-    """Writes the table and the picture, whole or not at all.
+def write(
+    table: pd.DataFrame, output: Path, played: Mapping[str, Any] | None = None, name: str = "policies"
+) -> Path:
+    """Writes a table into a run's own folder, whole or not at all.
 
     Args:
-        table: Of all tasks and levels, from `policies.policy_leaderboard.run.outcomes`.
+        table: Of all tasks and levels, from `policies.policy_leaderboard.run.outcomes` or another.
         output: Folder of the run's own folder.
-        played: What the episodes were: their number, the engine, arguments of the environments.
+        played: How the outcomes were played: their number, the engine, arguments of the environments. With it
+            there are a picture and `leaderboard.json`.
+        name: Of the table.
 
     Returns:
-        The folder: `policies.csv`, `policies.png`, `leaderboard.json`, `versions.json`.
+        The folder: `policies.csv`, `versions.json`, and `policies.png` and `leaderboard.json`.
     """
-    return write_table(table, output, "policies", plot_policies, played or {})
-
-
-def write_table(
-    table: pd.DataFrame,
-    output: Path,
-    name: str,
-    plot: Callable[[pd.DataFrame], Figure] | None = None,
-    played: Mapping[str, Any] | None = None,
-) -> Path:
-    """Writes a table, its picture and `leaderboard.json` if asked, and `versions.json` into a folder."""
     place = stamped(output, name)
     with new_folder(place) as folder:
         table.to_csv(folder / f"{name}.csv", index=False, float_format="%.3f")
-        if plot is not None:
-            with styled():
-                plot(table).savefig(folder / f"{name}.png", dpi=STYLE.dpi)
         if played is not None:
+            with styled():
+                plot_policies(table).savefig(folder / f"{name}.png", dpi=STYLE.dpi)
             rows = json.loads(table.to_json(orient="records", double_precision=3) or "[]")
             board = {"played": dict(played), "versions": versions(), "rows": rows}
             atomic_io.write(folder / "leaderboard.json", (json.dumps(board, indent=1) + "\n").encode())
@@ -65,11 +56,7 @@ def write_table(
 
 
 def plot_policies(table: pd.DataFrame) -> Figure:
-    """A row for each policy, the best on average on top; a column for each task and level.
-
-    Args:
-        table: From `policies.policy_leaderboard.run.outcomes`, of several tasks and levels.
-    """
+    """A row for each policy, the best on average on top; a column for each task and level."""
     table = table.assign(kind=kinds(table))
     tasks = distinct(table, "task")
     bands = [table.loc[table["task"].isin(tasks[k : k + BAND])] for k in range(0, len(tasks), BAND)]
@@ -90,21 +77,10 @@ def plot_band(axes: Axes, table: pd.DataFrame) -> None:
     cells = list(dict.fromkeys(zip(table["task"], table["level"], strict=True)))
     grid = table.pivot_table(index="kind", columns=["task", "level"], values="solved [%]")[cells]
     grid = grid.loc[grid.mean(axis=1).sort_values(ascending=False).index]
-    tasks, names = distinct(table, "task"), list(grid.index)
-    starts = [next(k for k, cell in enumerate(cells) if cell[0] == task) for task in tasks]
-    places = np.arange(len(cells)) + 0.4 * np.searchsorted(starts, np.arange(len(cells)), side="right")
-    rows = np.arange(len(names) + 1) - 0.5
-    for place, column in zip(places, grid.to_numpy().T, strict=True):
-        values = np.ma.masked_invalid(column[:, None])
-        axes.pcolormesh([place - 0.48, place + 0.48], rows, values, vmin=0, vmax=100, cmap=COLOURS)
-        for row, value in enumerate(column):
-            if np.isfinite(value):
-                colour = STYLE.ink if 20 < value < 80 else "white"
-                axes.text(place, row, f"{value:.0f}", ha="center", va="center", size=8, color=colour)
-    for task, start in zip(tasks, starts, strict=True):
-        axes.text(places[start] - 0.48, -0.75, task, size=9, weight="bold", ha="left", va="bottom")
-    axes.set_xticks(places, [level for _, level in cells], rotation=30, ha="right", rotation_mode="anchor")
-    axes.set_yticks(range(len(names)), names)
-    axes.invert_yaxis()
-    axes.tick_params(length=0)
-    axes.spines[:].set_visible(False)
+    groups, levels = zip(*cells, strict=True)
+    at = places(groups, 0.4)
+    heat(axes, grid.to_numpy(), at, list(grid.index), Normalize(0, 100), "{:.0f}".format)
+    for task in dict.fromkeys(groups):
+        left = at[groups.index(task)] - 0.48
+        axes.text(left, -0.75, task, size=9, weight="bold", ha="left", va="bottom")
+    axes.set_xticks(at, levels, rotation=30, ha="right", rotation_mode="anchor")

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import gymnasium as gym
-import numpy as np
 import pandas as pd
 from tqdm import tqdm
 
-from policies.evaluation.play import Played, play
-from policies.evaluation.statistics import share_interval
+from policies.evaluation.play import Played, play_episodes
+from policies.evaluation.statistics import share
 from policies.policy_leaderboard.entries import Member
 from slipgym.tasks import find
 
@@ -20,8 +18,6 @@ COLUMNS = (
     "slid [mm]",
 )  # fmt: skip
 """Of the table: `low` and `high` bound the interval of 95 % of what was solved [%]."""
-ROWS = {"planar": 1000, "bullet": 50}
-"""Most environments side by side; one of PyBullet takes 28 MB."""
 
 
 def episodes_of(
@@ -36,19 +32,8 @@ def episodes_of(
         arguments: Further arguments of the environments, such as `level`.
         engine: "planar" or "bullet".
     """
-    made, parts = {**arguments, **member.arguments}, []
-    for first in range(0, episodes, ROWS[engine]):
-        seeds = range(first, min(first + ROWS[engine], episodes))
-        if engine == "planar":
-            envs = gym.make_vec(f"slipgym:{find(task).id}", len(seeds), "vector_entry_point", **made)
-        else:
-            kind = {"engine": engine, "disable_env_checker": True}
-            envs = gym.make_vec(f"slipgym:{find(task).id}", len(seeds), "sync", **kind, **made)
-        try:
-            parts.append(play(envs, member.policy, seeds))
-        finally:
-            envs.close()
-    return Played(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+    made = {**arguments, **member.arguments}
+    return play_episodes(task, member.policy, made, range(episodes), engine=engine)
 
 
 def play_all(
@@ -60,16 +45,7 @@ def play_all(
     engine: str = "planar",
     progress: bool = True,
 ) -> dict[str, Played]:
-    """Plays the same episodes with every policy.
-
-    Args:
-        task: As `slipgym.tasks.find` takes it.
-        level: Level of difficulty.
-        members: The policies.
-        episodes: How many for each.
-        arguments: Further arguments of the environments.
-        engine: "planar" or "bullet".
-        progress: Whether to show a progress bar.
+    """Plays the same episodes with every policy; further arguments as for `episodes_of`.
 
     Returns:
         The episodes of each policy by its name.
@@ -90,11 +66,8 @@ def outcomes(task: str, level: str, played: Mapping[str, Played]) -> pd.DataFram
     """
     rows = []
     for name, each in played.items():
-        share = share_interval(int(each.success.sum()), len(each.success))
-        measured = each.reward.mean(), 100.0 * each.dropped.mean()
-        spent = each.grip.mean(), 1e3 * each.slip.mean()
-        solved = (100.0 * value for value in share)
-        rows.append((find(task).name, level, name, *solved, *measured, *spent))
+        measured = each.reward.mean(), 100.0 * each.dropped.mean(), each.grip.mean(), 1e3 * each.slip.mean()
+        rows.append((find(task).name, level, name, *share(each.success).percent, *measured))
     table = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
     return table.sort_values(["solved [%]", "mean return"], ascending=False, ignore_index=True)
 
@@ -105,14 +78,9 @@ def kinds(table: pd.DataFrame) -> pd.Series:
 
 
 def by_level(table: pd.DataFrame) -> pd.DataFrame:
-    """Solved share of each task and level [%], a column for each policy.
+    """Solved share of each task and level [%], a column for each policy; NaN where it did not play.
 
-    Args:
-        table: From `outcomes`, of several tasks and levels.
-
-    Returns:
-        A row for each task and level in the order of the table; NaN where a policy did not play. Of several
-        tasks, policies that play only one of them are left out.
+    Of several tasks, policies that play only one of them are left out.
     """
     cells = list(dict.fromkeys(zip(table["task"], table["level"], strict=True)))
     names = kinds(table)

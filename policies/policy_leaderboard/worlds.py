@@ -55,13 +55,7 @@ def generalisation(
 ) -> pd.DataFrame:
     """Solved share of each policy in each world [%], on the same episodes of a world for all of them.
 
-    Args:
-        task: As `slipgym.tasks.find` takes it.
-        level: Level of difficulty.
-        members: The policies.
-        episodes: How many in each world, of the slow ones a share.
-        arguments: Further arguments of the environments, which those of a world replace.
-        progress: Whether to show a progress bar.
+    The arguments are further ones of the environments, which those of a world replace.
 
     Returns:
         A row for each policy with the columns "task", "level", "policy" and the names of `WORLDS`.
@@ -72,13 +66,10 @@ def generalisation(
     for world in WORLDS:
         resolved(world.engine)
     rows = []
-    with tqdm(total=len(members) * len(WORLDS), unit="cell", disable=not progress) as bar:
-        for member in members:
-            row: dict[str, Any] = {"task": find(task).name, "level": level, "policy": member.name}
-            for world in WORLDS:
-                bar.set_description(f"{find(task).key}, {world.name}")
-                played = play_in(world, task, level, member, episodes, arguments)
-                row[world.name] = 100.0 * float(played.success.mean())
-                bar.update()
-            rows.append(row)
+    for member in tqdm(members, desc=f"{find(task).key}, worlds", unit="policy", disable=not progress):
+        row: dict[str, Any] = {"task": find(task).name, "level": level, "policy": member.name}
+        for world in WORLDS:
+            played = play_in(world, task, level, member, episodes, arguments)
+            row[world.name] = 100.0 * float(played.success.mean())
+        rows.append(row)
     return pd.DataFrame(rows)

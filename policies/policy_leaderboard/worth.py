@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
-from policies.evaluation.gain import WITHOUT
+from policies.evaluation.gain import WITHOUT, Entry, difference, ranked
 from policies.evaluation.play import Played
 from policies.policy_leaderboard.entries import Member
-from policies.study.statistics import Bootstrap
 from slipgym.tasks import find
 
 GROUPS = {"without": WITHOUT, "estimated": ("estimated",), "true": ("true",)}
@@ -27,29 +25,24 @@ def worth(task: str, level: str, members: Sequence[Member], played: Mapping[str,
     The strongest is chosen on these episodes. Without friction there is most to choose from, so that `gain`
     is rather too small.
 
-    Args:
-        task: As `slipgym.tasks.find` takes it.
-        level: Level of difficulty.
-        members: The policies; the friction source of each is in its arguments.
-        played: Their episodes, from `policies.policy_leaderboard.run.play_all`.
-
     Returns:
         A row with the columns COLUMNS; NaN where no policy of a group played.
     """
     row: dict[str, Any] = {"task": find(task).name, "level": level}
-    solved: dict[str, np.ndarray] = {}
-    for group, sources in GROUPS.items():
-        among = [each.name for each in members if each.arguments["friction_source"] in sources]
-        if among:
-            best = max(among, key=lambda name: (played[name].success.mean(), played[name].reward.mean()))
-            solved[group] = played[best].success
-            row[group] = 100.0 * solved[group].mean()
-            if group == "without":
-                row["strongest without friction"] = _short(best)
-    if {"without", "estimated"} <= set(solved):
-        bootstrap = Bootstrap(np.zeros(len(solved["without"])))
-        gain = (bootstrap(solved["estimated"]) - bootstrap(solved["without"])).interval
-        row |= dict(zip(("gain", "low", "high"), (100.0 * value for value in gain), strict=True))
+    entries = [
+        Entry(
+            each.name, each.arguments["friction_source"], played[each.name].success, played[each.name].reward
+        )
+        for each in members
+    ]
+    best = {group: found[-1] for group, sources in GROUPS.items() if (found := ranked(entries, sources))}
+    row |= {group: 100.0 * entry.success.mean() for group, entry in best.items()}
+    if "without" in best:
+        name = best["without"].policy.removeprefix("controller, ").partition(" (")[0]
+        row["strongest without friction"] = name.removesuffix(", none")
+        if "estimated" in best:
+            points = difference(best["estimated"], best["without"])
+            row |= dict(zip(("gain", "low", "high"), points, strict=True))
     return row
 
 
@@ -57,8 +50,3 @@ def table(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     """Rows of `worth` as a table, the largest gain first."""
     found = pd.DataFrame(rows, columns=pd.Index(COLUMNS))
     return found.sort_values("gain", ascending=False, ignore_index=True)
-
-
-def _short(name: str) -> str:
-    """The name of a policy without its friction and its constant force."""
-    return name.removeprefix("controller, ").partition(" (")[0].removesuffix(", none")

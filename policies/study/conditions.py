@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,17 +46,10 @@ class Condition:
     @property
     def keys(self) -> dict[str, Any]:
         """Columns that distinguish its episodes from the others', for tables."""
-        return {
-            "world": self.world.label,
-            "task": self.task,
-            "preset": self.preset,
-            "change": self.change.name,
-            "level": self.change.level,
-            "kind": self.kind,
-            "source": self.source,
-            "estimator": self.estimator if self.source == "estimated" else "",
-            "block": self.block,
-        }
+        place = {"world": self.world.label, "task": self.task, "preset": self.preset}
+        change = {"change": self.change.name, "level": self.change.level}
+        friction = {"source": self.source, "estimator": self.estimator if self.source == "estimated" else ""}
+        return {**place, **change, "kind": self.kind, **friction, "block": self.block}
 
     @property
     def name(self) -> str:
@@ -68,7 +61,6 @@ class Condition:
 
     def experiment(self, study: Study) -> Experiment:
         """The experiment whose trials it holds."""
-        contact = {**study.config.get("contact", {}), "model": self.world.contact}
         values = {
             "name": self.name,
             "task": self.task,
@@ -79,11 +71,8 @@ class Condition:
             "engine": self.world.engine,
             "frame_skip": self.frame_skip,
             "randomization": self.change.of(self.preset, self.task),
-            "level": study.level,
-            "sensors": study.sensors,
-            "config": {**study.config, "contact": contact},
         }
-        return validate(values, Experiment, self.name)
+        return experiment_of(study, self.world.contact, values)
 
     def _policy(self) -> PolicyChoice:
         if self.kind in _WITHOUT_FRICTION and self.source == "none":
@@ -92,12 +81,15 @@ class Condition:
         return PolicyChoice(name=self.policy, label=self.kind)
 
 
-def conditions(study: Study, learned: Shelf) -> list[Condition]:
-    """Every condition of a study, in the order of the tables.
+def experiment_of(study: Study, contact: str, values: Mapping[str, Any]) -> Experiment:
+    """An experiment of some values, with a friction model and a study's level, sensors and configuration."""
+    config = {**study.config, "contact": {**study.config.get("contact", {}), "model": contact}}
+    same = {"level": study.level, "sensors": study.sensors, "config": config}
+    return validate({**values, **same}, Experiment, values["name"])
 
-    Args:
-        study: The study.
-        learned: From `policies_of`; what is not there is left out.
+
+def conditions(study: Study, learned: Shelf) -> list[Condition]:
+    """Every condition of a study, in the order of the tables; policies that are not there are left out.
 
     Raises:
         ValueError: Learned policies of a task act at different rates: they cannot be compared.

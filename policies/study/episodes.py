@@ -24,12 +24,7 @@ def episodes(
 ) -> pd.DataFrame:
     """The episodes of all conditions; those that are not in the store are run and kept there, one by one.
 
-    Args:
-        study: What the conditions are part of.
-        conditions: The conditions.
-        store: Where finished conditions are.
-        jobs: Processes; -1 for one per core. The results do not depend on it.
-        progress: Whether to show a progress bar.
+    The results do not depend on the number of processes, -1 for one per core.
 
     Raises:
         ValueError: A policy refuses the observations.

@@ -18,10 +18,7 @@ def study_names() -> list[str]:
 
 
 def load_study(which: str | os.PathLike[str]) -> Study:
-    """Reads a study.
-
-    Args:
-        which: One of `study_names()`, or the path of a YAML file.
+    """Reads a study: one of `study_names()`, or the YAML file at a path.
 
     Raises:
         FileNotFoundError: It looks like a path, but there is no such file.

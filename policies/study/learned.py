@@ -36,8 +36,12 @@ def policies_of(study: Study) -> Shelf:
         for folder, name in _named(where):
             for task, (ending, source) in itertools.product(study.tasks, endings.items()):
                 match = re.fullmatch(rf"{find(task).key}_{ending}(?:_+(\d+))?", name)
-                if match is not None:
-                    _keep(found.setdefault((kind, task, source), {}), int(match[1] or 0), folder)
+                if match is None:
+                    continue
+                seeds, seed = found.setdefault((kind, task, source), {}), int(match[1] or 0)
+                if seed in seeds:
+                    raise ValueError(f"{folder} and {seeds[seed]} are both seed {seed}")
+                seeds[seed] = folder
     return found
 
 
@@ -58,12 +62,6 @@ def _named(top: Path) -> list[tuple[Path, str]]:
     return sorted(named.items())
 
 
-def _keep(seeds: dict[int, Path], seed: int, folder: Path) -> None:
-    if seed in seeds:
-        raise ValueError(f"{folder} and {seeds[seed]} are both seed {seed}")
-    seeds[seed] = folder
-
-
 def missing(study: Study, found: Shelf) -> list[str]:
     """In words, the policies that a study would need and that are not there.
 
@@ -76,8 +74,6 @@ def missing(study: Study, found: Shelf) -> list[str]:
             sources = [source for source in wanted if (kind, task, TRAINED_WITH[source]) not in found]
             if sources:
                 where = "the policies that come with slipgym" if place == pretrained.FOLDER else place
-                lacking.append(
-                    f"{task}: no policy of kind {kind} for {', '.join(sources)}; looked for "
-                    f"{find(task).key}_<source> in {where}"
-                )
+                looked = f"looked for {find(task).key}_<source> in {where}"
+                lacking.append(f"{task}: no policy of kind {kind} for {', '.join(sources)}; {looked}")
     return lacking

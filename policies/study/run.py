@@ -5,9 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-import pandas as pd
-import yaml
-
+from policies.evaluation.folder import write_origin
 from policies.study import tables
 from policies.study.benefit import benefits
 from policies.study.conditions import conditions
@@ -16,7 +14,6 @@ from policies.study.constant_grip import constant_grips
 from policies.study.episodes import episodes
 from policies.study.learned import missing, policies_of
 from policies.study.store import Store
-from policies.versions import write_versions
 from slipgym import atomic_io
 
 
@@ -54,14 +51,8 @@ def run_study(
         "transfer": tables.transfer(done, study),
         "constant_grip": constant_grips(study, folder / "constant_grip", progress=progress),
     }
-    write_versions(folder)
-    text = yaml.safe_dump(study.model_dump(mode="json"), sort_keys=False, allow_unicode=True)
-    atomic_io.write(folder / "study.yaml", text.encode())
+    write_origin(folder, study=study.model_dump(mode="json"))
     atomic_io.write(folder / "episodes.parquet", done.to_parquet(index=False))
     for name, table in made.items():
-        atomic_io.write(folder / f"{name}.csv", _csv(table))
+        atomic_io.write(folder / f"{name}.csv", table.to_csv(index=False).encode())
     return folder
-
-
-def _csv(table: pd.DataFrame) -> bytes:
-    return table.to_csv(index=False).encode()

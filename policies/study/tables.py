@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from policies.evaluation.frames import distinct, values, where
-from policies.evaluation.statistics import Interval, share_interval
+from policies.evaluation.frames import distinct, groups, values, where
+from policies.evaluation.statistics import Bootstrap, Drawn, Interval, over_seeds, share, spread
 from policies.study.config import Study
-from policies.study.statistics import Bootstrap, Drawn, over_seeds
 
 PLACE = ["world", "task", "preset", "change", "level", "kind"]
 FRICTION = ["source", "estimator"]
@@ -25,6 +24,7 @@ ALL = "all tasks"
 TRAINED = "learned", "imitation"
 """Kinds of policies that have training seeds."""
 ENOUGH = 0.8
+NOTHING = Interval(np.nan, np.nan, np.nan)
 FIGURES = "success", "return"
 """Columns of an episode whose means are compared."""
 
@@ -37,37 +37,24 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
     stratified over the blocks. `seeds` is the interquartile mean of the success over the training seeds of a
     learned policy, of which each acts in a block of its own.
     """
-    rows = []
-    together = [part.assign(task=ALL) for _, part in _over_tasks(episodes)]
-    for keys, group in [
-        *by(episodes, [*PLACE, *FRICTION]),
-        *(found for part in together for found in by(part, [*PLACE, *FRICTION])),
-    ]:
-        bootstrap = Bootstrap(values(group, "block"))
-        figures = {
-            "success": share_interval(int(values(group, "success").sum()), len(group)),
-            "dropped": share_interval(int(values(group, "dropped").sum()), len(group)),
-        }
+    rows, condition = [], [*PLACE, *FRICTION]
+    together = (part.assign(task=ALL) for _, part in _over_tasks(episodes))
+    for keys, group in (found for part in (episodes, *together) for found in groups(part, condition)):
+        figures = {name: share(values(group, name)) for name in ("success", "dropped")}
         if keys[1] != ALL:
+            bootstrap = Bootstrap(values(group, "block"))
             figures["return"] = bootstrap(values(group, "return")).interval
             figures["force"] = bootstrap(values(group, "mean_force_N")).interval
-        by_block = [float(values(part, "success").mean()) for _, part in by(group, ["block"])]
+        by_block = [float(values(part, "success").mean()) for _, part in groups(group, ["block"])]
         if keys[PLACE.index("kind")] in TRAINED:
             figures["seeds"] = over_seeds(by_block)
-        row = dict(zip([*PLACE, *FRICTION], keys, strict=True)) | {
-            "n": len(group),
-            "blocks": " ".join(f"{share:.3f}" for share in by_block),
-        }
-        rows.append(row | spread(figures))
+        counts = {"n": len(group), "blocks": " ".join(f"{each:.3f}" for each in by_block)}
+        rows.append(dict(zip(condition, keys, strict=True)) | counts | spread(figures))
     return pd.DataFrame(rows)
 
 
 def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
-    """Share of the truth's benefit that the estimate recovers: (estimated - none) / (true - none).
-
-    Args:
-        episodes: The table of episodes.
-        estimator: The main estimator.
+    """Share of the truth's benefit that the main estimator recovers: (estimated - none) / (true - none).
 
     Returns:
         Columns `SHARES`: a row for each place and figure, and for the success over all tasks of a place.
@@ -76,7 +63,7 @@ def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
     """
     rows = []
     plain = where(episodes, change="")
-    for keys, group in [*by(plain, ["world", "task", "preset", "kind"]), *_over_tasks(plain)]:
+    for keys, group in [*groups(plain, ["world", "task", "preset", "kind"]), *_over_tasks(plain)]:
         parts = {source: where(group, source=source) for source in ("none", "true")}
         parts["estimated"] = where(group, source="estimated", estimator=estimator)
         if min(map(len, parts.values())) == 0:
@@ -100,52 +87,44 @@ def transfer(episodes: pd.DataFrame, study: Study) -> pd.DataFrame:
         for bullet in (w for w in study.worlds if w.engine == "bullet" and w.contact == planar.contact):
             here, there = (where(main, world=world.label) for world in (planar, bullet))
             pairs = here.merge(there, on=same, suffixes=("_core", ""))
-            for keys, group in [*by(pairs, ["task", "preset", "kind"]), *_all(pairs)]:
+            for keys, group in [*groups(pairs, ["task", "preset", "kind"]), *_all(pairs)]:
                 bootstrap = Bootstrap(strata(group))
                 core, bench = values(group, "success_core"), values(group, "success")
                 difference = bootstrap(100.0 * bench) - bootstrap(100.0 * core)
                 row = dict(zip(["task", "preset", "kind"], keys, strict=True))
-                figures = {"core": _percent(core), "bullet": _percent(bench)}
-                figures["difference"] = difference.interval
+                figures = {"core": share(core).percent, "bullet": share(bench).percent}
+                figures |= {"difference": difference.interval}
                 rows.append({"contact": planar.contact, **row, "n": len(group), **spread(figures)})
     return pd.DataFrame(rows)
 
 
-def by(table: pd.DataFrame, columns: Sequence[str]) -> Iterator[tuple[tuple, pd.DataFrame]]:
-    """The rows by what stands in some columns, in order of appearance."""
-    yield from table.groupby(list(columns), sort=False)  # type: ignore[misc]
-
-
 def _share(drawn: dict[str, Drawn]) -> dict[str, Any]:
     whole, part = drawn["true"] - drawn["none"], drawn["estimated"] - drawn["none"]
-    share = Interval(np.nan, np.nan, np.nan)
+    recovered = NOTHING
     if whole.interval.low > 0.0:
-        share = part.share_of(whole).interval
-        verdict = "yes" if share.value >= ENOUGH else "no"
+        recovered = part.share_of(whole).interval
+        verdict = "yes" if recovered.value >= ENOUGH else "no"
     else:
         verdict = "the truth does harm" if whole.interval.high < 0.0 else "not significant"
-    differences = ends({"true-none": whole, "estimated-none": part})
-    return {**differences, **spread({"share": share}), "verdict": verdict}
+    figures = {"true-none": whole.interval, "estimated-none": part.interval, "share": recovered}
+    return {**spread(figures), "verdict": verdict}
 
 
 def _over_tasks(episodes: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
     """The episodes of all tasks that have every source together, where there are several."""
     plain = where(episodes, change="")
-    for (world, preset, kind), group in by(plain, ["world", "preset", "kind"]):
+    for (world, preset, kind), group in groups(plain, ["world", "preset", "kind"]):
         complete = [
-            part for _, part in by(group, ["task"]) if {"none", "estimated", "true"} <= set(part["source"])
+            part
+            for _, part in groups(group, ["task"])
+            if {"none", "estimated", "true"} <= set(part["source"])
         ]
         if len(complete) > 1:
             yield (world, ALL, preset, kind), pd.concat(complete)
 
 
-def _percent(solved: np.ndarray) -> Interval:
-    """Share of episodes with its Wilson interval [%]."""
-    return Interval(*(100.0 * end for end in share_interval(int(solved.sum()), len(solved))))
-
-
 def _all(pairs: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
-    for key, group in by(pairs, ["preset", "kind"]):
+    for key, group in groups(pairs, ["preset", "kind"]):
         if len(distinct(group, "task")) > 1:
             yield (ALL, *key), group
 
@@ -153,16 +132,3 @@ def _all(pairs: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
 def strata(episodes: pd.DataFrame) -> np.ndarray:
     """A stratum for each task and block."""
     return np.asarray(episodes.groupby(["task", "block"], sort=False).ngroup())
-
-
-def ends(figures: dict[str, Drawn]) -> dict[str, float]:
-    """Figures with their intervals as columns."""
-    return spread({name: drawn.interval for name, drawn in figures.items()})
-
-
-def spread(figures: dict[str, Interval]) -> dict[str, float]:
-    """Intervals as columns."""
-    row = {}
-    for name, interval in figures.items():
-        row |= {name: interval.value, f"{name}_low": interval.low, f"{name}_high": interval.high}
-    return row

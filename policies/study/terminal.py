@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
+import numpy as np
 import pandas as pd
 
-from policies.evaluation.frames import groups, records, where
+from policies.evaluation.frames import aligned, groups, records, text, values, where
 from policies.evaluation.gain import sentence
-from policies.evaluation.report import aligned
 from policies.evaluation.statistics import Interval
-from policies.evaluation.tables import text
 from policies.study.config import Study
 from policies.study.tables import FRICTION, PLACE
 
@@ -25,15 +22,19 @@ TITLES = {
     "imitation": "imitated policy",
 }
 """Kind of a policy -> what a sentence calls it."""
+_WHO = {"task": "task", "preset": "preset", "kind": "policy"}
+_OUTCOMES = {"success": "success [%]", "dropped": "dropped [%]", "return": "return, mean"}
+_SHARES = {"figure": "of", "share": "(estimated - none) / (true - none) [%]", "verdict": ">= 80 %"}
+_BENEFITS = {
+    **{name: name for name in ("task", "preset", "opponent", "policy")},
+    "difference": "success less opponent's [%]",
+    "share": "share of the truth's [%]",
+    "verdict": "",
+}
 
 
 def words(study: Study, folder: Path) -> str:
-    """Gain, success of every condition in the first world, the shares, and where to look next.
-
-    Args:
-        study: The study.
-        folder: From `run_study`.
-    """
+    """Gain, success of every condition in the first world, the shares, and where to look next."""
     # as text: a column of nothing but "true" would turn into booleans
     names = dict.fromkeys([*PLACE, *FRICTION], str)
     names.pop("level")
@@ -41,37 +42,31 @@ def words(study: Study, folder: Path) -> str:
         pd.read_csv(folder / f"{name}.csv", dtype=names, keep_default_na=False, na_values=[""])  # type: ignore[arg-type]
         for name in ("outcomes", "shares", "benefits")
     )
-    world = study.worlds[0].label
-    rows = [["task", "preset", "policy", "friction", "success [%]", "dropped [%]", "return, mean"]]
-    for row in outcomes[(outcomes["world"] == world) & outcomes["change"].isna()].to_dict("records"):
-        known = " ".join(str(row[name]) for name in FRICTION if row[name] == row[name])
-        figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
-        rows.append([row["task"], row["preset"], row["kind"], known, *figures])
-    known = where(outcomes, world=world)
-    parts = [*claims(where(benefits, world=world), known.loc[known["change"].isna()])]
-    parts += [f"{world}:", aligned(rows), "(95 % confidence intervals in brackets)"]
+    first = study.worlds[0].label
+    shares, benefits, outcomes = (where(table, world=first) for table in (shares, benefits, outcomes))
+    outcomes = outcomes.loc[outcomes["change"].isna()]
+    parts = [*claims(benefits, outcomes), f"{first}:"]
+    known = outcomes.assign(known=_joined(outcomes, FRICTION))
+    parts.append(_table(known, _WHO | {"known": "friction"} | _OUTCOMES))
+    parts.append("(95 % confidence intervals in brackets)")
     if len(shares):
-        rows = [["task", "preset", "policy", "of", "(estimated - none) / (true - none) [%]", ">= 80 %"]]
-        for row in shares[shares["world"] == world].to_dict("records"):
-            share = _text(row, "share", "[%]")
-            rows.append([row["task"], row["preset"], row["kind"], row["figure"], share, row["verdict"]])
-        parts.append(aligned(rows))
-    parts += _benefits(where(benefits, world=world))
-    parts += training_seeds(outcomes[(outcomes["world"] == world) & outcomes["change"].isna()])
-    rows = [["task", "force [N]", "success [%]", "dropped [%]", "return, mean"]]
-    for row in pd.read_csv(folder / "constant_grip.csv").to_dict("records"):
-        figures = [_text(row, name, unit) for name, unit in _UNITS.items()]
-        rows.append([row["task"], f"{row['force_N']:.2f}", *figures])
-    parts += ["The best constant grip, without any sensor, planar engine:", aligned(rows)]
+        parts.append(_table(shares, _WHO | _SHARES))
+    if len(benefits):
+        parts.append("Against the strongest policy without friction information, in pairs:")
+        policies = _joined(benefits, ["kind", *FRICTION])
+        parts.append(_table(benefits.assign(policy=policies), _BENEFITS))
+    parts += training_seeds(outcomes)
+    constant = pd.read_csv(folder / "constant_grip.csv")
+    constant["force"] = constant["force_N"].map("{:.2f}".format)
+    parts.append("The best constant grip, without any sensor, planar engine:")
+    parts.append(_table(constant, {"task": "task", "force": "force [N]"} | _OUTCOMES))
     return "\n\n".join([*parts, f"Look at:\n  {folder / 'outcomes.csv'}"])
 
 
 def claims(benefits: pd.DataFrame, outcomes: pd.DataFrame) -> list[str]:
     """Gain of the estimate over the strongest policy without friction, in a sentence for each task.
 
-    Args:
-        benefits: From `policies.study.benefit.benefits`, of one world.
-        outcomes: From `policies.study.tables.outcomes`, of the same world.
+    The tables are those of benefits and outcomes, of one world.
     """
     found = []
     for (task, preset), group in groups(where(benefits, source="estimated"), ["task", "preset"]):
@@ -79,7 +74,7 @@ def claims(benefits: pd.DataFrame, outcomes: pd.DataFrame) -> list[str]:
         played = where(outcomes, task=task, preset=preset)
         count = {source: _solved(where(played, source=source)) for source in ("estimated", "true")}
         opponent = _solved(where(played, source="none", kind=row["opponent"]))
-        points = Interval(*(100.0 * row[f"difference{end}"] for end in ("", "_low", "_high")))
+        points = Interval(*(row[f"difference{end}"] for end in ("", "_low", "_high"))).percent
         name = TITLES[row["opponent"]]
         words = sentence(row["n"], count["estimated"] or 0, (name, opponent or 0), count["true"], points)
         found.append(f"{task}, {preset}: {words}" if preset != "none" else f"{task}: {words}")
@@ -92,50 +87,28 @@ def _solved(outcomes: pd.DataFrame) -> int | None:
 
 
 def training_seeds(outcomes: pd.DataFrame) -> list[str]:
-    """Success of the policies that have several training seeds, over the seeds and of each; [] without any.
-
-    Args:
-        outcomes: From `policies.study.tables.outcomes`.
-    """
-    rows = [["task", "preset", "policy", "friction", "success over seeds [%]", "of each [%]"]]
-    if "seeds" not in outcomes:
+    """Success of the policies that have several training seeds, over them and of each; [] without."""
+    if "seeds" not in outcomes or np.isnan(values(outcomes, "seeds_low")).all():
         return []
-    for row in records(outcomes.dropna(subset=["seeds_low"])):
-        known = " ".join(str(row[name]) for name in FRICTION if row[name] == row[name])
-        each = " ".join(f"{100.0 * float(share):.0f}" for share in row["blocks"].split())
-        rows.append([row["task"], row["preset"], row["kind"], known, _text(row, "seeds", "[%]"), each])
+    several = outcomes.dropna(subset=["seeds_low"])
+    each = [" ".join(f"{100.0 * float(share):.0f}" for share in row.split()) for row in several["blocks"]]
+    columns = {"known": "friction", "seeds": "success over seeds [%]", "each": "of each [%]"}
     title = "Interquartile mean over the training seeds, with an interval over the seeds:"
-    return [title, aligned(rows)] if rows[1:] else []
+    return [title, _table(several.assign(known=_joined(several, FRICTION), each=each), _WHO | columns)]
 
 
-def _benefits(benefits: pd.DataFrame) -> list[str]:
-    """What friction information is worth against the strongest policy without it."""
-    rows = [
-        [
-            "task",
-            "preset",
-            "opponent",
-            "policy",
-            "success less opponent's [%]",
-            "share of the truth's [%]",
-            "",
-        ]
-    ]
-    for row in records(benefits):
-        known = " ".join(str(row[name]) for name in ("kind", *FRICTION) if row[name] == row[name])
-        figures = [_text(row, name, "[%]") for name in ("difference", "share")]
-        rows.append([row["task"], row["preset"], row["opponent"], known, *figures, row["verdict"]])
-    return (
-        ["Against the strongest policy without friction information, in pairs:", aligned(rows)]
-        if rows[1:]
-        else []
-    )
+def _joined(table: pd.DataFrame, columns: Sequence[str]) -> list[str]:
+    """Names in some columns with spaces between, without those that are missing."""
+    rows = table[list(columns)].itertuples(index=False, name=None)
+    return [" ".join(name for name in row if isinstance(name, str) and name) for row in rows]
 
 
-_UNITS = {"success": "[%]", "dropped": "[%]", "return": ""}
-
-
-def _text(row: Mapping[str, Any], name: str, unit: str) -> str:
-    """A figure with its interval; nothing where there is none."""
-    value, low, high = row[name], row[f"{name}_low"], row[f"{name}_high"]
-    return "" if math.isnan(value) else text((value, low, high), unit)
+def _table(table: pd.DataFrame, columns: Mapping[str, str]) -> str:
+    """Some columns under other headings, figures with their intervals; a figure that is missing is empty."""
+    shown: dict[str, Sequence[str]] = {}
+    for name, heading in columns.items():
+        shown[heading] = list(table[name])
+        if f"{name}_low" in table:
+            ends = table[[name, f"{name}_low", f"{name}_high"]].itertuples(index=False, name=None)
+            shown[heading] = ["" if np.isnan(end[0]) else text(end, heading) for end in ends]
+    return aligned(pd.DataFrame(shown))

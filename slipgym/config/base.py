@@ -44,6 +44,11 @@ def ends_within(low: float, high: float) -> AfterValidator:
     return AfterValidator(check)
 
 
+def number(least: float, most: float, meaning: str) -> Any:
+    """Declare a field that is a number within bounds, both of them allowed."""
+    return Field(ge=least, le=most, description=meaning)
+
+
 Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]
 Count = Annotated[int, Field(ge=1)]

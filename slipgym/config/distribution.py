@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import Annotated, Self
+from typing import Annotated, Any, NamedTuple, Self
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 
 from slipgym.config.base import Frozen, PositiveInterval, as_tuple, ordered
 
@@ -81,13 +81,39 @@ def quantile(
     return min(low + share * span, high)
 
 
-def _within(low: float, high: float, drawn: Distribution | None) -> Distribution | None:
-    if drawn is not None and not low <= drawn.ends[0] <= drawn.ends[1] <= high:
-        least, most = drawn.ends
-        raise ValueError(f"must lie within {low:g} to {high:g}, got {least:g} to {most:g}")
-    return drawn
+Drawn = Distribution | None
+"""Type of a field of `Ranged` that need not be given: null is not sampled."""
 
 
-def within(low: float, high: float) -> AfterValidator:
-    """Validator of a distribution whose values must lie within bounds."""
-    return AfterValidator(partial(_within, low, high))
+class _Bounds(NamedTuple):
+    """Metadata of a field: bounds of its values."""
+
+    low: float
+    high: float
+
+    def __call__(self, schema: dict[str, Any]) -> None:
+        """Pydantic calls this for a JSON schema, to which it adds nothing."""
+
+
+def within(low: float, high: float, meaning: str, default: Any = ...) -> Any:
+    """Declare a field of `Ranged`: a distribution whose values lie within bounds."""
+    return Field(default, description=meaning, json_schema_extra=_Bounds(low, high))
+
+
+ranged = partial(within, default=None)
+"""`within`, of a distribution that need not be given."""
+
+
+class Ranged(Frozen):
+    """Base class of models with distributions whose bounds `within` and `ranged` declare."""
+
+    @field_validator("*")
+    @classmethod
+    def _values_lie_within(cls, value: Any, info: ValidationInfo) -> Any:
+        bounds = cls.model_fields[info.field_name or ""].json_schema_extra
+        if isinstance(bounds, _Bounds) and value is not None:
+            least, most = value.ends
+            if not bounds.low <= least <= most <= bounds.high:
+                valid = f"{bounds.low:g} to {bounds.high:g}"
+                raise ValueError(f"must lie within {valid}, got {least:g} to {most:g}")
+        return value

@@ -3,7 +3,6 @@
 Bounds and names are read from the models' JSON schema, so that they are declared only in the models.
 """
 
-import difflib
 from collections.abc import Callable, Iterable
 from functools import cache
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from estimator.suggestions import asking
+from estimator import suggestions
 
 SourceOf = Callable[[tuple[int | str, ...]], str]
 """Names the file or argument that a location in the configuration came from."""
@@ -33,12 +32,9 @@ _KINDS = {
 }
 
 
-def unknown(what: str, name: object, valid: Iterable[str]) -> str:
-    """Message for an unknown name, with the most similar valid one as a suggestion."""
-    valid, shown = sorted(valid), f"{name!r:.100}"
-    close = difflib.get_close_matches(str(name)[:100], valid, n=1)
-    guess = f"did you mean {close[0]!r}? " if close else ""
-    return f"unknown {what} {shown}; {guess}valid: {', '.join(valid)}"
+def unknown(what: str, name: object, valid: Iterable[str], also: Iterable[str] = ()) -> str:
+    """`estimator.suggestions.unknown`, with the valid names in order."""
+    return suggestions.unknown(f"unknown {what}", name, sorted(valid), also)
 
 
 def explain(
@@ -80,7 +76,7 @@ def _describe(error: ErrorDetails, model: type[BaseModel], prefix: tuple[str, ..
         return f"{dotted} is missing: must be {allowed}"
     names = map(str, node.get("enum", ()))
     said = f"{dotted} = {_shorten(error['input'])}: must be {allowed}"
-    return asking(said, error["input"], names) if isinstance(error["input"], str) else said
+    return suggestions.asking(said, error["input"], names) if isinstance(error["input"], str) else said
 
 
 def _shorten(value: object) -> str:

@@ -4,7 +4,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from slipgym.config.base import Factors, Frozen, Point, Size
+from slipgym.config.base import Factors, Frozen, Point, Size, number
 
 
 def box_inertia(mass: float, a: float, b: float) -> float:
@@ -15,47 +15,27 @@ def box_inertia(mass: float, a: float, b: float) -> float:
 class GripperConfig(Frozen):
     """A parallel gripper with a force loop per finger, on a wrist that moves in the contact plane."""
 
-    pad_radius: float = Field(
-        ge=0.001, le=0.2, description="Radius of each disc-shaped pad; 1 mm to 20 cm [m]"
+    pad_radius: float = number(0.001, 0.2, "Radius of each disc-shaped pad; 1 mm to 20 cm [m]")
+    force_min: float = number(0.001, 1000.0, "Lower end of the force action, per finger [N]")
+    force_max: float = number(
+        0.001, 1000.0, "Upper end of the force action, per finger; 1 kN crushes what a gripper holds [N]"
     )
-    force_min: float = Field(ge=0.001, le=1000.0, description="Lower end of the force action, per finger [N]")
-    force_max: float = Field(
-        ge=0.001,
-        le=1000.0,
-        description="Upper end of the force action, per finger; 1 kN crushes what a gripper holds [N]",
-    )
-    force_limit: float = Field(
-        ge=0.001, le=1000.0, description="Hard limit of the force of one finger; at most 1 kN [N]"
-    )
-    open_below: float = Field(
-        ge=0.0, le=1000.0, description="Commands below this open the force loop: no force applied [N]"
-    )
-    lag: float = Field(
-        ge=0.0,
-        le=1.0,
-        description="Time constant of the closed force loop, first order; at most 1 s [s]",
-    )
+    force_limit: float = number(0.001, 1000.0, "Hard limit of the force of one finger; at most 1 kN [N]")
+    open_below: float = number(0.0, 1000.0, "Commands below this open the force loop: no force applied [N]")
+    lag: float = number(0.0, 1.0, "Time constant of the closed force loop, first order; at most 1 s [s]")
     finger_lag: Factors = Field(description="Time constant of each finger's force loop over lag [-]")
-    dead_time: float = Field(ge=0.0, le=1.0, description="Dead time of the force loop, before its lag [s]")
+    dead_time: float = number(0.0, 1.0, "Dead time of the force loop, before its lag [s]")
     force_gain: Factors = Field(description="Force of each finger's actuator over the commanded [-]")
-    stiction: float = Field(
-        ge=0.0,
-        le=100.0,
-        description="Change of the command that friction or backlash swallows, either way from the force [N]",
+    stiction: float = number(
+        0.0, 100.0, "Change of the command that friction or backlash swallows, either way from the force [N]"
     )
-    force_step: float = Field(
-        ge=1e-6,
-        le=1000.0,
-        description="Largest change of the commanded force per control step in mode force_increment [N]",
+    force_step: float = number(
+        1e-6, 1000.0, "Largest change of the commanded force per control step in mode force_increment [N]"
     )
-    finger_mass: float = Field(
-        ge=0.001, le=10.0, description="Mass of one finger with its pad; 1 g to 10 kg [kg]"
-    )
-    wrist_speed_max: float = Field(
-        ge=1e-4, le=1000.0, description="Largest speed of the wrist in the contact plane [m/s]"
-    )
-    wrist_pitch_rate_max: float = Field(
-        ge=1e-4, le=1000.0, description="Largest pitch rate of the wrist, about the grip axis [rad/s]"
+    finger_mass: float = number(0.001, 10.0, "Mass of one finger with its pad; 1 g to 10 kg [kg]")
+    wrist_speed_max: float = number(1e-4, 1000.0, "Largest speed of the wrist in the contact plane [m/s]")
+    wrist_pitch_rate_max: float = number(
+        1e-4, 1000.0, "Largest pitch rate of the wrist, about the grip axis [rad/s]"
     )
 
     @model_validator(mode="after")
@@ -71,7 +51,7 @@ class GripperConfig(Frozen):
 class ObjectConfig(Frozen):
     """A box held by two opposite faces; x and z span the contact plane, y is the grip axis."""
 
-    mass: float = Field(ge=0.001, le=1000.0, description="Mass; 1 g to 1 t [kg]")
+    mass: float = number(0.001, 1000.0, "Mass; 1 g to 1 t [kg]")
     size: Size = Field(description="Extent along x, the grip axis and z [m]")
     com_offset: Point = Field(description="Centre of mass (x, z) from the geometric centre [m]")
     inertia: Annotated[float, Field(ge=1e-9, le=1000.0)] | None = Field(

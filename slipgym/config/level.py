@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from pydantic import Field
 
+from estimator.suggestions import yaml_beside
 from slipgym.config import files
 from slipgym.config.base import Frozen
 from slipgym.config.errors import unknown
@@ -90,24 +91,22 @@ def load_level(choice: Choice, task: str) -> Chosen:
         FileNotFoundError: The file does not exist.
         ValueError: The name or a key is unknown, or a value is not allowed.
     """
+    source, name, prefix = "level argument", None, ()
     if isinstance(choice, Mapping):
-        files.check_size(choice, "level argument")
-        return _own(choice, "level argument")
-    if not isinstance(choice, str | os.PathLike):
+        files.check_size(choice, source)
+        values = choice
+    elif not isinstance(choice, str | os.PathLike):
         known = ", ".join(level_names(task))
         raise ValueError(f"level = {choice!r} must be a name, a path or a mapping; names: {known}")
-    path = Path(choice)
-    if path.suffix in (".yaml", ".yml"):
-        return _own(files.read(path), os.fspath(path))
-    known = _levels(task)
-    if choice not in known:
-        raise ValueError(unknown(f"level of {task}", str(choice), known))
-    source = os.fspath(files.folder() / _FOLDER / f"{task}.yaml")
-    return Chosen(validate(known[str(choice)], Level, source, prefix=(str(choice),)), source, str(choice))
-
-
-def _own(values: Mapping[str, Any], source: str) -> Chosen:
-    return Chosen(validate(values, Level, source), source)
+    elif (path := Path(choice)).suffix in (".yaml", ".yml"):
+        source, values = os.fspath(path), files.read(path)
+    else:
+        known = _levels(task)
+        if choice not in known:
+            raise ValueError(unknown(f"level of {task}", str(choice), known, yaml_beside(path)))
+        source, name = os.fspath(files.folder() / _FOLDER / f"{task}.yaml"), str(choice)
+        values, prefix = known[name], (name,)
+    return Chosen(validate(values, Level, source, prefix=prefix), source, name)
 
 
 def _levels(task: str) -> Mapping[str, Mapping[str, Any]]:

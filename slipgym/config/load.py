@@ -12,6 +12,7 @@ from slipgym.config import files
 from slipgym.config.errors import unknown
 from slipgym.config.randomization import Randomization
 from slipgym.config.root import Config
+from slipgym.config.yaml_model import names as names_in
 from slipgym.config.yaml_model import read_model, validate
 
 Overrides = str | os.PathLike[str] | Mapping[str, Any]
@@ -98,7 +99,7 @@ def names(kind: str) -> tuple[str, ...]:
     if kind == "materials":
         return tuple(sorted(files.read(files.folder() / "materials.yaml")))
     if kind in ("sensors", "randomization"):
-        return tuple(sorted(path.stem for path in (files.folder() / kind).glob("*.yaml")))
+        return tuple(names_in(kind))
     raise ValueError(unknown("kind of name", kind, ["materials", "sensors", "randomization"]))
 
 

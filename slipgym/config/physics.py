@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
-from slipgym.config.base import Factors, Frozen, Points
+from slipgym.config.base import Factors, Frozen, Points, number
 from slipgym.config.pad import PadConfig
 from slipgym.contact.pressure import PressureName
 
@@ -15,12 +15,10 @@ ContactModel: TypeAlias = Literal["ellipsoid", "disc", "distributed"]
 class Material(Frozen):
     """Friction coefficients of a material against the pads."""
 
-    mu_c: float = Field(
-        ge=0.001,
-        le=10.0,
-        description="Coulomb friction coefficient; from 0.001 to 10, as rubber on anything [-]",
+    mu_c: float = number(
+        0.001, 10.0, "Coulomb friction coefficient; from 0.001 to 10, as rubber on anything [-]"
     )
-    mu_s: float = Field(ge=0.001, le=10.0, description="Static friction coefficient, at least mu_c [-]")
+    mu_s: float = number(0.001, 10.0, "Static friction coefficient, at least mu_c [-]")
 
     @model_validator(mode="after")
     def _static_is_larger(self) -> Self:
@@ -32,11 +30,7 @@ class Material(Frozen):
 class NominalConfig(Material):
     """Contact properties that a controller assumes when it has no other friction information."""
 
-    r: float = Field(
-        ge=1e-4,
-        le=0.2,
-        description="Radius of the equivalent rim contact; at most that of the largest pad [m]",
-    )
+    r: float = number(1e-4, 0.2, "Radius of the equivalent rim contact; at most that of the largest pad [m]")
 
 
 class ContactConfig(Frozen):
@@ -51,34 +45,18 @@ class ContactConfig(Frozen):
 
     model: ContactModel = Field(description="Friction model of the pads: a name")
     pressure: PressureName = Field(
-        description="Pressure over the patch: constant, Hertz's, or on its edge alone"
+        description="Pressure over the patch: constant, Hertz's, on its edge alone, or of a flat punch"
     )
-    cells: int = Field(
-        ge=2,
-        le=101,
-        description="Cells along each side of a distributed patch; 11 are four times as fast [-]",
+    cells: int = number(2, 101, "Cells along each side of a distributed patch; 11 are four times as fast [-]")
+    sigma_0: float = number(1e5, 1e8, "Bristle stiffness; soft ones appear as slip in stick [1/m]")
+    sigma_1: float = number(0.0, 1e5, "Bristle damping; more than 1e5 is overdamped beyond any use [s/m]")
+    sigma_2: float = number(0.0, 1000.0, "Viscous friction; at 1e3 friction grows by 1 for each mm/s [s/m]")
+    stribeck_velocity: float = number(
+        1e-5, 0.1, "Slip speed v_s at which mu_s has decayed to mu_c; as of a randomization [m/s]"
     )
-    sigma_0: float = Field(
-        ge=1e5,
-        le=1e8,
-        description="Bristle stiffness; soft ones appear as slip in stick [1/m]",
-    )
-    sigma_1: float = Field(
-        ge=0.0, le=1e5, description="Bristle damping; more than 1e5 is overdamped beyond any use [s/m]"
-    )
-    sigma_2: float = Field(
-        ge=0.0, le=1000.0, description="Viscous friction; at 1e3 friction grows by 1 for each mm/s [s/m]"
-    )
-    stribeck_velocity: float = Field(
-        ge=1e-5,
-        le=0.1,
-        description="Slip speed v_s at which mu_s has decayed to mu_c; as of a randomization [m/s]",
-    )
-    stribeck_exponent: float = Field(
-        ge=0.1, le=10.0, description="Exponent of that decay; published ones are 0.5 to 2 [-]"
-    )
-    speed_slope: float = Field(
-        ge=-0.2, le=0.2, description="Growth of mu_c with the logarithm of the slip speed over 10 mm/s [-]"
+    stribeck_exponent: float = number(0.1, 10.0, "Exponent of that decay; published ones are 0.5 to 2 [-]")
+    speed_slope: float = number(
+        -0.2, 0.2, "Growth of mu_c with the logarithm of the slip speed over 10 mm/s [-]"
     )
     radius: Annotated[float, Field(ge=1e-4, le=0.2)] | None = Field(
         description="Radius r of the equivalent rim contact; null: that of the pressure on the whole pad [m]"
@@ -88,9 +66,7 @@ class ContactConfig(Frozen):
     normal_stiffness: float = Field(
         gt=0, le=1e7, description="Stiffness of a pad along the grip axis, with physics.tilt [N/m]"
     )
-    normal_damping: float = Field(
-        ge=0, le=1e4, description="Damping of a pad along the grip axis, with physics.tilt [N s/m]"
-    )
+    normal_damping: float = number(0, 1e4, "Damping of a pad along the grip axis, with physics.tilt [N s/m]")
     cop_offset: Points = Field(description="Centre of pressure (x, y) from the pad's centre, per finger [m]")
     pad: PadConfig = Field(description="What the pads' rubber adds")
 
@@ -98,34 +74,18 @@ class ContactConfig(Frozen):
 class PhysicsConfig(Frozen):
     """Gravity and the three nested rates: control step, engine step, friction sub-step."""
 
-    gravity: float = Field(
-        ge=0.0, le=100.0, description="Gravitational acceleration; Jupiter's is 25 [m/s^2]"
+    gravity: float = number(0.0, 100.0, "Gravitational acceleration; Jupiter's is 25 [m/s^2]")
+    control_rate: int = number(10, 2000, "Environment steps per second; slower ones miss slips [Hz]")
+    engine_steps: int = number(1, 100, "Rigid-body engine steps per control step; 4 suffice [-]")
+    substep_max: float = number(1e-5, 0.01, "Longest friction sub-step; longer ones miss a break-away [s]")
+    patch_substep_max: float = number(
+        1e-5, 0.01, "Longest friction sub-step of a distributed contact, which turns in parts [s]"
     )
-    control_rate: int = Field(
-        ge=10,
-        le=2000,
-        description="Environment steps per second; slower ones miss slips [Hz]",
+    planar_substep_max: float = number(
+        1e-5, 0.01, "Longest friction sub-step without an engine near the friction limit [s]"
     )
-    engine_steps: int = Field(
-        ge=1, le=100, description="Rigid-body engine steps per control step; 4 suffice [-]"
-    )
-    substep_max: float = Field(
-        ge=1e-5,
-        le=0.01,
-        description="Longest friction sub-step; longer ones miss a break-away [s]",
-    )
-    patch_substep_max: float = Field(
-        ge=1e-5,
-        le=0.01,
-        description="Longest friction sub-step of a distributed contact, which turns in parts [s]",
-    )
-    planar_substep_max: float = Field(
-        ge=1e-5,
-        le=0.01,
-        description="Longest friction sub-step without an engine near the friction limit [s]",
-    )
-    solver_iterations: int = Field(
-        ge=1, le=1000, description="Iterations of the engine's contact solver per step; 25 suffice [-]"
+    solver_iterations: int = number(
+        1, 1000, "Iterations of the engine's contact solver per step; 25 suffice [-]"
     )
 
     tilt: bool = Field(

@@ -9,10 +9,10 @@ from typing import Annotated, Self
 from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
 from slipgym.config.base import as_tuple
-from slipgym.config.distribution import Distribution, within
+from slipgym.config.distribution import Drawn, ranged
 from slipgym.config.disturbances import AnyDisturbance, renamed
 from slipgym.config.errors import unknown
-from slipgym.config.pad_ranges import PadRanges
+from slipgym.config.pad import PadRanges
 from slipgym.contact.pressure import PressureName
 
 PUSHES_MAX = 16
@@ -27,79 +27,36 @@ class Ranges(PadRanges):
     materials: Names | None = Field(
         default=None, description="Materials to sample from, if no other friction is randomized"
     )
-    mu_c: Annotated[Distribution | None, within(0.01, 5.0)] = Field(
-        default=None, description="Coulomb friction, whatever the material"
-    )
-    mu_s: Annotated[Distribution | None, within(0.01, 5.0)] = Field(
-        default=None, description="Static friction; not below mu_c"
-    )
-    friction_ratio: Annotated[Distribution | None, within(1.0, 5.0)] = Field(
-        default=None, description="Static over Coulomb friction, instead of mu_s"
-    )
-    friction_drift: Annotated[Distribution | None, within(-1.0, 1.0)] = Field(
-        default=None, description="Relative rate at which both change [1/s]"
-    )
-    stribeck_velocity: Annotated[Distribution | None, within(1e-5, 0.1)] = Field(
-        default=None, description="Slip speed at which mu_s has decayed to mu_c [m/s]"
-    )
-    speed_slope: Annotated[Distribution | None, within(-0.2, 0.2)] = Field(
-        default=None, description="Growth of mu_c with the logarithm of the slip speed"
-    )
-    sigma_0: Annotated[Distribution | None, within(1e5, 1e8)] = Field(
-        default=None, description="Bristle stiffness [1/m]"
-    )
-    radius_scale: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
-        default=None, description="Contact radius r over the task's"
-    )
-    finger_friction: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
-        default=None, description="Friction over that of the material, for each finger"
-    )
-    finger_radius: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
-        default=None, description="Contact radius over r, for each finger"
-    )
-    cop_offset: Annotated[Distribution | None, within(-0.05, 0.05)] = Field(
-        default=None, description="Centre of pressure off the pad's centre, each finger's x and y [m]"
+    mu_c: Drawn = ranged(0.01, 5.0, "Coulomb friction, whatever the material")
+    mu_s: Drawn = ranged(0.01, 5.0, "Static friction; not below mu_c")
+    friction_ratio: Drawn = ranged(1.0, 5.0, "Static over Coulomb friction, instead of mu_s")
+    friction_drift: Drawn = ranged(-1.0, 1.0, "Relative rate at which both change [1/s]")
+    stribeck_velocity: Drawn = ranged(1e-5, 0.1, "Slip speed at which mu_s has decayed to mu_c [m/s]")
+    speed_slope: Drawn = ranged(-0.2, 0.2, "Growth of mu_c with the logarithm of the slip speed")
+    sigma_0: Drawn = ranged(1e5, 1e8, "Bristle stiffness [1/m]")
+    radius_scale: Drawn = ranged(0.1, 10.0, "Contact radius r over the task's")
+    finger_friction: Drawn = ranged(0.1, 10.0, "Friction over that of the material, for each finger")
+    finger_radius: Drawn = ranged(0.1, 10.0, "Contact radius over r, for each finger")
+    cop_offset: Drawn = ranged(
+        -0.05, 0.05, "Centre of pressure off the pad's centre, each finger's x and y [m]"
     )
     pressure: Pressures | None = Field(
         default=None, description="Pressure profiles of the patch to sample from"
     )
-    mass_scale: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
-        default=None, description="Object's mass over the task's"
+    mass_scale: Drawn = ranged(0.1, 10.0, "Object's mass over the task's")
+    size_scale: Drawn = ranged(0.5, 2.0, "Object's extents along x and z, grasp included, over the task's")
+    com_x: Drawn = ranged(-0.4, 0.4, "Centre of mass along x off the task's, over the extent")
+    com_z: Drawn = ranged(-0.4, 0.4, "Centre of mass along z off the task's, over the extent")
+    lag: Drawn = ranged(0.0, 0.2, "Time constant of the force loop [s]")
+    finger_lag: Drawn = ranged(0.1, 10.0, "Time constant over lag, for each finger")
+    dead_time: Drawn = ranged(0.0, 0.1, "Dead time of the force loop [s]")
+    force_gain: Drawn = ranged(0.1, 10.0, "Actuator force over the commanded, for each finger")
+    stiction: Drawn = ranged(0.0, 10.0, "Stiction of each finger's actuator [N]")
+    noise_scale: Drawn = ranged(0.0, 10.0, "White noise of all sensors over the configured")
+    bias_scale: Drawn = ranged(
+        0.0, 100.0, "Spread of force and torque biases beyond the configured, over the configured noise"
     )
-    size_scale: Annotated[Distribution | None, within(0.5, 2.0)] = Field(
-        default=None, description="Object's extents along x and z, grasp included, over the task's"
-    )
-    com_x: Annotated[Distribution | None, within(-0.4, 0.4)] = Field(
-        default=None, description="Centre of mass along x off the task's, over the extent"
-    )
-    com_z: Annotated[Distribution | None, within(-0.4, 0.4)] = Field(
-        default=None, description="Centre of mass along z off the task's, over the extent"
-    )
-    lag: Annotated[Distribution | None, within(0.0, 0.2)] = Field(
-        default=None, description="Time constant of the force loop [s]"
-    )
-    finger_lag: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
-        default=None, description="Time constant over lag, for each finger"
-    )
-    dead_time: Annotated[Distribution | None, within(0.0, 0.1)] = Field(
-        default=None, description="Dead time of the force loop [s]"
-    )
-    force_gain: Annotated[Distribution | None, within(0.1, 10.0)] = Field(
-        default=None, description="Actuator force over the commanded, for each finger"
-    )
-    stiction: Annotated[Distribution | None, within(0.0, 10.0)] = Field(
-        default=None, description="Stiction of each finger's actuator [N]"
-    )
-    noise_scale: Annotated[Distribution | None, within(0.0, 10.0)] = Field(
-        default=None, description="White noise of all sensors over the configured"
-    )
-    bias_scale: Annotated[Distribution | None, within(0.0, 100.0)] = Field(
-        default=None,
-        description="Spread of force and torque biases beyond the configured, over the configured noise",
-    )
-    slip_latency: Annotated[Distribution | None, within(0.0, 6.0)] = Field(
-        default=None, description="Latency of the slip velocity, rounded [samples]"
-    )
+    slip_latency: Drawn = ranged(0.0, 6.0, "Latency of the slip velocity, rounded [samples]")
     disturbances: Annotated[tuple[AnyDisturbance, ...], BeforeValidator(renamed)] = Field(
         default=(), description="Disturbances during an episode"
     )

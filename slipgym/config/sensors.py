@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from slipgym.config.base import Frozen
+from slipgym.config.base import Frozen, number
 
 Probability = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 
@@ -12,81 +12,58 @@ Probability = Annotated[float, Field(ge=0.0, le=1.0, allow_inf_nan=False)]
 class ForceTorqueConfig(Frozen):
     """Six-axis force/torque sensor of one finger; the in-plane problem uses four of its axes."""
 
-    rate: int = Field(ge=1, le=100_000, description="Samples per second; no sensor is faster [Hz]")
-    noise_tangential: float = Field(
-        ge=0.0, le=1000.0, description="White noise of each tangential force, sd [N]"
+    rate: int = number(1, 100_000, "Samples per second; no sensor is faster [Hz]")
+    noise_tangential: float = number(0.0, 1000.0, "White noise of each tangential force, sd [N]")
+    noise_normal: float = number(0.0, 1000.0, "White noise of the normal force, sd [N]")
+    noise_torque: float = number(0.0, 1000.0, "White noise of the torque about the normal, sd [N m]")
+    bias_tangential: float = number(
+        0.0, 1000.0, "Bias of each tangential force, constant per episode, sd [N]"
     )
-    noise_normal: float = Field(ge=0.0, le=1000.0, description="White noise of the normal force, sd [N]")
-    noise_torque: float = Field(
-        ge=0.0, le=1000.0, description="White noise of the torque about the normal, sd [N m]"
+    bias_normal: float = number(0.0, 1000.0, "Bias of the normal force, constant per episode, sd [N]")
+    bias_torque: float = number(0.0, 1000.0, "Bias of the torque, constant per episode, sd [N m]")
+    drift_tangential: float = number(0.0, 1000.0, "Random walk of each tangential force, sd [N/sqrt(s)]")
+    drift_normal: float = number(0.0, 1000.0, "Random walk of the normal force, sd [N/sqrt(s)]")
+    drift_torque: float = number(0.0, 1000.0, "Random walk of the torque, sd [N m/sqrt(s)]")
+    resolution_force: float = number(0.0, 1000.0, "Quantisation of the force readings; 0: continuous [N]")
+    resolution_torque: float = number(0.0, 1000.0, "Quantisation of the torque readings; 0: continuous [N m]")
+    force_range: float = number(1e-6, 1e6, "Saturation of the tangential forces, either sign [N]")
+    normal_range: float = number(1e-6, 1e6, "Saturation of the normal force [N]")
+    torque_range: float = number(1e-6, 1e6, "Saturation of the torque, either sign [N m]")
+    latency: float = number(0.0, 10.0, "Smallest latency of a reading [s]")
+    latency_spread: float = number(0.0, 10.0, "Largest latency on top of that, sampled per episode [s]")
+    own_latency: bool = Field(
+        description="Whether each finger's sensor samples its own latency: true or false"
     )
-    bias_tangential: float = Field(
-        ge=0.0, le=1000.0, description="Bias of each tangential force, constant per episode, sd [N]"
+    tip_mass: float = number(0.0, 1.0, "Smallest mass of the fingertip in front of the sensor [kg]")
+    tip_mass_spread: float = number(
+        0.0, 1.0, "Largest mass on top of that, sampled per episode and finger [kg]"
     )
-    bias_normal: float = Field(
-        ge=0.0, le=1000.0, description="Bias of the normal force, constant per episode, sd [N]"
+    mode_frequency: Annotated[float, Field(ge=1.0, le=1e4)] | None = Field(
+        description="Natural frequency of the finger, see `slipgym.sensors.structure`; null: it is rigid [Hz]"
     )
-    bias_torque: float = Field(
-        ge=0.0, le=1000.0, description="Bias of the torque, constant per episode, sd [N m]"
-    )
-    drift_tangential: float = Field(
-        ge=0.0, le=1000.0, description="Random walk of each tangential force, sd [N/sqrt(s)]"
-    )
-    drift_normal: float = Field(
-        ge=0.0, le=1000.0, description="Random walk of the normal force, sd [N/sqrt(s)]"
-    )
-    drift_torque: float = Field(ge=0.0, le=1000.0, description="Random walk of the torque, sd [N m/sqrt(s)]")
-    resolution_force: float = Field(
-        ge=0.0, le=1000.0, description="Quantisation of the force readings; 0: continuous [N]"
-    )
-    resolution_torque: float = Field(
-        ge=0.0, le=1000.0, description="Quantisation of the torque readings; 0: continuous [N m]"
-    )
-    force_range: float = Field(
-        ge=1e-6, le=1e6, description="Saturation of the tangential forces, either sign [N]"
-    )
-    normal_range: float = Field(ge=1e-6, le=1e6, description="Saturation of the normal force [N]")
-    torque_range: float = Field(ge=1e-6, le=1e6, description="Saturation of the torque, either sign [N m]")
-    latency: float = Field(ge=0.0, le=10.0, description="Smallest latency of a reading [s]")
-    latency_spread: float = Field(
-        ge=0.0, le=10.0, description="Largest latency on top of that, sampled per episode [s]"
-    )
-    tip_mass: float = Field(
-        ge=0.0, le=1.0, description="Smallest mass of the fingertip in front of the sensor [kg]"
-    )
-    tip_mass_spread: float = Field(
-        ge=0.0, le=1.0, description="Largest mass on top of that, sampled per episode and finger [kg]"
-    )
+    mode_damping: float = number(1e-3, 0.5, "Damping of that vibration over the critical; size assumed [-]")
     dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
-    tilt: float = Field(
-        ge=0.0, le=0.5, description="Largest tilt of the frame about x and y, per episode [rad]"
+    tilt: float = number(0.0, 0.5, "Largest tilt of the frame about x and y, per episode [rad]")
+    crosstalk: float = number(
+        0.0, 0.2, "Largest part of an axis's load that another reads, over their ranges, per episode [-]"
     )
-    crosstalk: float = Field(
-        ge=0.0,
-        le=0.2,
-        description="Largest part of an axis's load that another reads, over their ranges, per episode [-]",
-    )
-    off_centre: float = Field(
-        ge=0.0,
-        le=0.05,
-        description="Largest distance of the pad's centre from its place along x and y, per episode [m]",
+    off_centre: float = number(
+        0.0, 0.05, "Largest distance of the pad's centre from its place along x and y, per episode [m]"
     )
 
 
 class SlipConfig(Frozen):
     """Slip-velocity sensor of one finger: optical mouse chips on a circle, solved by least squares."""
 
-    rate: int = Field(ge=10, le=2000, description="Samples per second; one per control step [Hz]")
+    rate: int = number(10, 2000, "Samples per second; one per control step [Hz]")
     counts: bool = Field(
         description="Whether the chips report whole counts; if not, exact motion: true or false"
     )
-    count: float = Field(ge=1e-9, le=0.01, description="Motion per count; 1 nm to 1 cm [m]")
-    chip_radius: float = Field(ge=1e-4, le=1.0, description="Distance of the chips from the pad's centre [m]")
-    chips: int = Field(ge=2, le=4, description="Number of chips, evenly spaced on their circle [-]")
-    noise: float = Field(ge=0.0, le=1e6, description="White noise per chip axis and sample, sd [counts]")
-    window: int = Field(
-        ge=1, le=15, description="Length of the moving average; the history holds 16 samples [samples]"
-    )
+    count: float = number(1e-9, 0.01, "Motion per count; 1 nm to 1 cm [m]")
+    chip_radius: float = number(1e-4, 1.0, "Distance of the chips from the pad's centre [m]")
+    chips: int = number(2, 4, "Number of chips, evenly spaced on their circle [-]")
+    noise: float = number(0.0, 1e6, "White noise per chip axis and sample, sd [counts]")
+    window: int = number(1, 15, "Length of the moving average; the history holds 16 samples [samples]")
     latency_samples: int = Field(ge=0, description="Smallest latency of a reading [samples]")
     latency_spread: int = Field(
         ge=0, description="Largest latency on top of that, sampled per episode [samples]"
@@ -96,55 +73,38 @@ class SlipConfig(Frozen):
     )
     jitter: Probability = Field(description="Probability that a reading is one sample older [-]")
     dropout: Probability = Field(description="Probability that a reading is the last one again [-]")
-    rest_after: float = Field(
-        ge=0.0, le=1000.0, description="Time without a count after which the chips rest [s]"
+    rest_after: float = number(0.0, 1000.0, "Time without a count after which the chips rest [s]")
+    rest_period: float = number(
+        0.0, 1.0, "Longest time between two looks of resting chips, sampled per episode; 0: none rests [s]"
     )
-    rest_period: float = Field(
-        ge=0.0,
-        le=1.0,
-        description="Longest time between two looks of resting chips, sampled per episode; 0: none rests [s]",
-    )
-    scale_error: float = Field(
-        ge=0.0, le=0.5, description="Largest relative error of the counts, per episode [-]"
-    )
+    scale_error: float = number(0.0, 0.5, "Largest relative error of the counts, per episode [-]")
     chip_failure: Probability = Field(description="Probability that one chip counts nothing, per episode [-]")
-    speed_max: float = Field(
-        ge=1e-6, le=1000.0, description="Saturation of each chip axis, either sign [m/s]"
-    )
+    speed_max: float = number(1e-6, 1000.0, "Saturation of each chip axis, either sign [m/s]")
 
 
 class MotorConfig(Frozen):
     """Readings of a gripper without sensors in its fingers: its motor's load and its opening."""
 
-    gain_error: float = Field(
-        ge=0.0, le=0.9, description="Largest relative error of the force, per episode [-]"
+    gain_error: float = number(0.0, 0.9, "Largest relative error of the force, per episode [-]")
+    friction: float = number(
+        0.0, 0.9, "Motor load over force while it closes, less 1; while it opens, 1 less it [-]"
     )
-    friction: float = Field(
-        ge=0.0, le=0.9,
-        description="Motor load over force while it closes, less 1; while it opens, 1 less it [-]",
-    )  # fmt: skip
-    backlash: float = Field(
-        ge=0.0, le=100.0, description="Change of force in which that friction turns over [N]"
-    )
-    noise: float = Field(ge=0.0, le=100.0, description="White noise of the force, sd [N]")
-    resolution: float = Field(ge=0.0, le=100.0, description="Quantisation of the force; 0: continuous [N]")
-    opening_noise: float = Field(ge=0.0, le=0.1, description="White noise of the opening, sd [m]")
+    backlash: float = number(0.0, 100.0, "Change of force in which that friction turns over [N]")
+    noise: float = number(0.0, 100.0, "White noise of the force, sd [N]")
+    resolution: float = number(0.0, 100.0, "Quantisation of the force; 0: continuous [N]")
+    opening_noise: float = number(0.0, 0.1, "White noise of the opening, sd [m]")
 
 
 class MarkersConfig(Frozen):
     """Markers in a gel in front of a camera: a field of shear, from which the forces along the pad come."""
 
-    compliance: float = Field(
-        ge=1e-8, le=1.0, description="Displacement of a marker over the force on its part of the pad [m/N]"
+    compliance: float = number(
+        1e-8, 1.0, "Displacement of a marker over the force on its part of the pad [m/N]"
     )
-    noise: float = Field(ge=0.0, le=0.01, description="Noise of a marker per axis and frame, sd [m]")
-    latency_frames: int = Field(ge=0, le=3, description="Latency of a frame [frames]")
-    gain_error: float = Field(
-        ge=0.0, le=0.9, description="Largest relative error of the gel's compliance, per episode [-]"
-    )
-    normal_error: float = Field(
-        ge=0.0, le=0.9, description="Largest relative error of the normal force, per episode [-]"
-    )
+    noise: float = number(0.0, 0.01, "Noise of a marker per axis and frame, sd [m]")
+    latency_frames: int = number(0, 3, "Latency of a frame [frames]")
+    gain_error: float = number(0.0, 0.9, "Largest relative error of the gel's compliance, per episode [-]")
+    normal_error: float = number(0.0, 0.9, "Largest relative error of the normal force, per episode [-]")
     observed: bool = Field(description="Whether observations have the field, 252 columns: true or false")
 
 
@@ -152,9 +112,9 @@ class SensorsConfig(Frozen):
     """The sensors of each finger, or of the gripper as a whole."""
 
     place: Literal["fingers", "wrist", "motor"] = Field(
-        description="Where forces are measured: both fingers, the wrist, or the motor alone",
+        description="Where forces are measured: both fingers, the wrist, or the motor alone"
     )
-    interval: int = Field(ge=1, le=100, description="Control steps between two readings [-]")
+    interval: int = number(1, 100, "Control steps between two readings [-]")
     force_torque: ForceTorqueConfig = Field(description="Force/torque sensor")
     slip: SlipConfig = Field(description="Slip-velocity sensor")
     motor: MotorConfig = Field(description="Load and opening of the gripper's motor, unless in fingers")

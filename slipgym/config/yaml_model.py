@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from estimator.suggestions import yaml_beside
 from slipgym.config import files
 from slipgym.config.errors import SourceOf, explain, unknown
 
@@ -48,7 +49,7 @@ def read_model(
     path = Path(choice)
     if path.suffix not in (".yaml", ".yml"):
         if str(choice) not in names(folder):
-            raise ValueError(unknown(kind, str(choice), names(folder)))
+            raise ValueError(unknown(kind, str(choice), names(folder), yaml_beside(path)))
         path = files.folder() / folder / f"{choice}.yaml"
     return validate(files.read(path), model, os.fspath(path), context)
 

@@ -24,7 +24,7 @@ class DistributedContact:
     Args:
         radius: Radius of the patch [m], > 0.
         cells: Cells along either side of the square around the patch, 1 to 201.
-        pressure: "uniform", "hertz", "rim", or relative loads of the cells, shape
+        pressure: "uniform", "hertz", "rim", "punch", or relative loads of the cells, shape
             (cells, cells), first index along x.
         mu_c: Coulomb friction [-], > 0.
         mu_s: Static friction [-], >= mu_c.

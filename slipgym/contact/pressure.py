@@ -24,7 +24,7 @@ RINGS = 400
 SECTORS = 2000  # a multiple of 8: points have the symmetry of the grid
 MAX_CELLS = 201
 
-PressureName: TypeAlias = Literal["uniform", "hertz", "rim"]
+PressureName: TypeAlias = Literal["uniform", "hertz", "rim", "punch"]
 """Names of `PRESSURES`, for the configuration."""
 
 
@@ -41,8 +41,10 @@ PRESSURES: dict[PressureName, Pressure] = {
     "uniform": Pressure(np.sqrt, 1.5),
     "hertz": Pressure(lambda load: np.sqrt(1.0 - (1.0 - load) ** (2.0 / 3.0)), 16.0 / (3.0 * np.pi)),
     "rim": Pressure(np.ones_like, 1.0),
+    "punch": Pressure(lambda load: np.sqrt(load * (2.0 - load)), 4.0 / np.pi),
 }
-"""Name -> pressure: constant, proportional to sqrt(1 - rho^2) (Hertz), or on the edge alone."""
+"""Name -> pressure: constant, proportional to sqrt(1 - rho^2) (Hertz), on the edge alone, or proportional to
+1 / sqrt(1 - rho^2), higher towards the edge: a flat rigid pad (Johnson, Contact Mechanics, 1985, 3.4)."""
 OUTER_RADII: dict[str, float] = {name: pressure.outer_radius for name, pressure in PRESSURES.items()}
 """Name -> `Pressure.outer_radius`."""
 

@@ -12,15 +12,17 @@ from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.tasks.task import Column
 
+COMMANDS = ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate")
+"""Commands to gripper and wrist in a control step."""
+_INCREMENT = len(COMMANDS)
+GUESS = ("ln_mu_s", "ln_mu_c", "ln_r", "ln_sd_mu_s", "ln_sd_mu_c", "ln_sd_r")
+"""What an agent states about friction: logarithms of `mu_s`, `mu_c`, `r` and of their relative deviations."""
 _LINEAR = {
-    "grip_force": ("grip_force",),
+    "grip_force": COMMANDS[:1],
     "grip_force_pitch": ("grip_force", "wrist_pitch_rate"),
-    "grip_force_translation": ("grip_force", "wrist_velocity_x", "wrist_velocity_z"),
-    "grip_force_wrist": ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate"),
-    "grip_force_wrist_guess": (
-        *("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate"),
-        *("ln_mu_s", "ln_mu_c", "ln_r", "ln_sd_mu_s", "ln_sd_mu_c", "ln_sd_r"),
-    ),
+    "grip_force_translation": COMMANDS[:3],
+    "grip_force_wrist": COMMANDS,
+    "grip_force_wrist_guess": (*COMMANDS, *GUESS),
 }
 LOGARITHMIC = "log_"
 """Begins the name of a mode that has `ln_grip_force` in place of `grip_force`."""
@@ -31,11 +33,6 @@ ACTION_MODES = {
 }
 """Mode -> names of an action's components, in order."""
 
-COMMANDS = ("grip_force", "wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate")
-"""Commands to gripper and wrist in a control step."""
-_INCREMENT = len(COMMANDS)
-GUESS = ("ln_mu_s", "ln_mu_c", "ln_r", "ln_sd_mu_s", "ln_sd_mu_c", "ln_sd_r")
-"""What an agent states about friction: logarithms of `mu_s`, `mu_c`, `r` and of their relative deviations."""
 PLACES = (*COMMANDS, "force_increment", *GUESS, "ln_grip_force")
 """Components by their place in `COMPONENT.command`."""
 _LOGARITHM = len(PLACES) - 1
@@ -80,30 +77,22 @@ def components(mode: str, config: Config, wrist_speed: float | None = None) -> t
 
 def _guess(pad_radius: float) -> tuple[Column, ...]:
     """Components of a guess of friction, on pads of a radius [m]."""
-    friction, radius = GUESSED_FRICTION, (GUESSED_RADIUS * pad_radius, pad_radius)
-    meanings = {
-        "mu_s": ("static friction", friction),
-        "mu_c": ("Coulomb friction", friction),
-        "r": ("contact radius in metres", radius),
-    }
-    values, deviations = [], []
-    for name, (meaning, (low, high)) in meanings.items():
-        ends = math.log(low), math.log(high)
-        text = f"logarithm of the {meaning}, as guessed"
-        values.append(Column(f"ln_{name}", ends[0], ends[1], "-", text))
-        low, high = GUESSED_DEVIATION
-        text = f"logarithm of the relative standard deviation of {name}, as guessed"
-        deviations.append(Column(f"ln_sd_{name}", math.log(low), math.log(high), "-", text))
-    return *values, *deviations
+    rows = (
+        ("mu_s", "static friction", GUESSED_FRICTION),
+        ("mu_c", "Coulomb friction", GUESSED_FRICTION),
+        ("r", "contact radius in metres", (GUESSED_RADIUS * pad_radius, pad_radius)),
+    )
+    named = [(f"ln_{name}", f"the {meaning}", ends) for name, meaning, ends in rows]
+    for name, *_ in rows:
+        named.append((f"ln_sd_{name}", f"the relative standard deviation of {name}", GUESSED_DEVIATION))
+    return tuple(
+        Column(name, math.log(low), math.log(high), "-", f"logarithm of {what}, as guessed")
+        for name, what, (low, high) in named
+    )
 
 
 class Actions:
-    """The action space of a mode, and its components as the table from which actions are interpreted.
-
-    Args:
-        mode: One of `ACTION_MODES`.
-        config: The environment's configuration.
-        wrist_speed: The task's own largest speed of the wrist; None: the gripper's [m/s].
+    """The action space of a mode, and its `components` as the table from which actions are interpreted.
 
     Attributes:
         columns: Components of an action, with the range that [-1, 1] stands for.
@@ -130,17 +119,12 @@ class Actions:
         usual = type(action) is np.ndarray and action.dtype.kind == "f"  # without another call
         array = action if usual else _real(action, "action")
         if array.shape != self._shape:
-            meaning = ", ".join(column.name for column in self.columns)
-            raise ValueError(
-                f"action must have shape {self._shape} in action_mode {self.mode!r} ({meaning}), "
-                f"got {array.shape}: {action!r}"
-            )
+            raise self._misshapen("action", self._shape, f"{array.shape}: {action!r}")
         batch = self._batch
         for k, value in enumerate(array.tolist()):
             batch[0, k] = value
             if not math.isfinite(value):
-                name = self.columns[k].name
-                raise ValueError(f"action[{k}] ({name}) = {float(value)} must be finite, within [-1, 1]")
+                raise self._not_finite(f"action[{k}]", k, float(value))
         return batch
 
     def checked_batch(self, actions: Any, n: int) -> np.ndarray:
@@ -152,16 +136,20 @@ class Actions:
         """
         array = np.ascontiguousarray(numbers(actions, "actions"))
         if array.shape != (n, *self._shape):
-            meaning = ", ".join(column.name for column in self.columns)
-            raise ValueError(
-                f"actions must have shape {(n, *self._shape)} in action_mode {self.mode!r} ({meaning}), "
-                f"got {array.shape}"
-            )
+            raise self._misshapen("actions", (n, *self._shape), array.shape)
         if not np.isfinite(array).all():
             i, k = np.argwhere(~np.isfinite(array))[0].tolist()
-            name, value = self.columns[k].name, array[i, k]
-            raise ValueError(f"actions[{i}, {k}] ({name}) = {value} must be finite, within [-1, 1]")
+            raise self._not_finite(f"actions[{i}, {k}]", k, array[i, k])
         return array
+
+    def _misshapen(self, name: str, shape: tuple[int, ...], got: object) -> ValueError:
+        meaning = ", ".join(column.name for column in self.columns)
+        return ValueError(
+            f"{name} must have shape {shape} in action_mode {self.mode!r} ({meaning}), got {got}"
+        )
+
+    def _not_finite(self, place: str, k: int, value: object) -> ValueError:
+        return ValueError(f"{place} ({self.columns[k].name}) = {value} must be finite, within [-1, 1]")
 
 
 def numbers(given: Any, name: str) -> np.ndarray:

@@ -11,16 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from types import NoneType
-from typing import (
-    Annotated,
-    Any,
-    Literal,
-    TypeAlias,
-    TypedDict,
-    get_args,
-    get_origin,
-    get_type_hints,
-)
+from typing import Annotated, Any, Literal, TypeAlias, TypedDict, get_args, get_origin, get_type_hints
 
 from gymnasium.vector import AutoresetMode
 
@@ -61,12 +52,10 @@ class Argument:
 RenderSize: TypeAlias = Annotated[
     tuple[int, int] | None,
     Argument(
-        None,
-        "width and height of what `render` shows, in pixels; `None`: 720 and 480 (docs/rendering.md)",
-        least=32,
-        most=4096,
+        None, "width and height of what `render` shows, in pixels; `None`: 720 and 480 (docs/rendering.md)",
+        least=32, most=4096,
     ),
-]
+]  # fmt: skip
 
 
 class CommonArguments(TypedDict, total=False):
@@ -158,16 +147,13 @@ class VectorArguments(CommonArguments, total=False):
     threads: Annotated[
         int | None,
         Argument(
-            None,
-            "threads that share the environments; `None`: one per processor, each with at least 32",
+            None, "threads that share the environments; `None`: one per processor, each with at least 32"
         ),
     ]
     max_episode_steps: Annotated[
         int | None,
         Argument(
-            None,
-            "steps after which an episode is truncated, if it has not ended; `None`: its own length",
-            least=1,
+            None, "steps after which an episode is truncated, if it has not ended; `None`: its own length", 1
         ),
     ]
     render_mode: Annotated[
@@ -177,29 +163,22 @@ class VectorArguments(CommonArguments, total=False):
     render_rows: Annotated[
         Sequence[int] | None,
         Argument(
-            None,
-            "environments that `render` shows, in this order; `None`: all, or the first of more than 16",
+            None, "environments that `render` shows, in this order; `None`: all, or the first of more than 16"
         ),
     ]
 
 
-@dataclass(frozen=True)
-class Field:
+@dataclass(frozen=True, kw_only=True)
+class Field(Argument):
     """A keyword argument."""
 
     name: str
     annotation: Any
     """Its type, without the `Argument`."""
-    default: Any
-    doc: str
     choices: tuple[str, ...]
     """The valid names, where they are fixed."""
     optional: bool
     """Whether it may be None."""
-    least: int | None
-    """Smallest value, of an argument that is a whole number."""
-    most: int | None
-    """Largest value of it."""
 
     @property
     def text(self) -> str:
@@ -231,9 +210,8 @@ def fields(kind: type) -> dict[str, Field]:
         choices = [
             choice for member in members if get_origin(member) is Literal for choice in get_args(member)
         ]
-        optional = NoneType in members
-        limits = given.least, given.most
-        found[name] = Field(name, annotation, given.default, given.doc, tuple(choices), optional, *limits)
+        own = {"name": name, "annotation": annotation, "choices": tuple(choices)}
+        found[name] = Field(**vars(given), **own, optional=NoneType in members)
     return found
 
 
@@ -245,7 +223,9 @@ def complete(kind: type, given: Mapping[str, Any]) -> dict[str, Any]:
         ValueError: The value of an argument is not allowed.
     """
     known = fields(kind)
-    refuse_unknown(given, known)
+    for name in given:
+        if name not in known:
+            raise TypeError(unknown("keyword argument", name, known))
     values = {name: plain(given.get(name, field.default)) for name, field in known.items()}
     for name, value in values.items():
         known[name].check(value)
@@ -262,13 +242,6 @@ def one_of(name: str, value: object, valid: Iterable[str]) -> str:
     if not isinstance(value, str) or value not in tuple(valid):
         raise ValueError(unknown(name, value, valid))
     return value
-
-
-def refuse_unknown(given: Iterable[str], known: Iterable[str]) -> None:
-    """Raise TypeError if an unknown keyword argument was given."""
-    for name in given:
-        if name not in known:
-            raise TypeError(unknown("keyword argument", name, known))
 
 
 def whole(name: str, value: object, least: int, most: int | None = None) -> int:

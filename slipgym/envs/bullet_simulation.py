@@ -95,9 +95,9 @@ def _finish(fixed, pose, wrist, normals, at):
 
 
 @compiled
-def _equip(fixed, starts, values, hardware, patches, cells):
+def _equip(fixed, starts, values, hardware, patches):
     """Prepare an episode, see `slipgym.envs.reset_kernels.equip_rows`; `fixed` as in `_begin`."""
-    stages, state, force_torque, _, _, _, _ = opened(fixed)
+    stages, state, force_torque, _, _, _, cells = opened(fixed)
     stages.equip(starts, values, hardware, patches, state, cells, force_torque)
 
 
@@ -121,7 +121,7 @@ def _compiled_step(
     arguments = {
         _begin: (FixedType(ACTION), types.boolean),
         _finish: (POSE, VECTOR, PAIR, WHOLE),
-        _equip: (starts, VALUES_TYPE, array(HARDWARE), F3, cells_type(cells)),
+        _equip: (starts, VALUES_TYPE, array(HARDWARE), F3),
         _open: (starts, FRESH),
     }
     programs = {}
@@ -138,14 +138,7 @@ _NO_ACTION = np.zeros((1, 0)), np.zeros(0, COMPONENT), np.ones(1, dtype=bool)
 
 
 class BulletSimulation(Simulation):
-    """Simulation of one environment; PyBullet moves the bodies.
-
-    Args:
-        config: Configuration.
-        settings: The task's settings.
-        task: The task.
-        estimator: Name of an estimator, or a mapping with its `name` and parameters; None: nothing estimates.
-        randomization: Distributions that an episode is sampled from; None: no randomization.
+    """`Simulation` of one environment; PyBullet moves the bodies.
 
     Attributes:
         world: The PyBullet world, which moves the bodies of `plant`.
@@ -243,7 +236,7 @@ class BulletSimulation(Simulation):
 
     def _reset(self, starts: np.ndarray, values: np.ndarray) -> None:
         force, episode = starts["force"].item(), self.episode
-        self._calls.equip(starts, values, *self._hardware, self.plant.cells)
+        self._calls.equip(starts, values, *self._hardware)
         x, z, pitch = episode["wrist_start"][0].tolist()
         self.world.reset(self.boxes[0], force, (x, z, pitch), episode["wrist_roll"].item())
         bear_all(episode, self.plant.world)

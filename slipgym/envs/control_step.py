@@ -2,7 +2,11 @@
 
 Each is a program of its own, see `slipgym.envs.stages`: the planar engine calls them for blocks of rows,
 through pointers, PyBullet's simulation for one row. Functions that differ between tasks and estimators are
-called through pointers, too, so that one program serves all of them.
+called through pointers, too, so that one program serves all of them: `script_wrist` and `evaluate_step` of
+the task, `update` of the estimator.
+
+`state` is a `BatchState`, `lo` the first of its rows that a stage works on, `hi` the row after the last;
+`cells` is `slipgym.world.plant.Plant.cells`, `force_torque` FORCE_TORQUE (n, 2).
 """
 
 from __future__ import annotations
@@ -12,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from estimator._numba.memory import lent
-from slipgym._numba.compiled import pointed, unlocked
+from slipgym._numba.compiled import compiled, pointed, unlocked
 from slipgym._numba.fixed import opened
 from slipgym.envs.actions import interpret
 from slipgym.envs.infos import write_infos
@@ -67,14 +71,9 @@ class BatchState(NamedTuple):
 
 @pointed
 def begin(script_wrist, state, action, lo, hi):
-    """Take the actions of rows lo to hi, apply disturbances and script the wrist, before the bodies move.
+    """Take the actions, apply disturbances and script the wrist, before the bodies move.
 
-    Args:
-        script_wrist: Function of the task.
-        state: `BatchState`.
-        action: Actions (n, m), their meaning COMPONENT (m,), and flags (n,) that are not read.
-        lo: First row.
-        hi: Row after the last.
+    `action` holds actions (n, m), their meaning COMPONENT (m,), and flags (n,) that are not read.
     """
     rows = slice(lo, hi)
     actions, components, _ = action
@@ -86,15 +85,7 @@ def begin(script_wrist, state, action, lo, hi):
 
 @pointed
 def measure_rows(state, cells, force_torque, lo, hi):
-    """Read the sensors of rows lo to hi.
-
-    Args:
-        state: `BatchState`.
-        cells: As `slipgym.world.plant.Plant.cells`.
-        force_torque: FORCE_TORQUE (n, 2).
-        lo: First row.
-        hi: Row after the last.
-    """
+    """Read the sensors."""
     rows, (state, cells, force_torque) = slice(lo, hi), lent((state, cells, force_torque))
     if state.grippers[lo].usual:
         measure(
@@ -105,42 +96,31 @@ def measure_rows(state, cells, force_torque, lo, hi):
         measure_owned(state, cells, force_torque, lo, hi)
 
 
-@pointed
-def estimate(update, state, lo, hi):
-    """Count the control step, and update the estimators of rows lo to hi, after `measure_rows`.
+@compiled
+def learn(update, state, i, time, wrenches, twists):
+    """Update both estimators of environment i with wrenches (2, 4) and twists (2, 3) at a time [s].
 
     An estimator gets its records by their first bytes: its own types do not matter here.
-
-    Args:
-        update: Function of the estimator.
-        state: `BatchState`.
-        lo: First row.
-        hi: Row after the last.
     """
+    pair = slice(2 * i, 2 * i + 2)
+    own = pair if state.parameters.shape[0] > 1 else slice(0, 1)
+    states, parameters = state.estimator_states[pair, 0], state.parameters[own, 0]
+    update(states, parameters, time, wrenches, twists, state.estimates[pair])
+
+
+@pointed
+def estimate(update, state, lo, hi):
+    """Count the control step, and update the estimators, after `measure_rows`."""
     state = lent(state)
     for i in range(lo, hi):
         state.episodes[i].step += 1
-        pair = slice(2 * i, 2 * i + 2)
-        own = pair if state.parameters.shape[0] > 1 else slice(0, 1)
         time = state.episodes[i].step * state.episodes[i].step_time
-        update(
-            state.estimator_states[pair, 0], state.parameters[own, 0], time, state.wrenches[i],
-            state.twists[i], state.estimates[pair],
-        )  # fmt: skip
+        learn(update, state, i, time, state.wrenches[i], state.twists[i])
 
 
 @pointed
 def evaluate(evaluate_step, state, lo, hi):
-    """Merge the estimates and evaluate the task in rows lo to hi.
-
-    Where the agent states no guess of friction, the merged estimate is the guess.
-
-    Args:
-        evaluate_step: Function of the task.
-        state: `BatchState`.
-        lo: First row.
-        hi: Row after the last.
-    """
+    """Merge the estimates, which are the guess where the agent states none, and evaluate the task."""
     rows, state = slice(lo, hi), lent(state)
     combine(state.estimates[2 * lo : 2 * hi], state.per_finger[rows], state.estimated[rows])
     guess(state.estimated[rows], state.episodes[rows])
@@ -149,14 +129,7 @@ def evaluate(evaluate_step, state, lo, hi):
 
 @pointed
 def look(state, buffers, lo, hi):
-    """Write the observations of rows lo to hi.
-
-    Args:
-        state: `BatchState`.
-        buffers: `ObservationBuffers`.
-        lo: First row.
-        hi: Row after the last.
-    """
+    """Write the observations to `ObservationBuffers`."""
     rows = slice(lo, hi)
     wrist, friction, low, high, load, out, sensors = buffers
     marked = rows if state.markers.shape[0] > 0 else slice(0, 0)
@@ -177,17 +150,7 @@ def look_at(look_rows, rows, state, buffers):
 
 @pointed
 def report(state, numbers, flags, lo, hi):
-    """Write the infos of rows lo to hi.
-
-    Args:
-        state: `BatchState`.
-        numbers: Output, see `InfoBuffer`, like the next one.
-        flags: Output.
-        lo: First row.
-        hi: Row after the last.
-    """
-    rows = slice(lo, hi)
-    write_infos(
-        numbers[rows], flags[rows], state.worlds[rows], state.pads[rows], state.fingers[rows],
-        state.episodes[rows], state.ground_truth[rows], state.estimated[rows], state.per_finger[rows],
-    )  # fmt: skip
+    """Write the infos to `numbers` and `flags` of an `InfoBuffer`."""
+    state = lent(state)
+    for i in range(lo, hi):
+        write_infos(state, numbers, flags, i)

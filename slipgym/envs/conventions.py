@@ -1,18 +1,21 @@
-"""Gives environments a spec that says how long they last, and copies that keep what a user has changed."""
+"""Gives environments their signature, a spec that says how long they last, and copies that keep changes."""
 
 from __future__ import annotations
 
+import inspect
 import os
-from collections.abc import Mapping
+import textwrap
+from collections.abc import Callable, Mapping
 from copy import copy, deepcopy
 from enum import Enum
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from slipgym.config import TaskConfig
 from slipgym.config.plain import plain
+from slipgym.envs.arguments import Field, fields
 from slipgym.tasks import Task
 
 _SPACES = "action_space", "observation_space", "single_action_space", "single_observation_space"
@@ -20,6 +23,9 @@ _LIMIT = "max_episode_steps"
 """Keyword argument of a vector environment that `gymnasium.make_vec` takes from the spec."""
 _RESTORED = "_np_random", "_np_random_seed"
 """Attributes of a scalar environment that its state holds."""
+
+
+Class = TypeVar("Class", bound=type)
 
 
 class Conventions:
@@ -99,3 +105,32 @@ def _jsonable(value: Any) -> Any:
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value.value if isinstance(value, Enum) else value
+
+
+def documented(kind: type, *first: inspect.Parameter) -> Callable[[Class], Class]:
+    """Decorator for a class whose constructor takes the arguments of a kind: signature and docstring.
+
+    Args:
+        kind: `ScalarArguments` or `VectorArguments`.
+        *first: Parameters in front of them.
+    """
+
+    def decorate(cls: Class) -> Class:
+        parameters = [
+            inspect.Parameter(
+                field.name, inspect.Parameter.KEYWORD_ONLY, default=field.default, annotation=field.annotation
+            )
+            for field in fields(kind).values()
+        ]
+        cls.__signature__ = inspect.Signature([*first, *parameters])
+        if cls.__doc__ is not None:
+            lines = [_paragraph(field) for field in fields(kind).values()]
+            cls.__doc__ = cls.__doc__.replace("        {arguments}", "\n".join(lines))
+        return cls
+
+    return decorate
+
+
+def _paragraph(field: Field) -> str:
+    text = f"{field.name}: {field.text[0].upper()}{field.text[1:]}. Default: {field.default!r}."
+    return textwrap.fill(text, 110, initial_indent=" " * 8, subsequent_indent=" " * 12)

@@ -1,18 +1,20 @@
-"""Chooses the estimators of an environment, and merges what they estimate for both fingers."""
-
-from __future__ import annotations
+"""Chooses the estimators of an environment, or their stand-in, and merges the estimates of both fingers."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, fields
+from dataclasses import asdict, dataclass, fields
 from typing import Any
 
+import numpy as np
+
 import estimator as estimators
-from estimator.registry import specification
+from estimator._numba.entry_point import entry_point
+from estimator.estimate import COMMON_STATE
+from estimator.parameters import Parameters, parameter
+from estimator.registry import Specification, specification
 from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.sensors import SensorsConfig
-from slipgym.envs import no_estimator
 from slipgym.sensors.markers import COUNT
 
 LATENCY = "velocity_delay"
@@ -73,6 +75,38 @@ def _data_sheet(sensors: SensorsConfig) -> dict[str, float]:
     return stated
 
 
+NO_ESTIMATOR = "slipgym.envs.estimates:SPECIFICATION"
+"""Name, for `estimator.make_batch`, of what stands in for the estimators with `estimator=None`."""
+
+
+@dataclass(frozen=True)
+class NoEstimatorParameters(Parameters):
+    """Friction that it states all the time, without confidence."""
+
+    mu_s0: float = parameter(0.9, "Stated mu_s.", "(0, inf)")
+    mu_c0: float = parameter(0.7, "Stated mu_c.", "(0, inf)")
+    r0: float = parameter(0.01, "Stated r.", "(0, inf)", "m")
+
+
+_STATE = np.dtype(COMMON_STATE, align=True)
+
+
+def _initial_states(parameters: np.ndarray) -> np.ndarray:
+    """States before the first sample, (m,) from parameters (m,)."""
+    states = np.zeros(len(parameters), _STATE)
+    for name in ("mu_s", "mu_c", "r"):
+        states[name] = parameters[f"{name}0"]
+    return states
+
+
+@entry_point(_STATE, NoEstimatorParameters.dtype())
+def _update_batch(states, parameters, t, wrenches, twists, estimates):
+    """Changes nothing."""
+
+
+SPECIFICATION = Specification(NO_ESTIMATOR, NoEstimatorParameters, _initial_states, _update_batch)
+
+
 def make_estimators(choice: dict[str, Any] | None, config: Config, n: int) -> estimators.BatchEstimator:
     """The estimators of n fingers; without a choice they state the default's start values all the time.
 
@@ -85,7 +119,7 @@ def make_estimators(choice: dict[str, Any] | None, config: Config, n: int) -> es
         return estimators.make_batch(n=n, **informed(choice, config))
     start = estimators.make_batch(estimators.DEFAULT, 1).estimates[0]
     stated = {f"{name}0": start[name] for name in ("mu_s", "mu_c", "r")}
-    return estimators.make_batch(no_estimator.NAME, n, **stated)
+    return estimators.make_batch(NO_ESTIMATOR, n, **stated)
 
 
 @compiled

@@ -42,52 +42,19 @@ class Info(NamedTuple):
 
 
 NUMBERS = (
-    Info(
-        "true", (3,), "-, -, m", "true (mu_s, mu_c, r) now, mean of both fingers", "ground_truth[i, {0}]"
-    ),
-    Info(
-        "true_per_finger",
-        (2, 3),
-        "-, -, m",
-        "true (mu_s, mu_c, r) of each finger now",
-        "pads[i, {0}].{1}",
-        ("mu_s", "mu_c", "r"),
-    ),
-    Info(
-        "estimated",
-        (3,),
-        "-, -, m",
-        "estimated (mu_s, mu_c, r), mean of both fingers",
-        "estimated[i, {0}]",
-    ),
-    Info(
-        "estimated_per_finger",
-        (2, 3),
-        "-, -, m",
-        "estimated (mu_s, mu_c, r) of each finger",
-        "per_finger[i, {0}, {1}]",
-    ),
-    Info(
-        "slip",
-        (3,),
-        "m, m, rad",
-        "true slip displacement (x, y, theta) in the pad frame since the grasp",
-        "worlds[i].slip[{0}]",
-    ),
-    Info(
-        "slip_twist",
-        (3,),
-        "m/s, m/s, rad/s",
-        "true slip velocity (v_x, v_y, omega) at the pad centre",
-        "worlds[i].slip_twist[{0}]",
-    ),
-    Info(
-        "contact_wrench",
-        (2, 3),
-        "N, N, N m",
-        "true friction (f_x, f_y, tau) of either pad on the box",
-        "pads[i, {0}].wrench[{1}]",
-    ),
+    Info("true", (3,), "-, -, m", "true (mu_s, mu_c, r) now, mean of both fingers", "ground_truth[i, {0}]"),
+    Info("true_per_finger", (2, 3), "-, -, m", "true (mu_s, mu_c, r) of each finger now",
+         "pads[i, {0}].{1}", ("mu_s", "mu_c", "r")),
+    Info("estimated", (3,), "-, -, m", "estimated (mu_s, mu_c, r), mean of both fingers",
+         "estimated[i, {0}]"),
+    Info("estimated_per_finger", (2, 3), "-, -, m", "estimated (mu_s, mu_c, r) of each finger",
+         "per_finger[i, {0}, {1}]"),
+    Info("slip", (3,), "m, m, rad", "true slip displacement (x, y, theta) in the pad frame since the grasp",
+         "worlds[i].slip[{0}]"),
+    Info("slip_twist", (3,), "m/s, m/s, rad/s", "true slip velocity (v_x, v_y, omega) at the pad centre",
+         "worlds[i].slip_twist[{0}]"),
+    Info("contact_wrench", (2, 3), "N, N, N m", "true friction (f_x, f_y, tau) of either pad on the box",
+         "pads[i, {0}].wrench[{1}]"),
     Info("grip_force", (2,), "N", "actuator force of each finger", "fingers[i, {0}].force"),
     Info("reference", (3,), "", "position, velocity and acceleration of the task's reference",
          "episodes[i].reference[{0}]"),
@@ -209,23 +176,12 @@ _write_flags = row_writer(
 
 
 @compiled
-def write_infos(numbers, flags, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger):
-    """Write all infos but the reward terms.
-
-    Args:
-        numbers: Output (n, m), see `NUMBERS`.
-        flags: Output (n, 5), see `InfoBuffer.flags`.
-        worlds: WORLD (n,).
-        pads: PAD (n, 2).
-        fingers: FINGER (n, 2).
-        episodes: EPISODE (n,).
-        ground_truth: (n, 11), of which the first three (mu_s, mu_c, r) are used.
-        estimated: (n, 11), likewise.
-        per_finger: Estimated mu_s, mu_c, r (n, 2, 3).
-    """
-    for i in range(numbers.shape[0]):
-        _write_numbers(numbers[i], i, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger)
-        _write_flags(flags[i], i, worlds, pads, fingers, episodes, ground_truth, estimated, per_finger)
+def write_infos(state, numbers, flags, i):
+    """Write the infos of environment i of a `BatchState` but the reward terms to arrays of `InfoBuffer`."""
+    worlds, pads, fingers, episodes = state.worlds, state.pads, state.fingers, state.episodes
+    truth, estimated, per_finger = state.ground_truth, state.estimated, state.per_finger
+    _write_numbers(numbers[i], i, worlds, pads, fingers, episodes, truth, estimated, per_finger)
+    _write_flags(flags[i], i, worlds, pads, fingers, episodes, truth, estimated, per_finger)
 
 
 InfoReader: TypeAlias = Callable[[], tuple[dict[str, Any], float, bool, bool]]

@@ -27,29 +27,17 @@ def _load(f: int) -> tuple[Reading, ...]:
     load, normal = f"math.hypot({wrench}0], {wrench}1])", f"max({wrench}2], {LEAST_NORMAL})"
     torque = f"{wrench}3] / ({normal} * max(episodes[i].pad_radius, 1e-9))"
     return (
-        Reading(
-            f"ln_load_{f}",
-            _ln_load,
-            "-",
-            f"logarithm of the tangential force on finger {f} in newtons",
-            f"math.log(max({load}, {LEAST_LOAD}))",
-        ),
-        Reading(
-            f"load_ratio_{f}",
-            ratio,
-            "-",
-            f"the same force over finger {f}'s normal force",
-            f"{load} / {normal}",
-        ),
+        Reading(f"ln_load_{f}", _ln_load, "-", f"logarithm of the tangential force on finger {f} in newtons",
+                f"math.log(max({load}, {LEAST_LOAD}))"),
+        Reading(f"load_ratio_{f}", ratio, "-", f"the same force over finger {f}'s normal force",
+                f"{load} / {normal}"),
         Reading(f"torque_ratio_{f}", ratio, "-", "torque over normal force and pad radius", torque),
-    )
+    )  # fmt: skip
 
 
 LOAD = (
-    Reading(
-        "ln_grip", _ln_grip, "-", "logarithm of the commanded grip force in newtons",
-        f"math.log(max(episodes[i].command, {LEAST_LOAD}))",
-    ),
+    Reading("ln_grip", _ln_grip, "-", "logarithm of the commanded grip force in newtons",
+            f"math.log(max(episodes[i].command, {LEAST_LOAD}))"),
     *_load(1),
     *_load(2),
 )  # fmt: skip

@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from slipgym._numba.compiled import pointed
+from slipgym._numba.compiled import compiled, pointed
+from slipgym._numba.generate import generate
 from slipgym.envs.dumps import write_dump
-from slipgym.envs.readings import finite_check, row_writer
+from slipgym.envs.readings import row_writer
 
 KEPT = 120
 """Number of control steps whose quantities are kept: one second."""
@@ -41,25 +42,20 @@ def _loads(f: int) -> tuple[Quantity, ...]:
 
 def _measurements(f: int) -> tuple[Quantity, ...]:
     """Sensor readings of finger 1 or 2."""
-    wrench, twist = f"wrenches[i, {f - 1}, ", f"twists[i, {f - 1}, "
-    return (
-        Quantity(f"measured_f_x_{f}", "N", f"{wrench}0]", measured=True),
-        Quantity(f"measured_f_y_{f}", "N", f"{wrench}1]", measured=True),
-        Quantity(f"measured_f_n_{f}", "N", f"{wrench}2]", measured=True),
-        Quantity(f"measured_tau_{f}", "N m", f"{wrench}3]", measured=True),
-        Quantity(f"measured_v_x_{f}", "m/s", f"{twist}0]", measured=True),
-        Quantity(f"measured_v_y_{f}", "m/s", f"{twist}1]", measured=True),
-        Quantity(f"measured_omega_{f}", "rad/s", f"{twist}2]", measured=True),
+    wrench = ("f_x", "N"), ("f_y", "N"), ("f_n", "N"), ("tau", "N m")
+    twist = ("v_x", "m/s"), ("v_y", "m/s"), ("omega", "rad/s")
+    return tuple(
+        Quantity(f"measured_{name}_{f}", unit, f"{array}[i, {f - 1}, {k}]", measured=True)
+        for array, rows in (("wrenches", wrench), ("twists", twist))
+        for k, (name, unit) in enumerate(rows)
     )
 
 
 def _estimates(f: int) -> tuple[Quantity, ...]:
     """Estimates of finger 1 or 2."""
-    estimate = f"per_finger[i, {f - 1}, "
-    return (
-        Quantity(f"estimated_mu_s_{f}", "-", f"{estimate}0]"),
-        Quantity(f"estimated_mu_c_{f}", "-", f"{estimate}1]"),
-        Quantity(f"estimated_r_{f}", "m", f"{estimate}2]"),
+    named = enumerate((("mu_s", "-"), ("mu_c", "-"), ("r", "m")))
+    return tuple(
+        Quantity(f"estimated_{name}_{f}", unit, f"per_finger[i, {f - 1}, {k}]") for k, (name, unit) in named
     )
 
 
@@ -76,12 +72,7 @@ QUANTITIES = (
     Quantity("disturbance_x", "N", "worlds[i].external[0]"),
     Quantity("disturbance_z", "N", "worlds[i].external[1]"),
     Quantity("disturbance_torque", "N m", "worlds[i].external[2]"),
-    *_loads(1),
-    *_loads(2),
-    *_measurements(1),
-    *_measurements(2),
-    *_estimates(1),
-    *_estimates(2),
+    *(row for part in (_loads, _measurements, _estimates) for f in (1, 2) for row in part(f)),
     Quantity("reward", "-", "episodes[i].terms.sum()"),
 )
 """Quantities that are checked, causes before effects: the error names the first one that is not finite."""
@@ -95,10 +86,13 @@ _write_quantities = row_writer(
     __file__,
     "Write `QUANTITIES` of environment i.",
 )
-sound = finite_check(
+_SUM = [f"total += {quantity.read}" for quantity in QUANTITIES if not quantity.measured]
+sound = generate(
     "sound",
-    [quantity.read for quantity in QUANTITIES if not quantity.measured],
-    ("worlds", "pads", "fingers", "per_finger", "episodes"),
+    ("i", "worlds", "pads", "fingers", "per_finger", "episodes"),
+    ["total = 0.0", *_SUM, "return isfinite(total)"],
+    {"isfinite": math.isfinite},
+    compiled,
     __file__,
     "Whether the `QUANTITIES` of environment i are finite; measurements are left out.",
 )

@@ -17,70 +17,44 @@ from slipgym.envs.sensor_part import SENSORS, read_owned, sensor_readings
 from slipgym.tasks.task import Column, Task
 
 WRIST = (
-    Reading(
-        "wrist_velocity_x",
-        (-2.0, 2.0),
-        "m/s",
-        "commanded wrist velocity along world x",
-        "worlds[i].wrist_velocity[0]",
-    ),
-    Reading(
-        "wrist_velocity_z",
-        (-2.0, 2.0),
-        "m/s",
-        "commanded wrist velocity along world z",
-        "worlds[i].wrist_velocity[1]",
-    ),
-    Reading(
-        "wrist_pitch_rate",
-        (-10.0, 10.0),
-        "rad/s",
-        "commanded wrist pitch rate",
-        "worlds[i].wrist_velocity[2]",
-    ),
+    Reading("wrist_velocity_x", (-2.0, 2.0), "m/s", "commanded wrist velocity along world x",
+            "worlds[i].wrist_velocity[0]"),
+    Reading("wrist_velocity_z", (-2.0, 2.0), "m/s", "commanded wrist velocity along world z",
+            "worlds[i].wrist_velocity[1]"),
+    Reading("wrist_pitch_rate", (-10.0, 10.0), "rad/s", "commanded wrist pitch rate",
+            "worlds[i].wrist_velocity[2]"),
     Reading("wrist_pitch", (-10.0, 10.0), "rad", "pitch of the wrist, 0 when level", "worlds[i].wrist[2]"),
-)
+)  # fmt: skip
 """Wrist part; an environment has those rows that its agent commands, see `wrist_part`."""
 
 
-def _merged(name: str) -> str:
+def _mean(value: str, name: str) -> str:
     weights = f"first.confidence_{name}, second.confidence_{name}"
-    return f"weighted_mean(first.{name}, second.{name}, {weights})"
+    return f"weighted_mean(first.{value}, second.{value}, {weights})"
 
 
-def _deviation(name: str) -> str:
-    weights = f"first.confidence_{name}, second.confidence_{name}"
-    return f"weighted_mean(first.sd_{name}, second.sd_{name}, {weights})"
-
-
-def _better(name: str) -> str:
-    return f"max(first.{name}, second.{name})"
+def _confidence(name: str) -> Reading:
+    full, ends = f"confidence_{name}", (0.0, 1.0)
+    return Reading(full, ends, "-", f"confidence of {name}, 0 to 1", f"max(first.{full}, second.{full})")
 
 
 FRICTION = (
     Reading("mu_s", (0.0, 10.0), "-", "static friction", "merged_mu_s(first, second)"),
     Reading("mu_c", (0.0, 10.0), "-", "Coulomb friction", "merged_mu_c(first, second)"),
-    Reading("r", (0.0, 1.0), "m", "radius of the equivalent rim contact", _merged("r")),
-    Reading("confidence_mu_s", (0.0, 1.0), "-", "confidence of mu_s, 0 to 1", _better("confidence_mu_s")),
-    Reading("confidence_mu_c", (0.0, 1.0), "-", "confidence of mu_c, 0 to 1", _better("confidence_mu_c")),
-    Reading("confidence_r", (0.0, 1.0), "-", "confidence of r, 0 to 1", _better("confidence_r")),
+    Reading("r", (0.0, 1.0), "m", "radius of the equivalent rim contact", _mean("r", "r")),
+    *map(_confidence, ("mu_s", "mu_c", "r")),
 )
 """Friction part, computed from the estimates of the first and the second finger."""
 DEVIATIONS = (
-    Reading(
-        "sd_mu_s", (0.0, 10.0), "-", "standard deviation of mu_s that the estimator states",
-        _deviation("mu_s"),
-    ),
-    Reading("sd_mu_c", (0.0, 10.0), "-", "standard deviation of mu_c", _deviation("mu_c")),
-    Reading("sd_r", (0.0, 1.0), "m", "standard deviation of r", _deviation("r")),
-    Reading(
-        "sd_lever", (0.0, 10.0), "m", "standard deviation of mu_c r, the torque per normal force of a spin",
-        "0.5 * (first.sd_lever + second.sd_lever)",
-    ),
-    Reading(
-        "spread_mu_c", (0.0, 10.0), "-", "half the difference of the fingers' mu_c",
-        "0.5 * abs(first.mu_c - second.mu_c)",
-    ),
+    Reading("sd_mu_s", (0.0, 10.0), "-", "standard deviation of mu_s that the estimator states",
+            _mean("sd_mu_s", "mu_s")),
+    Reading("sd_mu_c", (0.0, 10.0), "-", "standard deviation of mu_c", _mean("sd_mu_c", "mu_c")),
+    Reading("sd_r", (0.0, 1.0), "m", "standard deviation of r", _mean("sd_r", "r")),
+    Reading("sd_lever", (0.0, 10.0), "m",
+            "standard deviation of mu_c r, the torque per normal force of a spin",
+            "0.5 * (first.sd_lever + second.sd_lever)"),
+    Reading("spread_mu_c", (0.0, 10.0), "-", "half the difference of the fingers' mu_c",
+            "0.5 * abs(first.mu_c - second.mu_c)"),
 )  # fmt: skip
 """Follow the friction part with `observation_mode="deviations"`; both fingers err alike."""
 FRICTION_COLUMNS = tuple(reading.column() for reading in FRICTION)
@@ -203,23 +177,8 @@ def observe(
 ):  # fmt: skip
     """Write the observation, clipped to its bounds.
 
-    Args:
-        wrenches: Measured wrenches (n, 2, 4) [N, N, N, N m], see `slipgym.sensors.measure`.
-        twists: Measured slip twists (n, 2, 3) [m/s, m/s, rad/s].
-        slip_sensors: SLIP_SENSOR (n, 2), for the measured slip.
-        episodes: EPISODE (n,), for the commanded force.
-        grippers: GRIPPER (n,), for the opening.
-        markers: MARKERS (n, 2), or (0, 2) for none.
-        task_part: (n, k).
-        worlds: WORLD (n,), for the wrist.
-        wrist: Rows of `WRIST` in the wrist part, (w,).
-        friction: `FRICTION_COLUMNS` and `DEVIATION_COLUMNS` (n, 11); those beyond the width of `out` are left
-            out.
-        low: Lower bounds (m,).
-        high: Upper bounds (m,).
-        load: Rows of `LOAD` in the load part, (l,).
-        out: Output (n, m), float32.
-        sensors: As in `ObservationBuffers`.
+    The first eight arguments are arrays of a `slipgym.envs.control_step.BatchState`, or some of their rows,
+    the others fields of `ObservationBuffers`. Values of `friction` beyond the width of `out` are left out.
     """
     for i in range(out.shape[0]):
         at = _SENSORS
@@ -228,9 +187,8 @@ def observe(
         else:
             at = sensors.shape[0]
             for k in range(at):
-                out[i, k] = read_owned(
-                    sensors[k], i, wrenches, twists, slip_sensors, episodes, grippers, markers
-                )
+                row = sensors[k]
+                out[i, k] = read_owned(row, i, wrenches, twists, slip_sensors, episodes, grippers, markers)
         for k in range(task_part.shape[1]):
             out[i, at + k] = task_part[i, k]
         at += task_part.shape[1]

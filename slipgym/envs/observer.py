@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import gymnasium as gym
 import numpy as np
@@ -91,28 +91,16 @@ class Observer:
         if self.privileged:
             self._look_behind(self._all)
 
-    def present(self) -> Observation:
-        """Views of the observations of all environments, (n, k) each; the next step or reset changes them."""
+    def read(self, row: Any = ...) -> Observation:
+        """Observations of all environments (n, k), or of one, owned by the caller."""
         policy = self._frames.reshape(self._simulation.n, -1) if self.history else self.buffers.out
         if not self.privileged:
-            return policy
-        return {"policy": policy, "privileged": self._ground_truth}
-
-    def read(self) -> Observation:
-        """Observations of all environments, owned by the caller."""
-        observations = self.present()
-        if isinstance(observations, dict):
-            return {group: values.copy() for group, values in observations.items()}
-        return observations.copy()
+            return policy[row].copy()
+        return {"policy": policy[row].copy(), "privileged": self._ground_truth[row].copy()}
 
     def first(self) -> Observation:
         """The observation of the first environment, owned by the caller."""
-        if not self.history and not self.privileged:
-            return self._first.copy()
-        observations = self.present()
-        if isinstance(observations, dict):
-            return {group: values[0].copy() for group, values in observations.items()}
-        return observations[0].copy()
+        return self.read(0) if self.history or self.privileged else self._first.copy()
 
     def get_state(self) -> np.ndarray:
         """The last observations (n, history + 1, m), the newest one last."""

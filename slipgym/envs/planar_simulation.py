@@ -190,16 +190,9 @@ def _compiled_batch(
 
 
 class PlanarSimulation(Simulation):
-    """Simulation of n environments with the planar engine.
+    """`Simulation` of n environments with the planar engine.
 
-    Args:
-        config: Configuration.
-        settings: The task's settings.
-        task: The task.
-        estimator: Name of an estimator, or a mapping with its `name` and parameters; None: nothing estimates.
-        randomization: Distributions that an episode is sampled from; None: no randomization.
-        n: Number of environments.
-        threads: Number of threads; None: one per processor, each with at least 32 environments.
+    It takes the number of threads, too; None: one per processor, each with at least 32 environments.
 
     Attributes:
         rewards: Sum of the last step's reward terms, (n,); 0 for environments that made no step.
@@ -242,13 +235,7 @@ class PlanarSimulation(Simulation):
     ) -> None:
         """Make `skip` control steps, see `Simulation.step`; results are written to new arrays.
 
-        Args:
-            actions: (n, m).
-            components: COMPONENT (m,), the meaning of the actions.
-            skip: Number of control steps.
-            active: Environments that take part, (n,) bool.
-            buffers: Buffers that their observations are written to.
-            meanwhile: Function to call while threads step; it may change the other environments.
+        `meanwhile` is called while threads step; it may change the environments that take no part.
         """
         self.check_open()
         self._blank()

@@ -6,47 +6,31 @@ from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.envs.observation import FRICTION, FRICTION_COLUMNS
 from slipgym.envs.readings import Reading, row_writer
+from slipgym.envs.sensor_part import either_way, grip_force
 from slipgym.tasks.task import Column
 
 
-def _force(config: Config) -> tuple[float, float]:
-    return 0.0, config.gripper.force_limit
-
-
-def _force_bias(config: Config) -> tuple[float, float]:
-    limit = config.sensors.force_torque.force_range
-    return -limit, limit
-
-
-def _friction(config: Config) -> tuple[float, float]:
+def _pad_friction(config: Config) -> float:
     """Bound of one pad's friction, at the largest friction coefficient [N]."""
-    limit = FRICTION_COLUMNS[0].high * config.gripper.force_limit
-    return -limit, limit
+    return FRICTION_COLUMNS[0].high * config.gripper.force_limit
 
 
-def _torque(config: Config) -> tuple[float, float]:
-    limit = _friction(config)[1] * config.gripper.pad_radius
-    return -limit, limit
-
-
-def _true(k: int) -> Reading:
-    """Row k of the friction part, from the ground truth in place of the estimates."""
-    return FRICTION[k]._replace(read=f"friction[i, {k}]")
+_BIAS = either_way(lambda config: config.sensors.force_torque.force_range)
+_FRICTION = either_way(_pad_friction)
+_TORQUE = either_way(lambda config: _pad_friction(config) * config.gripper.pad_radius)
 
 
 def _pad(f: int) -> tuple[Reading, ...]:
-    wrench = f"pads[i, {f - 1}].wrench"
+    wrench, of = f"pads[i, {f - 1}].wrench", f"friction of pad {f} on the object, pad frame"
     return (
-        Reading(
-            f"friction_x_{f}", _friction, "N", f"friction of pad {f} on the object, pad frame", f"{wrench}[0]"
-        ),
-        Reading(f"friction_y_{f}", _friction, "N", "the same along the pad's y axis", f"{wrench}[1]"),
-        Reading(f"friction_tau_{f}", _torque, "N m", f"friction torque at pad {f}'s CoP", f"{wrench}[2]"),
+        Reading(f"friction_x_{f}", _FRICTION, "N", of, f"{wrench}[0]"),
+        Reading(f"friction_y_{f}", _FRICTION, "N", "the same along the pad's y axis", f"{wrench}[1]"),
+        Reading(f"friction_tau_{f}", _TORQUE, "N m", f"friction torque at pad {f}'s CoP", f"{wrench}[2]"),
     )
 
 
 def _grip(name: str, meaning: str) -> Reading:
-    return Reading(name, _force, "N", f"{meaning}, 0: the task has none", f"episodes[i].{name}")
+    return Reading(name, grip_force, "N", f"{meaning}, 0: the task has none", f"episodes[i].{name}")
 
 
 def _drawn(name: str, most: float, unit: str, meaning: str, field: str = "") -> Reading:
@@ -65,53 +49,43 @@ def _own(f: int) -> tuple[Reading, ...]:
         Reading(f"cop_y_{f}", (-0.1, 0.1), "m", "the same along the pad's y axis", f"{pad}cop[1]"),
         Reading(f"force_gain_{f}", (0.0, 10.0), "-", f"actuator over commanded force {of}", f"{finger}gain"),
         Reading(f"lag_{f}", (0.0, 10.0), "s", f"time constant of the force loop {of}", f"{finger}lag"),
-        Reading(
-            f"bias_x_{f}", _force_bias, "N", f"bias of the force sensor {of}, its frame", f"{sensor}bias[0]"
-        ),
-        Reading(f"bias_y_{f}", _force_bias, "N", "the same along its y axis", f"{sensor}bias[1]"),
-        Reading(f"bias_n_{f}", _force_bias, "N", "the same along the normal", f"{sensor}bias[2]"),
+        Reading(f"bias_x_{f}", _BIAS, "N", f"bias of the force sensor {of}, its frame", f"{sensor}bias[0]"),
+        Reading(f"bias_y_{f}", _BIAS, "N", "the same along its y axis", f"{sensor}bias[1]"),
+        Reading(f"bias_n_{f}", _BIAS, "N", "the same along the normal", f"{sensor}bias[2]"),
         Reading(f"bias_tau_{f}", (-10.0, 10.0), "N m", "the same about the normal", f"{sensor}bias[5]"),
-        Reading(
-            f"wrench_delay_{f}", (0.0, 10.0), "s", f"latency of the force sensor {of}",
-            f"{sensor}delay * worlds[i].tick_length",
-        ),
-        Reading(
-            f"slip_delay_{f}", (0.0, 10.0), "s", f"latency of the slip sensor {of}",
-            f"{slip}delay * {slip}sample_time",
-        ),
+        Reading(f"wrench_delay_{f}", (0.0, 10.0), "s", f"latency of the force sensor {of}",
+                f"{sensor}delay * worlds[i].tick_length"),
+        Reading(f"slip_delay_{f}", (0.0, 10.0), "s", f"latency of the slip sensor {of}",
+                f"{slip}delay * {slip}sample_time"),
         Reading(f"slip_scale_{f}", (0.0, 10.0), "-", f"counted over true slip {of}", f"{slip}scale"),
     )  # fmt: skip
 
 
 PRIVILEGED = (
-    *(_true(k) for k in range(3)),
+    *(row._replace(read=f"friction[i, {k}]") for k, row in enumerate(FRICTION[:3])),
     Reading("slip_x", (-1.0, 1.0), "m", "slip displacement since the grasp, pad frame", "worlds[i].slip[0]"),
     Reading("slip_y", (-1.0, 1.0), "m", "the same along the pad's y axis", "worlds[i].slip[1]"),
     Reading("slip_theta", (-10.0, 10.0), "rad", "the same about the grip axis", "worlds[i].slip[2]"),
-    Reading(
-        "slip_velocity_x", (-10.0, 10.0), "m/s", "slip velocity at the pad centre", "worlds[i].slip_twist[0]"
-    ),
-    Reading(
-        "slip_velocity_y", (-10.0, 10.0), "m/s", "the same along the pad's y axis", "worlds[i].slip_twist[1]"
-    ),
+    Reading("slip_velocity_x", (-10.0, 10.0), "m/s", "slip velocity at the pad centre",
+            "worlds[i].slip_twist[0]"),
+    Reading("slip_velocity_y", (-10.0, 10.0), "m/s", "the same along the pad's y axis",
+            "worlds[i].slip_twist[1]"),
     Reading("slip_rate", (-100.0, 100.0), "rad/s", "the same about the grip axis", "worlds[i].slip_twist[2]"),
     *_pad(1),
     *_pad(2),
     Reading("object_x", (-10.0, 10.0), "m", "the object's centre of mass along world x", "worlds[i].com[0]"),
     Reading("object_z", (-10.0, 10.0), "m", "the same along world z, up", "worlds[i].com[1]"),
-    Reading(
-        "object_angle", (-10.0, 10.0), "rad", "the object's angle about the grip axis", "worlds[i].angle"
-    ),
+    Reading("object_angle", (-10.0, 10.0), "rad", "the object's angle about the grip axis",
+            "worlds[i].angle"),
     Reading("object_mass", (0.0, 100.0), "kg", "the object's mass", "worlds[i].mass"),
-    Reading("grip_force_1", _force, "N", "actuator force of finger 1", "fingers[i, 0].force"),
-    Reading("grip_force_2", _force, "N", "actuator force of finger 2", "fingers[i, 1].force"),
+    Reading("grip_force_1", grip_force, "N", "actuator force of finger 1", "fingers[i, 0].force"),
+    Reading("grip_force_2", grip_force, "N", "actuator force of finger 2", "fingers[i, 1].force"),
     _grip("least_grip", "least grip that holds the object through the episode"),
     _grip("least_grip_now", "least grip under the present load"),
     _grip("grip_limit", "force at which the object breaks, or mean grip allowed"),
-    Reading(
-        "grip_spent", (0.0, 10.0), "-", "sum of the grip so far over that allowed for the episode, 0: any is",
-        "episodes[i].grip_sum / max(episodes[i].grip_budget, 1e-9)",
-    ),
+    Reading("grip_spent", (0.0, 10.0), "-",
+            "sum of the grip so far over that allowed for the episode, 0: any is",
+            "episodes[i].grip_sum / max(episodes[i].grip_budget, 1e-9)"),
     Reading("largest_slip", (0.0, 1.0), "m", "largest slip at the pad centre so far, 0 if it does not count",
             "episodes[i].largest_slip"),
     Reading("jump_time", (0.0, 1e4), "s", "time at which the friction jumps, 0: never",
@@ -159,22 +133,12 @@ def write_privileged(
 ):  # fmt: skip
     """Write the privileged group, clipped to its bounds.
 
-    Args:
-        rows: Which environments, (k,).
-        worlds: WORLD (n,).
-        pads: PAD (n, 2).
-        fingers: FINGER (n, 2).
-        friction: The ground truth (n, 11), of which the first three (mu_s, mu_c, r) are used.
-        episodes: EPISODE (n,).
-        slip_sensors: SLIP_SENSOR (n, 2).
-        force_torque: FORCE_TORQUE (n, 2).
-        low: Lower bounds (m,).
-        high: Upper bounds (m,).
-        out: Output (n, m), float32.
+    It takes which rows (k,), arrays of the simulation (the first three columns of `friction` are the true
+    mu_s, mu_c and r), the bounds (m,), and the output (n, m), float32.
     """
     for i in rows:
         _write_privileged_row(
             out[i], i, worlds, pads, fingers, friction, episodes, slip_sensors, force_torque
-        )  # fmt: skip
+        )
         for k in range(out.shape[1]):
             out[i, k] = min(max(out[i, k], low[k]), high[k])

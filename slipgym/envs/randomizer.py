@@ -67,22 +67,24 @@ class Randomizer:
         self.active = ranges != Ranges()
         self.soft = any(self.draws(name) for name in EFFECTS)
         pressures = dict.fromkeys((config.contact.pressure, *(ranges.pressure or ())))
-        self.variants = {pressure: with_pressure(config, pressure) for pressure in pressures}
+        contacts = {each: config.contact.model_copy(update={"pressure": each}) for each in pressures}
+        self.variants = {each: config.model_copy(update={"contact": own}) for each, own in contacts.items()}
         self._nominal = nominal_values(config)
-        names = (name for name in Ranges.model_fields if name != "disturbances" and self.draws(name))
-        self.drawn = tuple(names)
+        self.drawn = tuple(name for name in VALUES.names or () if self.draws(name))
         self.kinds = tuple(disturbance.kind for disturbance in ranges.disturbances)
         self._tabulate(sorted(config.materials))
+        self.drawn += ("load_exponent",) if ranges.friction_by_area else ()
         if ranges.cop_offset is not None:
-            least, most = ranges.cop_offset.ends
-            farthest = max(abs(least), abs(most))
+            farthest = max(map(abs, ranges.cop_offset.ends))
             config.check_cop_offset("randomization.cop_offset: the farthest", [(farthest, farthest)])
-        for variant in self.variants.values():
-            most = settings.radius_range[1] if settings.radius_range else settings.radius
-            r = self.most("radius_scale") * (most or variant.contact_radius)
-            r *= self.most("finger_radius")
-            if self.active:
-                _check_radius(variant, r)
+        pad = config.gripper.pad_radius
+        most = settings.radius_range[1] if settings.radius_range else settings.radius
+        for variant in self.variants.values() if self.active else ():
+            r = self.most("radius_scale") * self.most("finger_radius") * (most or variant.contact_radius)
+            if r > pad * (1.0 + 1e-9):
+                limit = f"must not exceed gripper.pad_radius = {pad:g} m"
+                raise ValueError(f"randomization: the largest radius r = {r:g} m {limit}")
+            variant.check_patch("randomization: the largest radius r", r)
 
     def draws(self, name: str) -> bool:
         """Whether a field of `VALUES` is randomized."""
@@ -103,6 +105,9 @@ class Randomizer:
         """
         values = np.empty(len(shares), VALUES)
         sample_values(shares, self._numbers, self._choices, scale, flat(values))
+        if self._ranges.friction_by_area:  # what is sampled of the exponents lies on n = 1 - 2 b
+            sampled = values["radius_exponent"] - (1.0 - scale) * self._nominal["radius_exponent"]
+            values["load_exponent"] = (1.0 - scale) * self._nominal["load_exponent"] + scale - 2.0 * sampled
         return values
 
     def schedule(
@@ -156,11 +161,6 @@ class Randomizer:
         self._choices, self.count = np.array(choices), count
 
 
-def with_pressure(config: Config, pressure: str) -> Config:
-    """The configuration with another pressure profile of the patch."""
-    return config.model_copy(update={"contact": config.contact.model_copy(update={"pressure": pressure})})
-
-
 def _describe(number: np.void, field: Distribution, choices: list[float]) -> None:
     """Enter a distribution into a NUMBER record, and its choices into their list."""
     for name, value in zip(("kind", "low", "high", "span"), field.parameters, strict=True):
@@ -168,15 +168,6 @@ def _describe(number: np.void, field: Distribution, choices: list[float]) -> Non
     number["first"] = len(choices)
     choices.extend(field.choices or ())
     number["last"] = len(choices)
-
-
-def _check_radius(config: Config, r: float) -> None:
-    pad = config.gripper.pad_radius
-    if r > pad * (1.0 + 1e-9):
-        raise ValueError(
-            f"randomization: the largest radius r = {r:g} m must not exceed gripper.pad_radius = {pad:g} m"
-        )
-    config.check_patch("randomization: the largest radius r", r)
 
 
 def _tilt_shake(shake: Shake, share: float) -> np.ndarray:
@@ -291,8 +282,7 @@ class Drawn:
 @lru_cache
 def _columns(known: tuple[str, ...]) -> tuple[list[str], list[int]]:
     """Names and places of the numbers of FIRST and of some fields of VALUES in a row."""
-    names: list[str] = list(FIRST)
-    columns = list(range(len(FIRST)))
+    names, columns = list[str](FIRST), list(range(len(FIRST)))
     for name in known[len(FIRST) :]:
         own = PLACES[name]
         names += labels(name)

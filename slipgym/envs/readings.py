@@ -6,7 +6,6 @@ row k to place k, so that names and values cannot be mixed up.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
@@ -64,30 +63,8 @@ def row_writer(
 
 
 def choice_reader(name: str, reads: Sequence[str], arrays: Sequence[str], file: str, doc: str) -> Any:
-    """Generate a compiled function (k, i, *arrays) that returns the value of `reads[k]`.
-
-    Args:
-        name: Name of the function.
-        reads: Expressions for environment i.
-        arrays: Names of the arrays in the expressions.
-        file: `__file__` of the module with the table.
-        doc: Docstring.
-    """
+    """Generate a compiled function (k, i, *arrays) that returns `reads[k]`, see `row_writer`."""
     body = []
     for k, read in enumerate(reads):
         body += [f"if k == {k}:", f"    return {read}"]
     return generate(name, ("k", "i", *arrays), [*body, "return 0.0"], {}, compiled, file, doc)
-
-
-def finite_check(name: str, reads: Sequence[str], arrays: Sequence[str], file: str, doc: str) -> Any:
-    """Generate a compiled function (i, *arrays) that returns whether the sum of all `reads` is finite.
-
-    Args:
-        name: Name of the function.
-        reads: Expressions for environment i.
-        arrays: Names of the arrays in the expressions.
-        file: `__file__` of the module with the table.
-        doc: Docstring.
-    """
-    body = ["total = 0.0", *(f"total += {read}" for read in reads), "return isfinite(total)"]
-    return generate(name, ("i", *arrays), body, {"isfinite": math.isfinite}, compiled, file, doc)

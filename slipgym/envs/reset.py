@@ -15,7 +15,7 @@ from slipgym.contact.records import CELL_FIELDS
 from slipgym.envs.randomizer import Drawn, Randomizer
 from slipgym.envs.reset_kernels import HARDWARE, START
 from slipgym.envs.sampling_kernels import GIVEN, compose, inside
-from slipgym.envs.values import check_contacts, fixed_differences
+from slipgym.envs.values import DIFFERENCES
 from slipgym.sensors.starting import draw_sensors
 from slipgym.tasks import Task
 from slipgym.tasks.episode import EPISODE
@@ -67,12 +67,7 @@ class EpisodeSampler:
     """
 
     def __init__(
-        self,
-        config: Config,
-        settings: TaskConfig,
-        task: Task,
-        randomizer: Randomizer,
-        episode: np.ndarray,
+        self, config: Config, settings: TaskConfig, task: Task, randomizer: Randomizer, episode: np.ndarray
     ) -> None:
         n = len(episode)
         self._config, self._task, self._randomizer = config, task, randomizer
@@ -155,26 +150,31 @@ class EpisodeSampler:
             raise ValueError(unknown("material", name, ["random", *self._names]))
         if options.wrist_roll and not config.physics.tilt:
             raise ValueError(f"option wrist_roll = {options.wrist_roll:g} rad {NEEDS_TILT}")
+        low, high = config.gripper.force_min, config.gripper.force_max
+        if not low <= settings.initial_force <= high:
+            raise ValueError(
+                f"option initial_force = {settings.initial_force:g} N must lie within the gripper's "
+                f"{low:g} to {high:g} N"
+            )
+        if options.cop_offset is not None:
+            config.check_cop_offset("option cop_offset", options.cop_offset)
         fields = {
             "scale": 1.0 if options.randomization_scale is None else options.randomization_scale,
-            "force": checked_force(config, settings),
+            "force": settings.initial_force,
             "material": -1 if name == "random" else self._names.index(name),
             **{each: getattr(options, each) for each in ("mu_s", "mu_c", "r", "object_mass")},
             "object_com": options.com_offset,
-            "mass": default.mass,
-            "mass_range": settings.mass_range,
-            "friction_range": settings.friction_range,
-            "radius_range": settings.radius_range,
+            **{each: getattr(settings, each) for each in ("mass_range", "friction_range", "radius_range")},
+            **{each: getattr(default, each) for each in ("mass", "com_offset", "grasp_offset", "inertia")},
             "size": options.object_size or default.size,
-            "com_offset": default.com_offset,
-            "grasp_offset": default.grasp_offset,
-            "inertia": default.inertia,
-            "pad_radius": config.gripper.pad_radius,
         }
         given = np.zeros(1, GIVEN)
         for each, value in fields.items():
             given[each] = np.nan if value is None else value
-        fixed: dict[str, object] = dict(fixed_differences(config, options))
+        differences = {each: getattr(options, each) for each in DIFFERENCES}
+        fixed: dict[str, object] = {
+            each: np.ravel(value) for each, value in differences.items() if value is not None
+        }
         if options.object_size is not None:
             fixed["size_scale"] = 1.0
         radii = np.array([settings.radius or variant.contact_radius for variant in self._variants])
@@ -192,7 +192,12 @@ class EpisodeSampler:
         _check_inside("com_offset", start["com_offset"].tolist(), size, margin=0.0)
         _check_inside("grasp_offset", start["grasp_offset"].tolist(), size, margin=margin)
         variant = self._variants[start["pressure"]]
-        check_contacts(variant, options, r, tuple(value["finger_radius"].tolist()))
+        variant.check_patch("option r", r)
+        largest = r * max(value["finger_radius"].tolist())
+        if options.finger_radius is not None:
+            variant.check_radius("option finger_radius: the larger radius r", largest)
+        elif largest != r:
+            variant.check_patch("option r times finger_radius", largest)
 
     def _note(self, rows: np.ndarray, starts: np.ndarray) -> None:
         """Store materials and objects."""
@@ -225,21 +230,6 @@ def _check_inside(name: str, point: list[float], size: tuple[float, ...], margin
         raise ValueError(
             f"{name} {tuple(point)} m{around} must lie on the object, {size[0]:g} m by {size[2]:g} m"
         )
-
-
-def checked_force(config: Config, settings: TaskConfig) -> float:
-    """Grip force per finger at reset [N].
-
-    Raises:
-        ValueError: The gripper's force loop cannot hold it.
-    """
-    gripper, force = config.gripper, settings.initial_force
-    if not gripper.force_min <= force <= gripper.force_max:
-        raise ValueError(
-            f"option initial_force = {force:g} N must lie within the gripper's "
-            f"{gripper.force_min:g} to {gripper.force_max:g} N"
-        )
-    return force
 
 
 def prepare_hardware(config: Config, plant: Plant, randomizer: Randomizer) -> tuple[np.ndarray, np.ndarray]:

@@ -9,6 +9,7 @@ from slipgym._numba.generate import generate
 from slipgym.config.pad import EFFECTS
 from slipgym.contact.anisotropy import friction_axes, stretch
 from slipgym.contact.records import CONFIGURED
+from slipgym.envs.control_step import learn
 from slipgym.sensors.markers import start_markers
 from slipgym.sensors.owned import join_open, start_gripper
 from slipgym.sensors.slip_velocity import AXES
@@ -34,10 +35,6 @@ START = np.dtype(
         ("size", "f8", 3),  # as in `slipgym.world.scene.Box`, like the next two
         ("com_offset", "f8", 2),
         ("grasp_offset", "f8", 2),
-        ("half_thickness", "f8"),  # of the object along the grip axis [m]
-        ("grasp_point", "f8", 2),  # pad centre (x, z) at the grasp from the centre of mass [m]
-        ("reach", "f8", 2),  # as in EPISODE, like the next one
-        ("object_centre", "f8", 2),
         # drawn last
         ("biases", "f8", (2, 6)),  # standard normal
         ("keys", "u8", (KEYS, 2)),  # of the sensors' noise
@@ -72,9 +69,8 @@ def grip(starts, episodes, worlds, pads, cells, fingers):
     for k in range(starts.shape[0]):
         start = starts[k]
         i = start.row
-        wrist = episodes[i].wrist_start
-        grasp = start.grasp_point
-        body = start.mass, start.inertia, start.half_thickness, grasp[0], grasp[1]
+        wrist, grasp, com = episodes[i].wrist_start, start.grasp_offset, start.com_offset
+        body = start.mass, start.inertia, start.size[1] / 2, grasp[0] - com[0], grasp[1] - com[1]
         place_world(worlds, pads, cells, fingers, i, body, start.force, (wrist[0], wrist[1], wrist[2]))
         bear(episodes[i], worlds[i])
 
@@ -185,18 +181,13 @@ def show_open_gripper(update, state, force_torque, i):
     for f in range(2):
         weigh_tip(force_torque[i, f], state.worlds[i])
         read_unloaded(force_torque[i, f], readings[f])
-    pair = slice(2 * i, 2 * i + 2)
-    own = pair if state.parameters.shape[0] > 1 else slice(0, 1)
     for k in range(READINGS):
         for f in range(2):
             for a in range(4):
                 wrenches[f, a] = readings[f, k, a]
         join_open(state.grippers[i], k, wrenches)
         time = (k + 1 - READINGS - CLOSING_STEPS) * state.episodes[i].step_time
-        update(
-            state.estimator_states[pair, 0], state.parameters[own, 0], time, wrenches, twists,
-            state.estimates[pair],
-        )  # fmt: skip
+        learn(update, state, i, time, wrenches, twists)
 
 
 @pointed

@@ -1,4 +1,8 @@
-"""Maps uniform random numbers to initial conditions of many episodes, in compiled code."""
+"""Maps uniform random numbers to initial conditions of many episodes, in compiled code.
+
+`shares` (m, k) and `u` are uniform random numbers in [0, 1), `numbers` NUMBER records, `choices` the choices
+of all distributions; `scale` is 0 for the nominal values and 1 for the full ranges and probabilities.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +12,7 @@ import numpy as np
 
 from slipgym._numba.compiled import compiled
 from slipgym.config import distribution, hardware
+from slipgym.tasks.disturbance import add_push
 from slipgym.tasks.episode import whole_steps
 
 BLENDED, PLAIN, GATED = range(3)
@@ -66,15 +71,7 @@ def blend(nominal, drawn, scale):
 
 @compiled
 def sample_values(shares, numbers, choices, scale, values):
-    """Map uniform random numbers to the values of episodes.
-
-    Args:
-        shares: Uniform random numbers in [0, 1), (m, k).
-        numbers: NUMBER (s,).
-        choices: Choices of all distributions.
-        scale: 0 for the nominal values, 1 for the full ranges.
-        values: Output (m, s).
-    """
+    """Map uniform random numbers to the values of episodes (m, s), of s numbers."""
     for j in range(numbers.shape[0]):
         number = numbers[j]
         for k in range(shares.shape[0]):
@@ -93,10 +90,10 @@ def schedule(shares, disturbances, numbers, choices, scale, rows, episodes, happ
     """Write the disturbances of the randomization into episodes.
 
     Args:
-        shares: Uniform random numbers in [0, 1), (m, k).
+        shares: (m, k).
         disturbances: DISTURBANCE (d,).
-        numbers: Their distributions, NUMBER (d, p), in the order of `KINDS`.
-        choices: Choices of all distributions.
+        numbers: Their distributions (d, p), in the order of `KINDS`.
+        choices: (c,).
         scale: Factor of the probabilities.
         rows: Which episodes, (m,).
         episodes: EPISODE (n,); step_time and the pushes of the task must be set.
@@ -113,28 +110,14 @@ def schedule(shares, disturbances, numbers, choices, scale, rows, episodes, happ
 
 @compiled
 def write_disturbance(kind, numbers, choices, u, episode):
-    """Write a disturbance into an episode.
-
-    Args:
-        kind: Its place in `KINDS`.
-        numbers: Its distributions, NUMBER (p,).
-        choices: Choices of all distributions.
-        u: Uniform random numbers in [0, 1), at least 8.
-        episode: EPISODE record.
-    """
+    """Write a disturbance into an EPISODE record: `kind` is its place in `KINDS`, `u` has 8 numbers."""
     dt = episode.step_time
     first = sampled(numbers[0], choices, u[0])
     second = sampled(numbers[1], choices, u[1])
     if kind == PUSH:
         begin, steps = whole_steps(first, dt), max(1, whole_steps(second, dt))
-        force = sampled(numbers[2], choices, u[2]) / (steps * dt)
-        heading, lever = sampled(numbers[3], choices, u[3]), sampled(numbers[4], choices, u[4])
-        k = episode.pushes
-        episode.push_start[k], episode.push_end[k] = begin, begin + steps
-        episode.push_wrench[k, 0] = force * math.cos(heading)
-        episode.push_wrench[k, 1] = force * math.sin(heading)
-        episode.push_wrench[k, 2] = force * lever
-        episode.pushes = k + 1
+        impulse, heading = sampled(numbers[2], choices, u[2]), sampled(numbers[3], choices, u[3])
+        add_push(episode, begin, steps, impulse, heading, sampled(numbers[4], choices, u[4]))
     elif kind == SHAKE:
         for axis in range(3):
             episode.shakes[1, axis, 0] = second if axis == 2 else first
@@ -169,7 +152,6 @@ GIVEN = np.dtype(
         ("com_offset", "f8", 2),
         ("grasp_offset", "f8", 2),
         ("inertia", "f8"),  # NaN: a uniform box
-        ("pad_radius", "f8"),
     ]
 )
 """What options, settings and configuration give for episodes, in the units of START."""
@@ -209,7 +191,7 @@ def compose(picked, further, given, materials, radii, values, starts, episodes, 
         start.friction[2] = value.radius_scale * r if math.isnan(own.r) else own.r
         set_object(start, own, value, further[k, 0])
         valid &= inside(start.com_offset, start.size, 0.0)
-        valid &= inside(start.grasp_offset, start.size, own.pad_radius)
+        valid &= inside(start.grasp_offset, start.size, blank[0].pad_radius)
         episodes[start.row] = blank[0]
         begin_episode(episodes[start.row], start, value)
     return valid
@@ -266,11 +248,6 @@ def set_object(start, own, value, share):
     start.inertia = _box_inertia(start.mass, size[0], size[2])
     if not math.isnan(own.inertia):
         start.inertia = own.inertia * value.mass_scale * scale**2
-    start.half_thickness = size[1] / 2
-    for a in range(2):
-        start.grasp_point[a] = start.grasp_offset[a] - start.com_offset[a]
-        start.object_centre[a] = -start.grasp_offset[a]
-        start.reach[a] = size[2 * a] / 2 - own.pad_radius
 
 
 @compiled
@@ -286,5 +263,6 @@ def begin_episode(episode, start, value):
     episode.mu_s, episode.mu_c, episode.drift = start.friction[0], start.friction[1], value.friction_drift
     episode.r = 0.5 * (value.finger_radius[0] + value.finger_radius[1]) * start.friction[2]
     for a in range(2):
-        episode.reach[a], episode.object_centre[a] = start.reach[a], start.object_centre[a]
+        episode.reach[a] = start.size[2 * a] / 2 - episode.pad_radius
+        episode.object_centre[a] = -start.grasp_offset[a]
         episode.finger_friction[a] = value.finger_friction[a]

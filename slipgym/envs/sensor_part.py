@@ -2,55 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.envs.readings import Reading, choice_reader
+from slipgym.envs.readings import Limits, Reading, choice_reader
 from slipgym.sensors.markers import COUNT
 
 
-def _tangential(config: Config) -> tuple[float, float]:
-    limit = config.sensors.force_torque.force_range
-    return -limit, limit
+def either_way(limit: Callable[[Config], float]) -> Limits:
+    """Limits of a number of either sign, from its largest size."""
+    return lambda config: (-limit(config), limit(config))
 
 
-def _normal(config: Config) -> tuple[float, float]:
-    limit = config.sensors.force_torque.normal_range
-    return -limit, limit
+_FORCE = either_way(lambda config: config.sensors.force_torque.force_range)
+_NORMAL = either_way(lambda config: config.sensors.force_torque.normal_range)
+_TORQUE = either_way(lambda config: config.sensors.force_torque.torque_range)
+_VELOCITY = either_way(lambda config: 2 * config.sensors.slip.speed_max)
+_RATE = either_way(lambda config: 2.0 * config.sensors.slip.speed_max / config.sensors.slip.chip_radius)
 
 
-def _torque(config: Config) -> tuple[float, float]:
-    limit = config.sensors.force_torque.torque_range
-    return -limit, limit
-
-
-def _slip_velocity(config: Config) -> tuple[float, float]:
-    limit = 2 * config.sensors.slip.speed_max
-    return -limit, limit
-
-
-def _slip_rate(config: Config) -> tuple[float, float]:
-    limit = 2.0 * config.sensors.slip.speed_max / config.sensors.slip.chip_radius
-    return -limit, limit
-
-
-def _grip_force(config: Config) -> tuple[float, float]:
+def grip_force(config: Config) -> tuple[float, float]:
+    """Limits of a grip force."""
     return 0.0, config.gripper.force_limit
 
 
 def _finger(f: int) -> tuple[Reading, ...]:
     """Measurements of finger 1 or 2."""
     wrench, twist = f"wrenches[i, {f - 1}, ", f"twists[i, {f - 1}, "
+    about = f"slip rate about the grip axis at finger {f}"
     return (
-        Reading(f"f_x_{f}", _tangential, "N", f"tangential force on finger {f}", f"{wrench}0]"),
-        Reading(f"f_y_{f}", _tangential, "N", f"tangential force on finger {f}", f"{wrench}1]"),
-        Reading(f"f_n_{f}", _normal, "N", f"normal force of finger {f}", f"{wrench}2]"),
-        Reading(f"tau_{f}", _torque, "N m", f"torque at finger {f}'s CoP", f"{wrench}3]"),
-        Reading(f"v_x_{f}", _slip_velocity, "m/s", f"slip velocity at finger {f}'s CoP", f"{twist}0]"),
-        Reading(f"v_y_{f}", _slip_velocity, "m/s", f"slip velocity at finger {f}'s CoP", f"{twist}1]"),
-        Reading(
-            f"omega_{f}", _slip_rate, "rad/s", f"slip rate about the grip axis at finger {f}", f"{twist}2]"
-        ),
+        Reading(f"f_x_{f}", _FORCE, "N", f"tangential force on finger {f}", f"{wrench}0]"),
+        Reading(f"f_y_{f}", _FORCE, "N", f"tangential force on finger {f}", f"{wrench}1]"),
+        Reading(f"f_n_{f}", _NORMAL, "N", f"normal force of finger {f}", f"{wrench}2]"),
+        Reading(f"tau_{f}", _TORQUE, "N m", f"torque at finger {f}'s CoP", f"{wrench}3]"),
+        Reading(f"v_x_{f}", _VELOCITY, "m/s", f"slip velocity at finger {f}'s CoP", f"{twist}0]"),
+        Reading(f"v_y_{f}", _VELOCITY, "m/s", f"slip velocity at finger {f}'s CoP", f"{twist}1]"),
+        Reading(f"omega_{f}", _RATE, "rad/s", about, f"{twist}2]"),
     )
 
 
@@ -61,19 +50,13 @@ def _mean_slip(axis: int) -> str:
 SENSORS = (
     *_finger(1),
     *_finger(2),
-    Reading(
-        "measured_slip_x",
-        (-1.0, 1.0),
-        "m",
-        "slip displacement, summed from the counts of both fingers",
-        _mean_slip(0),
-    ),
+    Reading("measured_slip_x", (-1.0, 1.0), "m",
+            "slip displacement, summed from the counts of both fingers", _mean_slip(0)),
     Reading("measured_slip_y", (-1.0, 1.0), "m", "the same along the pad's y axis", _mean_slip(1)),
     Reading("measured_slip_theta", (-10.0, 10.0), "rad", "the same about the grip axis", _mean_slip(2)),
-    Reading(
-        "commanded_force", _grip_force, "N", "grip force commanded in the last step", "episodes[i].command"
-    ),
-)
+    Reading("commanded_force", grip_force, "N", "grip force commanded in the last step",
+            "episodes[i].command"),
+)  # fmt: skip
 """Sensor part: wrench and twist of both fingers, measured slip, commanded force."""
 
 _BY_NAME = {reading.name: reading for reading in SENSORS}
@@ -92,10 +75,8 @@ WRIST_FORCES = (
     _wrist("tau", "tau", "torque about the grip axis through the pad centre, at the wrist"),
 )
 MOTOR = (
-    Reading(
-        "motor_force", _BY_NAME["f_n_1"].limits, "N", "normal force per finger from the motor's load",
-        "wrenches[i, 0, 2]",
-    ),
+    Reading("motor_force", _NORMAL, "N", "normal force per finger from the motor's load",
+            "wrenches[i, 0, 2]"),
     Reading("opening", (-1.0, 10.0), "m", "distance of the pads from each other", "grippers[i].opening"),
     _BY_NAME["commanded_force"],
 )  # fmt: skip

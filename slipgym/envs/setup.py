@@ -11,6 +11,7 @@ from slipgym.config import Config, Randomization, TaskConfig, load, load_randomi
 from slipgym.config.level import load_level
 from slipgym.envs.actions import ACTION_MODES, GUESS, Actions
 from slipgym.envs.arguments import CommonArguments, fields, friction_part, one_of
+from slipgym.envs.drawn_over import warn_of_drawn
 from slipgym.envs.observer import Observer
 from slipgym.envs.sensor_part import LOADED, layout_of
 from slipgym.envs.simulation import Simulation
@@ -56,6 +57,8 @@ class Setup:
         randomization = load_randomization(values["randomization"], keys)
         self.randomization = level.level.applied_to(randomization, task.key)
         self.material = one_of("material", values["material"], ("random", *self.config.materials))
+        ranges = self.randomization.of(task.key)
+        warn_of_drawn(values["config"], ranges, self.settings, task.key, self.material)
         values["action_mode"] = values["action_mode"] or task.action_mode
         if values["estimator"] is None:
             _check_guess(task, values["action_mode"])

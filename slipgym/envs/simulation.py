@@ -42,23 +42,18 @@ class Simulation(ABC):
 
     Attributes:
         plant: State of worlds, pads, fingers and sensors.
+        state: `BatchState`: views of the plant's arrays, of the bytes of the estimators, and the arrays
+            `commands`, `wrenches`, `twists`, `task_part`, `per_finger`, `estimated` and `ground_truth`
+            (with full confidence), which are attributes, too.
         episode: EPISODE (n,).
-        commands: Commanded grip force and wrist velocity, (n, 4), see `slipgym.envs.actions.COMMANDS`.
-        wrenches: Measured wrench per finger at the centre of pressure, (n, 2, 4) [N, N, N, N m].
-        twists: Measured slip twist per finger at the centre of pressure, (n, 2, 3) [m/s, m/s, rad/s].
-        task_part: The task's part of the observation, (n, k).
         materials: Name of every episode's material.
         boxes: Every episode's object.
         drawn: Values that the randomization sampled for every episode.
         blank: The values that all episodes begin with, EPISODE (1,).
-        ground_truth: True (mu_s, mu_c, r) now and full confidence, (n, 11); columns as `estimated`.
-        per_finger: Estimates (mu_s, mu_c, r) per finger, (n, 2, 3).
-        estimated: Estimates of both fingers merged, with their confidence and deviations, (n, 11).
         infos: Infos of all environments, including the last step's reward terms.
         estimator_choice: Name and parameters of the estimators, None for none; `velocity_delay` only if the
             user gave it.
         step_time: Length of a control step [s].
-        state: Views of these arrays, for compiled functions.
         stages: Compiled stages of a control step.
     """
 
@@ -264,35 +259,31 @@ class Simulation(ABC):
                 array[rows] = state.arrays[name][rows]
         for i in np.flatnonzero(ready).tolist():
             self.materials[i], self.boxes[i] = state.materials[i], state.boxes[i]
-        self._write_infos()
+        self.stages.report(
+            self.state, self.infos.numbers, self.infos.flags, 0, self.n
+        )  # but the reward terms
 
     def hand_over_infos(self) -> InfoBuffer:
         """Return the infos, which the caller then owns; the next step fills new arrays."""
         infos, self.infos = self.infos, self.infos.empty_like()
         return infos
 
-    def _write_infos(self) -> None:
-        """Fill in the infos except the reward terms."""
-        self.stages.report(self.state, self.infos.numbers, self.infos.flags, 0, self.n)
-
     def _arrays(self) -> dict[str, np.ndarray]:
         """Arrays besides the plant's that persist from one control step to the next."""
         return {
             "estimator_parameters": self._estimators.parameters_array,
             "estimator_states": self._estimators.states,
-            "estimates": self._estimators.estimates,
             "episode": self.episode,
-            "commands": self.commands,
-            "wrenches": self.wrenches,
-            "twists": self.twists,
-            "task_part": self.task_part,
-            "ground_truth": self.ground_truth,
-            "per_finger": self.per_finger,
-            "estimated": self.estimated,
+            **{name: getattr(self.state, name) for name in _KEPT},
         }
 
 
 _FIRST = np.zeros(1, dtype=np.int64)
+_KEPT = (
+    *("estimates", "commands", "wrenches", "twists"),
+    *("task_part", "ground_truth", "per_finger", "estimated"),
+)
+"""Arrays of `BatchState` that states of environments hold by these names."""
 
 
 def _bytes(records: np.ndarray) -> np.ndarray:

@@ -9,11 +9,10 @@ import numpy as np
 
 from slipgym.config.plain import plain
 from slipgym.envs.arguments import ScalarArguments, complete
-from slipgym.envs.conventions import Conventions, horizon, rebuilt
+from slipgym.envs.conventions import Conventions, documented, horizon, rebuilt
 from slipgym.envs.engines import resolved, simulation_of
 from slipgym.envs.infos import info_reader
 from slipgym.envs.setup import Setup
-from slipgym.envs.signatures import documented
 from slipgym.envs.states import EnvState, checked, restored_generator
 from slipgym.screen import obstacle
 from slipgym.tasks import Task

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections import namedtuple
 from collections.abc import Callable
 from functools import cache, cached_property, partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numba import from_dtype, types
@@ -28,7 +29,7 @@ from slipgym.sensors.markers import MARKERS
 from slipgym.sensors.owned import GRIPPER
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks.episode import EPISODE
-from slipgym.tasks.typing_errors import explained
+from slipgym.tasks.functions import explained
 from slipgym.world.records import FINGER, WORLD
 
 
@@ -118,28 +119,11 @@ def cells_type(ndim: int) -> Any:
     return array(types.float64, ndim) if ndim else types.none
 
 
-class Linked(NamedTuple):
-    """Pointers to the functions that a program of an engine calls, or their types."""
-
-    script_wrist: Any
-    """Function of the task."""
-    evaluate_step: Any
-    """Function of the task."""
-    update: Any
-    """Function of the estimator."""
-    begin: Any
-    """Function of `slipgym.envs.control_step`, like the next five."""
-    measure: Any
-    estimate: Any
-    evaluate: Any
-    look: Any
-    report: Any
-    note: Any
-    """`slipgym.envs.nan_guard.note`."""
-    equip: Any
-    """`slipgym.envs.reset_kernels.equip_rows`."""
-    open: Any
-    """`slipgym.envs.reset_kernels.open_episodes`."""
+Linked = namedtuple(
+    "Linked", "script_wrist evaluate_step update begin measure estimate evaluate look report note equip open"
+)
+"""Pointers to the functions that a program of an engine calls, or their types: two of the task, that of the
+estimator, those of `control_step`, `nan_guard.note`, `equip_rows` and `open_episodes` of `reset_kernels`."""
 
 
 class Stages:

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from slipgym.config import Config
+from slipgym.config import Config, Ranges
 from slipgym.config.pad import EFFECTS
-from slipgym.tasks.options import EpisodeOptions
 
 
 class Difference(NamedTuple):
@@ -31,67 +30,18 @@ DIFFERENCES = {
 """Name in the configuration, in `Ranges` and among the reset options -> what it consists of."""
 
 
-def fixed_differences(config: Config, options: EpisodeOptions) -> dict[str, np.ndarray]:
-    """Numbers of `DIFFERENCES` that options fix.
-
-    Raises:
-        ValueError: A centre of pressure does not lie on its pad.
-    """
-    if options.cop_offset is not None:
-        config.check_cop_offset("option cop_offset", options.cop_offset)
-    given = {name: getattr(options, name) for name in DIFFERENCES}
-    return {name: np.ravel(value) for name, value in given.items() if value is not None}
-
-
-def check_contacts(config: Config, options: EpisodeOptions, r: float, factors: tuple[float, ...]) -> None:
-    """Check that the contacts of both fingers fit on their pads.
-
-    Args:
-        config: Configuration with the episode's pressure profile.
-        options: Reset options.
-        r: Radius of the equivalent rim contact [m].
-        factors: Radius of each finger over r [-].
-
-    Raises:
-        ValueError: One does not.
-    """
-    config.check_patch("option r", r)
-    largest = r * max(factors)
-    if options.finger_radius is not None:
-        config.check_radius("option finger_radius: the larger radius r", largest)
-    elif largest != r:
-        config.check_patch("option r times finger_radius", largest)
-
-
 FRICTION = ("mu_c", "mu_s", "friction_ratio")
 """Fields without a value of their own in the configuration: NaN unless they are sampled, then at scale 1."""
 NAMES = ("materials", "pressure")
 """Fields that are names: their place among the materials, or -1, and among `Randomizer.pressures`."""
-_NUMBERS = (
-    "friction_drift",
-    "stribeck_velocity",
-    "speed_slope",
-    "sigma_0",
-    "radius_scale",
-    "mass_scale",
-    "size_scale",
-    "com_x",
-    "com_z",
-    "lag",
-    "dead_time",
-    "stiction",
-    "noise_scale",
-    "bias_scale",
-    "slip_latency",
-    *EFFECTS,
-)
 VALUES = np.dtype(
     [
-        *((name, "f8") for name in (*_NUMBERS, *FRICTION, *NAMES)),
-        *((name, "f8", len(own.parts)) for name, own in DIFFERENCES.items()),
+        (name, "f8", len(DIFFERENCES[name].parts)) if name in DIFFERENCES else (name, "f8")
+        for name in Ranges.model_fields
+        if name not in ("disturbances", "friction_by_area")
     ]
 )
-"""Fields of `slipgym.config.Ranges` but `disturbances`, sampled or not."""
+"""Fields of `slipgym.config.Ranges` that are numbers or names, sampled or not."""
 SIZE = VALUES.itemsize // 8
 """Numbers in `VALUES`."""
 _ENDS = np.cumsum([VALUES[name].itemsize // 8 for name in VALUES.names or ()]).tolist()

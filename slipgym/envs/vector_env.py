@@ -15,15 +15,14 @@ from gymnasium.vector.utils import batch_space
 
 from slipgym.config.plain import plain
 from slipgym.envs.arguments import VectorArguments, complete, one_of
-from slipgym.envs.conventions import Conventions, horizon, rebuilt
+from slipgym.envs.conventions import Conventions, documented, horizon, rebuilt
+from slipgym.envs.observer import Observer
 from slipgym.envs.planar_simulation import PlanarSimulation
 from slipgym.envs.reset_options import Generators, RowOptions
 from slipgym.envs.setup import Setup
-from slipgym.envs.signatures import documented
 from slipgym.envs.states import VectorState, checked
 from slipgym.envs.vector_rendering import Pictures
 from slipgym.tasks import TASKS, Task
-from slipgym.tasks.options import EpisodeOptions
 
 
 @documented(
@@ -160,7 +159,7 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
         if self.autoreset_mode is AutoresetMode.SAME_STEP:
             rows = np.flatnonzero(over)
             last = simulation.infos.some(rows, *self._told)
-            ended = _final(self._observer.present(), last, rows, self.num_envs)
+            ended = _final(self._observer, last, rows, self.num_envs)
             self._begin(rows)
         else:
             self._over = over
@@ -223,37 +222,22 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
 
     def _begin(self, rows: np.ndarray, asked: RowOptions | None = None) -> None:
         """Start episodes; those whose options contradict each other, and the rows after them, do not."""
-        if asked is not None:
-            for options, some in asked.groups(rows):
-                self._begin_together(some, options)
-        elif rows.size:
-            self._begin_together(rows, self._options)
-
-    def _begin_together(self, rows: np.ndarray, options: EpisodeOptions) -> None:
-        generators = [self._generators[i] for i in rows.tolist()]
-        self.simulation.reset_rows(rows, generators, options, self._material)
-        self._observer.begin(rows)
-        self._pictures.begin(rows)
-        self._ready[rows] = True
+        groups = [(self._options, rows)] if asked is None else asked.groups(rows)
+        for options, some in groups if rows.size else ():
+            generators = [self._generators[i] for i in some.tolist()]
+            self.simulation.reset_rows(some, generators, options, self._material)
+            self._observer.begin(some)
+            self._pictures.begin(some)
+            self._ready[some] = True
 
 
-def _final(observations: Any, infos: dict[str, Any], rows: np.ndarray, n: int) -> dict[str, Any]:
-    """Infos that hold the last observations and infos of finished episodes.
-
-    Args:
-        observations: Observations of all environments: (n, k), or a dictionary of such arrays.
-        infos: Infos of the environments whose episodes have finished.
-        rows: Indices of these environments, (m,).
-        n: Number of environments.
-    """
+def _final(observer: Observer, infos: dict[str, Any], rows: np.ndarray, n: int) -> dict[str, Any]:
+    """Infos that hold the last observations and infos of the rows (m,) whose episodes have finished."""
     if not rows.size:
         return {}
     last, over = np.full(n, None, dtype=object), np.zeros((2, n), dtype=bool)
     for i in rows.tolist():
-        if isinstance(observations, dict):
-            last[i] = {group: values[i].copy() for group, values in observations.items()}
-        else:
-            last[i] = observations[i].copy()
+        last[i] = observer.read(i)
     over[:, rows] = True
     return {"final_obs": last, "_final_obs": over[0], "final_info": infos, "_final_info": over[1]}
 

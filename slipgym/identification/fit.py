@@ -9,10 +9,12 @@ the shift of the estimate under each of `ALTERNATIVES`, to first order, is added
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from slipgym._numba.compiled import patience
 from slipgym.config.errors import unknown
 from slipgym.identification.log import Log
 from slipgym.identification.parameters import DEVIATION, START, values_of
@@ -79,6 +81,11 @@ class _Problem:
     fitted: np.ndarray  # (n,) rows that the fit uses
     present: np.ndarray  # (7,)
 
+    @cached_property
+    def used(self) -> np.ndarray:
+        """Readings that the fit uses, (n, present channels)."""
+        return self.fitted[:, None] & np.isfinite(self.log.readings[:, self.present])
+
     def predict(self, points: np.ndarray, **other: Any) -> np.ndarray:
         """Readings of transformed points (m, p), of another model if given: (m, n, present channels)."""
         log, model = self.log, {"contact": self.contact, **other}
@@ -86,13 +93,13 @@ class _Problem:
         return all_of[:, :, self.present]
 
     def residuals(self, predicted: np.ndarray) -> np.ndarray:
-        """Log minus prediction in all rows."""
+        """Log minus prediction in all rows; NaN where there is no reading."""
         return self.log.readings[:, self.present] - predicted
 
     def noise(self, residual: np.ndarray) -> np.ndarray:
         """Robust standard deviation of each channel's residual in the fitted rows."""
         part = residual[self.fitted]
-        return np.maximum(1.4826 * np.median(np.abs(part - np.median(part, axis=0)), axis=0), 1e-9)
+        return np.maximum(1.4826 * np.nanmedian(np.abs(part - np.nanmedian(part, axis=0)), axis=0), 1e-9)
 
     def slopes(self, point: np.ndarray) -> np.ndarray:
         """Derivative of the readings by the transformed parameters, (p, n, present channels)."""
@@ -124,8 +131,11 @@ def identify(log: Log, contact: str = "distributed", seed: int = 0) -> Result:
         raise ValueError(unknown("contact", contact, SURFACES))
     if np.ptp(log.readings[:, :4], axis=0).max() == 0.0:
         raise ValueError("the log's wrench never changes: nothing in it can be identified")
+    with patience("the rollouts"):
+        roll(values_of(START[None]), log.rate, log.command[:2], log.motion[:2], contact)
     block = (np.arange(len(log.command)) / (BLOCK * log.rate)).astype(int)
-    problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, ~np.isnan(log.readings[0]))
+    there = np.array([np.isfinite(each).any() for each in log.readings.T])
+    problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, there)
     point = _start(problem, np.random.default_rng(seed))
     for _ in range(2):
         scale = problem.noise(problem.residuals(problem.predict(point[None])[0]))
@@ -149,7 +159,7 @@ def _start(problem: _Problem, rng: np.random.Generator) -> np.ndarray:
 
 
 def _cost(problem: _Problem, point: np.ndarray, residual: np.ndarray, scale: np.ndarray) -> float:
-    size = np.abs(residual[problem.fitted] / scale)
+    size = np.abs(residual / scale)[problem.used]
     loss = np.where(size <= HUBER, 0.5 * size**2, HUBER * (size - 0.5 * HUBER)).sum()
     return float(loss + 0.5 * (((point - START) / DEVIATION) ** 2).sum())
 
@@ -158,7 +168,8 @@ def _normal_equations(
     problem: _Problem, slopes: np.ndarray, residual: np.ndarray, scale: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Information with the prior's (p, p), and the score of each row (p, n)."""
-    weights = problem.fitted[:, None] / np.maximum(np.abs(residual) / (HUBER * scale), 1.0)
+    residual = np.where(problem.used, residual, 0.0)
+    weights = problem.used / np.maximum(np.abs(residual) / (HUBER * scale), 1.0)
     slopes = slopes / scale
     information = np.einsum("anc,nc,bnc->ab", slopes, weights, slopes, optimize=True)
     return information + np.diag(DEVIATION**-2.0), (slopes * (weights * residual / scale)).sum(axis=2)
@@ -211,6 +222,7 @@ def _result(problem: _Problem, point: np.ndarray, scale: np.ndarray, block: np.n
     before, after = roll(
         values_of(np.stack([START, written])), log.rate, log.command, log.motion, problem.contact
     )
+    left = np.ma.masked_invalid((log.readings - after)[~problem.fitted])
     return Result(
         log=log,
         contact=problem.contact,
@@ -218,7 +230,7 @@ def _result(problem: _Problem, point: np.ndarray, scale: np.ndarray, block: np.n
         deviation=np.where(shown, deviation, DEVIATION),
         shown=shown,
         noise=log.noise(),
-        held_out=np.sqrt(((log.readings - after)[~problem.fitted] ** 2).mean(axis=0)),
+        held_out=np.sqrt((left**2).mean(axis=0).filled(np.nan)),
         before=before,
         after=after,
         information=information,

@@ -12,6 +12,7 @@ import numpy as np
 from estimator.records.checks import OPPOSITE, correlation
 from estimator.records.columns import Columns
 from estimator.records.extras import extra
+from estimator.records.holding import held
 from estimator.records.sources import read_sources
 from estimator.records.streams import of_one_finger, read_tables, stream
 from estimator.records.table import Table
@@ -43,7 +44,7 @@ class Log:
     motion: np.ndarray
     """Twist of the object against the gripper, (n, 3) [m/s, m/s, rad/s]."""
     readings: np.ndarray
-    """Wrench at the pad's centre and slip twist, (n, 7), see `CHANNELS`; NaN: that sensor is absent."""
+    """Wrench at the pad's centre and slip twist, (n, 7), see `CHANNELS`; NaN: a row without a slip sample."""
 
     def __post_init__(self) -> None:
         n = len(self.command)
@@ -52,11 +53,11 @@ class Log:
             raise ValueError(
                 f"command, motion and readings have shapes {shapes}; must be (n,), (n, 3), (n, 7)"
             )
-        slip_absent = np.isnan(self.readings[:, 4:]).all()
-        numbers = np.hstack([self.command[:, None], self.motion, self.readings[:, : 4 if slip_absent else 7]])
+        numbers = np.hstack([self.command[:, None], self.motion, self.readings])
+        numbers[np.isnan(self.readings[:, 4:]).all(axis=1), -3:] = 0.0
         if not np.isfinite(numbers).all():
             raise ValueError(
-                "command, motion and readings must be finite; all three slip readings may be NaN"
+                "command, motion and readings must be finite; all three slip readings of a row may be NaN"
             )
         if not RATES[0] <= self.rate <= RATES[1]:
             raise ValueError(f"{self.rate:g} rows per second; must be {RATES[0]:g} to {RATES[1]:g}")
@@ -70,8 +71,10 @@ class Log:
 
         From the median of third differences, in which smooth motion vanishes, and the steps of the converter.
         """
-        spread = 1.4826 * np.median(np.abs(np.diff(self.readings, 3, axis=0)), axis=0) / np.sqrt(20.0)
-        steps = [np.diff(np.unique(each)).min(initial=np.inf) for each in self.readings.T]
+        there = [each[np.isfinite(each)] for each in self.readings.T]
+        differences = [np.abs(np.diff(each, 3)) if len(each) > 3 else np.array([np.nan]) for each in there]
+        spread = 1.4826 * np.array([np.median(each) for each in differences]) / np.sqrt(20.0)
+        steps = [np.diff(np.unique(each)).min(initial=np.inf) for each in there]
         rounding = np.where(np.isfinite(steps), steps, 0.0) / np.sqrt(12.0)
         return np.maximum(np.maximum(spread, rounding), LEAST_NOISE)
 
@@ -113,6 +116,10 @@ def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Lo
     values = np.stack([_numbers(table, name) for name in needed[1:]], axis=1)
     readings = np.full((len(t), len(CHANNELS)), np.nan)
     readings[:, : len(needed) - 5] = values[:, 4:]
+    if (
+        slip and (kept := held(t, readings[:, 4:])) is not None
+    ):  # each sample once, not as often as it is repeated
+        readings[np.setdiff1d(np.arange(len(t)), kept[0]), 4:] = np.nan
     _check_signs(path.name, values[:, 1:4], readings)
     try:
         return Log(rate, values[:, 0], values[:, 1:4], readings)

@@ -19,6 +19,7 @@ def gains(result: Result) -> list[tuple[str, float, str]]:
     of white noise; the new motion's is scaled by the same factor.
     """
     present = ~np.isnan(result.noise)
+    noise = result.noise / np.sqrt(np.isfinite(result.log.readings).mean(axis=0))  # of rows, some without
     before = np.sqrt(np.diag(np.linalg.inv(result.information)))
     widened = np.median((result.deviation / before)[result.shown]) if result.shown.any() else 1.0
     prior = np.diag(DEVIATION**-2.0)
@@ -27,7 +28,7 @@ def gains(result: Result) -> list[tuple[str, float, str]]:
     rate, ranked = result.log.rate, []
     for name, motion in MOTIONS.items():
         of = slopes(result.point, result.contact, rate, *motion(np.arange(round(LENGTH * rate)) / rate))
-        of = (of[:, :, present] / result.noise[present] / widened).reshape(len(of), -1)
+        of = (of[:, :, present] / noise[present] / widened).reshape(len(of), -1)
         after = np.sqrt(np.diag(np.linalg.inv(data + prior + of @ of.T)))
         fall = 1.0 - after / before
         ranked.append((name, float(fall.sum()), PARAMETERS[int(np.argmax(fall))].name))

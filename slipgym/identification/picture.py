@@ -23,7 +23,8 @@ def draw(result: Result, path: Path) -> None:
     FigureCanvasAgg(figure)
     rows = figure.subplots(len(present), 1, sharex=True, squeeze=False)[:, 0]
     for axes, k in zip(rows, present, strict=True):
-        axes.plot(t, result.log.readings[:, k], color="0.6", lw=2.0, label="log")
+        there = np.isfinite(result.log.readings[:, k])
+        axes.plot(t[there], result.log.readings[there, k], color="0.6", lw=2.0, label="log")
         axes.plot(t, result.before[:, k], color="tab:blue", lw=0.7, label="before")
         axes.plot(t, result.after[:, k], color="tab:red", lw=0.7, label="after")
         axes.set_ylabel(f"{CHANNELS[k]} [{UNITS[k]}]")

@@ -38,6 +38,7 @@ FORCE_TORQUE_FIXED = np.dtype(
         ("crosstalk", "f8"),  # largest part of an axis's load that another axis reads [-]
         ("least_delay", "i8"),  # in ticks
         ("delay_spread", "i8"),  # what may be added, in ticks
+        ("own_delay", "i8"),  # 1 if it samples that by itself, 0 if it shares finger 1's
         ("least_tip", "f8"),  # smallest mass of the fingertip in front of the sensor [kg]
         ("tip_spread", "f8"),  # what may be added [kg]
     ]
@@ -45,14 +46,16 @@ FORCE_TORQUE_FIXED = np.dtype(
 """Fields of FORCE_TORQUE that the configuration fixes for all episodes."""
 
 
-def force_torque(kept: int, misaligned: bool = False) -> np.dtype:
+def force_torque(kept: int, misaligned: bool = False, swings: bool = False) -> np.dtype:
     """FORCE_TORQUE, the record of a sensor that keeps some loads.
 
-    It has room for 4, 16 or `HISTORY` of them, and for `mix` only if it is used or the room is not the least:
-    among thousands of records space costs time, and every other dtype has to be compiled for.
+    It has room for 4, 16 or `HISTORY` of them, for `mix` only if it is used or the room is not the least, and
+    for `swing` only if the finger has a mode: among thousands of records space costs time, and every other
+    dtype has to be compiled for.
     """
     large = misaligned or kept > 4
     room, axes = (HISTORY if kept > 16 else 16, 6) if large else (4, 1)
+    numbers, rows = (5, (3, 6)) if swings else (1, (1, 1))
     episode = np.dtype(
         [
             ("delay", "i8"),  # latency in ticks
@@ -64,6 +67,8 @@ def force_torque(kept: int, misaligned: bool = False) -> np.dtype:
             ("key", "u8"),  # of the noise
             ("drift_key", "u8"),  # of the bias's random walk
             ("read", "i8"),  # readings since reset
+            ("mode", "f8", numbers),  # see `slipgym.sensors.structure`, like the next; 0: the finger has none
+            ("swing", "f8", rows),
             ("history", "f8", (room, 6)),  # loads at the newest samples, in turn
             ("mix", "f8", (axes, axes)),  # of the load on all axes
         ]
@@ -78,7 +83,8 @@ def roomier(sensors: np.ndarray, kept: int) -> np.ndarray:
         sensors: FORCE_TORQUE.
         kept: Loads to keep, at most `HISTORY`.
     """
-    larger = np.zeros(sensors.shape, force_torque(kept, bool(sensors["misaligned"].any())))
+    misaligned, swings = bool(sensors["misaligned"].any()), bool(sensors["mode"].any())
+    larger = np.zeros(sensors.shape, force_torque(kept, misaligned, swings))
     for name in larger.dtype.names or ():
         if name != "history":
             larger[name] = sensors[name]
@@ -105,11 +111,22 @@ def sample_force_torque(sensor: Any, pad: Pad, tick: int) -> None:
 
 @compiled
 def next_sample_read(sensor: Any, tick: int, control_ticks: int) -> int:
-    """Time of the first sample after `tick` that a reading needs, if it reads every `control_ticks`."""
+    """Time of the first sample after `tick` that a reading, every `control_ticks`, or a mode needs."""
     period = sensor.period
     number = tick // period + 1
+    if sensor.mode[0] > 0.0:
+        return number * period
     readings = -(-(number * period + sensor.delay) // control_ticks)
     return (readings * control_ticks - sensor.delay) // period * period
+
+
+@compiled
+def next_sample(sensors: Any, tick: int, control_ticks: int) -> int:
+    """`next_sample_read` of both fingers' sensors: the earlier one."""
+    sample = next_sample_read(sensors[0], tick, control_ticks)
+    if sensors[1].delay != sensors[0].delay:
+        return min(sample, next_sample_read(sensors[1], tick, control_ticks))
+    return sample
 
 
 @compiled

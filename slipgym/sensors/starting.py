@@ -7,6 +7,7 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.sensors.misalignment import LATENCY, TIP, about, mount, share
 from slipgym.sensors.slip_velocity import AXES
+from slipgym.sensors.structure import forget
 
 KEYS = 3
 """Keys that the noise of a finger's sensors needs."""
@@ -44,8 +45,10 @@ def start_sensors(
                 wrench.history[k, a] = 0.0
         wrench.read = 0
         wrench.key, wrench.drift_key, slip.key = keys[0, i], keys[1, i], keys[2, i]
-        # the fingers' sensors share a bus, and with it the latency, unless the chips have a USB port each
-        wrench.delay = wrench.least_delay + among(keys[1, 0], LATENCY, wrench.delay_spread)
+        # the fingers' sensors share a bus, and with it the latency, unless each has a port of its own
+        late = keys[1, i if wrench.own_delay else 0]
+        wrench.delay = wrench.least_delay + among(late, LATENCY, wrench.delay_spread)
+        forget(wrench)
         wrench.tip_mass = wrench.least_tip + wrench.tip_spread * share(wrench.drift_key, TIP)
         if wrench.misaligned:
             mount(wrench)

@@ -56,7 +56,6 @@ further slip and a larger sum of the grip are the violations that `violated` rep
 
 from __future__ import annotations
 
-import math
 from typing import Annotated
 
 import numpy as np
@@ -69,11 +68,12 @@ from slipgym.tasks.carrying import (
     planned_acceleration,
     rehearse,
     spend,
+    still,
     still_wide,
     wrist_velocity,
     write_moves,
 )
-from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
+from slipgym.tasks.episode import between, scratch, track_slip
 from slipgym.tasks.least_grip import least_grip
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
@@ -167,12 +167,6 @@ def track(episode, world, fingers):
 def violated(episode, world, fingers):
     """Whether the object slid far, or the grip has used up what the economy allows."""
     return episode.largest_slip > episode.tolerance or episode.grip_sum > episode.grip_budget
-
-
-@term(scale=0.5)
-def still(episode, world, fingers):
-    """exp(-(s / tolerance)^2), s = slip displacement at the pad centre."""
-    return math.exp(-((slip_distance(world) / episode.tolerance) ** 2))
 
 
 @term(scale=0.3)

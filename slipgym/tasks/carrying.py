@@ -244,6 +244,12 @@ def spend(episode, fingers):
         episode.grip_sum += mean_force(fingers)
 
 
+@term(scale=0.5)
+def still(episode, world, fingers):
+    """exp(-(s / tolerance)^2), s = slip displacement at the pad centre."""
+    return math.exp(-((slip_distance(world) / episode.tolerance) ** 2))
+
+
 STILL_WIDTH = 0.015
 """Width of `still_wide` [m]."""
 
@@ -255,16 +261,11 @@ def still_wide(episode, world, fingers):
 
 
 WRIST_COLUMNS = (
-    Column(
-        "wrist_velocity_x", -2.0, 2.0, "m/s", "commanded wrist velocity along world x",
-        "world.wrist_velocity[0]",
-    ),
-    Column(
-        "wrist_velocity_z", -2.0, 2.0, "m/s", "commanded wrist velocity along world z",
-        "world.wrist_velocity[1]",
-    ),
-    Column(
-        "wrist_pitch_rate", -10.0, 10.0, "rad/s", "commanded wrist pitch rate", "world.wrist_velocity[2]"
-    ),
+    Column("wrist_velocity_x", -2.0, 2.0, "m/s", "commanded wrist velocity along world x",
+           "world.wrist_velocity[0]"),
+    Column("wrist_velocity_z", -2.0, 2.0, "m/s", "commanded wrist velocity along world z",
+           "world.wrist_velocity[1]"),
+    Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "commanded wrist pitch rate",
+           "world.wrist_velocity[2]"),
 )  # fmt: skip
 """The wrist's velocity, of tasks whose wrist moves."""

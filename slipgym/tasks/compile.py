@@ -4,30 +4,13 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from numba.core.dispatcher import Dispatcher
 
 from slipgym._numba.compiled import compiled
 from slipgym._numba.generate import generate
 from slipgym.tasks.episode import detect_drop, drive_wrist, limited
-
-
-class _Term(Protocol):
-    @property
-    def name(self) -> str: ...
-    @property
-    def value(self) -> Callable[..., Any]: ...
-    @property
-    def event(self) -> bool: ...
-
-
-class _Column(Protocol):
-    @property
-    def name(self) -> str: ...
-    @property
-    def read(self) -> str | Callable[..., Any]: ...
 
 
 def track_arguments(track: Any) -> tuple[str, ...]:
@@ -57,14 +40,9 @@ def inlined(function: Any) -> Any:
     return function if isinstance(function, Dispatcher) else compiled(function)
 
 
-def compile_script_wrist(key: str, wrist_velocity: Callable[..., Any] | None, file: str) -> Any:
-    """Builds `script_wrist(episodes, worlds)` of a task.
-
-    Args:
-        key: The task's.
-        wrist_velocity: The task's, or None: the wrist rests.
-        file: The task's source file.
-    """
+def compile_script_wrist(task: Any, file: str) -> Any:
+    """Builds `script_wrist(episodes, worlds)` of a `Task`, whose source is a file."""
+    wrist_velocity = task.wrist_velocity
     velocity = "0.0, 0.0, 0.0" if wrist_velocity is None else "wrist_velocity(episodes[i], worlds[i])"
     body = [
         "for i in range(episodes.shape[0]):",
@@ -75,25 +53,12 @@ def compile_script_wrist(key: str, wrist_velocity: Callable[..., Any] | None, fi
     if wrist_velocity is not None:
         namespace["wrist_velocity"] = inlined(wrist_velocity)
     doc = "Before a control step: the wrist moves as the task scripts and as the agent commands."
-    return generate(f"script_wrist_{key}", ("episodes", "worlds"), body, namespace, compiled, file, doc)
+    return generate(f"script_wrist_{task.key}", ("episodes", "worlds"), body, namespace, compiled, file, doc)
 
 
-def compile_evaluate_step(
-    key: str,
-    functions: Mapping[str, Callable[..., Any] | None],
-    terms: Sequence[_Term],
-    columns: Sequence[_Column],
-    file: str,
-) -> Any:
-    """Builds `evaluate_step(episodes, worlds, grippers, columns)` of a task.
-
-    Args:
-        key: The task's.
-        functions: The task's `track`, `violated`, `ends` and `success`, by these names; each may be None.
-        terms: The task's; what the step pays for term k is written to `episode.terms[k]`.
-        columns: The task's; column k is written to `columns[i, k]`.
-        file: The task's source file.
-    """
+def compile_evaluate_step(task: Any, file: str) -> Any:
+    """Builds `evaluate_step(episodes, worlds, grippers, columns)` of a `Task`, whose source is a file."""
+    functions = {name: getattr(task, name) for name in ("track", "violated", "ends", "success")}
     namespace: dict[str, Any] = {"detect_drop": detect_drop, "limited": limited}
     namespace |= {name: inlined(each) for name, each in functions.items() if each is not None}
     violated = " or violated(episode, world, fingers)" if "violated" in namespace else ""
@@ -102,7 +67,7 @@ def compile_evaluate_step(
     body = [
         "for i in range(episodes.shape[0]):",
         "    episode, world, fingers = episodes[i], worlds[i], grippers[i]",
-        *([f"    track({', '.join(track_arguments(functions['track']))})"] if "track" in namespace else []),
+        *([f"    track({', '.join(track_arguments(task.track))})"] if "track" in namespace else []),
         "    episode.dropped = detect_drop(episode, world, fingers)",
         "    before = episode.violated",
         f"    episode.violated = before{violated}",
@@ -113,12 +78,12 @@ def compile_evaluate_step(
         f"    episode.success = over and not episode.dropped and not episode.violated{success}",
         "    share = 1.0 / episode.steps",
     ]
-    for k, term in enumerate(terms):
+    for k, term in enumerate(task.terms):
         namespace[f"term_{term.name}"] = inlined(term.value)
         value = f"term_{term.name}(episode, world, fingers)"
         paid = value if term.event else f"share * limited({value})"
         body.append(f"    episode.terms[{k}] = episode.scales[{k}] * {paid}")
-    for k, column in enumerate(columns):
+    for k, column in enumerate(task.columns):
         read = column.read
         if not isinstance(read, str):
             namespace[f"column_{column.name}"] = inlined(read)
@@ -126,4 +91,4 @@ def compile_evaluate_step(
         body.append(f"    columns[i, {k}] = {read}  # {column.name}")
     arguments = "episodes", "worlds", "grippers", "columns"
     doc = "After a control step: drop, violation, success, what the terms of the reward pay, columns."
-    return generate(f"evaluate_step_{key}", arguments, body, namespace, compiled, file, doc)
+    return generate(f"evaluate_step_{task.key}", arguments, body, namespace, compiled, file, doc)

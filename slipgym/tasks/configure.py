@@ -14,6 +14,13 @@ from slipgym.config.yaml_model import validate
 from slipgym.tasks.table import TASKS
 from slipgym.tasks.task import Task
 
+_GIVE_WAY = {
+    ("object", "mass"): {"mass_range": None},
+    ("contact", "radius"): {"radius": None, "radius_range": None},
+    ("gripper", "wrist_speed_max"): {"wrist_speed": None},
+}
+"""Group and key of the configuration -> settings of tasks that would take its place."""
+
 
 def configure(
     task: Task[SettingsT],
@@ -28,7 +35,8 @@ def configure(
         task: The task.
         overrides: Values that replace defaults, as a mapping or as the path of a YAML file. Its group
             "tasks" holds settings by the tasks' keys: `{"tasks": {"hold": {"duration": 2.0}}}`. Settings of
-            other tasks are checked and then ignored.
+            other tasks are checked and then ignored. What is given in part acts in place of what the task
+            takes or draws: `{"object": {"mass": 0.3}}`. An object with a size replaces the task's own.
         sensors: Sensor preset, see `slipgym.config.load`.
         contact: Friction model, see `slipgym.config.load`.
         level: Its settings replace the task's defaults; None: none.
@@ -52,12 +60,27 @@ def configure(
     if level is not None:
         changed = level.level.settings
         _settings(task, changed, level.source)
+    changed = merge(changed, _given_way(task, values))
     settings = _settings(task, groups.get(task.key, {}), source, changed)
     try:
         settings.check(config, f"tasks.{task.key}")
     except ValueError as error:
         raise ValueError(f"{source}: {error}") from None
     return config, settings
+
+
+def _given_way(task: Task[Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings that give way to a configuration given in part; a whole one gives them all itself."""
+    if values.keys() >= Config.model_fields.keys():
+        return {}
+    changed: dict[str, Any] = {}
+    for (group, key), settings in _GIVE_WAY.items():
+        if values.get(group, {}).get(key) is not None:
+            changed |= settings
+    own = values.get("object", {})
+    if own and task.default_settings["object"]:
+        changed["object"] = None if "size" in own else own
+    return changed
 
 
 def _settings(

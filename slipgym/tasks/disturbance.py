@@ -141,6 +141,26 @@ def bear_all(episodes, worlds):
 
 
 @compiled
+def add_push(episode, begin, steps, impulse, heading, lever):
+    """Add a push to an episode.
+
+    Args:
+        episode: EPISODE record.
+        begin: Control step at which it begins.
+        steps: Control steps that it lasts.
+        impulse: Force times duration [N s].
+        heading: Angle of the force to world x, towards up [rad].
+        lever: Of the force about the centre of mass [m].
+    """
+    k, force = episode.pushes, impulse / (steps * episode.step_time)
+    episode.push_start[k], episode.push_end[k] = begin, begin + steps
+    episode.push_wrench[k, 0] = force * math.cos(heading)
+    episode.push_wrench[k, 1] = force * math.sin(heading)
+    episode.push_wrench[k, 2] = force * lever
+    episode.pushes = k + 1
+
+
+@compiled
 def load(episode, world):
     """Set the load on the object and its mass at the episode's step: support, pushes, change of mass."""
     world.external[:] = 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import namedtuple
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -18,25 +18,6 @@ MOVES_MAX = 8
 """Largest number of moves in a plan of the wrist."""
 OWN_MAX = 8
 """Number of values that a task can keep besides the fields of all tasks."""
-
-
-class TimedSettings(Protocol):
-    """Settings of a task that settles, follows a reference, and holds."""
-
-    @property
-    def settle(self) -> float:
-        """Time before the motion [s]."""
-        ...
-
-    @property
-    def duration(self) -> float:
-        """Time for the motion [s]."""
-        ...
-
-    @property
-    def hold(self) -> float:
-        """Time after the motion [s]."""
-        ...
 
 
 EPISODE = np.dtype(
@@ -116,8 +97,8 @@ def scratch(**sizes: int) -> Any:
     return namedtuple("Scratch", places)(**places)
 
 
-def schedule(settings: TimedSettings, episode: np.void) -> None:
-    """Fill in settle, duration and length of an episode that settles, follows a reference and holds."""
+def schedule(settings: Any, episode: np.void) -> None:
+    """Fill in settle, duration and length, from settings with `settle`, `duration` and `hold` [s]."""
     episode["settle"], episode["duration"] = settings.settle, settings.duration
     total = settings.settle + settings.duration + settings.hold
     episode["steps"] = max(1, round(total / episode["step_time"].item()))

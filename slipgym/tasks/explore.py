@@ -73,14 +73,7 @@ import numpy as np
 
 from slipgym._numba.compiled import compiled
 from slipgym.config.base import Positive
-from slipgym.config.task import (
-    FrictionRange,
-    InitialForce,
-    MassRange,
-    RadiusRange,
-    TaskConfig,
-    setting,
-)
+from slipgym.config.task import FrictionRange, InitialForce, MassRange, RadiusRange, TaskConfig, setting
 from slipgym.tasks.disturbance import friction_factor
 from slipgym.tasks.episode import scratch
 from slipgym.tasks.motion import Motion

@@ -56,8 +56,8 @@ import numpy as np
 
 from slipgym.config.base import NonNegative, Positive, PositiveInterval, ends_within
 from slipgym.config.task import FrictionRange, InitialForce, MassRange, Option, TaskConfig, setting
-from slipgym.tasks.carrying import PAUSE, WRIST_COLUMNS, rehearse, wrist_velocity, write_moves
-from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
+from slipgym.tasks.carrying import PAUSE, WRIST_COLUMNS, rehearse, still, wrist_velocity, write_moves
+from slipgym.tasks.episode import between, scratch, track_slip
 from slipgym.tasks.least_grip import least_grip
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
@@ -152,12 +152,6 @@ def violated(episode, world, fingers):
     return episode.largest_slip > episode.tolerance or mean_force(fingers) > episode.grip_limit
 
 
-@term(scale=0.5)
-def still(episode, world, fingers):
-    """exp(-(s / tolerance)^2), s = slip displacement at the pad centre."""
-    return math.exp(-((slip_distance(world) / episode.tolerance) ** 2))
-
-
 @term(scale=0.3)
 def gentle(episode, world, fingers):
     """1 while the grip is within the breaking force, else 0."""
@@ -174,15 +168,11 @@ TASK = Task(
     terms=(still, gentle, effort, smoothness, *OUTCOME),
     columns=(
         *WRIST_COLUMNS,
-        Column(
-            "allowance", 0.0, 100.0, "-", "breaking force over the least grip that holds the object",
-            f"episode.own[{SCRATCH.allowance}]",
-        ),
-        Column(
-            "peak_acceleration", 0.0, 200.0, "m/s^2",
-            "largest acceleration of the planned motion, less gravity",
-            f"episode.own[{SCRATCH.acceleration}]",
-        ),
+        Column("allowance", 0.0, 100.0, "-", "breaking force over the least grip that holds the object",
+               f"episode.own[{SCRATCH.allowance}]"),
+        Column("peak_acceleration", 0.0, 200.0, "m/s^2",
+               "largest acceleration of the planned motion, less gravity",
+               f"episode.own[{SCRATCH.acceleration}]"),
         TIME_LEFT,
         VIOLATED,
     ),

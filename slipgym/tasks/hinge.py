@@ -167,25 +167,16 @@ TASK = Task(
     violated=violated,
     terms=(still, upright, effort, smoothness, *OUTCOME),
     columns=(
-        Column(
-            "wrist_pitch", -10.0, 10.0, "rad", "pitch of the wrist since the start", "episode.reference[0]"
-        ),
+        Column("wrist_pitch", -10.0, 10.0, "rad", "pitch of the wrist since the start",
+               "episode.reference[0]"),
         Column("wrist_pitch_rate", -10.0, 10.0, "rad/s", "its rate", "episode.reference[1]"),
-        Column(
-            "wrist_pitch_acceleration", -100.0, 100.0, "rad/s^2", "its second rate", "episode.reference[2]"
-        ),
+        Column("wrist_pitch_acceleration", -100.0, 100.0, "rad/s^2", "its second rate",
+               "episode.reference[2]"),
         Column("wrist_pitch_goal", -10.0, 10.0, "rad", "pitch at the end of the turn", "episode.goal"),
         TIME_LEFT,
         VIOLATED,
     ),
-    motion=Motion(
-        "turned in the grip",
-        "rad",
-        (0.0, 0.0, 1.0),
-        sign=-1.0,
-        goal="wrist_pitch_goal",
-        body="tool",
-        end=hanging,
-    ),
+    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), sign=-1.0, goal="wrist_pitch_goal",
+                  body="tool", end=hanging),
     page=__doc__,
-)
+)  # fmt: skip

@@ -53,9 +53,9 @@ import numpy as np
 from slipgym._numba.compiled import compiled
 from slipgym.config.base import Interval, NonNegative, Positive, PositiveInterval, ends_within
 from slipgym.config.task import MassRange, TaskConfig, setting
-from slipgym.tasks.carrying import WRIST_COLUMNS, rehearse, spend, still_wide
-from slipgym.tasks.disturbance import POKES_MAX
-from slipgym.tasks.episode import between, scratch, slip_distance, track_slip, whole_steps
+from slipgym.tasks.carrying import WRIST_COLUMNS, rehearse, spend, still, still_wide
+from slipgym.tasks.disturbance import POKES_MAX, add_push
+from slipgym.tasks.episode import between, scratch, track_slip, whole_steps
 from slipgym.tasks.least_grip import least_grip
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
@@ -118,10 +118,8 @@ def start(settings: Settings, options: EpisodeOptions, rng: np.random.Generator,
     episode["tolerance"] = settings.tolerance
     episode["own"][SCRATCH.ratio] = settings.grip_limit or 0.0
     amplitudes = settings.shake_amplitude, settings.shake_amplitude, settings.shake_pitch
-    offsets, times = (
-        (-settings.poke_offset, settings.poke_offset),
-        (settings.duration, settings.poke_duration),
-    )
+    offsets = -settings.poke_offset, settings.poke_offset
+    times = settings.duration, settings.poke_duration
     ranges = settings.shake_frequency, settings.poke_interval, settings.poke_impulse, offsets
     disturb_hold(rng.random(6 + 4 * POKES_MAX), amplitudes, ranges, times, episode)
     begin = round(settings.grip_limit_start / episode["step_time"].item())
@@ -154,13 +152,8 @@ def disturb_hold(shares, amplitudes, ranges, times, episode):
         begin = whole_steps(time, dt)
         if begin >= episode.steps:
             break
-        heading = between((0.0, 2.0 * math.pi), pokes[1, k])
-        force = between(impulses, pokes[2, k]) / (steps * dt)
-        episode.push_start[k], episode.push_end[k] = begin, begin + steps
-        episode.push_wrench[k, 0] = force * math.cos(heading)
-        episode.push_wrench[k, 1] = force * math.sin(heading)
-        episode.push_wrench[k, 2] = force * between(levers, pokes[3, k])
-        episode.pushes = k + 1
+        heading, impulse = between((0.0, 2.0 * math.pi), pokes[1, k]), between(impulses, pokes[2, k])
+        add_push(episode, begin, steps, impulse, heading, between(levers, pokes[3, k]))
 
 
 def track(episode, world, fingers):
@@ -183,12 +176,6 @@ def violated(episode, world, fingers):
     return episode.largest_slip > episode.tolerance or spent
 
 
-@term(scale=0.5)
-def still(episode, world, fingers):
-    """exp(-(s / tolerance)^2), s = slip displacement at the pad centre."""
-    return math.exp(-((slip_distance(world) / episode.tolerance) ** 2))
-
-
 @term(scale=0.0)
 def overgrip(episode, world, fingers):
     """-(mean actuator force / (grip_limit times the least grip) - 1), 0 for a smaller one or without it."""
@@ -204,11 +191,7 @@ TASK = Task(
     track=track,
     violated=violated,
     terms=(still, effort._replace(scale=0.5), smoothness, *OUTCOME, still_wide, overgrip),
-    columns=(
-        *WRIST_COLUMNS,
-        TIME_LEFT,
-        VIOLATED,
-    ),
+    columns=(*WRIST_COLUMNS, TIME_LEFT, VIOLATED),
     motion=Motion(sign=0.0, body="bottle"),
     page=__doc__,
 )  # fmt: skip

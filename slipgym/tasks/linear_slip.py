@@ -98,14 +98,8 @@ TASK = Task(
     success=success,
     terms=(tracking, sideways, effort, smoothness, solved, drop),
     columns=(
-        Column(
-            "reference_position",
-            0.0,
-            1.0,
-            "m",
-            "distance the object should have slid",
-            "episode.reference[0]",
-        ),
+        Column("reference_position", 0.0, 1.0, "m", "distance the object should have slid",
+               "episode.reference[0]"),
         Column("reference_velocity", 0.0, 1.0, "m/s", "its rate", "episode.reference[1]"),
         Column("reference_acceleration", -5.0, 5.0, "m/s^2", "its second rate", "episode.reference[2]"),
         Column("distance", 0.0, 1.0, "m", "distance to slide in the episode", "episode.goal"),
@@ -114,4 +108,4 @@ TASK = Task(
     ),
     motion=Motion("slid down", axis=(0.0, -1.0, 0.0), goal="distance", end=slid),
     page=__doc__,
-)
+)  # fmt: skip

@@ -13,44 +13,34 @@ from slipgym.config.errors import unknown
 from slipgym.config.task import Reset, SettingsT, TaskConfig
 
 
+def option(meaning: str, **bounds: Any) -> Any:
+    """Declare an option that need not be given; bounds in pydantic's words."""
+    return Field(default=None, description=meaning, **bounds)
+
+
 class EpisodeOptions(Frozen):
     """Options of every task; parameters that are not given are sampled or taken from the settings."""
 
     settings_fields: ClassVar[frozenset[str]] = frozenset()
     """Options that replace the setting of the same name."""
 
-    material: str | None = Field(default=None, description='Name of a material, or "random"')
-    mu_s: Positive | None = Field(default=None, le=5.0, description="Static friction, >= mu_c [-]")
-    mu_c: Positive | None = Field(default=None, le=5.0, description="Coulomb friction [-]")
-    r: Positive | None = Field(default=None, le=0.1, description="Radius of the equivalent rim contact [m]")
-    finger_friction: Factors | None = Field(
-        default=None, description="Friction of each finger over mu_s and mu_c [-]"
+    material: str | None = option('Name of a material, or "random"')
+    mu_s: Positive | None = option("Static friction, >= mu_c [-]", le=5.0)
+    mu_c: Positive | None = option("Coulomb friction [-]", le=5.0)
+    r: Positive | None = option("Radius of the equivalent rim contact [m]", le=0.1)
+    finger_friction: Factors | None = option("Friction of each finger over mu_s and mu_c [-]")
+    finger_radius: Factors | None = option("Contact radius of each finger over r [-]")
+    cop_offset: Points | None = option("Centre of pressure (x, y) from the pad's centre, per finger [m]")
+    finger_lag: Factors | None = option("Time constant of each finger's force loop over the gripper's [-]")
+    force_gain: Factors | None = option("Force of each finger's actuator over the commanded [-]")
+    object_mass: float | None = option("Mass of the object [kg]", ge=0.01, le=5.0)
+    object_size: Size | None = option("Extent along x, the grip axis and z [m]")
+    com_offset: Point | None = option("Centre of mass (x, z) from the geometric centre [m]")
+    wrist_roll: float | None = option(
+        "Roll of the wrist about x at the start; needs `physics.tilt` [rad]", ge=-math.pi, le=math.pi
     )
-    finger_radius: Factors | None = Field(
-        default=None, description="Contact radius of each finger over r [-]"
-    )
-    cop_offset: Points | None = Field(
-        default=None, description="Centre of pressure (x, y) from the pad's centre, per finger [m]"
-    )
-    finger_lag: Factors | None = Field(
-        default=None, description="Time constant of each finger's force loop over the gripper's [-]"
-    )
-    force_gain: Factors | None = Field(
-        default=None, description="Force of each finger's actuator over the commanded [-]"
-    )
-    object_mass: float | None = Field(default=None, ge=0.01, le=5.0, description="Mass of the object [kg]")
-    object_size: Size | None = Field(default=None, description="Extent along x, the grip axis and z [m]")
-    com_offset: Point | None = Field(
-        default=None, description="Centre of mass (x, z) from the geometric centre [m]"
-    )
-    wrist_roll: float | None = Field(
-        default=None,
-        ge=-math.pi,
-        le=math.pi,
-        description="Roll of the wrist about x at the start; needs `physics.tilt` [rad]",
-    )
-    randomization_scale: float | None = Field(
-        default=None, ge=0.0, le=1.0, description="Fraction of the randomization's ranges: 0 none, 1 all [-]"
+    randomization_scale: float | None = option(
+        "Fraction of the randomization's ranges: 0 none, 1 all [-]", ge=0.0, le=1.0
     )
 
     @classmethod
@@ -96,11 +86,10 @@ def derive_options(name: str, settings: type[TaskConfig]) -> type[EpisodeOptions
         reset = field.json_schema_extra
         if not isinstance(reset, Reset):
             continue
-        option = reset.option
-        if option is not None:
-            bounds: dict[str, Any] = dict(option.bounds or {})
-            kind: Any = Annotated[option.annotation, Field(**bounds)]
-            fields[key] = (kind | None, Field(default=None, description=option.meaning))
+        if (own := reset.option) is not None:
+            bounds: dict[str, Any] = dict(own.bounds or {})
+            kind: Any = Annotated[own.annotation, Field(**bounds)]
+            fields[key] = (kind | None, option(own.meaning))
             continue
         kind = field.annotation
         for constraint in field.metadata:

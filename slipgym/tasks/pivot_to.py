@@ -83,11 +83,11 @@ from slipgym.config.task import (
     setting,
 )
 from slipgym.tasks.disturbance import shake_velocity
-from slipgym.tasks.episode import between, scratch, slip_distance, track_slip
+from slipgym.tasks.episode import between, scratch, track_slip
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
-from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
+from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, sliding, smoothness
 
 SCRATCH = scratch(acceleration=1, rest_speed=1, wrist_rest=1)
 """`acceleration`: largest of the wrist [m/s^2]; `rest_speed`, `wrist_rest`: largest final speed of the slip
@@ -203,12 +203,6 @@ def angle_wide(episode, world, fingers):
 def distance(episode, world, fingers):
     """-e / pi."""
     return -angle_error(episode, world) / math.pi
-
-
-@term(scale=0.5)
-def sliding(episode, world, fingers):
-    """-(slip at the pad centre) / (10 slide_tolerance)."""
-    return -slip_distance(world) / (10.0 * episode.slide_tolerance)
 
 
 def turned(episode: Any) -> tuple[float, float, float]:

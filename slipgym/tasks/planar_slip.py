@@ -220,10 +220,8 @@ TASK = Task(
     success=success,
     terms=(position, angle, distance, effort, smoothness, wrist, solved, drop),
     columns=(
-        Column(
-            "target_x", -1.0, 1.0, "m", "slip displacement to reach, along the pads' x axis",
-            "episode.reference[0]",
-        ),
+        Column("target_x", -1.0, 1.0, "m", "slip displacement to reach, along the pads' x axis",
+               "episode.reference[0]"),
         Column("target_y", -1.0, 1.0, "m", "the same along the pads' y axis", "episode.reference[1]"),
         Column("target_theta", -10.0, 10.0, "rad", "the same about the grip axis", "episode.reference[2]"),
         TIME_LEFT,

@@ -50,11 +50,11 @@ import numpy as np
 from slipgym.config.base import NonNegative, Positive
 from slipgym.config.hardware import ObjectConfig
 from slipgym.config.task import InitialForce, TaskConfig, TaskObject, setting
-from slipgym.tasks.episode import follow_trapezoid, schedule, slip_distance, track_slip
+from slipgym.tasks.episode import follow_trapezoid, schedule, track_slip
 from slipgym.tasks.motion import Motion
 from slipgym.tasks.options import EpisodeOptions
 from slipgym.tasks.task import Column, Task, term
-from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, smoothness
+from slipgym.tasks.terms import OUTCOME, TIME_LEFT, VIOLATED, effort, sliding, smoothness
 
 WIDTH = 0.2
 """Width of `tracking_wide` [rad]."""
@@ -115,12 +115,6 @@ def tracking_wide(episode, world, fingers):
     return math.exp(-(((-world.slip[2] - episode.reference[0]) / WIDTH) ** 2))
 
 
-@term(scale=0.5)
-def sliding(episode, world, fingers):
-    """-(slip at the pad centre) / (10 slide_tolerance)."""
-    return -slip_distance(world) / (10.0 * episode.slide_tolerance)
-
-
 def turned(episode: Any) -> tuple[float, float, float]:
     """Slip displacement at the end of the turn [m, m, rad]."""
     return 0.0, 0.0, -float(episode["goal"])
@@ -135,18 +129,14 @@ TASK = Task(
     violated=violated,
     terms=(tracking, sliding, effort, smoothness, *OUTCOME, tracking_wide),
     columns=(
-        Column(
-            "reference_position", 0.0, 2.0, "rad", "angle the object should have turned, clockwise",
-            "episode.reference[0]",
-        ),
+        Column("reference_position", 0.0, 2.0, "rad", "angle the object should have turned, clockwise",
+               "episode.reference[0]"),
         Column("reference_velocity", 0.0, 10.0, "rad/s", "its rate", "episode.reference[1]"),
         Column("reference_acceleration", -100.0, 100.0, "rad/s^2", "its second rate", "episode.reference[2]"),
         Column("angle", 0.0, 2.0, "rad", "angle to turn in the episode", "episode.goal"),
         TIME_LEFT,
         VIOLATED,
     ),
-    motion=Motion(
-        "turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle", body="tool", end=turned
-    ),
+    motion=Motion("turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle", body="tool", end=turned),
     page=__doc__,
 )  # fmt: skip

@@ -34,7 +34,8 @@ def find(name: str) -> Task:
     for task in TASKS.values():
         if name in (task.key, task.name, task.id):
             return task
-    raise ValueError(unknown("task", name, [task.key for task in TASKS.values()]))
+    keys, ids = zip(*((task.key, task.id) for task in TASKS.values()), strict=True)
+    raise ValueError(unknown("task", name, keys, ids))
 
 
 def add(task: Task) -> None:

@@ -161,7 +161,7 @@ class Task(Generic[SettingsT]):
     @cached_property
     def script_wrist(self) -> Any:
         """Compiled, before a control step: (episodes, worlds) sets the wrist's acceleration."""
-        return compile_script_wrist(self.key, self.wrist_velocity, self._file)
+        return compile_script_wrist(self, self._file)
 
     @cached_property
     def evaluate_step(self) -> Any:
@@ -170,9 +170,7 @@ class Task(Generic[SettingsT]):
         It writes `dropped`, `violated`, `ended`, `success` and the scaled reward terms into the episodes, and
         the task's part of the observation into `columns` (n, k).
         """
-        names = "track", "violated", "ends", "success"
-        functions = {name: getattr(self, name) for name in names}
-        return compile_evaluate_step(self.key, functions, self.terms, self.columns, self._file)
+        return compile_evaluate_step(self, self._file)
 
     @property
     def _file(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from slipgym.tasks.episode import slip_distance
 from slipgym.tasks.task import Column, event, term
 
 
@@ -16,6 +17,12 @@ def smoothness(episode, world, fingers):
     """-(change of the commanded force / gripper.force_max)^2."""
     change = (episode.command - episode.last_command) / episode.force_max
     return -(change * change)
+
+
+@term(scale=0.5)
+def sliding(episode, world, fingers):
+    """-(slip at the pad centre) / (10 slide_tolerance)."""
+    return -slip_distance(world) / (10.0 * episode.slide_tolerance)
 
 
 @event(scale=10.0)

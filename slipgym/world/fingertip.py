@@ -12,6 +12,7 @@ from typing import Any
 from slipgym._numba.compiled import compiled
 from slipgym.contact.records import Pad
 from slipgym.sensors.force_torque import sample_force_torque
+from slipgym.sensors.structure import vibrate
 from slipgym.world.object_motion import pad_axes
 from slipgym.world.records import World
 
@@ -27,10 +28,12 @@ def weigh_tip(sensor: Any, world: World) -> None:
 
 @compiled
 def sample_finger(sensor: Any, pad: Pad, world: World) -> None:
-    """`sample_force_torque` of a finger whose tip has a mass, at the world's time."""
+    """`sample_force_torque` of a finger whose tip has a mass and may vibrate, at the world's time."""
     sample_force_torque(sensor, pad, world.tick)
     if sensor.tip_mass > 0.0:
         weigh_tip(sensor, world)
         load = sensor.history[(world.tick // sensor.period) % sensor.kept]
         load[0] += sensor.tip_load[0]
         load[1] += sensor.tip_load[1]
+    if sensor.mode[0] > 0.0:
+        vibrate(sensor, sensor.history[(world.tick // sensor.period) % sensor.kept])

@@ -13,7 +13,7 @@ from slipgym._numba.rows import row_of
 from slipgym.contact.kinds import PATCHES, set_normal
 from slipgym.contact.records import Pad, Pair, copy_patch_state, same_pads, same_patches
 from slipgym.contact.soft_pad import load_pad
-from slipgym.sensors.force_torque import next_sample_read
+from slipgym.sensors.force_torque import next_sample
 from slipgym.world.actuator import (
     advance_fingers_through_commands,
     apply_due_commands,
@@ -115,7 +115,7 @@ def advance_substeps(
     done = 0
     end = world.tick + world.control_ticks
     load = wrench_at_rest(world)
-    sample = next_sample_read(force_torque[0], world.tick, world.control_ticks)
+    sample = next_sample(force_torque, world.tick, world.control_ticks)
     while world.tick < end:
         for f in range(len(pads)):
             apply_due_commands(fingers[f], world.tick)
@@ -148,7 +148,7 @@ def advance_substeps(
         if world.tick == sample:
             for f in range(2):
                 sample_finger(force_torque[f], pads[min(f, len(pads) - 1)], world)
-            sample = next_sample_read(force_torque[0], sample, world.control_ticks)
+            sample = next_sample(force_torque, sample, world.control_ticks)
     normal = normal_force_of(mean_force(fingers))
     for f in range(len(pads)):
         fingers[f].contact_force = normal

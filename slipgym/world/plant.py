@@ -18,6 +18,7 @@ from slipgym.sensors.markers import COLUMNS, MARKERS, ROWS
 from slipgym.sensors.owned import GRIPPER, PLACES
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
 from slipgym.sensors.slip_velocity import SLIP_SENSOR, chip_positions
+from slipgym.sensors.structure import LOAD, mode
 from slipgym.world.actuator import FINGER_DAMPING
 from slipgym.world.records import FINGER, QUEUE, TILT, WORLD
 
@@ -185,10 +186,15 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
         return (tangential, tangential, normal, torque, torque, torque)
 
     misaligned = sensor.off_centre + sensor.tilt + sensor.crosstalk > 0.0
-    array = np.zeros((n, 2), force_torque(kept, misaligned))
+    swings = sensor.mode_frequency is not None
+    array = np.zeros((n, 2), force_torque(kept, misaligned, swings))
+    if sensor.mode_frequency is not None:
+        array["mode"] = mode(sensor.mode_frequency, sensor.mode_damping, 1.0 / sensor.rate)
+        array["swing"][..., LOAD, 0] = np.nan
     array["period"] = tick_rate // sensor.rate
     array["delay"] = array["least_delay"] = round(sensor.latency * tick_rate)
     array["delay_spread"] = round(sensor.latency_spread * tick_rate)
+    array["own_delay"] = sensor.own_latency
     _take_over(sensor, array)
     array["least_tip"], array["tip_spread"] = sensor.tip_mass, sensor.tip_mass_spread
     array["misaligned"] = misaligned

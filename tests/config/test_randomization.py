@@ -23,6 +23,31 @@ WRONG = [
         "got -0.5 to 0.2",
     ),
     ({"load_exponent": {"choices": [0.6]}}, "load_exponent: must lie within -0.4 to 0.5", "got 0.6 to 0.6"),
+    ({"friction_by_area": True}, "friction_by_area needs a radius_exponent from 0.25", "0.333333"),
+    (
+        {"friction_by_area": True, "radius_exponent": {"uniform": [0.2, 0.3]}},
+        "friction_by_area needs a radius_exponent from 0.25",
+        "0.333333",
+    ),
+    (
+        {
+            "friction_by_area": True,
+            "radius_exponent": {"choices": [0.3]},
+            "load_exponent": {"choices": [0.4]},
+        },
+        "load_exponent and friction_by_area",
+        "exclude each other",
+    ),
+    (
+        {
+            "friction_by_area": True,
+            "radius_exponent": {"choices": [0.3]},
+            "tasks": {"hinge": {"radius_exponent": None}},
+        },
+        "friction_by_area needs",
+        "0.25",
+    ),
+    ({"friction_by_area": 1}, "friction_by_area = 1", "true or false"),
     ({"mu_c": {"unform": [0.1, 0.2]}}, "mu_c.unform: unknown key", "log_uniform"),
     ({"mu_c": {"uniform": [0.2, 0.3], "choices": [0.2]}}, "mu_c: needs exactly one", "uniform, choices"),
     ({"mu_c": {}}, "mu_c: needs exactly one", "got none"),

@@ -15,7 +15,10 @@ def steady(contact: DistributedContact, twist: tuple[float, float, float]) -> tu
     return wrench
 
 
-@pytest.mark.parametrize(("pressure", "ratio"), [("uniform", 2 / 3), ("hertz", 3 * np.pi / 16), ("rim", 1.0)])
+@pytest.mark.parametrize(
+    ("pressure", "ratio"),
+    [("uniform", 2 / 3), ("hertz", 3 * np.pi / 16), ("rim", 1.0), ("punch", np.pi / 4)],
+)
 def test_steady_translation_and_spin_of_named_pressures(pressure, ratio):
     contact = DistributedContact(radius=0.015, cells=21, pressure=pressure, **FRICTION)
     assert steady(contact, (0.03, 0.04, 0.0)) == pytest.approx((-1.5, -2.0, 0.0), abs=1e-9)

@@ -6,6 +6,7 @@ import pytest
 
 from slipgym.config import load, load_randomization
 from slipgym.config.pad import EFFECTS
+from slipgym.contact.soft_pad import load_pad, present_friction
 
 LINEAR = "slipgym/LinearSlip-v0"
 
@@ -123,3 +124,57 @@ def test_fields_that_came_later_move_no_draw():
     drawn = [found[0].pop(name) for name in later]
     assert 0.0 not in drawn
     assert found[0] == found[1]
+
+
+AREA = {"friction_by_area": True, "radius_exponent": {"uniform": [0.25, 0.333]}}
+
+
+def strengths(pad: np.void, loads: np.ndarray) -> np.ndarray:
+    """Friction mu_c N over the area of a contact whose radius is c N^b (Xydas & Kao), relative to 5 N."""
+    pad, found = pad.copy(), []
+    for normal in loads.tolist():
+        load_pad(pad, normal)
+        _, mu_c, radius = present_friction(pad)
+        growth = (normal / 5.0) ** pad["radius_exponent"].item()
+        if growth < 1.0:  # beyond it the pad's edge may be the limit
+            assert radius == pytest.approx(pad["r"] * growth, rel=1e-5)
+        found.append(mu_c / pad["mu_c"] * normal / 5.0 / growth**2)
+    return np.array(found)
+
+
+def test_exponents_tied_by_the_area_keep_the_shear_strength():
+    """Free exponents do not: 1 - n - 2 b is then anything."""
+    loads, seen = np.array([0.3, 1.0, 4.0, 5.0, 11.0, 25.0]), []
+    env = gym.make(f"slipgym:{LINEAR}", randomization=AREA, engine="planar", disable_env_checker=True)
+    for seed in range(20):
+        drawn = env.reset(seed=seed)[1]["drawn"]
+        seen.append((drawn["radius_exponent"], drawn["load_exponent"]))
+        pad = env.unwrapped.simulation.plant.pads[0, 0]
+        assert pad["load_exponent"] == pytest.approx(drawn["load_exponent"])
+        np.testing.assert_allclose(strengths(pad, loads), 1.0, rtol=1e-5)
+    env.close()
+    radius, load_exponent = np.array(seen).T
+    np.testing.assert_allclose(load_exponent, 1.0 - 2.0 * radius, rtol=1e-14)
+    assert np.ptp(radius) > 0.06
+    pad["load_exponent"] = 0.1
+    assert abs(strengths(pad, loads) - 1.0).max() > 0.3
+
+
+@pytest.mark.parametrize("radius_exponent", [0.0, 0.3])
+def test_tied_exponents_begin_at_the_configured_pad(radius_exponent):
+    """At scale s a fraction s of the way from the configuration to the pad drawn at scale 1."""
+    first = {"radius_exponent": radius_exponent, "load_exponent": 0.2}
+    arguments = {"config": {"contact": {"pad": first}}, "randomization": AREA, "engine": "planar"}
+    with pytest.warns(UserWarning, match="has no effect") as warned:
+        env = gym.make(f"slipgym:{LINEAR}", disable_env_checker=True, **arguments)
+    given = " ".join(str(each.message) for each in warned)
+    assert all(f"contact.pad.{name} has no effect" in given for name in first)
+    found = []
+    for scale in (0.0, 0.3, 1.0):
+        drawn = env.reset(seed=4, options={"randomization_scale": scale})[1]["drawn"]
+        found.append((drawn["radius_exponent"], drawn["load_exponent"]))
+    env.close()
+    start, between, end = np.array(found)
+    np.testing.assert_allclose(start, (radius_exponent, 0.2), atol=1e-15)
+    np.testing.assert_allclose(between, 0.7 * start + 0.3 * end, rtol=1e-14)
+    assert end[1] == pytest.approx(1.0 - 2.0 * end[0], rel=1e-14)

@@ -118,7 +118,7 @@ def test_the_whole_afternoon(bench):
     client = (ROOT / "examples/live/client.py").read_text(encoding="utf-8").replace("7741", str(port))
     server = run(f"{in_runs(COMMANDS[-1])} --port {port} --seconds 60", bench)
     assert "listening" in server.stderr.readline()
-    answered = subprocess.run([sys.executable, "-c", client], capture_output=True, text=True, check=True)
+    answered = subprocess.run([sys.executable, "-c", client, "3"], capture_output=True, text=True, check=True)
     server.send_signal(2)  # Ctrl-C
     report, errors = server.communicate()
     assert server.returncode == 0, errors

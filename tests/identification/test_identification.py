@@ -128,6 +128,23 @@ def test_noise_is_that_of_the_sensor_and_not_of_the_motion(log):
     assert replace(log, readings=readings).noise()[0] >= 0.5 / np.sqrt(12.0)
 
 
+def test_velocities_that_are_held_are_read_once(log, tmp_path):
+    """A sensor of 40 Hz in rows of 120 Hz: its noise is that of its samples, and the model fits."""
+    readings = log.readings.copy()
+    readings[:, 4:] = readings[np.arange(len(readings)) // 3 * 3, 4:]
+    write_log(replace(log, readings=readings), tmp_path / "log.csv")
+    read = read_log(tmp_path / "log.csv")
+    there = np.isfinite(read.readings[:, 4:])
+    assert there[:, 0].sum() == pytest.approx(len(readings) / 3, abs=3)
+    assert (there == there[:, :1]).all()
+    np.testing.assert_allclose(read.readings[there[:, 0], 4:], readings[there[:, 0], 4:], atol=1e-8)
+    np.testing.assert_allclose(read.noise(), GRIPPER.noise, rtol=0.4)
+    result = identify(read, "disc")
+    assert not {"v_x", "v_y", "omega"} & set(result.misfits())
+    identification.write(result, tmp_path)
+    assert "slip" in identification.overrides(result)["sensors"]
+
+
 def test_a_log_is_read_as_it_was_written(log, tmp_path):
     write_log(log, tmp_path / "log.csv")
     read = read_log(tmp_path / "log.csv")

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -43,14 +44,14 @@ def compiled_client(port, folder):
     (folder / "client.c").write_text(source.replace("htons(7741)", f"htons({port})"))
     flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror"]
     subprocess.run(["cc", *flags, "-o", "client", "client.c"], cwd=folder, check=True)
-    return [str(folder / "client")]
+    return [str(folder / "client"), "2"]
 
 
 def python_client(port, folder):
     source = (CLIENTS / "client.py").read_text()
     assert "7741" in source
     (folder / "client.py").write_text(source.replace("7741", str(port)))
-    return [sys.executable, str(folder / "client.py")]
+    return [sys.executable, "-u", str(folder / "client.py"), "2"]
 
 
 @pytest.mark.parametrize("client", [python_client, compiled_client])
@@ -67,10 +68,33 @@ def test_a_client_is_answered_and_all_that_passed_is_recorded(client, tmp_path):
     assert server.returncode == 0, errors
     grips = {float(each) for each in re.findall(r"grip ([\d.]+) N", answered.stdout)}
     assert len(grips) > 3
+    *_, last, said = answered.stdout.splitlines()
+    assert last == "grip 25.00 N"
+    assert re.fullmatch(r"\d{3,4} forces, \d{3} velocities, \d+ commands obeyed, \d+ silences; .* hold", said)
     assert "force 2: received" in printed
     lines = list(read(log))
     assert sum("wrench" in line for line in lines) > 1000
     assert sum(line.get("status") == "ok" and "command" in line for line in lines) > 50
+
+
+@pytest.mark.parametrize(
+    ("client", "opens"), [(python_client, ["--end", "open"]), (compiled_client, ["open"])]
+)
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_client_runs_until_it_is_stopped_and_says_so(client, opens, number, tmp_path):
+    if client is compiled_client and not shutil.which("cc"):
+        pytest.skip("no C compiler")
+    command = [*client(free_port(), tmp_path)[:-1], "30", *opens]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as running:
+        time.sleep(3.0)
+        assert running.poll() is None
+        running.send_signal(number)
+        printed = running.communicate()[0]
+    assert running.returncode == 0
+    assert "no answer: is slipgym live running?" in printed
+    assert printed.splitlines()[0] == "grip 25.00 N"
+    assert printed.splitlines()[-2] == "grip 0.00 N"
+    assert printed.rstrip().endswith("the gripper is told to open")
 
 
 @pytest.mark.parametrize(

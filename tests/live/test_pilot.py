@@ -217,3 +217,10 @@ def test_columns_that_were_given_stay_when_the_grip_was_firm():
     play(found)
     found.tick(5.0)
     assert found.pilot._given["wrist_velocity_x"] == 0.1
+
+
+@pytest.mark.parametrize("rate", [100.0, 50.0, 90.0])
+def test_a_rate_that_is_no_multiple_is_refused_with_those_that_are(rate):
+    live = Live("rls", rates=(1000.0, rate))
+    with pytest.raises(ValueError, match=rf"60, 120, 180, 240, \.\.\. Hz\), not at {rate:g} Hz"):
+        PolicyPilot("hold_scratch", live, columns={"time_left": 4.0})

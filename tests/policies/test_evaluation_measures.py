@@ -3,10 +3,12 @@ import math
 
 import gymnasium as gym
 import numpy as np
+import pandas as pd
 import pytest
 
 from policies.evaluation.metrics import MEASURES, measure
 from policies.evaluation.recording import INFOS, Recorder, Recording, needed_force
+from policies.evaluation.tables import markdown, summarise
 from slipgym.tasks import TASKS
 
 
@@ -130,6 +132,17 @@ def test_hold_measures():
     assert row["needed_force_mean_N"] == pytest.approx(2.2)
     assert row["needed_force_peak_N"] == pytest.approx(4.0)
     assert row["force_ratio"] == pytest.approx(5.0 / 2.2)
+    assert row["allowed_force_N"] == pytest.approx(0.010)  # of `reference`
+
+
+def test_where_hold_allows_any_grip_its_tables_have_no_column_for_it():
+    for allowed, there in ((3.0, True), (0.0, False)):
+        rows = [measure(recording(reference=np.tile([allowed, 1.0, 0.0], (10, 1))), "Hold")] * 3
+        keys = {"policy": "hold", "friction": "true", "material": "wood", "options": "", "trial": range(3)}
+        summary = summarise(pd.DataFrame(rows).assign(**keys), "Hold")
+        page = markdown(summary, "Hold", 3)
+        assert ("| allowed, mean [N] |" in page) == there
+        assert (" 3.00 |" in page) == there
 
 
 def test_fragile_hold_measures():

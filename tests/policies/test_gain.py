@@ -4,11 +4,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from policies import make
 from policies.evaluation import evaluate, load_experiment, narrowed, report
-from policies.evaluation.gain import WITHOUT, compare
+from policies.evaluation.gain import TRUTH, WITHOUT, against_truth, compare
 from policies.evaluation.plan import plan
+from policies.evaluation.play import Played
 from policies.evaluation.statistics import mean_interval
 from policies.evaluation.trial import environment, make_policy, run_trial
+from policies.policy_leaderboard.entries import Member
+from policies.policy_leaderboard.worth import worth
+from policies.study.benefit import benefits
 
 SOLVED = {
     ("controller", "nominal"): 6,
@@ -48,6 +53,34 @@ def test_the_opponent_is_the_strongest_without_friction():
     )
     paired = mean_interval(np.array([0.0] * 6 + [100.0] * 2 + [0.0] * 2))
     assert gain.points == pytest.approx(paired)
+
+
+def test_evaluations_studies_and_the_leaderboard_state_the_same_interval():
+    trials = table({("a", "none"): 3, ("b", "estimated"): 8, ("b", "true"): 9}, n=12)
+    gain = compare(trials)
+    assert gain is not None
+    own, zero = make("hold"), np.zeros(12)
+    members = [Member(each.source, own, {"friction_source": each.source}) for each in gain.entries]
+    played = {each.source: Played(each.success, zero, each.reward, zero, zero) for each in gain.entries}
+    row = worth("hold", "hard", members, played)
+    assert gain.points.low < gain.points.value < gain.points.high
+    assert gain.points == (row["gain"], row["low"], row["high"])
+    place = {"world": "core", "task": "Hold", "preset": "train", "change": "", "block": 0}
+    names = {"policy": "kind", "friction": "source", "trial": "episode"}
+    found = benefits(trials.rename(columns=names).assign(**place, estimator=""))
+    ends = ["difference", "difference_low", "difference_high"]
+    (points,) = found.loc[found["source"] == "estimated", ends].to_numpy()
+    assert gain.points == pytest.approx(tuple(100.0 * points))
+
+
+def test_the_estimate_is_compared_with_the_truth_episode_by_episode():
+    trials = table({("a", "none"): 1, ("b", "estimated"): 7, ("b", "true"): 6, ("c", "true"): 9})
+    solved = (trials["friction"] == "true") & (trials["policy"] == "b") & (trials["trial"] == 9)
+    trials.loc[solved, "success"] = True  # the truth alone solves it
+    (row,) = against_truth(trials.sample(frac=1.0, random_state=0)).itertuples(index=False, name=None)
+    assert row[:6] == ("b", "estimated", 6, 1, 1, 2)
+    assert row[6].startswith("0 (-")
+    assert len(against_truth(trials.loc[trials["policy"] != "b"])) == 0
 
 
 def test_an_estimate_that_solves_fewer_loses():
@@ -95,6 +128,10 @@ def test_the_demo_names_the_strongest_and_draws_it(tmp_path):
     gain = compare(trials)
     assert gain is not None
     assert said.splitlines()[0] == gain.words()
+    page = (folder / "summary.md").read_text()
+    assert gain.words() in page
+    assert page.index(TRUTH) < page.index("success [%]")
+    assert said.index(TRUTH) < said.index("success [%]")
     assert {entry.name for entry in gain.entries} == {
         "controller, nominal friction",
         "memory of slips",

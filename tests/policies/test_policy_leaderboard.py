@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from policies.commands.policy_leaderboard import app
-from policies.evaluation.play import Played
+from policies.evaluation.play import ROWS, Played
 from policies.evaluation.plots.style import styled
 from policies.learned import pretrained
 from policies.policy_leaderboard import worlds
@@ -23,7 +23,7 @@ from policies.policy_leaderboard.entries import (
     opponents,
 )
 from policies.policy_leaderboard.folder import plot_policies, write
-from policies.policy_leaderboard.run import COLUMNS, ROWS, by_level, episodes_of, outcomes, play_all
+from policies.policy_leaderboard.run import COLUMNS, by_level, episodes_of, outcomes, play_all
 from policies.policy_leaderboard.worth import table as gains
 from policies.policy_leaderboard.worth import worth
 

@@ -49,6 +49,22 @@ def test_misspelt_names_get_suggestions():
     assert "unknown name 'brekaway'" in done.output
 
 
+def test_without_a_clone_the_commands_of_the_laboratory_say_that_they_need_one(monkeypatch):
+    assert set(lab.commands.COMMANDS) == front.OF_THE_LABORATORY
+    monkeypatch.setattr(front, "ALL", front.COMMANDS)
+    for words in (
+        ["hidden-grippers", "--seed", 1],
+        ["sensor-bounds"],
+        ["sensor-costs"],
+        ["validate", "real"],
+    ):
+        done = slip(*words)
+        assert done.exit_code == 2
+        assert "is a command of the laboratory, which only a clone" in " ".join(done.output.split())
+    assert "laboratory" not in slip("evaluat").output
+    assert slip("validate", "--help").exit_code == 0
+
+
 def test_one_policy_is_evaluated_where_experiments_are():
     settings = "engine=planar", "friction_source=true"
     done = slip("evaluate", "--policy", "hold", "--trials", 2, "--set", *settings)

@@ -105,12 +105,15 @@ def test_latencies_are_sampled_and_shared_by_the_fingers():
     assert np.abs(counts - 60).max() < 4 * (300 * 0.2 * 0.8) ** 0.5
 
 
-def test_each_finger_may_have_its_own_latency():
+SLIPS, FORCES = {"latency_samples": 1, "latency_spread": 4}, {"latency": 1 / 12e3, "latency_spread": 4 / 12e3}
+
+
+@pytest.mark.parametrize(("which", "group", "late"), [(0, "force_torque", FORCES), (1, "slip", SLIPS)])
+def test_each_finger_may_have_its_own_latency(which, group, late):
     pairs, shared = [], []
     for seed in range(400):
-        late = {"latency_samples": 1, "latency_spread": 4}
-        pairs.append(started(seed, slip=late | {"own_latency": True})[1]["delay"].copy())
-        shared.append(started(seed, slip=late)[1]["delay"].copy())
+        pairs.append(started(seed, **{group: late | {"own_latency": True}})[which]["delay"].copy())
+        shared.append(started(seed, **{group: late})[which]["delay"].copy())
     own = np.array(pairs)
     np.testing.assert_array_equal(own[:, 0], np.array(shared)[:, 0])
     together = np.bincount(5 * (own[:, 0] - 1) + own[:, 1] - 1, minlength=25)

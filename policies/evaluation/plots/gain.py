@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +12,7 @@ from matplotlib.figure import Figure
 
 from policies.evaluation.gain import WITHOUT, Gain
 from policies.evaluation.plots.style import STYLE, note
-from policies.evaluation.statistics import share_interval
+from policies.evaluation.statistics import share
 from slipgym.tasks import find
 
 _BLUE, _ORANGE, _GREEN = STYLE.palette[:3]
@@ -41,27 +42,22 @@ def plot_gain(task: str, gain: Gain, episode: Sequence[Mapping[str, np.ndarray]]
         motion.plot(steps["time"], way.path(slip), **line)
     needed = episode[-1]
     grip.fill_between(needed["time"], needed["needed_force"], color=STYLE.band, linewidth=0, zorder=0)
-    note(grip, 0.99, 0.0, "needed", STYLE.muted, va="bottom", ha="right", xycoords=grip.get_yaxis_transform())
+    note(grip, 0.99, 0.0, "needed", STYLE.muted, va="bottom", **_at_right(grip))
     grip.set_title(f"Episode {gain.episode() + 1}: grip [N]")
     grip.set_ylim(bottom=0.0)
     grip.tick_params(labelbottom=False)
     if np.isfinite(tolerance):
         motion.axhspan(0.0, tolerance, color=STYLE.band, linewidth=0, zorder=0)
-        note(
-            motion,
-            0.99,
-            tolerance,
-            "allowed",
-            STYLE.muted,
-            va="top",
-            ha="right",
-            xycoords=motion.get_yaxis_transform(),
-        )
+        note(motion, 0.99, tolerance, "allowed", STYLE.muted, va="top", **_at_right(motion))
         motion.set_ylim(0.0, 2.0 * tolerance)
     motion.set_title(way.title.replace("slid [mm]", "slip [mm]"))
     motion.set_xlabel("time [s]")
     figure.suptitle("\n".join(textwrap.wrap(gain.words(), 96)), x=0.01, ha="left", fontsize=9.5)
     return figure
+
+
+def _at_right(axes: Axes) -> dict[str, Any]:
+    return {"ha": "right", "xycoords": axes.get_yaxis_transform()}
 
 
 def _colour(gain: Gain, k: int) -> str:
@@ -73,8 +69,7 @@ def _colour(gain: Gain, k: int) -> str:
 
 def _bars(axes: Axes, gain: Gain, colours: Sequence[str]) -> None:
     for k, (entry, colour) in enumerate(zip(gain.entries, colours, strict=True)):
-        share = share_interval(int(entry.success.sum()), len(entry.success))
-        value, low, high = (100.0 * each for each in share)
+        value, low, high = share(entry.success).percent
         axes.barh(k, value, color=colour, height=0.62)
         axes.plot([low, high], [k, k], color=STYLE.ink, linewidth=1.2)
         note(axes, max(high, value) + 2.0, k, f"{value:.0f} %", STYLE.ink, va="center", fontsize=9.5)
@@ -82,6 +77,4 @@ def _bars(axes: Axes, gain: Gain, colours: Sequence[str]) -> None:
     axes.invert_yaxis()
     axes.tick_params(axis="y", length=0, labelcolor=STYLE.ink)
     axes.spines["left"].set_visible(False)
-    axes.set_xlim(0.0, 112.0)
-    axes.set_xticks(range(0, 101, 25))
-    axes.set_title("Episodes solved [%]")
+    axes.set(xlim=(0.0, 112.0), xticks=range(0, 101, 25), title="Episodes solved [%]")

@@ -24,22 +24,20 @@ _CORNER: dict[str, Any] = {"xycoords": "axes fraction", "ha": "right"}
 
 
 def plot_tracking(task: str, trials: pd.DataFrame, series: pd.DataFrame) -> Figure:
-    """The first trial of the first scenario, a column for each friction choice.
+    """The first trial of a policy in the first scenario, a column for each friction choice.
 
-    Args:
-        task: The task.
-        trials: The table of trials of one policy.
-        series: Steps of the first trials, by row of that table.
+    The steps of the first trials are by row of the table of trials.
     """
     choices = distinct(trials, "friction")
     figure = Figure(figsize=(max(7.0, 3.0 * len(choices)), 6.2))
     grid = figure.subplots(3, len(choices), sharex=True, sharey="row", squeeze=False)
-    panels: list[Callable[..., None]] = [_motion_panel(task), _force, _friction]
+    found = find(task)
+    motion: Callable[..., None] = _MOTION.get(found.name) or partial(_path, found.motion)
     for column, choice in enumerate(choices):
         trial = where(trials, friction=choice, trial=0).iloc[0]
         steps = where(series, row=trial.name)
         grid[0, column].set_title(f"friction: {choice}")
-        for axes, panel in zip(grid[:, column], panels, strict=True):
+        for axes, panel in zip(grid[:, column], (motion, _force, _friction), strict=True):
             panel(axes, steps, trial, column == 0)
         grid[-1, column].set_xlabel("time [s]")
     grid[1, 0].set_ylim(bottom=0.0)  # last, so that all panels have had their say in the shared scale
@@ -48,28 +46,26 @@ def plot_tracking(task: str, trials: pd.DataFrame, series: pd.DataFrame) -> Figu
     return figure
 
 
-def _follow(axes: Axes, steps: pd.DataFrame, path: np.ndarray, scale: float, first: bool) -> None:
-    """A path over its reference, which is to be scaled like the path."""
-    time, reference = values(steps, "time"), scale * values(steps, "reference")
-    axes.plot(time, path, color=_SLIP)
-    axes.plot(time, reference, "--", color=STYLE.ink, linewidth=1.0)
-    if first:
-        middle = len(time) // 2
-        note(axes, time[middle], reference[middle], "reference  ", STYLE.ink, ha="right", va="bottom")
+def _ended(axes: Axes, at: float, trial: Any, words: str, colour: str = _SLIP) -> None:
+    """How the trial ended."""
+    note(axes, 0.98, at, "dropped" if trial["dropped"] else words, colour, **_CORNER)
 
 
 def _path(motion: Motion, axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
     slip = np.column_stack([values(steps, f"slip_{axis}") for axis in ("x", "y", "theta")])
-    if motion.axis is None:
-        axes.plot(values(steps, "time"), motion.path(slip), color=_SLIP)
-    else:
-        _follow(axes, steps, motion.path(slip), motion.target(1.0), first)
-    for column, unit in (("final_error_mm", " mm"), ("final_error_deg", "°")):
-        if motion.axis is not None and column in trial:
-            error = f"final error {trial[column]:+.2f}{unit}".replace("-", "−")
-            note(axes, 0.98, 0.05, "dropped" if trial["dropped"] else error, _SLIP, **_CORNER)
+    time, middle = values(steps, "time"), len(steps) // 2
+    axes.plot(time, motion.path(slip), color=_SLIP)
     if first:
         axes.set_ylabel(motion.title)
+    if motion.axis is None:
+        return
+    reference = motion.target(1.0) * values(steps, "reference")
+    axes.plot(time, reference, "--", color=STYLE.ink, linewidth=1.0)
+    if first:
+        note(axes, time[middle], reference[middle], "reference  ", STYLE.ink, ha="right", va="bottom")
+    for column, unit in (("final_error_mm", " mm"), ("final_error_deg", "°")):
+        if column in trial:
+            _ended(axes, 0.05, trial, f"final error {trial[column]:+.2f}{unit}".replace("-", "−"))
 
 
 def _largest_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
@@ -78,8 +74,7 @@ def _largest_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> N
     axes.axhspan(0.0, tolerance, color=STYLE.band, linewidth=0)
     axes.plot(values(steps, "time"), slip, color=_SLIP)
     axes.margins(y=0.1)
-    largest = f"largest slip {trial['largest_slip_mm']:.2f} mm"
-    note(axes, 0.98, 0.45, "dropped" if trial["dropped"] else largest, _SLIP, **_CORNER)
+    _ended(axes, 0.45, trial, f"largest slip {trial['largest_slip_mm']:.2f} mm")
     if first:
         axes.set_ylabel("slip [mm]")
         note(axes, 0.0, tolerance, "tolerance", STYLE.muted, va="bottom")
@@ -93,8 +88,9 @@ def _tilt(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
     axes.plot(time, side * (turned + pitch), color=_SLIP)
     axes.plot(time, side * pitch, "--", color=STYLE.ink, linewidth=1.0)
     axes.set_ylim(-1.2 * tolerance, 1.6 * tolerance)
-    largest = f"tilt {trial['largest_tilt_deg']:.1f}°, slid {trial['largest_slip_mm']:.2f} mm"
-    note(axes, 0.98, 0.24, "dropped" if trial["dropped"] else largest, _SLIP, **_CORNER)
+    _ended(
+        axes, 0.24, trial, f"tilt {trial['largest_tilt_deg']:.1f}°, slid {trial['largest_slip_mm']:.2f} mm"
+    )
     if first:
         axes.set_ylabel("tilt of the object [°]")
         leaves = int(np.argmax(side * pitch > 1.2 * tolerance))
@@ -110,7 +106,7 @@ def _away(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
         axes.plot(time, path / trial[f"tolerance_{unit}"], color=colour)
     axes.axhspan(0.0, 1.0, color=STYLE.band, linewidth=0)
     error = f"final error {trial['final_error_mm']:.2f} mm, {trial['final_error_abs_deg']:.1f}°"
-    note(axes, 0.98, 0.9, "dropped" if trial["dropped"] else error, STYLE.ink, **_CORNER)
+    _ended(axes, 0.9, trial, error, STYLE.ink)
     if first:
         axes.set_ylabel("error / tolerance [–]")
         note(axes, 0.98, 0.74, "in (x, y)", _SLIP, **_CORNER)
@@ -147,17 +143,8 @@ def _friction(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
         note(axes, 0.98, 0.05, "pale: estimates of both fingers; dashed: true", STYLE.muted, **_CORNER)
 
 
-_MOTION = {
-    "Hinge": _tilt,
-    "PlanarSlip": _away,
-    "Hold": _largest_slip,
-}
+_MOTION = {"Hinge": _tilt, "PlanarSlip": _away, "Hold": _largest_slip}
 """Task -> its panel of the object's motion, where it says more than the path."""
-
-
-def _motion_panel(task: str) -> Callable[..., None]:
-    found = find(task)
-    return _MOTION.get(found.name) or partial(_path, found.motion)
 
 
 def _scenario(task: str, trial: Any) -> str:

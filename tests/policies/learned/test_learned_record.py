@@ -62,3 +62,15 @@ def test_a_policy_of_another_environment_is_refused(policy_folder):
         record_sensors("LinearSlip", str(policy_folder()))
     with pytest.raises(FileNotFoundError, match="no policy at 'nowhere'"):
         record_sensors("Hold", "nowhere")
+
+
+@pytest.mark.slow  # it compiles for a sensor with more samples
+def test_the_sensor_of_the_other_finger_may_be_later():
+    """The same episode, whichever finger is recorded: both are read on the way."""
+    late = {"sensors": {"force_torque": {"latency_spread": 0.03, "own_latency": True}}}
+    known = {"sensors": "ideal", "config": late, "friction_source": "estimated", "seed": 1}
+    found = [record_sensors("LinearSlip", "linear_slip", finger=f, **known) for f in (1, 2)]
+    first, second = (frame["t"][frame["f_x"].notna()].iloc[0] for frame in found)
+    assert second > first + 0.01
+    slips = [frame.loc[frame["v_x"].notna(), list(TWIST)].to_numpy() for frame in found]
+    np.testing.assert_allclose(*slips, atol=1e-12)  # the mirror rounds

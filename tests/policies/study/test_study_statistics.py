@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from policies.study.statistics import Bootstrap, Drawn
+from policies.evaluation.statistics import Bootstrap, Drawn
 
 
 def test_the_interval_of_a_mean_is_the_normal_one():

@@ -3,9 +3,8 @@ import pandas as pd
 import pytest
 
 from policies.evaluation.frames import where
-from policies.evaluation.statistics import share_interval
+from policies.evaluation.statistics import over_seeds, share_interval
 from policies.study.benefit import benefits
-from policies.study.statistics import over_seeds
 from policies.study.tables import ALL, outcomes, shares, transfer
 from policies.study.terminal import claims, training_seeds
 
