@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, JsonValue, field_validator, model_validator
@@ -21,7 +21,6 @@ TRAINING = "training.safetensors"
 _Width = Annotated[int, Field(ge=1, le=8192)]
 _Layers = Annotated[tuple[_Width, ...], BeforeValidator(as_tuple), Field(max_length=16)]
 _Text = Annotated[str, Field(max_length=200)]
-
 
 RENAMED_COLUMNS = {
     "support_mu_s": "confidence_mu_s",
@@ -49,7 +48,6 @@ class Column(Frozen):
         return RENAMED_COLUMNS.get(name, name)
 
 
-_Number = bool | float | None
 _Columns = Annotated[tuple[Column, ...], BeforeValidator(as_tuple), Field(min_length=1, max_length=1024)]
 
 
@@ -106,6 +104,15 @@ class Network(Frozen):
         if (self.memory is not None) != (self.kind == "lstm"):
             raise ValueError("memory is needed for kind 'lstm', and only there")
         return self
+
+    @classmethod
+    def of(
+        cls, memory: int, layers: Sequence[int], activation: str, squash: bool, stacked: int = 1
+    ) -> Network:
+        """One with `stacked` LSTM layers of `memory` units; 0: none."""
+        lstm = {"size": memory, "layers": stacked} if memory else None
+        dense = {"layers": layers, "activation": activation, "squash": squash}
+        return cls.model_validate({"kind": "lstm" if lstm else "mlp", "memory": lstm, **dense})
 
 
 class Normalisation(Frozen):

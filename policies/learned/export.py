@@ -13,14 +13,7 @@ import gymnasium as gym
 import numpy as np
 
 from policies.learned import files
-from policies.learned.description import (
-    TRAINING,
-    WEIGHTS,
-    Critic,
-    Description,
-    Environment,
-    Network,
-)
+from policies.learned.description import TRAINING, WEIGHTS, Description, Environment
 from policies.learned.extract import ALGORITHMS, acting_tensors, algorithm_of, array, critic_of, network_of
 from policies.learned.fitting import column_of
 from policies.versions import versions
@@ -60,8 +53,11 @@ def save(
     ):
         if space.shape != shape:
             raise ValueError(f"the model's {what} has shape {space.shape}, that of {environment} {shape}")
-    weights, kept = acting_tensors(model), _all_tensors(model)
-    normalised = None
+    critic = critic_of(model).model_dump(mode="json") if training else None
+    weights, normalised = acting_tensors(model), None
+    kept = {f"policy.{name}": array(tensor) for name, tensor in model.policy.state_dict().items()}
+    if getattr(model, "log_ent_coef", None) is not None:
+        kept["log_ent_coef"] = array(model.log_ent_coef)
     if normalisation is not None:
         kept |= _moments("reward", normalisation.ret_rms)
         if normalisation.norm_obs:
@@ -73,14 +69,7 @@ def save(
         "environment": where,
         "network": network.model_dump(mode="json"),
         "normalisation": normalised,
-        "origin": {
-            "algorithm": algorithm,
-            "command": command,
-            "steps": int(model.num_timesteps),
-            "seeds": list(seeds),
-            "versions": versions(),
-            "critic": critic_of(model).model_dump(mode="json") if training else None,
-        },
+        "origin": origin(algorithm, command, model.num_timesteps, seeds, critic=critic),
     }
     return files.write(path, description, weights, kept if training else None)
 
@@ -88,13 +77,9 @@ def save(
 def build(path: str | os.PathLike[str], env: Any, **hyperparameters: Any) -> Any:
     """Rebuilds the model that a policy was saved from, for more training.
 
-    Networks, critics and, in SAC and TQC, the tuned entropy coefficient are those saved; optimisers start
-    afresh. Observations that were normalised must be so again: see `normaliser`.
-
-    Args:
-        path: The policy's folder; needs its `training.safetensors`.
-        env: Environment of the model, as Stable-Baselines3 takes it.
-        **hyperparameters: Of the algorithm's class.
+    Networks, critics and, in SAC and TQC, the tuned entropy coefficient are those saved, in the folder's
+    `training.safetensors`; optimisers start afresh. Hyperparameters are those of the algorithm's class.
+    Observations that were normalised must be so again: see `normaliser`.
 
     Raises:
         ValueError: The folder is no policy, or its tensors are not exactly the model's.
@@ -110,9 +95,7 @@ def build(path: str | os.PathLike[str], env: Any, **hyperparameters: Any) -> Any
         hyperparameters = {"use_sde": True, **hyperparameters}
     model = algorithm(policy, env, policy_kwargs=_policy_arguments(description), **hyperparameters)
     tensors = {key: torch.tensor(value) for key, value in kept.items()}
-    state = {
-        key.removeprefix("policy."): value for key, value in tensors.items() if key.startswith("policy.")
-    }
+    state = {key[7:]: value for key, value in tensors.items() if key.startswith("policy.")}
     try:
         model.policy.load_state_dict(state, strict=True)
     except RuntimeError as error:
@@ -126,12 +109,9 @@ def build(path: str | os.PathLike[str], env: Any, **hyperparameters: Any) -> Any
 
 
 def normaliser(path: str | os.PathLike[str], env: Any, **options: Any) -> Any:
-    """A `VecNormalize` that goes on where that of the training ended.
+    """A `VecNormalize` around a `VecEnv` that goes on where that of the training ended.
 
-    Args:
-        path: The policy's folder; needs its `training.safetensors`.
-        env: The `VecEnv` to wrap.
-        **options: Further arguments of `VecNormalize`.
+    The folder needs its `training.safetensors`; options are further arguments of `VecNormalize`.
 
     Raises:
         ValueError: The folder is no policy, or was trained without.
@@ -149,7 +129,7 @@ def normaliser(path: str | os.PathLike[str], env: Any, **options: Any) -> Any:
     for name, attribute in (("observation", "obs_rms"), ("reward", "ret_rms")):
         if f"{name}.count" in kept:
             moments = getattr(wrapped, attribute)
-            moments.mean, moments.var = tensors[f"{name}.mean"].copy(), tensors[f"{name}.var"].copy()
+            moments.mean, moments.var = (tensors[f"{name}.{part}"].copy() for part in ("mean", "var"))
             moments.count = float(tensors[f"{name}.count"])
     return wrapped
 
@@ -161,9 +141,8 @@ def described(environment: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
         ValueError: The id or an argument is not allowed.
     """
     engine = {} if find_spec("pybullet") else {"engine": "planar"}  # the columns are the same
-    env: Any = gym.make(
-        f"slipgym:{environment}", disable_env_checker=True, **{**engine, **arguments}
-    ).unwrapped
+    given = {"disable_env_checker": True, **engine, **arguments}
+    env: Any = gym.make(f"slipgym:{environment}", **given).unwrapped
     with env:
         values = {
             "id": environment,
@@ -176,11 +155,16 @@ def described(environment: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     return Environment.model_validate(values).model_dump(mode="json")
 
 
-def _all_tensors(model: Any) -> dict[str, np.ndarray]:
-    found = {f"policy.{name}": array(tensor) for name, tensor in model.policy.state_dict().items()}
-    if getattr(model, "log_ent_coef", None) is not None:
-        found["log_ent_coef"] = array(model.log_ent_coef)
-    return found
+def origin(algorithm: str, command: str, steps: int, seeds: Sequence[int], **more: Any) -> dict[str, Any]:
+    """Origin of a policy in policy.json, with the present versions; see `description.Origin`."""
+    return {
+        "algorithm": algorithm,
+        "command": command,
+        "steps": int(steps),
+        "seeds": list(seeds),
+        "versions": versions(),
+        **more,
+    }
 
 
 def _moments(name: str, moments: Any) -> dict[str, np.ndarray]:
@@ -191,18 +175,16 @@ def _moments(name: str, moments: Any) -> dict[str, np.ndarray]:
 
 def _policy_arguments(description: Description) -> dict[str, Any]:
     """`policy_kwargs` of the model."""
-    import torch
+    from torch import nn
 
     network, critic = description.network, description.origin.critic
-    assert isinstance(network, Network)
-    assert isinstance(critic, Critic)
-    activations = {"tanh": torch.nn.Tanh, "relu": torch.nn.ReLU, "elu": torch.nn.ELU}
-    arguments: dict[str, Any] = {"activation_fn": activations[network.activation]}
-    if description.origin.algorithm in ("SAC", "TQC"):
-        arguments["net_arch"] = {"pi": list(network.layers), "qf": list(critic.layers)}
+    assert critic is not None
+    off_policy = description.origin.algorithm in ("SAC", "TQC")
+    activation = {"tanh": nn.Tanh, "relu": nn.ReLU, "elu": nn.ELU}[network.activation]
+    arches = {"pi": list(network.layers), "qf" if off_policy else "vf": list(critic.layers)}
+    arguments: dict[str, Any] = {"activation_fn": activation, "net_arch": arches}
+    if off_policy:
         arguments["n_critics"] = critic.count
-    else:
-        arguments["net_arch"] = {"pi": list(network.layers), "vf": list(critic.layers)}
     if description.origin.algorithm == "TQC":
         arguments["n_quantiles"] = critic.quantiles
     if network.memory is not None:

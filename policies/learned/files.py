@@ -31,11 +31,8 @@ def write(
 ) -> Path:
     """Writes the folder of a policy; it appears when it is complete, or not at all.
 
-    Args:
-        path: Where it shall appear.
-        description: As in `Description`, without `format` and `files`.
-        weights: The tensors it acts with.
-        training: All that training adapts; None leaves it out.
+    The description is as in `Description`, without `format` and `files`; it acts with the weights, `training`
+    is all that training adapts.
 
     Raises:
         FileExistsError: Something is there already.
@@ -81,14 +78,9 @@ def read_description(path: str | os.PathLike[str]) -> Description:
 
 
 def read(path: str | os.PathLike[str], name: str = WEIGHTS) -> tuple[Description, dict[str, np.ndarray]]:
-    """Reads a policy.
+    """Reads the description of a policy and a file of its tensors, WEIGHTS or TRAINING.
 
-    Args:
-        path: Its folder.
-        name: The file of tensors to read with its description: WEIGHTS or TRAINING.
-
-    Returns:
-        What it is, and its tensors, by name. Those of WEIGHTS are checked to be the network's.
+    Those of WEIGHTS are checked to be the network's.
 
     Raises:
         FileNotFoundError: There is nothing at the path.

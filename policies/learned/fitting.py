@@ -1,4 +1,4 @@
-"""Compares an environment with the one that a policy was trained for."""
+"""Compares an environment with the one that a policy was trained for, and finds the columns that it reads."""
 
 from __future__ import annotations
 
@@ -8,17 +8,53 @@ from typing import Any
 import numpy as np
 
 from policies.learned.description import Column, Environment
-from policies.learned.reading import layout
+from slipgym.config import load
+from slipgym.envs.actions import ACTION_MODES
+from slipgym.envs.arguments import DEFAULT_ESTIMATOR, friction_part
+from slipgym.envs.observation import columns
+from slipgym.tasks import find
+
+
+def layout(trained: Environment) -> tuple[str, ...]:
+    """Names of the columns that the environment of a policy has in this version of slipgym, in order.
+
+    Columns may have been added since the policy was trained. If one that it reads is missing, these are the
+    columns of its training, and no environment fits.
+
+    Raises:
+        ValueError: The environment's id is not registered.
+    """
+    try:
+        task = find(trained.id)  # what comes with a policy imports nothing
+    except ValueError as error:
+        own = "a task of your own: import its module first, or give --task module:attribute"
+        raise ValueError(f"{error}; {own}") from None
+    given, read = trained.arguments, tuple(column.name for column in trained.observation)
+    source = friction_part(
+        str(given.get("friction_source") or "estimated"), given.get("estimator", DEFAULT_ESTIMATOR)
+    )
+    action_mode = str(given.get("action_mode") or task.action_mode)
+    mode = str(given.get("observation_mode") or "flat")
+    if action_mode not in ACTION_MODES:
+        return read
+    shown = columns(load(), task, source, action_mode, mode, bool(given.get("load_columns", False)))
+    present = tuple(column.name for column in shown)
+    return present if set(read) <= set(present) else read
+
+
+def selection(trained: Environment) -> np.ndarray | None:
+    """Places of the numbers in an observation that a policy's network reads; None: all, in their order."""
+    present = layout(trained)
+    places = np.array([present.index(column.name) for column in trained.observation])
+    frames = np.arange(trained.history + 1)[:, np.newaxis] * len(present)
+    chosen = (frames + places).ravel()
+    return None if np.array_equal(chosen, np.arange(frames.size * len(present))) else chosen
 
 
 def check_environment(trained: Environment, env: Any) -> None:
-    """Refuse an environment whose observations or actions mean something else.
+    """Refuse an environment of slipgym whose observations or actions mean something else than in training.
 
     Columns that were added to the observations of slipgym since the training are ignored.
-
-    Args:
-        trained: What the policy was trained in.
-        env: An environment of slipgym.
 
     Raises:
         ValueError: A column differs in name, bounds or unit, or the history or the rate does; the message
@@ -45,28 +81,6 @@ def check_environment(trained: Environment, env: Any) -> None:
     rate = inner.metadata["render_fps"]
     if not np.isclose(rate, trained.rate):
         raise ValueError(f"the policy was trained at {trained.rate:g} steps per second, here are {rate:g}")
-
-
-def check_width(names: Sequence[str], history: int, width: int) -> None:
-    """Refuse observations of another length.
-
-    Args:
-        names: Columns of one observation.
-        history: Number of earlier observations along with each.
-        width: Numbers in the given observation.
-
-    Raises:
-        ValueError: The length is another one; the message names the first column that is missing or follows.
-    """
-    wanted = (history + 1) * len(names)
-    if width == wanted:
-        return
-    message = f"observation has {width} columns, the policy needs {wanted} (history={history})"
-    if history == 0 and width < wanted:
-        message += f"; the first that it lacks at its end is {names[width]!r}"
-    elif history == 0:
-        message += f"; the last one known is {names[-1]!r}"
-    raise ValueError(message)
 
 
 def column_of(column: Any) -> Column:

@@ -13,13 +13,7 @@ Memory = tuple[np.ndarray, np.ndarray]
 
 
 class Network:
-    """Observations to actions.
-
-    Args:
-        network: Its layers.
-        normalisation: Of the observations; None: none.
-        tensors: Those of `tensors.expected`.
-    """
+    """Observations to actions, with the tensors of `tensors.expected`."""
 
     def __init__(
         self,
@@ -30,9 +24,9 @@ class Network:
         self._network, self._normalisation = network, normalisation
         self._dense = [
             (tensors[f"layers.{k}.weight"].T, tensors[f"layers.{k}.bias"])
-            for k in range(len(self._network.layers) + 1)
+            for k in range(len(network.layers) + 1)
         ]
-        memory = self._network.memory
+        memory = network.memory
         self.memory_shape = None if memory is None else (memory.layers, memory.size)
         self._recurrent = [
             (
@@ -47,15 +41,7 @@ class Network:
             self._scale = np.sqrt(tensors["observation.var"] + self._normalisation.epsilon)
 
     def forward(self, observations: np.ndarray, memory: Memory | None) -> tuple[np.ndarray, Memory | None]:
-        """Actions for a batch.
-
-        Args:
-            observations: (n, m).
-            memory: None for a network without LSTM layers.
-
-        Returns:
-            Actions (n, k), float32 within [-1, 1], and the new memory.
-        """
+        """Actions (n, k), float32 within [-1, 1], for observations (n, m), and the new memory."""
         x = self._normalised(observations)
         if memory is not None:
             x, memory = self._remember(x, memory)

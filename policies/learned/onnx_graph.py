@@ -29,10 +29,7 @@ def write_onnx(policy: str | os.PathLike[str], path: str | os.PathLike[str]) -> 
     layers add inputs `hidden` and `cell` (n, layers, size), zero where an episode begins, and outputs
     `next_hidden` and `next_cell`.
     The metadata `policy` is policy.json: columns, units, what -1 and +1 mean.
-
-    Args:
-        policy: Name of a learned policy that comes with slipgym, or a policy's folder.
-        path: The file to write.
+    A policy that comes with slipgym goes by its name.
 
     Raises:
         FileNotFoundError: There is no policy.
@@ -59,10 +56,7 @@ def graph_of(description: Description, tensors: dict[str, np.ndarray]) -> onnx.M
         outputs += [("next_hidden", shape), ("next_cell", shape)]
         x = _remembered(graph, x, network.memory.layers, tensors)
     for k in range(len(network.layers) + 1):
-        names = (
-            graph.constant(f"layers.{k}.{part}", tensors[f"layers.{k}.{part}"]) for part in ("weight", "bias")
-        )
-        x = graph.add("Gemm", [x, *names], transB=1)
+        x = graph.dense(x, f"layers.{k}.", tensors)
         if k < len(network.layers):
             x = graph.add({"tanh": "Tanh", "relu": "Relu", "elu": "Elu"}[network.activation], [x])
     ends = graph.scalar(-1.0), graph.scalar(1.0)
@@ -74,9 +68,8 @@ def graph_of(description: Description, tensors: dict[str, np.ndarray]) -> onnx.M
         ir_version=IR_VERSION,
         producer_name="slipgym",
     )
-    helper.set_model_props(
-        model, {"policy": json.dumps(description.model_dump(mode="json", exclude_unset=True))}
-    )
+    said = description.model_dump(mode="json", exclude_unset=True)
+    helper.set_model_props(model, {"policy": json.dumps(said)})
     return model
 
 
@@ -99,6 +92,10 @@ class _Graph:
         output = output or f"value_{len(self.nodes)}"
         self.nodes.append(helper.make_node(operator, inputs, [output], **attributes))
         return output
+
+    def dense(self, x: str, prefix: str, tensors: dict[str, np.ndarray]) -> str:
+        names = (f"{prefix}{kind}" for kind in ("weight", "bias"))
+        return self.add("Gemm", [x, *(self.constant(name, tensors[name]) for name in names)], transB=1)
 
     def split(self, x: str, parts: int) -> list[str]:
         """Adds a split into equal parts along the columns."""
@@ -124,9 +121,7 @@ def _remembered(graph: _Graph, x: str, layers: int, tensors: dict[str, np.ndarra
         hidden, cell = (graph.add("Gather", [name, at], axis=1) for name in kept)
         gates = []
         for part, value in (("input", x), ("hidden", hidden)):
-            names = (f"memory.{k}.{part}_{kind}" for kind in ("weight", "bias"))
-            constants = [graph.constant(name, tensors[name]) for name in names]
-            gates.append(graph.add("Gemm", [value, *constants], transB=1))
+            gates.append(graph.dense(value, f"memory.{k}.{part}_", tensors))
         enter, forget, candidate, leave = graph.split(graph.add("Add", gates), 4)
         old = graph.add("Mul", [graph.add("Sigmoid", [forget]), cell])
         new = graph.add("Mul", [graph.add("Sigmoid", [enter]), graph.add("Tanh", [candidate])])

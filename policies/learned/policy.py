@@ -9,19 +9,15 @@ from typing import Any
 import numpy as np
 
 from policies.learned import files
-from policies.learned.fitting import check_environment, check_width
+from policies.learned.fitting import check_environment, layout, selection
 from policies.learned.forward import Memory, Network
-from policies.learned.reading import layout, selection
 
 MODES = ("action_mode", "observation_mode", "load_columns", "history", "frame_skip")
 """Arguments of an environment that decide what a policy reads, gives and how often."""
 
 
 class LearnedPolicy:
-    """A policy read from its folder; never changes, so one serves many episodes.
-
-    Args:
-        path: The folder; see docs/policy_files.md.
+    """A policy read from its folder (docs/policy_files.md); never changes, so one serves many episodes.
 
     Attributes:
         description: What policy.json says.
@@ -82,13 +78,6 @@ class LearnedPolicy:
             raise ValueError("deterministic = False: a policy's file acts without exploration")
         observations = self._observations(observation)
         rows = np.atleast_2d(observations)
-        actions, memory = self._act(rows, state, episode_start)
-        return (actions if observations.ndim == 2 else actions[0]), memory
-
-    def _act(
-        self, rows: np.ndarray, state: Memory | None, episode_start: np.ndarray | None
-    ) -> tuple[np.ndarray, Memory | None]:
-        """What the network makes of rows (n, width) of numbers."""
         memory = self._memory(state, episode_start, len(rows))
         if self._read is not None:
             rows = np.take(rows, self._read, axis=1)
@@ -96,7 +85,7 @@ class LearnedPolicy:
             actions, memory = self._network.forward(rows, memory)
         if np.isnan(actions).any():
             raise ValueError("the action is NaN: observation or weights are too large for float32")
-        return actions, memory
+        return (actions if observations.ndim == 2 else actions[0]), memory
 
     def _observations(self, observation: np.ndarray | Mapping[str, np.ndarray]) -> np.ndarray:
         """What the network reads, (m,) or (n, m)."""
@@ -107,7 +96,14 @@ class LearnedPolicy:
         observations = np.asarray(observation)
         if observations.ndim not in (1, 2):
             raise ValueError(f"observation must have shape (m,) or (n, m), got {observations.shape}")
-        check_width(self.names, self.description.environment.history, observations.shape[-1])
+        width, history = observations.shape[-1], self.description.environment.history
+        if width != self.width:
+            said = f"observation has {width} columns, the policy needs {self.width} (history={history})"
+            if history == 0 and width < self.width:
+                said += f"; the first that it lacks at its end is {self.names[width]!r}"
+            elif history == 0:
+                said += f"; the last one known is {self.names[-1]!r}"
+            raise ValueError(said)
         if not np.isfinite(observations).all():
             column = int(np.argwhere(~np.isfinite(np.atleast_2d(observations)))[0, 1])
             name = self.names[column % len(self.names)]
@@ -119,9 +115,8 @@ class LearnedPolicy:
         shape = self._network.memory_shape
         if shape is None:
             if state is not None:
-                raise ValueError(
-                    f"state must be None for a policy without memory, got {type(state).__name__}"
-                )
+                kind = type(state).__name__
+                raise ValueError(f"state must be None for a policy without memory, got {kind}")
             return None
         begun = np.zeros(n, bool) if episode_start is None else np.atleast_1d(np.asarray(episode_start, bool))
         if begun.shape != (n,):

@@ -16,10 +16,7 @@ def folders() -> dict[str, Path]:
 
 
 def locate(which: str | os.PathLike[str]) -> Path:
-    """The folder of a policy.
-
-    Args:
-        which: A name of `folders()`, or a folder.
+    """The folder of a policy: by a name of `folders()`, or itself.
 
     Raises:
         FileNotFoundError: It is neither; the message lists the names.

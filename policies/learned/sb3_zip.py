@@ -21,9 +21,8 @@ import numpy as np
 
 from estimator.plain_files import check_regular
 from policies.learned import files
-from policies.learned.export import described
-from policies.learned.extract import ACTIVATIONS, LSTM, array
-from policies.versions import versions
+from policies.learned.export import described, origin
+from policies.learned.extract import ACTIVATIONS, acting_places, array
 from slipgym.atomic_io import check_folder
 from slipgym.config.errors import unknown
 
@@ -31,7 +30,6 @@ LIMIT = 2**28
 """Most bytes of a member of the zip."""
 _WEIGHTS, _DATA = "policy.pth", "data"
 _ACTIVATION = re.compile(r"<class 'torch\.nn\.modules\.activation\.(\w+)'>")
-_ACTORS = {"PPO": ("mlp_extractor.policy_net", "action_net"), "SAC": ("actor.latent_pi", "actor.mu")}
 
 
 def import_zip(
@@ -40,19 +38,12 @@ def import_zip(
     environment: str,
     arguments: Mapping[str, Any],
 ) -> Path:
-    """Writes the folder of a policy from a zip that `model.save` of PPO, SAC, TQC or RecurrentPPO wrote.
+    """Writes a folder at `path` from a zip that `model.save` of PPO, SAC, TQC or RecurrentPPO wrote.
 
     A `VecNormalize` is not part of such a zip: a policy that was trained with one does not act well without
     it. `policies.learned.export.save`, called where it was trained, keeps it.
 
-    Args:
-        source: The zip.
-        path: Where the folder shall appear.
-        environment: Id of the environment it was trained in, such as "slipgym/Hold-v0".
-        arguments: Keyword arguments of that environment.
-
-    Returns:
-        The folder.
+    The environment it was trained in is given by id, such as "slipgym/Hold-v0", and keyword arguments.
 
     Raises:
         FileNotFoundError: There is no zip.
@@ -75,36 +66,34 @@ def import_zip(
     kind = "PPO" if "action_net.weight" in tensors else "SAC"
     if kind == "SAC" and data["use_sde"]:
         raise ValueError(f"{source}: use_sde = True: what SAC then acts with has no file format")
-    weights, layers = _dense(tensors, kind, source)
-    memory = _memory(tensors, weights)
+    weights = {}
+    for ours, theirs in acting_places(tensors).items():
+        value, axes = tensors.get(theirs), 1 if ours.endswith("bias") else 2
+        if value is None or value.ndim != axes:
+            raise ValueError(f"{source}: {_WEIGHTS!r} has no {theirs} of {axes} axes")
+        weights[ours] = value
+    stacked = [value.shape[1] for name, value in weights.items() if name.endswith("hidden_weight")]
+    layers = [len(value) for name, value in weights.items() if re.match(r"layers\..*bias", name)]
     where = described(environment, arguments)
     reads, acts = (where["history"] + 1) * len(where["observation"]), len(where["action"])
-    first = "memory.0.input_weight" if memory else "layers.0.weight"
-    for what, found, wanted in (
-        ("observation", weights[first].shape[1], reads),
-        ("action", layers[-1], acts),
-    ):
+    first = "memory.0.input_weight" if stacked else "layers.0.weight"
+    sizes = ("observation", weights[first].shape[1], reads), ("action", layers[-1], acts)
+    for what, found, wanted in sizes:
         if found != wanted:
             message = f"the model's {what} has {found} numbers, that of {environment} {wanted}"
             raise ValueError(f"{source}: {message}")
+    algorithm = "RecurrentPPO" if stacked else kind
     description = {
         "environment": where,
         "network": {
-            "kind": "lstm" if memory else "mlp",
-            "memory": memory,
+            "kind": "lstm" if stacked else "mlp",
+            "memory": {"size": stacked[0], "layers": len(stacked)} if stacked else None,
             "layers": layers[:-1],
             "activation": data["activation"] or {"PPO": "tanh", "SAC": "relu"}[kind],
             "squash": kind == "SAC",
         },
         "normalisation": None,
-        "origin": {
-            "algorithm": "RecurrentPPO" if memory else kind,
-            "command": f"imported from {source.name}",
-            "steps": data["steps"],
-            "seeds": [],
-            "versions": versions(),
-            "critic": None,
-        },
+        "origin": origin(algorithm, f"imported from {source.name}", data["steps"], [], critic=None),
     }
     return files.write(path, description, weights)
 
@@ -151,35 +140,3 @@ def _tensors(data: bytes) -> dict[str, np.ndarray]:
     if not isinstance(found, dict) or not all(isinstance(value, torch.Tensor) for value in found.values()):
         raise ValueError(f"{_WEIGHTS!r} holds no mapping of tensors")
     return {str(name): array(value) for name, value in found.items()}
-
-
-def _dense(
-    tensors: Mapping[str, np.ndarray], kind: str, source: Path
-) -> tuple[dict[str, np.ndarray], list[int]]:
-    """The dense layers from observation to action by their names in the file, and their widths."""
-    hidden, last = _ACTORS[kind]
-    numbers = sorted(
-        int(match[1]) for name in tensors if (match := re.fullmatch(rf"{hidden}\.(\d+)\.weight", name))
-    )
-    names = [*(f"{hidden}.{number}" for number in numbers), last]
-    weights: dict[str, np.ndarray] = {}
-    for k, name in enumerate(names):
-        for part, axes in (("weight", 2), ("bias", 1)):
-            value = tensors.get(f"{name}.{part}")
-            if value is None or value.ndim != axes:
-                raise ValueError(f"{source}: {_WEIGHTS!r} has no {name}.{part} of {axes} axes")
-            weights[f"layers.{k}.{part}"] = value
-    return weights, [weights[f"layers.{k}.bias"].shape[0] for k in range(len(names))]
-
-
-def _memory(tensors: Mapping[str, np.ndarray], weights: dict[str, np.ndarray]) -> dict[str, int] | None:
-    """Adds the LSTM layers, if there are some; their size and number."""
-    count = 0
-    while f"lstm_actor.weight_hh_l{count}" in tensors:
-        for ours, theirs in LSTM.items():
-            name = f"lstm_actor.{theirs}{count}"
-            if name not in tensors:
-                raise ValueError(f"{_WEIGHTS!r} has no {name}")
-            weights[f"memory.{count}.{ours}"] = tensors[name]
-        count += 1
-    return {"size": int(weights["memory.0.hidden_weight"].shape[1]), "layers": count} if count else None

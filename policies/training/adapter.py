@@ -57,10 +57,7 @@ class SlipVecEnv(VecEnv):
     """
 
     def __init__(
-        self,
-        env: SlipVectorEnv,
-        scenarios: Sequence[Mapping[str, Any]] | None = None,
-        spread: bool = False,
+        self, env: SlipVectorEnv, scenarios: Sequence[Mapping[str, Any]] | None = None, spread: bool = False
     ) -> None:
         mode, needed = env.metadata["autoreset_mode"], _AUTORESET[scenarios is not None]
         if mode is not needed:
@@ -72,14 +69,9 @@ class SlipVecEnv(VecEnv):
         self._actions = np.zeros(env.action_space.shape or (), dtype=np.float32)
 
     def reset(self) -> VecEnvObs:
-        """Start episodes in all environments, with the seeds and options set before.
-
-        Returns:
-            Observations (n, k), or such an array per group.
-        """
-        rows: Any = self._options
-        if self._scenarios is not None:
-            rows = [{**fixed, **asked} for fixed, asked in zip(self._scenarios, self._options, strict=True)]
+        """Start episodes with the seeds and options set before; observations (n, k), or one per group."""
+        fixed = self._scenarios or [{}] * self.num_envs
+        rows = [{**always, **asked} for always, asked in zip(fixed, self._options, strict=True)]
         options = {"rows": rows} if any(rows) else None
         observations, infos = self.env.reset(seed=self._seeds, options=options)
         self._reset_seeds()
@@ -132,32 +124,18 @@ class SlipVecEnv(VecEnv):
         return self.env.render() or ()
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
-        """An attribute for each of some environments: they share those of the batch, but for the spaces.
-
-        Raises:
-            AttributeError: There is none.
-            ValueError: There is no such environment.
-        """
+        """An attribute for each of some environments: they share those of the batch, but for the spaces."""
         return [getattr(self.env, _OF_ONE.get(attr_name, attr_name))] * len(self._rows(indices))
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        """Set an attribute of the batch.
-
-        Raises:
-            ValueError: `indices` leaves environments out, which share the attribute.
-        """
+        """Set an attribute of the batch, which all environments share."""
         self._everyone(f"attribute {attr_name!r}", indices)
         setattr(self.env, attr_name, value)
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: VecEnvIndices = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Call a method of the batch once; what it returns stands for each environment.
-
-        Raises:
-            AttributeError: There is none.
-            ValueError: `indices` leaves environments out, which share the method.
-        """
+        """Call a method of the batch once, for all environments; its result stands for each of them."""
         count = self._everyone(f"method {method_name!r}", indices)
         return [getattr(self.env, method_name)(*method_args, **method_kwargs)] * count
 
@@ -201,12 +179,11 @@ class SlipVecEnv(VecEnv):
         return rows
 
     def _everyone(self, shared: str, indices: VecEnvIndices) -> int:
-        """How many indices there are, which must name every environment."""
+        """How many indices there are; ValueError unless they name every environment."""
         rows = self._rows(indices)
-        if {row % self.num_envs for row in rows} != set(range(self.num_envs)):
-            raise ValueError(
-                f"indices = {indices!r}: all {self.num_envs} environments share the {shared}; give None"
-            )
+        if len({row % self.num_envs for row in rows}) < self.num_envs:
+            n = self.num_envs
+            raise ValueError(f"indices = {indices!r}: all {n} environments share the {shared}; give None")
         return len(rows)
 
 
@@ -230,14 +207,11 @@ def make_vec_env(
             operating system. A learner that is given a seed sets its own.
         threads: Threads that share the environments; None: as many as processors, if there is work for them.
         normalise: Keyword arguments of a `VecNormalize` around them, {} for its own; None: there is none.
-        scenarios: Options of reset of each environment, for all its episodes; None: there are none.
-        spread: Whether a reset leaves the environments at times spread over their episodes, see `SlipVecEnv`.
+        scenarios: See `SlipVecEnv`.
+        spread: See there.
         privileged: Whether the learner keeps the group "privileged" from its actor: without, observations may
             not be a dict, which Stable-Baselines3 shows the actor whole.
         **keywords: Of the environment.
-
-    Returns:
-        `SlipVecEnv` in a `VecMonitor`, maybe in a `VecNormalize`.
 
     Raises:
         ValueError: The value of an argument is unknown or not allowed.

@@ -29,13 +29,7 @@ class TrainingCallback(BaseCallback):
     """Writes the curve and the checkpoints of a run.
 
     It acts where a collection of samples begins, when the update before it is complete: there the state of
-    the run is its learner, its environments, and the record.
-
-    Args:
-        config: The run.
-        path: Its folder.
-        envs: Environments for evaluations.
-        bar: Progress bar over steps.
+    the run is its learner, its environments, and the record. It evaluates in `envs`.
 
     Attributes:
         curve: The evaluations so far.
@@ -60,9 +54,7 @@ class TrainingCallback(BaseCallback):
         self._since = now
         return {
             "curve": [asdict(row) for row in self.curve],
-            "ended": self.ended,
-            "seconds": self.seconds,
-            "cpu_seconds": self.cpu_seconds,
+            **{name: getattr(self, name) for name in ("ended", "seconds", "cpu_seconds")},
             "next": [self._next_evaluation, self._next_checkpoint],
         }
 
@@ -78,29 +70,26 @@ class TrainingCallback(BaseCallback):
         self._bar.update(self.num_timesteps - self._bar.n)
         return not self.ended
 
-    def _on_rollout_start(self) -> None:
-        self._pause()
-
     def _on_training_end(self) -> None:
         if not self.ended:
-            self._pause()
+            self._on_rollout_start()
 
-    def _pause(self) -> None:
+    def _on_rollout_start(self) -> None:
         steps = self.model.num_timesteps
         if steps >= self._config.budget:
             self.ended = "budget"
         if self.ended or steps >= self._next_evaluation:
             self._evaluate()
-            self._next_evaluation = _after(steps, self._config.evaluation.every)
+            self._next_evaluation = (steps // (every := self._config.evaluation.every) + 1) * every
         if self.ended or steps >= self._next_checkpoint:
-            self._next_checkpoint = _after(steps, self._config.checkpoints.every)
+            self._next_checkpoint = (steps // (every := self._config.checkpoints.every) + 1) * every
             state = {"record": self.get_state(), "learner": learners.get_state(self.model)}
             checkpoints.save(self._path, steps, state, self._config.checkpoints.keep)
 
     def _evaluate(self) -> None:
-        row = evaluate(self._config, self.model, self._envs)
+        config, row = self._config, evaluate(self._config, self.model, self._envs)
         self.curve.append(row)
-        if best(self.curve, self._config.evaluation.episodes) is row:
+        if best(self.curve, config.evaluation.episodes) is row:
             state = {"row": asdict(row), "learner": learners.get_state(self.model, replay=False)}
             checkpoint_io.write(checkpoints.best(self._path), state)
         folder.write_curve(self._path, self.curve)
@@ -108,20 +97,13 @@ class TrainingCallback(BaseCallback):
             self.logger.record(f"evaluation/{name}", value)
         self.logger.dump(row.steps)
         shown = {"success": f"{row.success:.0%}", "drops": f"{row.drops:.0%}"}
-        if self._config.algorithm == "privileged_ppo" and (
-            stages := len(self._config.privileged_ppo.curriculum.stages)
-        ):
+        stages = len(config.privileged_ppo.curriculum.stages)
+        if config.algorithm == "privileged_ppo" and stages:
             shown["stage"] = f"{self.model.stage + 1} of {stages + 1}"  # type: ignore[attr-defined]
         self._bar.set_postfix(shown)
-        stop = self._config.stop
-        last = self.curve[-stop.evaluations :]
+        stop, last = config.stop, self.curve[-config.stop.evaluations :]
         reached = [stop.success is not None and one.success >= stop.success for one in last]
         if len(self.curve) == 1 and all(reached):
             warnings.warn(STOPS_UNTRAINED.format(row.success, stop.success), stacklevel=2)
         if len(last) == stop.evaluations and all(reached):
             self.ended = "success"
-
-
-def _after(steps: int, every: int) -> int:
-    """The first multiple of `every` beyond `steps`."""
-    return (steps // every + 1) * every

@@ -9,8 +9,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import struct
-import tokenize
 import zipfile
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
@@ -30,22 +28,11 @@ _RECORDS = {
     record.__name__: record for record in (EnvState, VectorState, SimulationState, EngineState, Box, Plant)
 }
 
-_FAULTS = (
-    *(zipfile.BadZipFile, EOFError, RuntimeError, struct.error),  # no zip, or an encrypted one
-    # not a tree as `write` writes it
-    *(KeyError, ValueError, TypeError, AttributeError, MemoryError, OverflowError, SyntaxError),
-    tokenize.TokenError,  # in the header of an array
-)
-
 
 def write(path: Path, tree: Any) -> None:
     """Writes a tree of mappings, lists, tuples, records of an environment's state, arrays, bytes and scalars.
 
     The file appears whole under its name, or not at all; what was there is replaced.
-
-    Args:
-        path: The file.
-        tree: What to write.
 
     Raises:
         TypeError: Something in the tree is none of these.
@@ -86,7 +73,9 @@ def read(path: Path) -> Any:
         if sums != {name: hashlib.sha256(content).hexdigest() for name, content in members.items()}:
             raise ValueError("a checksum differs")
         return _decoded(json.loads(members["tree.json"]), members)
-    except _FAULTS as error:
+    except OSError:
+        raise
+    except Exception as error:  # no zip, an encrypted one, or no tree as `write` writes it
         raise ValueError(f"{path} is damaged: {error}") from error
 
 

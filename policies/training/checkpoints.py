@@ -26,11 +26,7 @@ def kept(run: Path) -> list[Path]:
 
 
 def save(run: Path, steps: int, state: Any, keep: int) -> None:
-    """Writes a checkpoint, then removes those before the last `keep`.
-
-    Raises:
-        OSError: It cannot be written.
-    """
+    """Writes a checkpoint, then removes those before the last `keep`; OSError if it cannot be written."""
     checkpoint_io.write(folder(run) / f"{steps:012d}{_SUFFIX}", state)
     for path in kept(run)[:-keep]:
         path.unlink()
@@ -42,12 +38,11 @@ def last(run: Path) -> Any:
     Raises:
         ValueError: There are checkpoints, and all are damaged.
     """
-    damage = None
-    for path in reversed(kept(run)):
+    found = kept(run)
+    while found:
         try:
-            return checkpoint_io.read(path)
-        except ValueError as error:
-            damage = error
-    if damage is not None:
-        raise damage
+            return checkpoint_io.read(found.pop())
+        except ValueError:
+            if not found:
+                raise
     return None

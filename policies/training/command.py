@@ -14,12 +14,9 @@ from slipgym.tasks import find
 
 
 def chosen(name: str | None, options: Mapping[str, Any], texts: Sequence[str]) -> Training:
-    """The configuration that a command line names, with what it sets.
+    """The configuration that a command line names, or its option "task", with what it sets.
 
-    Args:
-        name: Name or path of the configuration; None: the one of the option "task".
-        options: Values by dotted key; None leaves one as it is.
-        texts: Assignments by dotted key, which win over the options.
+    Assignments as texts win over options; an option that is None leaves a value as it is.
 
     Raises:
         FileNotFoundError: There is no such file.
@@ -35,13 +32,7 @@ def chosen(name: str | None, options: Mapping[str, Any], texts: Sequence[str]) -
 
 
 def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Callable[[], str]:
-    """The command that continues a run or study.
-
-    Args:
-        path: Its folder.
-        others: Further options by name, none of which may be given.
-        jobs: Runs at once.
-        ray: See `policies.parallel.results`.
+    """The work that continues the run or study of a folder; no other option may be given beside it.
 
     Raises:
         FileNotFoundError: The folder holds no run.
@@ -49,9 +40,8 @@ def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Calla
     """
     from policies.training import run_set
 
-    for name, value in others.items():
-        if value:
-            raise ValueError(f"--resume goes on as the run was begun: leave out {name}")
+    for name in (name for name, value in others.items() if value):
+        raise ValueError(f"--resume goes on as the run was begun: leave out {name}")
     folder.runs(path)
     return partial(run_set.train_all, path, jobs, ray)
 
@@ -65,16 +55,9 @@ def begun(
     jobs: int,
     ray: str,
 ) -> tuple[Path, Callable[[], str]]:
-    """The folder of a new study or sweep, and what carries it out.
+    """The folder of a new study in `output`, or of a sweep if there are `trials`, and what carries it out.
 
-    Args:
-        config: What to train.
-        seeds: Seeds; none given: 0.
-        sources: Friction sources; none given: the configuration's.
-        trials: Runs of a sweep; 0: no sweep.
-        output: Folder that the new one goes to.
-        jobs: Runs at once.
-        ray: See `policies.parallel.results`.
+    Without any seed it is 0, without any friction source the configuration's.
 
     Raises:
         ModuleNotFoundError: Ray is asked for and not installed.

@@ -154,44 +154,29 @@ class Training(Frozen):
     @field_validator("task")
     @classmethod
     def _task_exists(cls, name: str) -> str:
-        task = find(name)
-        if task.id not in ENVIRONMENTS and not is_reference(name):
+        if find(name).id not in ENVIRONMENTS and not is_reference(name):
             raise ValueError(f"name {name!r}, a task of your own, as module:attribute")
         return canonical(name)
 
     @model_validator(mode="after")
-    def _can_fold_derived_columns(self) -> Self:
+    def _fits_together(self) -> Self:
         if self.derived and self.algorithm not in ("ppo", "privileged_ppo"):
             raise ValueError("derived needs algorithm 'ppo' or 'privileged_ppo'")
-        return self
-
-    @model_validator(mode="after")
-    def _can_learn_with_a_privileged_critic(self) -> Self:
+        trained, chosen = [self.environment, self.shaped], self.privileged_ppo
         if self.algorithm == "privileged_ppo":
             if self.engine != "planar" or self.environment.observation_mode != "flat":
                 raise ValueError("privileged_ppo needs engine 'planar' and observation_mode 'flat'")
-            chosen = self.privileged_ppo
             rows = self.num_envs if chosen.memory else self.num_envs * chosen.n_steps
             if chosen.n_minibatches > rows:
                 raise ValueError(
                     f"privileged_ppo.n_minibatches = {chosen.n_minibatches} must not exceed {rows}"
                 )
-            for stage in range(len(chosen.curriculum.stages)):
-                shaped = self.at_stage(stage).shaped
-                configure(find(self.task), shaped.config, shaped.sensors, shaped.contact)
-        return self
-
-    @model_validator(mode="after")
-    def _can_spread(self) -> Self:
+            trained += [self.at_stage(stage).shaped for stage in range(len(chosen.curriculum.stages))]
         if self.spread and self.engine != "planar":
             raise ValueError("spread needs engine 'planar'")
-        return self
-
-    @model_validator(mode="after")
-    def _options_and_shaping_exist(self) -> Self:
         for options in self.combinations():
             find(self.task).options.parse(options)
-        for environment in (self.environment, self.shaped):
+        for environment in trained:
             configure(find(self.task), environment.config, environment.sensors, environment.contact)
         return self
 
@@ -210,9 +195,8 @@ class Training(Frozen):
 
     def combinations(self) -> list[dict[str, Any]]:
         """Every combination of the options of reset that vary; without any, a single empty one."""
-        return [
-            dict(zip(self.vary, values, strict=True)) for values in itertools.product(*self.vary.values())
-        ]
+        every = itertools.product(*self.vary.values())
+        return [dict(zip(self.vary, values, strict=True)) for values in every]
 
     @property
     def hyperparameters(self) -> PPO | SAC | PrivilegedPPO:

@@ -21,18 +21,20 @@ _PANELS = (
 
 @dataclass(frozen=True)
 class Row:
-    """One point of a learning curve; means over the episodes of an evaluation."""
+    """One point of a learning curve, after some steps; means over the episodes of an evaluation.
+
+    Attributes:
+        success: Share of episodes solved.
+        drops: Share of episodes in which the object was dropped.
+        reward: Sum of rewards of an episode.
+        length: Steps of an episode.
+    """
 
     steps: int
-    """Steps of training so far."""
     success: float
-    """Share of episodes solved."""
     drops: float
-    """Share of episodes in which the object was dropped."""
     reward: float
-    """Sum of rewards of an episode."""
     length: float
-    """Steps of an episode."""
 
 
 def best(rows: Sequence[Row], episodes: int) -> Row:
@@ -42,9 +44,7 @@ def best(rows: Sequence[Row], episodes: int) -> Row:
     al., Classification and Regression Trees, 1984): more is luck of one among many evaluations. What is the
     best of the first k evaluations is found without the later ones.
 
-    Args:
-        rows: At least one, in order.
-        episodes: Episodes of each.
+    There must be a row, and each be of as many episodes.
     """
     chosen, most = rows[0], 0.0
     for row in rows:
@@ -63,21 +63,14 @@ def _standard_error(share: float, episodes: int) -> float:
 
 
 def plot(curves: Mapping[str, Sequence[Sequence[Row]]]) -> Figure:
-    """Success, drops and rewards over steps.
-
-    Args:
-        curves: For each condition, the curves of its seeds: thin lines, their mean bold where all have one.
-    """
+    """Success, drops and rewards over steps: of each condition its seeds' curves thin, their mean bold."""
     figure = Figure(figsize=(8.4, 2.8))
     panels = figure.subplots(1, len(_PANELS), sharex=True)
     shades = colours(list(curves))
     for axes, (name, label, scale) in zip(panels, _PANELS, strict=True):
         for condition, seeds in curves.items():
-            _lines(
-                axes,
-                [[(row.steps, scale * getattr(row, name)) for row in rows] for rows in seeds],
-                shades[condition],
-            )
+            points = [[(row.steps, scale * getattr(row, name)) for row in rows] for rows in seeds]
+            _lines(axes, points, shades[condition])
         axes.set_ylabel(label)
         if scale == 100.0:
             axes.set_ylim(-3.0, 103.0)
@@ -91,14 +84,9 @@ def plot(curves: Mapping[str, Sequence[Sequence[Row]]]) -> Figure:
 def _lines(axes: Axes, seeds: Sequence[Sequence[tuple[int, float]]], colour: str) -> None:
     """A line for each seed and their mean."""
     several = len(seeds) > 1
+    look = {"alpha": 0.35 if several else 1.0, "linewidth": 0.8 if several else 1.4, "color": colour}
     for points in seeds:
-        axes.plot(
-            *np.array(points).T,
-            color=colour,
-            alpha=0.35 if several else 1.0,
-            linewidth=0.8 if several else 1.4,
-            marker="o" if len(points) == 1 else None,
-        )
+        axes.plot(*np.array(points).T, marker="o" if len(points) == 1 else None, **look)
     if several:
         common = sorted(set.intersection(*({steps for steps, _ in points} for points in seeds)))
         means = [np.mean([dict(points)[steps] for points in seeds]) for steps in common]

@@ -25,13 +25,9 @@ _FIRST_LAYERS = "mlp_extractor.policy_net.0", "mlp_extractor.value_net.0"
 
 
 def coefficients(derived: Derived, columns: Sequence[Any], history: int, width: int) -> np.ndarray:
-    """Matrix from an observation to its derived columns, (d, k) float64.
+    """Matrix from an observation of `width` numbers to its derived columns, (d, k) float64.
 
-    Args:
-        derived: The combinations.
-        columns: Of one observation.
-        history: Earlier observations in each.
-        width: Numbers of an observation, k.
+    `columns` are those of one observation, of which there are `history` earlier ones in each.
 
     Raises:
         ValueError: The observation has no such column.
@@ -40,27 +36,18 @@ def coefficients(derived: Derived, columns: Sequence[Any], history: int, width: 
     for column in (column for combination in derived.values() for column in combination):
         if column not in names:
             raise ValueError(f"derived: {unknown('column', column, names)}")
-    rows = np.zeros((len(derived), len(names)))
-    for row, combination in zip(rows, derived.values(), strict=True):
-        row[:] = [combination.get(name, 0.0) for name in names]
-    matrix = np.kron(np.eye(history + 1), rows)
+    rows = [[combination.get(name, 0.0) for name in names] for combination in derived.values()]
+    matrix = np.kron(np.eye(history + 1), np.reshape(rows, (len(derived), len(names))))
     return np.pad(matrix, ((0, 0), (0, width - matrix.shape[1])))
 
 
 def folded(
     weight: np.ndarray, bias: np.ndarray, matrix: np.ndarray, mean: np.ndarray, scale: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """First layer of a network that reads the normalised observation alone and computes the same.
+    """Weight (m, k) and bias (m,) of a layer that reads the observation alone and computes the same.
 
-    Args:
-        weight: Of the layer that reads the derived columns behind the observation, (m, k + d).
-        bias: (m,).
-        matrix: See `coefficients`.
-        mean: Of the columns, subtracted from them in their normalisation, (k + d,).
-        scale: What they are then divided by.
-
-    Returns:
-        Weight (m, k) and bias (m,).
+    The given layer, weight (m, k + d) and bias (m,), reads the derived columns of `coefficients` (d, k)
+    behind the observation, after their mean (k + d,) was subtracted and they were divided by their scale.
     """
     count = matrix.shape[1]
     own, derived = weight[:, :count].astype(np.float64), weight[:, count:].astype(np.float64)
@@ -72,12 +59,7 @@ def folded(
 class DerivedVecEnv(VecEnvWrapper):
     """Environments whose observations end with linear combinations of their columns.
 
-    With earlier observations, each of them gives its own combinations, in the same order.
-
-    Args:
-        venv: The environments; observations are vectors.
-        derived: The combinations.
-        history: Earlier observations in each observation.
+    Earlier observations in it (`history` of them) give their own combinations, in the same order.
 
     Attributes:
         matrix: What turns an observation into its derived columns, (d, k) float64.
@@ -110,12 +92,7 @@ class DerivedVecEnv(VecEnvWrapper):
 
 
 class Moments(RunningMeanStd):
-    """Running mean and variance of the observation's columns; 0 and 1 for the derived columns behind them.
-
-    Args:
-        columns: Of the observation, k.
-        width: Numbers that the learner reads, k + d.
-    """
+    """Running mean and variance of the observation's k columns; 0 and 1 for the derived ones behind them."""
 
     def __init__(self, columns: int, width: int) -> None:
         super().__init__(shape=(width,))
@@ -132,15 +109,8 @@ def fold(
 ) -> dict[str, torch.Tensor]:
     """Parameters of a network that reads the observation alone and computes the same.
 
-    The clipping of normalised derived columns is left out.
-
-    Args:
-        parameters: State of an "MlpPolicy" of PPO, by name.
-        normalisation: Of its observations (k + d columns).
-        matrix: What turns an observation into its derived columns, (d, k).
-
-    Returns:
-        The state of a policy with k columns.
+    The clipping of normalised derived columns is left out. Parameters are the state of an "MlpPolicy" of PPO,
+    its observations are normalised (k + d columns), and derived by `matrix`, (d, k).
     """
     mean, scale = np.zeros(sum(matrix.shape)), np.ones(sum(matrix.shape))
     if normalisation.norm_obs:

@@ -14,13 +14,7 @@ from policies.training.curve import Row
 
 
 def evaluate(config: Training, model: Any, envs: VecEnv) -> Row:
-    """Runs episodes without exploration, always the same ones.
-
-    Args:
-        config: The run.
-        model: The learner; its statistics are used as they are.
-        envs: Environments to run in, not those of the training.
-    """
+    """Runs episodes without exploration, always the same ones, with the learner's statistics as they are."""
     frozen: Any = envs
     if config.algorithm != "privileged_ppo":
         frozen = learners.normalised(config, envs, training=False)

@@ -12,7 +12,6 @@ from policies.learned import export, files
 from policies.training import derived, policy_tensors
 from policies.training import model as learners
 from policies.training.config import Training
-from policies.versions import versions
 from slipgym.tasks import find
 
 POLICY = "policy"
@@ -22,58 +21,26 @@ POLICY = "policy"
 def write(
     model: Any, normalisation: Mapping[str, Any], config: Training, folder: Path, seed: int, command: str
 ) -> Path:
-    """Writes the policy of a run (docs/policy_files.md), unless it is there already.
-
-    Args:
-        model: The learner with the best parameters of the run.
-        normalisation: Statistics to normalise observations with, as from `model.normalisation`.
-        config: What it was trained as.
-        folder: The run's folder.
-        seed: Of the run.
-        command: What started it, for the record.
-
-    Returns:
-        The policy's folder.
-    """
+    """Writes the policy of a run (docs/policy_files.md) in its folder, unless it is there already."""
     path = folder / POLICY
     if path.exists():
         return path
     arguments = config.environment.model_dump(mode="json")
     env_id = find(config.task).id
-    if config.algorithm == "privileged_ppo":
-        return _privileged(model, path, env_id, arguments, config, command, seed)
-    envs = model.get_vec_normalize_env()
-    learners.set_normalisation(envs, dict(normalisation))
-    if config.derived:
-        model, envs = _folded(model, envs, config)
-    return export.save(model, path, env_id, arguments, envs, command, [seed])
-
-
-def _privileged(
-    model: Any,
-    path: Path,
-    env_id: str,
-    arguments: Mapping[str, Any],
-    config: Training,
-    command: str,
-    seed: int,
-) -> Path:
-    """Writes the actor of `privileged_ppo`."""
-    chosen = config.normalisation
-    normalised = {"clip": chosen.clip, "epsilon": policy_tensors.EPSILON} if chosen.observation else None
+    if config.algorithm != "privileged_ppo":
+        envs = model.get_vec_normalize_env()
+        learners.set_normalisation(envs, dict(normalisation))
+        if config.derived:
+            model, envs = _folded(model, envs, config)
+        return export.save(model, path, env_id, arguments, envs, command, [seed])
+    clip = config.normalisation.clip
+    moments = model.moments["policy"] if config.normalisation.observation else None
     description = {
         "environment": export.described(env_id, arguments),
         "network": policy_tensors.network(config).model_dump(mode="json"),
-        "normalisation": normalised,
-        "origin": {
-            "algorithm": "PrivilegedPPO",
-            "command": command,
-            "steps": model.num_timesteps,
-            "seeds": [seed],
-            "versions": versions(),
-        },
+        "normalisation": moments and {"clip": clip, "epsilon": policy_tensors.EPSILON},
+        "origin": export.origin("PrivilegedPPO", command, model.num_timesteps, [seed]),
     }
-    moments = model.moments["policy"] if chosen.observation else None
     return files.write(path, description, policy_tensors.take(model.ppo.actor, moments, model.matrix))
 
 

@@ -23,12 +23,10 @@ def names() -> list[str]:
 
 
 def load(which: str | os.PathLike[str], overrides: Mapping[str, Any] | None = None) -> Training:
-    """Reads a training configuration.
+    """Reads a training configuration: one of `names()`, or the path of a YAML file.
 
-    Args:
-        which: One of `names()`, or the path of a YAML file. A task's name, "carry" or "Carry", stands for the
-            configuration that learns it from nothing, "carry_scratch".
-        overrides: Values by dotted key ("ppo.gamma") that replace the file's.
+    A task's name, "carry" or "Carry", stands for the configuration that learns it from nothing,
+    "carry_scratch". Overrides by dotted key ("ppo.gamma") replace the file's values.
 
     Raises:
         FileNotFoundError: It looks like a path, but there is no such file.
@@ -40,12 +38,7 @@ def load(which: str | os.PathLike[str], overrides: Mapping[str, Any] | None = No
 
 
 def changed(training: Training, overrides: Mapping[str, Any], source: str = "command line") -> Training:
-    """The configuration with other values.
-
-    Args:
-        training: The configuration.
-        overrides: Values by dotted key.
-        source: Where they come from, for the message of an error.
+    """The configuration with other values by dotted key; the source of these is named in errors.
 
     Raises:
         ValueError: A key or value is wrong, or estimates are asked for where no estimator runs.
@@ -90,11 +83,7 @@ def assignments(texts: Iterable[str]) -> dict[str, Any]:
 
 
 def checked(values: Mapping[str, Any], source: str) -> Training:
-    """A configuration from plain values.
-
-    Args:
-        values: As in a YAML file.
-        source: Where they come from, for the message of an error.
+    """A configuration from plain values as in a YAML file; their source is named in errors.
 
     Raises:
         ValueError: A key or value is wrong; one line per fault.

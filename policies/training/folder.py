@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import yaml
 
 from policies.training import checkpoints, seeds
@@ -21,6 +21,7 @@ from slipgym import atomic_io
 from slipgym.config import files
 
 _ORDER, _RESULT, _CURVE = "run.yaml", "result.json", "curve.csv"
+_NONE = f"{{}} holds no training run: there is no {_ORDER} in it"
 
 
 def begin(folder: Path, config: Training, seed: int) -> None:
@@ -47,7 +48,7 @@ def order(folder: Path) -> tuple[Training, int]:
     """
     path = folder / _ORDER
     if not path.is_file():
-        raise FileNotFoundError(f"{folder} holds no training run: there is no {_ORDER} in it")
+        raise FileNotFoundError(_NONE.format(folder))
     values = files.read(path)
     training, seed = values.get("training"), values.get("seed")
     if not isinstance(training, Mapping) or type(seed) is not int:
@@ -65,17 +66,14 @@ def runs(folder: Path) -> list[Path]:
         return [folder]
     found = sorted(path.parent for path in folder.glob(f"*/{_ORDER}"))
     if not found:
-        raise FileNotFoundError(f"{folder} holds no training run: there is no {_ORDER} in it")
+        raise FileNotFoundError(_NONE.format(folder))
     return found
 
 
 def write_curve(folder: Path, curve: Sequence[Row]) -> None:
     """Writes curve.csv: a row for each evaluation."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, [field.name for field in fields(Row)], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(asdict(row) for row in curve)
-    atomic_io.write(folder / _CURVE, text.getvalue().encode())
+    table = pd.DataFrame(list(curve), columns=[field.name for field in fields(Row)])
+    atomic_io.write(folder / _CURVE, table.to_csv(index=False, lineterminator="\n").encode())
 
 
 def read_curve(folder: Path) -> list[Row]:
@@ -83,11 +81,8 @@ def read_curve(folder: Path) -> list[Row]:
     path = folder / _CURVE
     if not path.is_file():
         return []
-    with path.open(newline="", encoding="utf-8") as file:
-        return [
-            Row(int(row.pop("steps")), **{name: float(value) for name, value in row.items()})
-            for row in csv.DictReader(file)
-        ]
+    lines = path.read_text(encoding="utf-8").splitlines()[1:]
+    return [Row(int(steps), *map(float, means)) for steps, *means in csv.reader(lines)]
 
 
 def write_result(folder: Path, result: dict[str, Any]) -> None:

@@ -31,16 +31,13 @@ def only_process(folder: Path) -> Iterator[None]:
     handle = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o666)
     try:
         if fcntl is not None:
-            _hold(handle, folder)
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                said = f"{folder}: another process trains this run; wait for it, or end it"
+                raise ValueError(said) from None
+            except OSError:  # a file system without locks
+                pass
         yield
     finally:
         os.close(handle)
-
-
-def _hold(handle: int, folder: Path) -> None:
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise ValueError(f"{folder}: another process trains this run; wait for it, or end it") from None
-    except OSError:  # a file system without locks
-        return

@@ -14,11 +14,11 @@ from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.vec_env import VecNormalize
 from torch import nn
 
-from policies.training import plain, vector
+from policies.training import vector
 from policies.training.config import Training
 from policies.training.derived import DerivedVecEnv, Moments
 from policies.training.privileged_ppo import PrivilegedPPO
-from policies.training.state_checks import check_like, fits
+from policies.training.state_checks import arrays, check_like, fits, moments, set_moments, tensors
 
 _CLASSES: dict[str, Any] = {"ppo": PPO, "recurrent_ppo": RecurrentPPO, "sac": SAC, "tqc": TQC}
 _ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "elu": nn.ELU}
@@ -48,28 +48,19 @@ def normalised(config: Training, envs: Any, training: bool = True) -> VecNormali
 
 
 def begin(config: Training, seed: int) -> Any:
-    """An untrained learner of a run, in environments of its own, which `get_env().close()` ends.
-
-    Args:
-        config: The run.
-        seed: Of the first environment.
-    """
+    """An untrained learner, see `make`, in environments of its own, which `get_env().close()` ends."""
     if config.algorithm == "privileged_ppo":
         return PrivilegedPPO(config, seed)
     return make(config, normalised(config, vector.make(config, seed, shaped=True)), seed)
 
 
 def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
-    """An untrained learner.
+    """An untrained learner in environments from `normalised`.
 
-    Args:
-        config: The run.
-        envs: Its environments, from `normalised`.
-        seed: Of the first environment; the networks are seeded with it, too.
+    The seed is that of the first environment; the networks are seeded with it, too.
     """
     torch.set_num_threads(config.threads)
-    chosen = config.hyperparameters
-    values = chosen.model_dump()
+    values = config.hyperparameters.model_dump()
     start, end = values.pop("learning_rate"), values.pop("learning_rate_end")
     policy: dict[str, Any] = {name: values.pop(name) for name in _OF_POLICY if name in values}
     policy["activation_fn"] = _ACTIVATIONS[policy.pop("activation")]
@@ -89,24 +80,28 @@ def make(config: Training, envs: VecNormalize, seed: int) -> BaseAlgorithm:
 
 
 def get_state(model: Any, replay: bool = True) -> dict[str, Any]:
-    """Everything that decides how training goes on, as plain data.
+    """Everything that decides how training goes on, as plain data, maybe with the replay buffer.
 
-    Args:
-        model: From `make`, between two updates.
-        replay: Whether the replay buffer is part of it.
+    The learner must be between two updates.
     """
     if isinstance(model, PrivilegedPPO):
         return model.get_state(environments=replay)
     envs = model.get_vec_normalize_env()
     state: dict[str, Any] = {
-        "parameters": plain.arrays(model.get_parameters()),
-        "entropy": plain.arrays(getattr(model, "log_ent_coef", None)),
+        "parameters": arrays(model.get_parameters()),
+        "entropy": arrays(getattr(model, "log_ent_coef", None)),
         "counters": {name: getattr(model, name) for name in _COUNTERS},
         "last": {name: _copied(getattr(model, name)) for name in _LAST},
-        "lstm": plain.arrays(getattr(model, "_last_lstm_states", None)),
+        "lstm": arrays(getattr(model, "_last_lstm_states", None)),
         "normalisation": normalisation(envs),
         "environments": vector.get_state(envs.venv),
-        "generators": _generators(model),
+        # those that Stable-Baselines3 draws from; torch's and numpy's are global
+        "generators": {
+            "torch": torch.get_rng_state().numpy().copy(),
+            "numpy": np.random.get_state(),  # noqa: NPY002
+            "python": random.getstate(),
+            "actions": model.action_space.np_random.bit_generator.state,
+        },
     }
     if replay and not isinstance(model, PPO | RecurrentPPO):
         buffer = model.replay_buffer
@@ -118,10 +113,6 @@ def get_state(model: Any, replay: bool = True) -> dict[str, Any]:
 
 def set_state(model: Any, state: dict[str, Any]) -> None:
     """Go on from a state: learner, normalisation, environments, random numbers.
-
-    Args:
-        model: From `make`, with the same configuration.
-        state: From `get_state`.
 
     Raises:
         ValueError: It is of a learner with another configuration.
@@ -155,8 +146,7 @@ def _set_state(model: Any, state: dict[str, Any]) -> None:
     for name in _LAST:
         setattr(model, name, _copied(state["last"][name]))
     if state["lstm"] is not None:
-        pi, vf = plain.tensors(state["lstm"])
-        model._last_lstm_states = RNNStates(pi, vf)
+        model._last_lstm_states = RNNStates(*tensors(state["lstm"]))
     set_normalisation(envs, state["normalisation"])
     vector.set_state(envs.venv, state["environments"])
     if "replay" in state:
@@ -176,41 +166,27 @@ def set_parameters(model: Any, state: dict[str, Any]) -> None:
     if isinstance(model, PrivilegedPPO):
         model.set_parameters(state)
         return
-    model.set_parameters(plain.tensors(state["parameters"]), exact_match=True, device="cpu")
+    model.set_parameters(tensors(state["parameters"]), exact_match=True, device="cpu")
     if state["entropy"] is not None:
         with torch.no_grad():
-            model.log_ent_coef.copy_(plain.tensors(state["entropy"]))
+            model.log_ent_coef.copy_(tensors(state["entropy"]))
 
 
 def normalisation(envs: VecNormalize) -> dict[str, Any]:
     """Running statistics of observations and returns."""
-    moments = {"returns": envs.ret_rms, **({"observations": envs.obs_rms} if envs.norm_obs else {})}
-    return {
-        **{
-            name: {"mean": np.array(rms.mean), "var": np.array(rms.var), "count": float(rms.count)}
-            for name, rms in moments.items()
-        },
-        "running": envs.returns.copy(),
-    }
+    return {**{name: moments(rms) for name, rms in _moments(envs).items()}, "running": envs.returns.copy()}
 
 
 def set_normalisation(envs: VecNormalize, state: dict[str, Any]) -> None:
     """Go on from statistics."""
-    moments = {"returns": envs.ret_rms, **({"observations": envs.obs_rms} if envs.norm_obs else {})}
     check_like("normalisation", state, normalisation(envs))
-    for name, rms in moments.items():
-        rms.mean, rms.var, rms.count = (state[name][key] for key in ("mean", "var", "count"))
+    for name, rms in _moments(envs).items():
+        set_moments(rms, state[name])
     envs.returns = state["running"].copy()
 
 
-def _generators(model: Any) -> dict[str, Any]:
-    """States of the generators that Stable-Baselines3 draws from; torch's and numpy's are global."""
-    return {
-        "torch": torch.get_rng_state().numpy().copy(),
-        "numpy": np.random.get_state(),  # noqa: NPY002
-        "python": random.getstate(),
-        "actions": model.action_space.np_random.bit_generator.state,
-    }
+def _moments(envs: VecNormalize) -> dict[str, Any]:
+    return {"returns": envs.ret_rms, **({"observations": envs.obs_rms} if envs.norm_obs else {})}
 
 
 def _copied(value: Any) -> Any:

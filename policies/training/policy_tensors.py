@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 import torch
-from torch import nn
 
 from policies.learned import files
-from policies.learned.description import WEIGHTS, Memory, Network
-from policies.learned.extract import LSTM, array
+from policies.learned.description import WEIGHTS, Network
+from policies.learned.extract import array, places
 from policies.training.config import Training
 from policies.training.derived import folded
 from slipgym.tasks import find
@@ -20,48 +19,31 @@ EPSILON = 1e-8
 """Added to the variance of an observation [unit^2]."""
 _SEEN = 10_000_000
 """Samples that the observations' statistics of a policy count as, which training goes on from."""
-
-
-def dense(actor: Any) -> list[nn.Linear]:
-    """The dense layers of an actor, first to last."""
-    return [layer for layer in actor.mlp if isinstance(layer, nn.Linear)]
+_LAYERS = "mlp", "rnn.rnn"
+"""Dense and LSTM layers of an actor of rsl-rl."""
 
 
 def network(config: Training) -> Network:
     """Description of the network of a run in a file."""
     chosen = config.privileged_ppo
-    memory = Memory(size=chosen.memory, layers=1) if chosen.memory else None
-    return Network(
-        kind="lstm" if memory else "mlp",
-        memory=memory,
-        layers=chosen.net_arch,
-        activation=chosen.activation,
-        squash=False,
-    )
+    return Network.of(chosen.memory, chosen.net_arch, chosen.activation, squash=False)
 
 
 def take(actor: Any, moments: Any, matrix: np.ndarray) -> dict[str, np.ndarray]:
     """Tensors of an actor by their names in a file, and the moments of its observations.
 
-    Args:
-        actor: It reads derived columns behind the observation.
-        moments: None without.
-        matrix: What turns an observation into its derived columns, (d, k).
+    The actor reads derived columns, of `matrix` (d, k), behind the observation.
     """
-    found = {}
+    found, state = {}, actor.state_dict()
     if moments is not None:
         found = {"observation.mean": np.array(moments.mean), "observation.var": np.array(moments.var)}
-    if hasattr(actor, "rnn"):
-        for ours, theirs in LSTM.items():
-            found[f"memory.0.{ours}"] = array(getattr(actor.rnn.rnn, f"{theirs}0"))
-    for k, layer in enumerate(dense(actor)):
-        found[f"layers.{k}.weight"], found[f"layers.{k}.bias"] = array(layer.weight), array(layer.bias)
+    found |= {ours: array(state[theirs]) for ours, theirs in places(state, *_LAYERS).items()}
     if len(matrix):
         mean, scale = np.zeros(sum(matrix.shape)), np.ones(sum(matrix.shape))
         if moments is not None:
             mean[: matrix.shape[1]] = moments.mean
             scale[: matrix.shape[1]] = np.sqrt(moments.var + EPSILON)
-        first = "memory.0.input_" if hasattr(actor, "rnn") else "layers.0."
+        first = "memory.0.input_" if "memory.0.input_weight" in found else "layers.0."
         weight, bias = f"{first}weight", f"{first}bias"
         found[weight], found[bias] = folded(found[weight], found[bias], matrix, mean, scale)
     return found
@@ -89,24 +71,14 @@ def load(
     normalised = config.normalisation.observation
     if normalised != (description.normalisation is not None):
         raise ValueError(f"{path}: normalisation.observation = {normalised} is not that of the policy")
-    own = take(actor, moments if normalised else None, matrix)
-    for name, value in own.items():
+    for name, value in take(actor, moments if normalised else None, matrix).items():
         if name not in weights or weights[name].shape != value.shape:
             raise ValueError(f"{path}: {name!r} does not fit the observation or action of the run")
-    tensors: dict[str, Any] = {name: torch.from_numpy(np.array(weights[name])) for name in own}
     if normalised:
         moments.mean, moments.var = weights["observation.mean"].copy(), weights["observation.var"].copy()
         moments.count = _SEEN
+    parameters = dict(actor.named_parameters())
     with torch.no_grad():
-        if hasattr(actor, "rnn"):
-            for ours, theirs in LSTM.items():
-                _fill(getattr(actor.rnn.rnn, f"{theirs}0"), tensors[f"memory.0.{ours}"])
-        for k, layer in enumerate(dense(actor)):
-            _fill(layer.weight, tensors[f"layers.{k}.weight"])
-            _fill(layer.bias, tensors[f"layers.{k}.bias"])
-
-
-def _fill(parameter: Any, values: Any) -> None:
-    """Copies values into a parameter, whose further columns are 0."""
-    parameter.zero_()
-    parameter[..., : values.shape[-1]].copy_(values)
+        for ours, theirs in places(parameters, *_LAYERS).items():
+            parameters[theirs].zero_()  # those of derived columns stay 0
+            parameters[theirs][..., : weights[ours].shape[-1]].copy_(torch.tensor(weights[ours]))

@@ -17,21 +17,19 @@ from rsl_rl.algorithms import PPO
 from stable_baselines3.common.running_mean_std import RunningMeanStd
 from tensordict import TensorDict
 
-from policies.training import plain, policy_tensors, vector
+from policies.training import policy_tensors, vector
 from policies.training.config import Training
 from policies.training.derived import coefficients
-from policies.training.state_checks import check_like
+from policies.training.state_checks import arrays, check_like, moments, set_moments, tensors
 
 _FIRST_OUTPUT = 0.01
 """What the last layer of a new actor is multiplied with: its first actions are about the middle."""
+_CHECKED = "counters", "normalisation", "running"
+"""Parts of a state that are compared with the learner's own; torch and the environments check the others."""
 
 
 class PrivilegedPPO:
-    """Learns in the environments of a run.
-
-    Args:
-        config: The run.
-        seed: Of the first environment; the networks are seeded with it, too.
+    """Learns in the environments of a run; the seed is that of the first one, and of the networks.
 
     Attributes:
         num_timesteps: Steps of all environments so far.
@@ -55,31 +53,24 @@ class PrivilegedPPO:
         self.matrix = coefficients(config.derived, columns, config.environment.history, width)
         self.ppo = self._ppo()
         self.logger: Any = None
-        if self._chosen.start is not None:
-            policy_tensors.load(
-                self.ppo.actor, self.moments["policy"], self.matrix, self._chosen.start, config
-            )
+        if (start := self._chosen.start) is not None:
+            policy_tensors.load(self.ppo.actor, self.moments["policy"], self.matrix, start, config)
 
     def _make(self) -> Any:
         return vector.make(self._config.at_stage(self.stage), self._seed, shaped=True)
 
     def _ppo(self) -> PPO:
         chosen, spaces = self._chosen, self.envs.observation_space.spaces
-        like = TensorDict(
-            {name: torch.zeros(self.envs.num_envs, *space.shape) for name, space in spaces.items()},
-            batch_size=[self.envs.num_envs],
+        shapes = {name: (self.envs.num_envs, *space.shape) for name, space in spaces.items()}
+        like = self._observed(
+            {name: np.zeros(shape, np.float32) for name, shape in shapes.items()}, learn=False
         )
-        more = torch.zeros(self.envs.num_envs, len(self.matrix))
-        like["policy"] = torch.cat((like["policy"], more), dim=1)
         common = {"hidden_dims": list(chosen.net_arch), "activation": chosen.activation}
-        noise = {
-            "class_name": "rsl_rl.modules.distribution:GaussianDistribution",
-            "init_std": float(np.exp(chosen.log_std_init)),
-            "std_type": "log",
-        }
+        noise = {"class_name": "rsl_rl.modules.distribution:GaussianDistribution", "std_type": "log"}
+        noise |= {"init_std": float(np.exp(chosen.log_std_init))}
+        dense = {"class_name": "rsl_rl.models.mlp_model:MLPModel"}
         memory = {"class_name": "rsl_rl.models.rnn_model:RNNModel", "rnn_type": "lstm"}
         memory |= {"rnn_hidden_dim": chosen.memory, "rnn_num_layers": 1}
-        dense = {"class_name": "rsl_rl.models.mlp_model:MLPModel"}
         read = ["policy", "privileged"] if chosen.privileged else ["policy"]
         settings = {
             "num_steps_per_env": chosen.n_steps,
@@ -107,7 +98,8 @@ class PrivilegedPPO:
             made = PPO.construct_algorithm(like, where, settings, "cpu")
         made.train_mode()
         with torch.no_grad():
-            policy_tensors.dense(made.actor)[-1].weight.mul_(_FIRST_OUTPUT)
+            layers = [layer for layer in made.actor.mlp if isinstance(layer, torch.nn.Linear)]
+            layers[-1].weight.mul_(_FIRST_OUTPUT)
         return made
 
     def get_env(self) -> Any:
@@ -136,11 +128,11 @@ class PrivilegedPPO:
         """Normalised observations by group, from which their moments are learned."""
         chosen, found = self._config.normalisation, {}
         for name, values in observations.items():
-            moments, scaled = self.moments[name], values
+            rms, scaled = self.moments[name], values
             if chosen.observation:
                 if learn:
-                    moments.update(values)
-                scaled = (values - moments.mean) / np.sqrt(moments.var + policy_tensors.EPSILON)
+                    rms.update(values)
+                scaled = (values - rms.mean) / np.sqrt(rms.var + policy_tensors.EPSILON)
                 scaled = np.clip(scaled, -chosen.clip, chosen.clip).astype(np.float32)
             if name == "policy" and len(self.matrix):
                 more = np.clip(values @ self.matrix.T, -chosen.clip, chosen.clip)
@@ -162,10 +154,9 @@ class PrivilegedPPO:
                 self._returns.update(self._running)
                 self._running[dones] = 0.0
                 self._solved.extend(bool(infos[i]["is_success"]) for i in np.flatnonzero(dones).tolist())
-                scale = np.sqrt(self._returns.var + 1e-8) if self._config.normalisation.reward else 1.0
-                scaled = np.clip(
-                    rewards / scale, -self._config.normalisation.clip, self._config.normalisation.clip
-                )
+                chosen = self._config.normalisation
+                scale = np.sqrt(self._returns.var + 1e-8) if chosen.reward else 1.0
+                scaled = np.clip(rewards / scale, -chosen.clip, chosen.clip)
                 self._last = self._observed(observations)
                 self.ppo.process_env_step(
                     self._last, torch.from_numpy(scaled.astype(np.float32)), torch.from_numpy(dones), {}
@@ -204,13 +195,10 @@ class PrivilegedPPO:
     def predict(
         self, observations: Any, state: Any, starts: np.ndarray, deterministic: bool = True
     ) -> tuple[np.ndarray, Any]:
-        """Actions without exploration, and the memory after them; see Stable-Baselines3.
+        """Actions (n, k) without exploration, and the memory after them; see Stable-Baselines3.
 
-        Args:
-            observations: By group, (n, m) each.
-            state: From the call before; None at first.
-            starts: Which episodes begin, (n,).
-            deterministic: Always so.
+        Observations are given by group, (n, m) each; the state from the call before, None at first; and which
+        episodes begin, (n,).
         """
         actor, own = self.ppo.actor, self.ppo.actor.get_hidden_state()
         with torch.inference_mode():
@@ -222,22 +210,18 @@ class PrivilegedPPO:
         return actions, after
 
     def get_state(self, environments: bool = True) -> dict[str, Any]:
-        """Everything that decides how training goes on, as plain data.
-
-        Args:
-            environments: Whether the states of environments, memory and random numbers are part.
-        """
+        """Everything that decides how training goes on, maybe without environments and random numbers."""
         state: dict[str, Any] = {
-            "parameters": plain.arrays(self.ppo.save()),
+            "parameters": arrays(self.ppo.save()),
             "counters": {"steps": self.num_timesteps, "updates": self._updates, "stage": self.stage},
-            "normalisation": {name: _of(moments) for name, moments in self._all_moments().items()},
+            "normalisation": {name: moments(rms) for name, rms in self._all_moments().items()},
         }
         if environments:
             state |= {
                 "running": self._running.copy(),
                 "solved": list(self._solved),
-                "last": None if self._last is None else plain.arrays(dict(self._last.items())),
-                "memory": plain.arrays(self.ppo.actor.get_hidden_state()),
+                "last": None if self._last is None else arrays(dict(self._last.items())),
+                "memory": arrays(self.ppo.actor.get_hidden_state()),
                 "environments": vector.get_state(self.envs),
                 "torch": torch.get_rng_state().numpy().copy(),
             }
@@ -249,12 +233,8 @@ class PrivilegedPPO:
         Raises:
             ValueError: It is of a learner with another configuration.
         """
-        own = self.get_state()
-        check_like(
-            "learner",
-            {k: state[k] for k in ("counters", "normalisation", "running")},
-            {k: own[k] for k in ("counters", "normalisation", "running")},
-        )
+        given, own = ({k: one[k] for k in _CHECKED} for one in (state, self.get_state()))
+        check_like("learner", given, own)
         self.set_parameters(state)
         counters = state["counters"]
         self.num_timesteps, self._updates = counters["steps"], counters["updates"]
@@ -265,27 +245,17 @@ class PrivilegedPPO:
         self.envs.reset()
         self._running = state["running"].copy()
         self._solved.extend(state["solved"])
-        last = plain.tensors(state["last"])
+        last = tensors(state["last"])
         self._last = None if last is None else TensorDict(last, batch_size=[self.envs.num_envs])
-        self.ppo.actor.reset(hidden_state=plain.tensors(state["memory"]))
+        self.ppo.actor.reset(hidden_state=tensors(state["memory"]))
         vector.set_state(self.envs, state["environments"])
         torch.set_rng_state(torch.from_numpy(state["torch"].copy()))
 
     def set_parameters(self, state: dict[str, Any]) -> None:
         """Give it the parameters of a state, that of the optimiser included."""
-        self.ppo.load(plain.tensors(state["parameters"]), None, strict=True)
-        for name, moments in self._all_moments().items():
-            for part, value in state["normalisation"][name].items():
-                setattr(moments, part, np.array(value) if part != "count" else value)
+        self.ppo.load(tensors(state["parameters"]), None, strict=True)
+        for name, rms in self._all_moments().items():
+            set_moments(rms, state["normalisation"][name])
 
     def _all_moments(self) -> dict[str, RunningMeanStd]:
         return {**self.moments, "returns": self._returns}
-
-
-def _of(moments: RunningMeanStd) -> dict[str, Any]:
-    """Mean, variance and count as plain data."""
-    return {
-        "mean": np.array(moments.mean),
-        "var": np.array(moments.var),
-        "count": float(moments.count),
-    }

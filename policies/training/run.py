@@ -7,7 +7,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from stable_baselines3.common.logger import Logger
+from stable_baselines3.common.logger import Logger, TensorBoardOutputFormat
+from torch.utils.tensorboard import SummaryWriter
 from tqdm import tqdm
 
 from policies.evaluation.plots.style import STYLE, styled
@@ -17,22 +18,22 @@ from policies.training.callback import TrainingCallback
 from policies.training.config import Training
 from policies.training.locking import only_process
 from policies.training.state_checks import fits
-from policies.training.tensorboard_writer import TensorboardWriter
 
 _COMMAND = "python scripts/train.py --resume {}"
 """What a policy's file says of its origin: the run's folder holds the rest."""
 
 
+class _Logs(TensorBoardOutputFormat):
+    """Logs for TensorBoard of a run that goes on at some step; what they have beyond is no longer shown."""
+
+    def __init__(self, folder: Path, steps: int) -> None:
+        self.writer, self._is_closed = SummaryWriter(str(folder), purge_step=steps), False
+
+
 def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any]:
-    """Trains what a folder asks for, on from its last checkpoint.
+    """Trains what a folder from `folder.begin` asks for, on from its last checkpoint; returns its result.
 
-    Args:
-        path: The run's folder, from `folder.begin`.
-        progress: Whether to show a progress bar.
-        position: Its line on the screen, counted from 0.
-
-    Returns:
-        How it ended, as in result.json.
+    A progress bar is shown on a line of the screen, counted from 0.
 
     Raises:
         FileNotFoundError: The folder holds no run.
@@ -45,21 +46,18 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
 
 
 def _train(path: Path, config: Training, seed: int, progress: bool, position: int) -> dict[str, Any]:
-    first = seeds.training(seed)
-    episodes = min(config.num_envs, config.evaluation.episodes)
-    model = learners.begin(config, first)
-    held_out = vector.make(config, seeds.held_out(0), episodes)
+    model = learners.begin(config, seeds.training(seed))
+    held_out = vector.make(config, seeds.held_out(0), min(config.num_envs, config.evaluation.episodes))
     try:
         state = checkpoints.last(path)
         if state:
             with fits(f"{path}: the last checkpoint"):
                 learners.set_state(model, state["learner"])
         steps = model.num_timesteps
-        writer = TensorboardWriter(path / "tensorboard", steps)
+        writer = _Logs(path / "tensorboard", steps)
         model.set_logger(Logger(None, [writer]))
-        with tqdm(
-            total=config.budget, initial=steps, desc=path.name, position=position, disable=not progress
-        ) as bar:
+        shown = {"desc": path.name, "position": position, "disable": not progress}
+        with tqdm(total=config.budget, initial=steps, **shown) as bar:
             callback = TrainingCallback(config, path, held_out, bar)
             if state:
                 with fits(f"{path}: the last checkpoint"):
@@ -95,12 +93,7 @@ def _finish(
     export.write(model, best["learner"]["normalisation"], config, path, seed, _COMMAND.format(path.name))
     with styled():
         curve.plot({path.name: [callback.curve]}).savefig(path / "curve.png", dpi=STYLE.dpi)
-    result = {
-        "ended": callback.ended,
-        "steps": callback.curve[-1].steps,
-        "seconds": callback.seconds,
-        "cpu_seconds": callback.cpu_seconds,
-        "best": best["row"],
-    }
+    times = {"seconds": callback.seconds, "cpu_seconds": callback.cpu_seconds}
+    result = {"ended": callback.ended, "steps": callback.curve[-1].steps, **times, "best": best["row"]}
     folder.write_result(path, result)
     return result

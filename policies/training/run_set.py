@@ -18,13 +18,7 @@ from slipgym.tasks import find
 
 
 def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output: Path) -> Path:
-    """Makes the folder of a study, with one for every run in it.
-
-    Args:
-        config: What the runs share.
-        seeds: Seeds of the runs.
-        sources: Friction sources, each with every seed; none given: the configuration's.
-        output: Folder that the study's own folder goes to.
+    """Makes a study's folder in `output`, with one for each source (none: the configuration's) and seed.
 
     Raises:
         ValueError: A source is unknown or a seed out of range.
@@ -42,16 +36,9 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
 
 
 def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -> str:
-    """Trains every run of a study that is not over yet, and draws their curves.
+    """Trains every run in a folder, or the run it is of, that is not over yet, and draws their curves.
 
-    Args:
-        path: The study's folder, or that of one run.
-        jobs: Runs at once; -1 for one per core.
-        ray: See `policies.parallel.results`.
-        progress: Whether to show progress bars.
-
-    Returns:
-        What came out, as text.
+    For `jobs` and `ray` see `policies.parallel.results`. Returns what came out, as text.
 
     Raises:
         FileNotFoundError: There is no run in the folder.
@@ -60,34 +47,22 @@ def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -
     runs = folder.runs(path)
     work = [(run, progress, k) for k, run in enumerate(runs)]
     results = list(parallel.results(train, work, jobs, ray))
-    if len(runs) > 1:
-        _draw(path, runs)
-    lines = [
-        f"  {run.name}: {_best(run, result['best'])}; ended by {result['ended']} at step {result['steps']} "
-        f"after {_time(result)}" + ("" if result["steps"] else "; nothing was learned")
-        for run, result in zip(runs, results, strict=True)
-    ]
-    return "\n".join([f"Look at {path}", *lines])
-
-
-def _best(run: Path, row: Mapping[str, Any]) -> str:
-    """The best evaluation; that at step 0 may be of a policy that the run started from."""
-    said = f"solved {row['success']:.0%} of the held-out episodes at step {row['steps']}"
-    config, _ = folder.order(run)
-    given = config.algorithm == "privileged_ppo" and config.privileged_ppo.start
-    return said if row["steps"] or not given else f"{said}: the policy that it started from solves as many"
-
-
-def _time(result: Mapping[str, Any]) -> str:
-    """How long a run took; runs of slipgym 0.1.0 do not know their time of the processor."""
-    known = "cpu_seconds" in result
-    return f"{result['seconds']:.0f} s" + (f", {result['cpu_seconds']:.0f} s of CPU" if known else "")
-
-
-def _draw(path: Path, runs: Sequence[Path]) -> None:
-    """The curves of all runs in one picture, a colour for each condition."""
     curves: dict[str, list[list[curve.Row]]] = {}
     for run in runs:
         curves.setdefault(run.name.partition("__")[0], []).append(folder.read_curve(run))
-    with styled():
-        curve.plot(curves).savefig(path / "curves.png", dpi=STYLE.dpi)
+    if len(runs) > 1:
+        with styled():
+            curve.plot(curves).savefig(path / "curves.png", dpi=STYLE.dpi)
+    return "\n".join([f"Look at {path}", *map(_said, runs, results)])
+
+
+def _said(run: Path, result: Mapping[str, Any]) -> str:
+    """A line for a run; its best evaluation, that at step 0, may be of a policy that it started from."""
+    config, best = folder.order(run)[0], result["best"]
+    said = f"  {run.name}: solved {best['success']:.0%} of the held-out episodes at step {best['steps']}"
+    if config.algorithm == "privileged_ppo" and config.privileged_ppo.start and not best["steps"]:
+        said += ": the policy that it started from solves as many"
+    said += f"; ended by {result['ended']} at step {result['steps']} after {result['seconds']:.0f} s"
+    if "cpu_seconds" in result:  # runs of slipgym 0.1.0 do not know it
+        said += f", {result['cpu_seconds']:.0f} s of CPU"
+    return said if result["steps"] else f"{said}; nothing was learned"

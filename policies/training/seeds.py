@@ -12,10 +12,7 @@ HELD_OUT = 2**30
 
 
 def training(seed: int) -> int:
-    """Seed of the first environment of a run.
-
-    Args:
-        seed: The run's, 0 to RUNS - 1.
+    """Seed of the first environment of a run, whose own is 0 to RUNS - 1.
 
     Raises:
         ValueError: It is out of range.

@@ -20,8 +20,6 @@ from policies.training.run import train
 from slipgym import atomic_io
 from slipgym.tasks import find
 
-_NAME, _JOURNAL = "sweep", "optuna.journal"
-
 
 def begin(config: Training, output: Path) -> Path:
     """Makes the folder of a sweep.
@@ -33,7 +31,7 @@ def begin(config: Training, output: Path) -> Path:
         raise ValueError("nothing to try: the configuration has no key sweep, a mapping of dotted keys")
     path = stamped(output, f"{find(config.task).key}__{config.algorithm}__sweep")
     path.mkdir(parents=True)
-    optuna.create_study(storage=_storage(path), study_name=_NAME, direction="maximize")
+    _study(path)
     return path
 
 
@@ -48,21 +46,12 @@ def sweep(
 ) -> str:
     """Trains with one choice of hyperparameters after the other, and keeps the best as best.yaml.
 
-    Args:
-        path: The sweep's folder.
-        config: What the runs share, and what is tried.
-        trials: How many.
-        seed: Of all runs, and of the search.
-        jobs: Runs at once; with more than one, what is tried depends on which ends first.
-        ray: See `policies.parallel.results`.
-        progress: Whether to show progress bars.
-
-    Returns:
-        What came out, as text.
+    The seed is that of all runs, and of the search; with several runs at once (`jobs`, `ray`: see
+    `policies.parallel.results`) what is tried depends on which ends first. Returns what came out, as text.
     """
     items = [(path, config, seed, k, progress) for k in range(trials)]
     list(parallel.results(trial, items, jobs, ray))
-    study = optuna.load_study(storage=_storage(path), study_name=_NAME)
+    study = _study(path)
     found = files.changed(config, _values(study.best_params))
     atomic_io.write(path / "best.yaml", files.text(found).encode())
     return f"Look at {path}\n  best, {study.best_value:.3f}: {_values(study.best_params)}"
@@ -70,8 +59,7 @@ def sweep(
 
 def trial(path: Path, config: Training, seed: int, number: int, progress: bool) -> None:
     """One run of a sweep, in a folder of its own."""
-    sampler = optuna.samplers.TPESampler(seed=seed + number)
-    study = optuna.load_study(storage=_storage(path), study_name=_NAME, sampler=sampler)
+    study = _study(path, optuna.samplers.TPESampler(seed=seed + number))
 
     def objective(one: optuna.Trial) -> float:
         chosen = _values({key: _suggest(one, key, dimension) for key, dimension in config.sweep.items()})
@@ -80,16 +68,13 @@ def trial(path: Path, config: Training, seed: int, number: int, progress: bool) 
         train(run, progress, number)
         return area(folder.read_curve(run), config)
 
-    optuna.logging.set_verbosity(optuna.logging.WARNING)
     study.optimize(objective, n_trials=1)
 
 
 def area(rows: Sequence[Row], config: Training) -> float:
     """Mean share of episodes solved over the budget: high if it is learned early.
 
-    Args:
-        rows: A learning curve.
-        config: Its run. After an early end the last value counts for the rest.
+    After an early end of a run the last value of its curve counts for the rest.
     """
     due = max(len(rows), 1 + config.budget // config.evaluation.every)
     shares = [row.success for row in rows]
@@ -110,5 +95,9 @@ def _values(parameters: Mapping[str, Any]) -> dict[str, Any]:
     return {key: json.loads(value) if isinstance(value, str) else value for key, value in parameters.items()}
 
 
-def _storage(path: Path) -> JournalStorage:
-    return JournalStorage(JournalFileBackend(str(path / _JOURNAL)))
+def _study(path: Path, sampler: Any = None) -> optuna.Study:
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    storage = JournalStorage(JournalFileBackend(str(path / "optuna.journal")))
+    return optuna.create_study(
+        storage=storage, study_name="sweep", direction="maximize", sampler=sampler, load_if_exists=True
+    )

@@ -20,9 +20,7 @@ from slipgym.tasks import find
 class Scenario(TaskEnd):
     """An environment whose episodes all have some options, and terminate at their full length.
 
-    Args:
-        env: The environment.
-        options: Of its reset; those of a single reset come on top.
+    Options of a single reset come on top.
     """
 
     def __init__(self, env: gym.Env, options: Mapping[str, Any]) -> None:
@@ -37,37 +35,28 @@ class Scenario(TaskEnd):
 
 
 def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool = False) -> VecEnv:
-    """The environments of a run.
-
-    Args:
-        config: The run.
-        seed: Of the first environment; environment i is seeded `seed` + i at the first reset.
-        num_envs: How many; None: as many as the run trains in.
-        shaped: Whether they are those in which it learns.
-    """
+    """The environments of a run, or those it learns in (`shaped`); at first environment i has `seed` + i."""
     keywords = (config.shaped if shaped else config.environment).model_dump()
     privileged = config.algorithm == "privileged_ppo"
     if privileged:
         keywords["observation_mode"] = "dict"
     count = config.num_envs if num_envs is None else num_envs
     combinations = config.combinations()
-    scenarios = [combinations[i % len(combinations)] for i in range(count)]
+    envs: VecEnv
     if config.engine == "planar":
-        varied = scenarios if config.vary else None
-        made = make_vec_env(
+        envs = make_vec_env(
             config.task,
             count,
             seed,
             config.engine_threads,
-            scenarios=varied,
+            scenarios=[combinations[i % len(combinations)] for i in range(count)] if config.vary else None,
             spread=config.spread and shaped,
             privileged=privileged,
             **keywords,
         )
     else:
-        made = scalar(config.task, count, combinations, config.processes, **keywords)
-        made.seed(seed)
-    envs: VecEnv = made
+        envs = scalar(config.task, count, combinations, config.processes, **keywords)
+        envs.seed(seed)
     if config.derived and not privileged:
         envs = DerivedVecEnv(envs, config.derived, config.environment.history)
     return envs
@@ -76,20 +65,14 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
 def scalar(
     task: str, count: int, combinations: Sequence[Mapping[str, Any]], processes: bool, **keywords: Any
 ) -> VecMonitor:
-    """Scalar environments side by side.
+    """Scalar environments side by side, maybe each in its own process.
 
-    Args:
-        task: Their task.
-        count: How many.
-        combinations: Options of reset; environment i has combination i modulo their number.
-        processes: Whether each has its own process.
-        **keywords: Of the environments.
+    Environment i has combination i modulo their number of options of reset.
     """
     env_id = _id(task)
 
     def one(options: Mapping[str, Any]) -> gym.Env:
-        env = gym.make(env_id, disable_env_checker=True, **keywords)
-        return Scenario(env.unwrapped, options)
+        return Scenario(gym.make(env_id, disable_env_checker=True, **keywords).unwrapped, options)
 
     makers = [partial(one, combinations[i % len(combinations)]) for i in range(count)]
     return VecMonitor(SubprocVecEnv(makers) if processes else DummyVecEnv(makers))
@@ -97,11 +80,8 @@ def scalar(
 
 def get_state(envs: Any) -> dict[str, Any]:
     """Everything that decides what the environments do next, as plain data."""
-    if isinstance(envs, DerivedVecEnv):
-        return get_state(envs.venv)
-    states = envs.env_method("get_state")
     return {
-        "envs": states[:1] if _is_batch(envs) else states,
+        "envs": envs.env_method("get_state")[: _states(envs)],
         "returns": envs.episode_returns.copy(),
         "lengths": envs.episode_lengths.copy(),
     }
@@ -113,24 +93,21 @@ def set_state(envs: Any, state: dict[str, Any]) -> None:
     Raises:
         ValueError: It is of other environments.
     """
-    if isinstance(envs, DerivedVecEnv):
-        set_state(envs.venv, state)
-        return
+    envs = envs.venv if isinstance(envs, DerivedVecEnv) else envs
     own = {"returns": envs.episode_returns, "lengths": envs.episode_lengths}
     check_like("environments", {name: state[name] for name in own}, own)
-    if len(state["envs"]) != (1 if _is_batch(envs) else envs.num_envs):
+    if len(state["envs"]) != _states(envs):
         raise ValueError(f"environments.envs holds {len(state['envs'])} states")
     for index, one in enumerate(state["envs"]):
-        envs.env_method("set_state", one, indices=None if _is_batch(envs) else index)
+        envs.env_method("set_state", one, indices=index if _states(envs) == envs.num_envs else None)
     envs.episode_returns, envs.episode_lengths = state["returns"].copy(), state["lengths"].copy()
 
 
-def _is_batch(envs: VecMonitor) -> bool:
-    """Whether one state is that of all environments."""
-    return isinstance(envs.venv, SlipVecEnv)
+def _states(envs: VecEnv) -> int:
+    """How many states environments have: a batch has one."""
+    return 1 if isinstance(envs.unwrapped, SlipVecEnv) else envs.num_envs
 
 
 def _id(task: str) -> str:
     """The id of a task's environment, with the module that registers it."""
-    module = task.partition(":")[0] if is_reference(task) else "slipgym"
-    return f"{module}:{find(task).id}"
+    return f"{task.partition(':')[0] if is_reference(task) else 'slipgym'}:{find(task).id}"

@@ -16,11 +16,7 @@ from slipgym.config.yaml_model import validate
 def configured(network: str, task: str, given: Mapping[str, Any], texts: Sequence[str]) -> Imitation:
     """The imitation that a command line names, with what it sets.
 
-    Args:
-        network: Name or path of the configuration.
-        task: The task.
-        given: Arguments of the environment; None leaves one as it is.
-        texts: Assignments by dotted key, which win over the others.
+    Assignments as texts win over given arguments of the environment; None leaves one of these as it is.
 
     Raises:
         FileNotFoundError: There is no such file.

@@ -63,30 +63,26 @@ class Imitation(Frozen):
 
     @model_validator(mode="after")
     def _is_seen(self) -> Self:
-        if self.environment.history:
+        given = self.environment
+        if given.history:
             raise ValueError("environment.history must be 0: the LSTM layer is the network's memory")
-        if self.teacher != "truth" and self.environment.friction_source not in ("none", "estimated"):
+        if self.teacher != "truth" and given.friction_source not in ("none", "estimated"):
             raise ValueError(f"teacher {self.teacher!r} needs environment.friction_source none or estimated")
-        if self.teacher != "truth" and self.environment.estimator is None:
+        if self.teacher != "truth" and given.estimator is None:
             raise ValueError(f"teacher {self.teacher!r} acts on estimates: environment.estimator is null")
-        if self.environment.observation_mode == "sensor":
-            raise ValueError(
-                "environment.observation_mode must be 'flat'; friction_source 'none' shows sensors"
-            )
-        if not (self.environment.action_mode or LOGARITHMIC).startswith(LOGARITHMIC):
-            raise ValueError(
-                "environment.action_mode must be null, the controller's, or the same with a logarithmic grip"
-            )
+        if given.observation_mode == "sensor":
+            flat = "must be 'flat'; friction_source 'none' shows sensors"
+            raise ValueError(f"environment.observation_mode {flat}")
+        if not (given.action_mode or LOGARITHMIC).startswith(LOGARITHMIC):
+            own = "null, the controller's, or the same with a logarithmic grip"
+            raise ValueError(f"environment.action_mode must be {own}")
         if self.rounds * self.rows > seeds.ROWS:
             raise ValueError(f"rounds * rows = {self.rounds * self.rows} episodes; at most {seeds.ROWS}")
         return self
 
 
 def read(choice: Choice) -> Imitation:
-    """Reads an imitation.
-
-    Args:
-        choice: Name of a file in configs/imitation, path of a YAML file, or a mapping.
+    """Reads an imitation: the name of a file in configs/imitation, path of a YAML file, or a mapping.
 
     Raises:
         FileNotFoundError: There is no such file.

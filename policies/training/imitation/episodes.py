@@ -26,16 +26,19 @@ KNOWN = 0.05
 
 @dataclass(frozen=True)
 class Demonstrations:
-    """n episodes of at most T steps; those that ended early are filled with zeros."""
+    """n episodes of at most T steps; those that ended early are filled with zeros.
+
+    Attributes:
+        observations: What the network observes, (T, n, m) float32.
+        actions: What the controller would do in its place, (T, n, k) float32.
+        lengths: Steps of each episode, (n,).
+        solved: Whether each was a success, (n,) bool.
+    """
 
     observations: np.ndarray
-    """What the network observes, (T, n, m) float32."""
     actions: np.ndarray
-    """What the controller would do in its place, (T, n, k) float32."""
     lengths: np.ndarray
-    """Steps of each episode, (n,)."""
     solved: np.ndarray
-    """Whether each was a success, (n,) bool."""
 
 
 def arguments(config: Imitation) -> dict[str, Any]:
@@ -49,21 +52,14 @@ def arguments(config: Imitation) -> dict[str, Any]:
     if given["action_mode"] is not None:
         wanted = LOGARITHMIC + modes["action_mode"]
         if given["action_mode"] != wanted:
-            raise ValueError(
-                f"environment.action_mode = {given['action_mode']!r}: the controller of {config.task} needs "
-                f"{wanted!r}, or null"
-            )
+            needs = f"the controller of {config.task} needs {wanted!r}, or null"
+            raise ValueError(f"environment.action_mode = {given['action_mode']!r}: {needs}")
         modes["action_mode"] = wanted
     return {**given, **modes}
 
 
 class Scene:
-    """The environments of an imitation, and the controller that is imitated.
-
-    Args:
-        config: The imitation.
-        rows: Environments.
-    """
+    """The environments (`rows` of them) of an imitation, and the controller that is imitated."""
 
     def __init__(self, config: Imitation, rows: int) -> None:
         task, given = find(config.task), arguments(config)
@@ -94,12 +90,7 @@ class Scene:
         return found
 
     def taught(self, observations: np.ndarray, true: np.ndarray) -> np.ndarray:
-        """Observations of the controller.
-
-        Args:
-            observations: (n, m).
-            true: True mu_s, mu_c, r, (n, 3).
-        """
+        """The controller's observations, from those given (n, m) and the true mu_s, mu_c, r, (n, 3)."""
         if self._teacher == "estimate":
             return observations
         confidence = np.ones_like(true)
@@ -117,21 +108,19 @@ class Scene:
 def demonstrate(scene: Scene, network: Network | None, acts: np.ndarray, seed: int) -> Demonstrations:
     """Plays an episode in each environment; the controller says at each step what it would do.
 
-    Args:
-        scene: Environments and controller.
-        network: The network that acts; None: the controller acts in all rows.
-        acts: Rows in which the network acts, (n,) bool.
-        seed: Of the first environment.
+    The network, if there is one, acts in the rows `acts`, (n,) bool; the seed is the first environment's.
     """
     envs, n = scene.envs, scene.envs.num_envs
     observations, infos = envs.reset(seed=seed)
-    memory = None if network is None else _fresh(network, n)
+    memory: Any = None
+    if network is not None and network.memory_shape is not None:
+        memory = (np.zeros((n, *network.memory_shape), np.float32),) * 2  # copied before it is written to
     state, running, solved = None, np.ones(n, bool), np.zeros(n, bool)
     seen, wanted, lengths = [], [], np.zeros(n, np.int64)
     while running.any():
-        labels, state = scene.controller.predict(scene.taught(observations, infos["true"]), state)
-        labels = scene.acted(labels)
-        actions, observed = labels, scene.seen(observations)
+        asked, state = scene.controller.predict(scene.taught(observations, infos["true"]), state)
+        actions = labels = scene.acted(asked)
+        observed = scene.seen(observations)
         if network is not None:
             given, memory = network.forward(observed, memory)
             actions = np.where(acts[:, None], given, labels)
@@ -143,10 +132,3 @@ def demonstrate(scene: Scene, network: Network | None, acts: np.ndarray, seed: i
         solved[ended] = infos["is_success"][ended]
         running = running & ~ended
     return Demonstrations(np.array(seen, np.float32), np.array(wanted, np.float32), lengths, solved)
-
-
-def _fresh(network: Network, n: int) -> tuple[np.ndarray, np.ndarray] | None:
-    if network.memory_shape is None:
-        return None
-    shape = n, *network.memory_shape
-    return np.zeros(shape, np.float32), np.zeros(shape, np.float32)

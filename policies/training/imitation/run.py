@@ -11,8 +11,10 @@ import math
 import os
 import shutil
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from contextlib import closing
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -21,14 +23,13 @@ from tqdm import tqdm
 
 from policies.learned import files
 from policies.learned.description import Column
-from policies.learned.export import described
+from policies.learned.export import described, origin
 from policies.learned.fitting import column_of
 from policies.learned.forward import Network
 from policies.training import seeds
 from policies.training.imitation.config import Imitation
 from policies.training.imitation.episodes import Demonstrations, Scene, arguments, demonstrate
 from policies.training.imitation.student import NORMALISATION, Student, network_of
-from policies.versions import versions
 from slipgym import atomic_io
 from slipgym.tasks import find
 
@@ -40,16 +41,19 @@ LIMIT = 1.0
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of an imitation."""
+    """Result of an imitation.
+
+    Attributes:
+        weights: Tensors of the network, see `policies.learned.tensors.expected`.
+        curve: Of each round: its number, episodes so far, share that the network solved, loss at its end.
+        solved: Share of the held-out episodes that the network solves; NaN without any.
+        steps: Steps of experience.
+    """
 
     weights: dict[str, np.ndarray]
-    """Tensors of the network, see `policies.learned.tensors.expected`."""
     curve: list[dict[str, float]]
-    """Of each round: its number, episodes so far, share that the network solved, loss after the updates."""
     solved: float
-    """Share of the held-out episodes that the network solves; NaN without any."""
     steps: int
-    """Steps of experience."""
 
 
 def imitate(
@@ -57,16 +61,9 @@ def imitate(
 ) -> tuple[Path, float]:
     """Trains a network and writes it as a policy (docs/policy_files.md), with its curve beside it.
 
-    Args:
-        config: The imitation.
-        output: Folder for the run's own folder.
-        seed: Of episodes, first weights and order.
-        command: What started it, for the record.
-
     Returns:
-        The run's folder, which holds the folder "policy" and curve.csv, and the share of held-out episodes
-        that the policy solves. Until the run is over the policy of the last round is in the folder
-        "unfinished" in place of "policy".
+        The run's folder in `output`, which holds the folder "policy" and curve.csv, and the share of held-out
+        episodes that it solves. Until the run is over the last round's policy is in "unfinished" instead.
 
     Raises:
         FileExistsError: The run's folder is there already.
@@ -77,19 +74,11 @@ def imitate(
     where = described(find(config.task).id, arguments(config))
 
     def write(path: Path, outcome: Outcome) -> None:
-        origin = {
-            "algorithm": "DAgger",
-            "command": command,
-            "steps": outcome.steps,
-            "seeds": [seed],
-            "versions": versions(),
-            "critic": None,
-        }
         description = {
             "environment": where,
             "network": network_of(config).model_dump(mode="json"),
             "normalisation": NORMALISATION.model_dump(mode="json"),
-            "origin": origin,
+            "origin": origin("DAgger", command, outcome.steps, [seed], critic=None),
         }
         files.write(path, description, outcome.weights)
         curve = pd.DataFrame(outcome.curve).to_csv(index=False, lineterminator="\n")
@@ -122,65 +111,48 @@ def destination(config: Imitation, output: str | os.PathLike[str], seed: int) ->
 
 
 def run(
-    config: Imitation,
-    seed: int = 0,
-    progress: bool = True,
-    keep: Callable[[Outcome], None] | None = None,
+    config: Imitation, seed: int = 0, progress: bool = True, keep: Callable[[Outcome], None] | None = None
 ) -> Outcome:
     """Trains a network; see `imitate`. Calls `keep` after each round with what there is."""
     torch.set_num_threads(config.threads)
     torch.manual_seed(seed)
     rng = np.random.default_rng(seed)
-    scene, first = Scene(config, config.rows), seeds.training(seed)
-    columns = [column_of(column) for column in scene.envs.action_columns]
     data: list[Demonstrations] = []
-    fit: Fit | None = None
+    fit: Any = None
     curve = []
-    try:
-        with tqdm(range(config.rounds), desc="rounds", disable=not progress) as bar:
-            for number in bar:
-                acts = np.arange(config.rows) >= config.controlled * config.rows
-                network = None if fit is None else fit.network()
-                data.append(demonstrate(scene, network, acts, first + number * config.rows))
-                fit = fit or Fit(config, data[0], columns)
-                loss = fit.update(data, rng)
-                solved = float("nan") if network is None else float(data[-1].solved[acts].mean())
-                curve.append(
-                    {"round": number, "episodes": len(data) * config.rows, "solved": solved, "loss": loss}
-                )
-                bar.set_postfix(loss=f"{loss:.3g}", solved=f"{solved:.0%}")
-                if keep is not None:
-                    keep(Outcome(fit.student.tensors(), curve, math.nan, _steps(data)))
-    finally:
-        scene.close()
-    assert fit is not None
-    return Outcome(fit.student.tensors(), curve, judged(config, fit.network()), _steps(data))
-
-
-def _steps(data: Sequence[Demonstrations]) -> int:
-    return int(sum(one.lengths.sum() for one in data))
+    with (
+        closing(Scene(config, config.rows)) as scene,
+        tqdm(range(config.rounds), desc="rounds", disable=not progress) as bar,
+    ):
+        columns = [column_of(column) for column in scene.envs.action_columns]
+        for number in bar:
+            acts = np.arange(config.rows) >= config.controlled * config.rows
+            network = None if fit is None else fit.network()
+            first = seeds.training(seed) + number * config.rows
+            data.append(demonstrate(scene, network, acts, first))
+            fit = fit or Fit(config, data[0], columns)
+            loss = fit.update(data, rng)
+            solved = float("nan") if network is None else float(data[-1].solved[acts].mean())
+            episodes, steps = len(data) * config.rows, int(sum(one.lengths.sum() for one in data))
+            curve.append({"round": number, "episodes": episodes, "solved": solved, "loss": loss})
+            bar.set_postfix(loss=f"{loss:.3g}", solved=f"{solved:.0%}")
+            outcome = Outcome(fit.student.tensors(), curve, math.nan, steps)
+            if keep is not None:
+                keep(outcome)
+    return replace(outcome, solved=judged(config, fit.network()))
 
 
 def judged(config: Imitation, network: Network) -> float:
     """Share of the held-out episodes that a network solves; NaN without any."""
     if not config.held_out:
         return math.nan
-    scene = Scene(config, config.held_out)
-    try:
+    with closing(Scene(config, config.held_out)) as scene:
         everywhere = np.ones(config.held_out, dtype=bool)
         return float(demonstrate(scene, network, everywhere, seeds.held_out(0)).solved.mean())
-    finally:
-        scene.close()
 
 
 class Fit:
-    """Fits the network to the episodes of all rounds so far.
-
-    Args:
-        config: The imitation.
-        first: Episodes of the first round, which normalise the observations.
-        components: Of an action.
-    """
+    """Fits the network to the episodes of all rounds; those of the first one normalise the observations."""
 
     def __init__(self, config: Imitation, first: Demonstrations, components: Sequence[Column]) -> None:
         running = np.arange(len(first.observations))[:, None] < first.lengths

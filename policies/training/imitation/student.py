@@ -9,8 +9,8 @@ import numpy as np
 import torch
 from torch import nn
 
-from policies.learned.description import Column, Memory, Network, Normalisation
-from policies.learned.extract import LSTM, array
+from policies.learned.description import Column, Network, Normalisation
+from policies.learned.extract import array, places
 from policies.training.imitation.config import Imitation
 
 EPSILON = 1e-8
@@ -28,14 +28,7 @@ OTHER = 0.3
 
 
 class Student(nn.Module):
-    """An LSTM layer, unless the memory is 0, and dense layers.
-
-    Args:
-        config: Sizes.
-        mean: Of the observations, (m,).
-        var: Their variance, (m,).
-        components: Of an action.
-    """
+    """An LSTM layer, unless the memory is 0, and dense layers; mean and variance of observations are (m,)."""
 
     def __init__(
         self, config: Imitation, mean: np.ndarray, var: np.ndarray, components: Sequence[Column]
@@ -64,27 +57,19 @@ class Student(nn.Module):
     def loss(self, observations: torch.Tensor, wanted: torch.Tensor, lengths: torch.Tensor) -> torch.Tensor:
         """Mean Huber loss of the errors, a force's relative to its size.
 
-        Args:
-            observations: (T, n, m).
-            wanted: Actions (T, n, k).
-            lengths: Steps of each episode, (n,).
+        Observations are (T, n, m), the wanted actions (T, n, k), the episodes' lengths (n,).
         """
         scale = torch.where(self._is_force, wanted + 1.0 + LEAST, torch.tensor(OTHER))
-        error = nn.functional.huber_loss(
-            self(observations) / scale, wanted / scale, reduction="none", delta=0.5
-        )
+        given, wanted = self(observations) / scale, wanted / scale
+        error = nn.functional.huber_loss(given, wanted, reduction="none", delta=0.5)
         running = torch.arange(len(wanted))[:, None] < lengths
         return (error.mean(-1) * running).sum() / running.sum()
 
     def tensors(self) -> dict[str, np.ndarray]:
         """Tensors by their names in a policy's file, see `policies.learned.tensors.expected`."""
-        found = {"observation.mean": self.mean.numpy().copy(), "observation.var": self.var.numpy().copy()}
-        if self.memory is not None:
-            for ours, theirs in LSTM.items():
-                found[f"memory.0.{ours}"] = array(getattr(self.memory, f"{theirs}0"))
-        for k, layer in enumerate(self.dense):
-            found[f"layers.{k}.weight"], found[f"layers.{k}.bias"] = array(layer.weight), array(layer.bias)
-        return found
+        state = self.state_dict()
+        found = {ours: array(state[theirs]) for ours, theirs in places(state, "dense", "memory").items()}
+        return {"observation.mean": array(self.mean), "observation.var": array(self.var), **found}
 
 
 def _lstm(width: int, size: int) -> nn.LSTM:
@@ -102,14 +87,7 @@ def _lstm(width: int, size: int) -> nn.LSTM:
 
 def network_of(config: Imitation) -> Network:
     """Description of the network in a policy's file."""
-    memory = Memory(size=config.memory, layers=1) if config.memory else None
-    return Network(
-        kind="lstm" if memory else "mlp",
-        memory=memory,
-        layers=config.layers,
-        activation="tanh",
-        squash=config.squash,
-    )
+    return Network.of(config.memory, config.layers, "tanh", config.squash)
 
 
 NORMALISATION = Normalisation(clip=CLIP, epsilon=EPSILON)
