@@ -164,14 +164,9 @@ class Live:
         """Of each sensor, the receiver's clock less its own, with the smallest recent delay [s]."""
         return {source.name: source.offset for source in self._sources()}
 
-    def warnings(self) -> dict[int | str, str]:
-        """By finger, how much its clocks differ or by arrival drifted apart; by sensor, another rate."""
-        lines: dict[int | str, str] = {
-            source.name: f"{source.name} comes at {rate:.4g} Hz, but {1.0 / source.period:.4g} Hz were "
-            "stated: a policy acts too fast or too slowly"
-            for source in self._sources()
-            if (rate := source.other_rate())
-        }
+    def warnings(self) -> dict[int, str]:
+        """Of each finger whose sensors' clocks differ, or by arrival have drifted apart, by how much."""
+        lines = {}
         for hand in self._hands.values():
             apart = hand.force.ahead - hand.velocity.ahead
             if abs(apart) > APART:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Sequence
-from operator import sub
-from statistics import fmean, median
 
 from estimator.sample import LARGEST
 
@@ -51,7 +49,6 @@ class Source:
         self._others, self._learned = 0, 0 if by_arrival else LEARNED
         self._by_arrival, self._shift = by_arrival, math.inf if by_arrival else 0.0
         self._buckets = (-math.inf, math.inf, math.inf)  # begin, smallest in it, smallest in the one before
-        self._stamps: deque[float] = deque(maxlen=LEARNED)
 
     def judge(self, stamp: float, arrival: float, values: Sequence[float], done: float) -> tuple[str, float]:
         """Decides on a sample.
@@ -81,7 +78,6 @@ class Source:
             restart, self._buckets = True, (-math.inf, math.inf, math.inf)
             if self._by_arrival:
                 self._learned, self._shift = 0, math.inf
-        self._stamps.append(stamp)
         self._others, self._stamp = 0, stamp
         self._measure(arrival, arrival - stamp)
         if self._learned < LEARNED:
@@ -105,13 +101,6 @@ class Source:
             begin, smallest, before = arrival, math.inf, smallest
         self._buckets = begin, min(smallest, offset), before
         self.offset = min(self._buckets[1:])
-
-    def other_rate(self) -> float | None:
-        """Of the last samples [Hz], if it is off by 10 %, by mean and median: losses or bursts change one."""
-        stamps = sorted(set(self._stamps))
-        steps = [*map(sub, stamps[1:], stamps)] if len(stamps) > LEARNED // 2 else [self.period]
-        off = all(abs(self.period / step - 1.0) > 0.1 for step in (median(steps), fmean(steps)))
-        return 1.0 / median(steps) if off else None
 
     @property
     def ahead(self) -> float:

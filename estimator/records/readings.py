@@ -39,6 +39,8 @@ _LONGEST, _FASTEST, _DOUBTED = 0.04, 0.4, 0.4
 """Torque over normal force [m] and speed [m/s] that no grip has; the share of them from which they are named
 where the radius is too large, too."""
 _ENOUGH = 20  # samples
+_LONG = 0.5
+"""Way of one slip that no object in a grip has [m]: one that falls is fast, too."""
 
 
 def reading_warnings(record: Record, samples: Samples) -> list[str]:
@@ -166,7 +168,8 @@ def _units(samples: Samples) -> list[str]:
             f"{{unit: {unit}}}` in the mapping says so. Or was it taken far from the pad, without its CoP?"
         ]
     v_t = np.hypot(*samples.twist[:, :2].T)
-    if np.count_nonzero(v_t > fastest) >= max(_ENOUGH, 0.5 * np.count_nonzero(v_t > _SLIDES)):
+    most = np.count_nonzero(v_t > fastest) >= max(_ENOUGH, 0.5 * np.count_nonzero(v_t > _SLIDES))
+    if most and _farthest(samples.t, v_t, v_t > fastest) > _LONG:
         unit = likely_unit("v_x", float(np.median(v_t[v_t > fastest])), USUAL_SPEED)
         return [
             f"most slip is faster than {fastest:.2g} m/s, as in no grip: are v_x and v_y in {unit}? `v_x: "
@@ -204,6 +207,13 @@ def _runs(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Lengths of the runs of True; a single 0 if there are none."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False]))))
     return edges[1::2] - edges[::2] if len(edges) else np.zeros(1, np.int64)
+
+
+def _farthest(t: Array, v_t: Array, flags: NDArray[np.bool_]) -> float:
+    """Largest way within a run of True [m]."""
+    ways = np.where(flags, v_t, 0.0) * np.diff(t, prepend=t[0])
+    runs = np.cumsum(np.diff(flags, prepend=False) & flags)
+    return float(np.bincount(runs, ways).max())
 
 
 def _longest(flags: NDArray[np.bool_]) -> tuple[int, int] | None:

@@ -11,8 +11,9 @@ _AXES = ((0, 0), (1, 1), (3, 2))
 """Components of the wrench and of the twist that go along with each other."""
 _SLIDES, _TURNS, _FORCE, _TORQUE, _LEVER = 3e-3, 0.1, 0.5, 3e-3, 0.003
 """Speed [m/s], rate [rad/s], force [N], torque [N m] torque over force [m] above the errors of sensors."""
-_PART, _USUAL, _ENOUGH, _MOST = 0.6, 0.008, 20, 0.8
-"""Share of the axis in the motion, by the usual radius r [m]; samples, and the share that shows the sign."""
+_PART, _USUAL, _ENOUGH, _WAY, _MOST = 0.6, 0.008, 20, 2e-3, 0.8
+"""Share of the axis in the motion, by the usual radius r [m]; samples, and their way [m], farther than a pad
+springs back; the share of them that shows the sign."""
 
 
 def sign_warnings(samples: Samples) -> list[str]:
@@ -29,7 +30,8 @@ def sign_warnings(samples: Samples) -> list[str]:
     for (k, axis), loaded, slow in zip(_AXES, least, slowest, strict=True):
         along, moved = wrench[:, k], twist[:, axis]
         clear = (np.abs(moved) > np.maximum(slow, _PART * speed)) & (np.abs(along) > loaded)
-        if np.count_nonzero(clear) >= _ENOUGH:
+        way = float(np.abs(moved * np.diff(samples.t, prepend=samples.t[0]))[clear].sum())
+        if np.count_nonzero(clear) >= _ENOUGH and way > _WAY:
             shown += 1
             if (along * moved < 0.0)[clear].mean() > _MOST:
                 against.append((WRENCH[k], TWIST[axis]))

@@ -80,7 +80,6 @@ def main(
             raise ValueError("--column is for a --policy")
         book = None if log is None else Log(log)
         rates = force_rate, velocity_rate
-        loading.ready(estimator)
         live = Live(estimator, fingers, rates, lateness, clocks, book, **parse_settings(set_ or ()))
         if policy is not None:
             from policies.live import PolicyPilot

@@ -42,6 +42,7 @@ def text(interval: Sequence[float], heading: str) -> str:
     scale = 100.0 if heading.endswith("[%]") else 1.0
     value, low, high = (scale * number for number in interval)
     digits = 0 if scale > 1.0 else 2 if abs(value) < 10.0 else 1
+    value, low, high = (round(number, digits) + 0.0 for number in (value, low, high))  # no "-0"
     if np.isnan(low) or low == high:
         return f"{value:.{digits}f}"
     return f"{value:.{digits}f} ({low:.{digits}f} to {high:.{digits}f})"

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from policies import registry
 from policies.controllers.constant_force import ConstantForcePolicy
 from policies.controllers.no_friction_info import NoFrictionInfo
+from policies.controllers.rate import at_rate
 from policies.controllers.slip_memory import SlipMemory
 from policies.controllers.table import CLASSES
 from policies.evaluation.constant_grip import MODES, candidates
@@ -66,9 +67,9 @@ def remembering(task: str, arguments: Mapping[str, Any], episodes: int) -> Membe
 
     The rate is chosen as the force of `best_constant` is.
     """
-    made, rate = SlipMemory(find(task).key), load().physics.control_rate
-    members = []
+    rate, members = load().physics.control_rate, []
     for skip in SKIPS:
+        made = SlipMemory(find(task).key, config=at_rate(rate / skip) if skip > 1 else None)
         one = member(f"controller, memory of slips ({rate // skip} Hz)", made, "none")
         members.append(one._replace(arguments={**one.arguments, "frame_skip": skip}))
     return _strongest(task, members, arguments, episodes)
@@ -128,7 +129,12 @@ def entered(names: Sequence[str], source: str) -> list[Member]:
         FileNotFoundError: There is no such policy.
         ValueError: What lies there is no policy.
     """
-    return [member(f"{name}, {source}", registry.load(name), source) for name in names]
+    members = []
+    for name in names:
+        policy = registry.load(name)
+        own = str(registry.modes(policy).get("friction_source", source))
+        members.append(member(f"{name}, {own}", policy, own))
+    return members
 
 
 def check_task(members: Sequence[Member], task: str) -> None:

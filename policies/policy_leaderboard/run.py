@@ -73,7 +73,7 @@ def outcomes(task: str, level: str, played: Mapping[str, Played]) -> pd.DataFram
 
 
 def kinds(table: pd.DataFrame) -> pd.Series:
-    """Names of the policies without what differs between tasks: the force of the best constant grip."""
+    """Names of the policies without what differs between tasks: the force of a grip, the rate of a memory."""
     return table["policy"].str.replace(r" \(.*\)$", "", regex=True)
 
 

@@ -73,7 +73,7 @@ def runs(folder: Path) -> list[Path]:
 def write_curve(folder: Path, curve: Sequence[Row]) -> None:
     """Writes curve.csv: a row for each evaluation."""
     table = pd.DataFrame(list(curve), columns=[field.name for field in fields(Row)])
-    atomic_io.write(folder / _CURVE, table.to_csv(index=False, lineterminator="\n").encode())
+    atomic_io.write(folder / _CURVE, table.to_csv(index=False, lineterminator="\n", na_rep="nan").encode())
 
 
 def read_curve(folder: Path) -> list[Row]:

@@ -3,6 +3,7 @@
 Bounds and names are read from the models' JSON schema, so that they are declared only in the models.
 """
 
+import difflib
 from collections.abc import Callable, Iterable
 from functools import cache
 from typing import Any
@@ -33,8 +34,12 @@ _KINDS = {
 
 
 def unknown(what: str, name: object, valid: Iterable[str], also: Iterable[str] = ()) -> str:
-    """`estimator.suggestions.unknown`, with the valid names in order."""
-    return suggestions.unknown(f"unknown {what}", name, sorted(valid), also)
+    """`estimator.suggestions.unknown` of the names in order; a guess that is less alike stands at the end."""
+    valid = sorted(valid)
+    if difflib.get_close_matches(str(name)[:100], valid, n=1):
+        return suggestions.unknown(f"unknown {what}", name, valid)
+    said = f"unknown {what} {name!r:.100}; valid: {', '.join(valid)}"
+    return suggestions.asking(said, name, [*valid, *also])
 
 
 def explain(

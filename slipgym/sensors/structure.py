@@ -48,7 +48,7 @@ def vibrate(sensor: Any, load: Any) -> None:
     """
     lag, kept, gained, pulled, slowed = sensor.mode
     swing = sensor.swing
-    first = math.isnan(swing[LOAD, 0])
+    first = math.isinf(swing[LOAD, 0])
     for a in range(LOAD_AXES):
         change = 0.0 if first else load[a] - swing[LOAD, a]
         away = 0.0 if first else swing[READ, a] - swing[LOAD, a] + lag * change
@@ -63,4 +63,4 @@ def vibrate(sensor: Any, load: Any) -> None:
 def forget(sensor: Any) -> None:
     """Let the next sample of a FORCE_TORQUE record be the first one."""
     if sensor.mode[0] > 0.0:
-        sensor.swing[LOAD, 0] = np.nan
+        sensor.swing[LOAD, 0] = np.inf

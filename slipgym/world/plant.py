@@ -190,7 +190,7 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     array = np.zeros((n, 2), force_torque(kept, misaligned, swings))
     if sensor.mode_frequency is not None:
         array["mode"] = mode(sensor.mode_frequency, sensor.mode_damping, 1.0 / sensor.rate)
-        array["swing"][..., LOAD, 0] = np.nan
+        array["swing"][..., LOAD, 0] = np.inf
     array["period"] = tick_rate // sensor.rate
     array["delay"] = array["least_delay"] = round(sensor.latency * tick_rate)
     array["delay_spread"] = round(sensor.latency_spread * tick_rate)

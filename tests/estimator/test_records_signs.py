@@ -113,3 +113,20 @@ def test_nor_does_the_example_nor_a_sensor_with_zero_errors(turning):
     for sign in (-1.0, 1.0):
         off = {"f_x": 0.3, "f_y": -0.3, "tau": 1.5e-3}
         assert told({k: v + sign * off.get(k, 0.0) for k, v in turning.items()}) == []
+
+
+@pytest.mark.parametrize("rate", [120.0, 1000.0])
+def test_an_object_that_falls_is_not_in_another_unit(rate):
+    t = np.arange(0.0, 1.3, 1.0 / rate)
+    speed, zero = 6.0 * np.maximum(t - 1.0, 0.0), np.zeros_like(t)
+    force = np.where(speed > 0.0, 1.5, 1.9 * np.minimum(t, 1.0))
+    wrench, twist = np.column_stack([force, zero, zero + 5.0, zero]), np.column_stack([speed, zero, zero])
+    assert not [line for line in told(columns(t, wrench, twist)) if "cm/s" in line]
+
+
+def test_a_pad_that_springs_back_has_no_wrong_sign():
+    t = np.arange(0.0, 3.3, 1e-3)
+    force, zero = 4.0 * np.clip(np.minimum(t / 3.0, (3.2 - t) / 0.08), 0.0, 1.0), np.zeros_like(t)
+    speed = 1e-4 * np.gradient(force, t)
+    wrench, twist = np.column_stack([force, zero, zero + 12.0, zero]), np.column_stack([speed, zero, zero])
+    assert not [line for line in told(columns(t, wrench, twist)) if "against" in line]

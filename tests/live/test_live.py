@@ -223,22 +223,6 @@ def test_by_arrival_sensors_with_clocks_of_their_own_are_paired(offset, log):
     assert same(outputs, records.estimate(record, "rls", allow_gaps=True))
 
 
-@pytest.mark.parametrize("rate", [100.0, 60.0, 240.0])
-def test_a_rate_that_is_not_the_stated_one_is_told(rate):
-    rng, live = random.Random(0), Live("rls", fingers=1, rates=(1000.0, rate), lateness=0.01)
-    kept = [row for row in readings(3.0) if rng.random() > 0.3]  # losses do not change the rate, nor disorder
-    feed(live, sorted(kept, key=lambda row: row[1] + rng.uniform(0.0, 0.0099)))
-    ((name, line),) = live.warnings().items()
-    assert name == "velocity 1"
-    assert f"comes at 120 Hz, but {rate:g} Hz" in line
-
-
-def test_bursts_of_stamps_are_no_other_rate():
-    live = Live("rls", fingers=1)
-    feed(live, [(kind, t - 0.8 * (t % 0.01), values) for kind, t, values in readings(2.0)])
-    assert live.warnings() == {}
-
-
 def test_by_arrival_clocks_that_drift_apart_are_told():
     live = Live("rls", fingers=1, clocks="arrival")
     drifted = [(kind, t * (1.0 + 0.01 * (kind == "twist")), values, t) for kind, t, values in readings(20.0)]

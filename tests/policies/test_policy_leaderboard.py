@@ -12,7 +12,7 @@ from policies.commands.policy_leaderboard import app
 from policies.evaluation.play import ROWS, Played
 from policies.evaluation.plots.style import styled
 from policies.learned import pretrained
-from policies.policy_leaderboard import worlds
+from policies.policy_leaderboard import entries, worlds
 from policies.policy_leaderboard.entries import (
     Member,
     best_constant,
@@ -188,3 +188,21 @@ def test_a_policy_plays_in_other_worlds(monkeypatch):
         given = {**world.arguments, "level": "easy"}
         played = episodes_of("fragile_hold", firm, 3, given, world.engine)
         assert table.loc[0, world.name] == pytest.approx(100.0 * played.success.mean())
+
+
+def test_a_memory_of_slips_is_configured_for_the_rate_at_which_it_acts(monkeypatch):
+    seen = []
+    monkeypatch.setattr(entries, "_strongest", lambda task, members, *_: seen.extend(members) or members[0])
+    entries.remembering("planar_slip", {}, 2)
+    for each in seen:
+        rate = each.policy._controller.config.physics.control_rate
+        assert rate * each.arguments.get("frame_skip", 1) == 120
+
+
+def test_a_policy_keeps_the_friction_source_that_it_asks_for(tmp_path, monkeypatch):
+    text = "class Blind:\n    modes = {'action_mode': 'grip_force', 'friction_source': 'none'}\n"
+    (tmp_path / "blind_entry.py").write_text(text + "    def predict(self, *_, **__):\n        pass\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (entry,) = entered(["blind_entry:Blind"], "estimated")
+    assert entry.arguments["friction_source"] == "none"
+    assert entry.name == "blind_entry:Blind, none"

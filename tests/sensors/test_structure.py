@@ -122,3 +122,10 @@ def test_a_mode_forgets():
 def test_what_is_out_of_range_is_refused_with_the_range(name, value, range_):
     with pytest.raises(ValueError, match=rf"sensors\.force_torque\.{name} = {value}.*{range_}"):
         load({"sensors": {"force_torque": {name: value}}})
+
+
+def test_a_state_before_the_first_sample_can_be_restored():
+    config = {"sensors": {"force_torque": {"rate": 10, "mode_frequency": 40.0}}}
+    with gym.make("slipgym/LinearSlip-v0", engine="planar", config=config, disable_env_checker=True) as env:
+        env.reset(seed=0)
+        env.unwrapped.set_state(env.unwrapped.get_state())
