@@ -37,7 +37,7 @@ def unknown(what: str, name: object, valid: Iterable[str], also: Iterable[str] =
     """`estimator.suggestions.unknown` of the names in order; a guess that is less alike stands at the end."""
     valid = sorted(valid)
     if difflib.get_close_matches(str(name)[:100], valid, n=1):
-        return suggestions.unknown(f"unknown {what}", name, valid)
+        return suggestions.unknown(f"unknown {what}", name, valid, also)
     said = f"unknown {what} {name!r:.100}; valid: {', '.join(valid)}"
     return suggestions.asking(said, name, [*valid, *also])
 

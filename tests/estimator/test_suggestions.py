@@ -73,7 +73,7 @@ def test_a_misspelt_name(call, meant):
 def test_a_file_in_the_working_folder_is_asked_for(load, name, tmp_path, monkeypatch):
     (tmp_path / "hold_heavy.yaml").write_text("{}", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ValueError, match=r"did you mean 'hold_heavy\.yaml'\? valid: "):
+    with pytest.raises(ValueError, match=r"did you mean 'hold_heavy\.yaml'\?"):
         load(name)
     with pytest.raises(ValueError, match="unknown"):
         load("hold\0x/y")
