@@ -218,11 +218,8 @@ def _by_name(lengths: Mapping[str, int]) -> dict[str, str]:
                 del chosen[time]
             if time not in chosen and clocks and clocks[0] not in chosen.values():
                 chosen[time] = clocks[0]
-    if (
-        VELOCITY_TIME in chosen
-        and chosen.get(TIME)
-        and lengths[chosen[TIME]] == lengths[chosen[VELOCITY_TIME]]
-    ):
+    rows = [lengths[chosen[time]] for time in (TIME, VELOCITY_TIME) if time in chosen]
+    if len(rows) == 2 and rows[0] == rows[1]:
         del chosen[VELOCITY_TIME]
     return {key: chosen[key] for key in UNITS if key in chosen}
 
