@@ -67,7 +67,6 @@ def main(
     from estimator.live import Live, Log
     from estimator.live.session import Session
     from estimator.records import parse_settings
-    from slipgym import loading
 
     if door not in ("udp", "ros2", "rosbridge"):
         raise typer.BadParameter(f"{door!r}: expected udp, ros2 or rosbridge", param_hint="--door")
@@ -84,8 +83,7 @@ def main(
         if policy is not None:
             from policies.live import PolicyPilot
 
-            with loading.patience("the policy's observation"):
-                pilot = PolicyPilot(policy, live, task, columns, firm, timeout)
+            pilot = PolicyPilot(policy, live, task, columns, firm, timeout)
         session = Session(live, pilot, book)
         _serve(session, door, host, port, fingers, seconds)
     except (ValueError, OSError, ModuleNotFoundError) as error:
