@@ -12,8 +12,11 @@ from typing import Annotated
 import pandas as pd
 import typer
 
+from lab.commands.options import wrong_arguments
 from policies.policy_leaderboard.entries import Member, best_constant, controllers, entered, remembering
 from policies.policy_leaderboard.run import kinds, outcomes, play_all
+from slipgym.config import load
+from slipgym.config.level import load_level
 from slipgym.tasks import find
 
 PRESETS = "realistic", "lab", "markers", "wrist", "motor"
@@ -38,8 +41,14 @@ def main(
     policy: Annotated[list[str] | None, typer.Option(help="Learned policies; repeatable.")] = None,
 ) -> None:
     """Print what is solved [%], a row for each task and policy, a column for each preset."""
+    with wrong_arguments():
+        tasks = [find(name).name for name in task or TASKS]
+        for name in tasks:
+            load_level(level, find(name).key)
+        for chosen in preset or PRESETS:
+            load(sensors=chosen)
     rows = []
-    for name in task or TASKS:
+    for name in tasks:
         for chosen in preset or PRESETS:
             given = {"sensors": chosen, "level": level}
             for member in members(name, given, episodes, policy or []):

@@ -21,7 +21,10 @@ Content = Annotated[Mapping[str, Any], BeforeValidator(lambda given: content(giv
 
 
 def load(
-    overrides: Overrides | None = None, sensors: str = "realistic", contact: str | None = None
+    overrides: Overrides | None = None,
+    sensors: str = "realistic",
+    contact: str | None = None,
+    box: Mapping[str, Any] | None = None,
 ) -> Config:
     """Loads the configuration of an environment, without the settings of its task.
 
@@ -32,6 +35,7 @@ def load(
         sensors: The sensor preset to start from, one of ``names("sensors")``.
         contact: The friction model to start from, one of `slipgym.config.physics.ContactModel`; None: the
             default one.
+        box: Values of the group "object" that stand in place of the defaults; None: none.
 
     Raises:
         FileNotFoundError: The overrides' file does not exist.
@@ -47,6 +51,8 @@ def load(
     if contact is not None:
         defaults = merge(defaults, {"contact": {"model": contact}})
         config = validate(defaults, Config, "contact argument")
+    if box is not None:
+        defaults = merge(defaults, {"object": box})
     if overrides is None:
         return config
     source, values = read_overrides(overrides)

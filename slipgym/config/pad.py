@@ -1,8 +1,8 @@
 """Configuration models of what a pad of rubber adds to its friction, and of its distributions."""
 
-from typing import Annotated, Self
+from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from slipgym.config.base import Frozen, number
 from slipgym.config.distribution import Drawn, Ranged, ranged
@@ -33,18 +33,9 @@ class PadRanges(Ranged):
     anisotropy: Drawn = ranged(
         -0.49, 0.49, "Relative difference of the friction along the pad's x from the mean"
     )
-    friction_by_area: bool | None = Field(
-        default=None, description="Whether load_exponent is 1 - 2 radius_exponent instead of free"
+    friction_by_area: bool = Field(
+        default=False, description="Whether load_exponent is 1 - 2 radius_exponent instead of free"
     )
-
-    @model_validator(mode="after")
-    def _exponents_are_told_once(self) -> Self:
-        radius = self.radius_exponent
-        if self.friction_by_area and self.load_exponent is not None:
-            raise ValueError("load_exponent and friction_by_area exclude each other")
-        if self.friction_by_area and (radius is None or radius.ends[0] < LEAST):
-            raise ValueError(f"friction_by_area needs a radius_exponent from {LEAST:g} to 0.333333")
-        return self
 
 
 class PadConfig(Frozen):

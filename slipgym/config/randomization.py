@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Annotated, Self
 
-from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
+from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo, model_validator
 
 from slipgym.config.base import as_tuple
 from slipgym.config.distribution import Drawn, ranged
 from slipgym.config.disturbances import AnyDisturbance, renamed
 from slipgym.config.errors import unknown
-from slipgym.config.pad import PadRanges
+from slipgym.config.pad import LEAST, PadRanges
 from slipgym.contact.pressure import PressureName
 
 PUSHES_MAX = 16
@@ -21,8 +21,8 @@ Names = Annotated[tuple[str, ...], Field(min_length=1), BeforeValidator(as_tuple
 Pressures = Annotated[tuple[PressureName, ...], Field(min_length=1), BeforeValidator(as_tuple)]
 
 
-class Ranges(PadRanges):
-    """Distributions of one task; a field that is null or left out is not randomized."""
+class OwnRanges(PadRanges):
+    """Distributions that one task replaces; a field that is null or left out is not randomized."""
 
     materials: Names | None = Field(
         default=None, description="Materials to sample from, if no other friction is randomized"
@@ -61,6 +61,10 @@ class Ranges(PadRanges):
         default=(), description="Disturbances during an episode"
     )
 
+
+class Ranges(OwnRanges):
+    """Distributions of one task."""
+
     @model_validator(mode="after")
     def _friction_is_told_once(self) -> Self:
         if self.mu_s is not None and self.friction_ratio is not None:
@@ -69,6 +73,15 @@ class Ranges(PadRanges):
             raise ValueError("mu_s needs a mu_c that never lies above it")
         if self.materials is not None and (self.mu_c is not None or self.friction_ratio is not None):
             raise ValueError("materials are drawn only where mu_c and friction_ratio are not")
+        return self
+
+    @model_validator(mode="after")
+    def _exponents_are_told_once(self) -> Self:
+        radius = self.radius_exponent
+        if self.friction_by_area and self.load_exponent is not None:
+            raise ValueError("load_exponent and friction_by_area exclude each other")
+        if self.friction_by_area and (radius is None or radius.ends[0] < LEAST):
+            raise ValueError(f"friction_by_area needs a radius_exponent from {LEAST:g} to 0.333333")
         return self
 
     @model_validator(mode="after")
@@ -83,7 +96,7 @@ class Ranges(PadRanges):
 class Randomization(Ranges):
     """Ranges for all tasks, and the fields that single tasks replace."""
 
-    tasks: Mapping[str, Ranges] = Field(default={}, description="Fields that differ, by task")
+    tasks: Mapping[str, OwnRanges] = Field(default={}, description="Fields that differ, by task")
 
     @model_validator(mode="after")
     def _tasks_exist(self, info: ValidationInfo) -> Self:
@@ -91,7 +104,11 @@ class Randomization(Ranges):
         for name in self.tasks:
             if known is not None and name not in known:
                 raise ValueError(unknown("task", name, known))
-            self.of(name)
+            try:
+                self.of(name)
+            except ValidationError as error:
+                message = error.errors()[0]["msg"].removeprefix("Value error, ")
+                raise ValueError(f"tasks.{name}: {message}") from None
         return self
 
     def of(self, task: str) -> Ranges:
@@ -104,5 +121,5 @@ class Randomization(Ranges):
             ValueError: The task's fields contradict the common ones.
         """
         values = {name: getattr(self, name) for name in Ranges.model_fields}
-        own = self.tasks.get(task, Ranges())
+        own = self.tasks.get(task, OwnRanges())
         return Ranges(**values | {name: getattr(own, name) for name in own.model_fields_set})

@@ -32,7 +32,7 @@ class ForceTorqueConfig(Frozen):
     latency: float = number(0.0, 10.0, "Smallest latency of a reading [s]")
     latency_spread: float = number(0.0, 10.0, "Largest latency on top of that, sampled per episode [s]")
     own_latency: bool = Field(
-        description="Whether each finger's sensor samples its own latency: true or false"
+        description="Whether each finger's sensor samples its own latency, where each has one: true or false"
     )
     tip_mass: float = number(0.0, 1.0, "Smallest mass of the fingertip in front of the sensor [kg]")
     tip_mass_spread: float = number(

@@ -33,7 +33,7 @@ DIFFERENCES = {
 FRICTION = ("mu_c", "mu_s", "friction_ratio")
 """Fields without a value of their own in the configuration: NaN unless they are sampled, then at scale 1."""
 NAMES = ("materials", "pressure")
-"""Fields that are names: their place among the materials, or -1, and among `Randomizer.pressures`."""
+"""Fields that are names: their place among the materials, or -1, and among `Randomizer.variants`."""
 VALUES = np.dtype(
     [
         (name, "f8", len(DIFFERENCES[name].parts)) if name in DIFFERENCES else (name, "f8")

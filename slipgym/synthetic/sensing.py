@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.config import Overrides, load
+from slipgym.config import Config, Overrides, load
 from slipgym.contact.records import pads
 from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.measure import measure
@@ -56,7 +56,7 @@ def sense(
     """The trace as m fingers' sensors report it.
 
     These are the environment's own sensors, with one difference: a force is of the sampling
-    instant, not up to 1 ms older, and has no latency.
+    instant, not up to 1 ms older, and has neither latency nor the finger's vibration.
 
     Args:
         trace: The trace.
@@ -70,10 +70,9 @@ def sense(
     """
     if m < 1:
         raise ValueError(f"m = {m!r} must be at least 1")
-    plant = build(load(config, sensors), -(-m // 2))  # both fingers of a gripper have noise of their own
+    plant = build(_at_once(load(config, sensors)), -(-m // 2))  # both fingers have noise of their own
     rng = np.random.default_rng(seed)
     force_torque, slip_sensors = plant.force_torque, plant.slip_sensors
-    force_torque["delay"] = 0
     start_sensors(force_torque.reshape(-1), slip_sensors.reshape(-1), *draw_sensors(slip_sensors.size, rng))
     fingers, n = slip_sensors.shape, len(trace.t)
     pad = pads(1)
@@ -87,6 +86,14 @@ def sense(
         every_wrench[:, k] = wrenches.reshape(-1, 4)[:m]
         every_twist[:, k] = twists.reshape(-1, 3)[:m]
     return _record(trace, every_wrench, every_twist)
+
+
+def _at_once(config: Config) -> Config:
+    """The configuration with a force sensor that reads the load of the instant."""
+    changed = {"latency": 0.0, "latency_spread": 0.0, "mode_frequency": None}
+    force_torque = config.sensors.force_torque.model_copy(update=changed)
+    sensors = config.sensors.model_copy(update={"force_torque": force_torque})
+    return config.model_copy(update={"sensors": sensors})
 
 
 @compiled

@@ -46,8 +46,13 @@ def configure(
         ValueError: A key is unknown or a value is not allowed; the message names file or argument, key, value
             and what is valid there.
     """
-    config = load(overrides, sensors, contact)
     source, values = ("defaults", {}) if overrides is None else read_overrides(overrides)
+    changed: Mapping[str, Any] = {}
+    if level is not None:
+        changed = level.level.settings
+        _settings(task, changed, level.source)
+    box = _box(task, values, changed)
+    config = load(overrides, sensors, contact, box)
     groups = values.get("tasks", {})
     if not isinstance(groups, Mapping):
         raise ValueError(f"{source}: tasks = {groups!r:.80} must be a mapping of names to values")
@@ -56,11 +61,9 @@ def configure(
         if key not in known:
             raise ValueError(f"{source}: tasks.{key}: {unknown('key', key, known)}")
         _settings(known[key], group, source)
-    changed: Mapping[str, Any] = {}
-    if level is not None:
-        changed = level.level.settings
-        _settings(task, changed, level.source)
-    changed = merge(changed, _given_way(task, values))
+    changed = merge(changed, _given_way(values))
+    if box is not None:
+        changed["object"] = config.object.model_dump()
     settings = _settings(task, groups.get(task.key, {}), source, changed)
     try:
         settings.check(config, f"tasks.{task.key}")
@@ -69,17 +72,28 @@ def configure(
     return config, settings
 
 
-def _given_way(task: Task[Any], values: Mapping[str, Any]) -> dict[str, Any]:
+def _whole(values: Mapping[str, Any]) -> bool:
+    return values.keys() >= Config.model_fields.keys()
+
+
+def _box(task: Task[Any], values: Mapping[str, Any], level: Mapping[str, Any]) -> Mapping[str, Any] | None:
+    """The object of the task or its level that an object given in part completes, if there is one."""
+    given = values.get("object")
+    if _whole(values) or not isinstance(given, Mapping) or not given or "size" in given:
+        return None
+    return merge(task.default_settings, level)["object"]
+
+
+def _given_way(values: Mapping[str, Any]) -> dict[str, Any]:
     """The settings that give way to a configuration given in part; a whole one gives them all itself."""
-    if values.keys() >= Config.model_fields.keys():
+    if _whole(values):
         return {}
     changed: dict[str, Any] = {}
     for (group, key), settings in _GIVE_WAY.items():
         if values.get(group, {}).get(key) is not None:
             changed |= settings
-    own = values.get("object", {})
-    if own and task.default_settings["object"]:
-        changed["object"] = None if "size" in own else own
+    if "size" in values.get("object", {}):
+        changed["object"] = None
     return changed
 
 

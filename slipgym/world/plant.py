@@ -194,7 +194,7 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
     array["period"] = tick_rate // sensor.rate
     array["delay"] = array["least_delay"] = round(sensor.latency * tick_rate)
     array["delay_spread"] = round(sensor.latency_spread * tick_rate)
-    array["own_delay"] = sensor.own_latency
+    array["own_delay"] = sensor.own_latency and config.sensors.place == "fingers"
     _take_over(sensor, array)
     array["least_tip"], array["tip_spread"] = sensor.tip_mass, sensor.tip_mass_spread
     array["misaligned"] = misaligned

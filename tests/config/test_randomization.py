@@ -118,6 +118,16 @@ def test_a_tasks_own_fields_replace_the_common_ones():
     assert both.of("hold").lag == Distribution(choices=(0.01,))
 
 
+def test_a_tasks_own_field_may_need_a_common_one():
+    common = {"mu_c": {"uniform": [0.2, 0.3]}, "radius_exponent": {"uniform": [0.25, 0.3]}}
+    own = {"mu_s": {"uniform": [0.4, 0.5]}, "friction_by_area": True}
+    drawn = load_randomization({**common, "tasks": {"hold": own}})
+    assert drawn.of("hold").friction_by_area
+    assert not drawn.of("hinge").friction_by_area
+    with pytest.raises(ValueError, match=r"tasks\.hold: load_exponent and friction_by_area exclude"):
+        load_randomization({**common, "load_exponent": {"choices": [0.1]}, "tasks": {"hold": own}})
+
+
 def test_none_draws_nothing():
     assert all(load_randomization("none").of(task) == Ranges() for task in KEYS)
 

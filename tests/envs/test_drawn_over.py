@@ -36,6 +36,29 @@ def test_a_task_with_an_object_of_its_own_takes_what_is_given(task):
     assert (config.object.size, settings.object) == ((0.06, 0.02, 0.1), None)
 
 
+def test_points_of_an_object_given_in_part_lie_in_the_box_of_its_task():
+    settings = configure(TASKS["RotationalSlip"], {"object": {"grasp_offset": [-0.1, 0.0]}})[1]
+    assert settings.object.grasp_offset == (-0.1, 0.0)
+    with pytest.raises(ValueError, match=r"^config argument: object: com_offset .*\(0.46, 0.03, 0.04\)"):
+        configure(TASKS["RotationalSlip"], {"object": {"com_offset": [0.3, 0.0]}})
+
+
+@pytest.mark.parametrize("task", ["Hold", "Hinge"])
+def test_an_object_given_in_part_completes_that_of_the_level(task):
+    whole = {
+        "mass": 0.5,
+        "size": [0.1, 0.03, 0.3],
+        "com_offset": [0.0, 0.0],
+        "inertia": None,
+        "grasp_offset": [0.0, 0.0],
+    }
+    env = made(task, level={"settings": {"object": whole}}, config={"object": {"mass": 0.3}}).unwrapped
+    env.reset(seed=0)
+    box = env.simulation.boxes[0]
+    assert (box.mass, box.size) == (0.3, (0.1, 0.03, 0.3))
+    env.close()
+
+
 @pytest.mark.parametrize("task", TASKS)
 def test_so_do_radius_and_speed_of_the_wrist(task):
     given = {"contact": {"radius": 0.007}, "gripper": {"wrist_speed_max": 0.4}}
