@@ -17,6 +17,7 @@ COMMANDS = {
     "pushes": "Compare the estimators on real pushes of a block.",
     "rank": "Compare the order of returns with that of success.",
     "reproduce": "Reproduce the paper's analyses.",
+    "seeds": "Print what several seeds learn from nothing.",
     "sensor-bounds": "Print what the sensors of a gripper can say of friction.",
     "sensor-costs": "Print what the sensors of a gripper cost controllers.",
     "ship": "Add trained policies to the pretrained ones.",

@@ -44,7 +44,7 @@ LABORATORY = "lab.commands"
 OF_THE_LABORATORY = {
     "benchmark-parts", "cards", "closed-loop", "compare-engines", "compare-estimators", "compare-simulators",
     "delays", "estimator-costs", "fuzz", "hidden-grippers", "imperfections", "jumps", "live-bars", "pushes",
-    "rank", "reproduce", "sensor-bounds", "sensor-costs", "ship", "study-report", "train-estimator",
+    "rank", "reproduce", "seeds", "sensor-bounds", "sensor-costs", "ship", "study-report", "train-estimator",
     "validate-parts", "validate-real",
 }  # fmt: skip
 """Their names, for a message where they are not installed."""

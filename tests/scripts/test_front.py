@@ -55,6 +55,7 @@ def test_without_a_clone_the_commands_of_the_laboratory_say_that_they_need_one(m
     for words in (
         ["hidden-grippers", "--seed", 1],
         ["sensor-bounds"],
+        ["seeds"],
         ["sensor-costs"],
         ["validate", "real"],
     ):
