@@ -16,6 +16,7 @@ from policies.evaluation.constant_grip import MODES, candidates
 from policies.evaluation.one_policy import environment_of
 from policies.evaluation.play import play_episodes
 from policies.learned import LearnedPolicy, pretrained
+from policies.policy_leaderboard import oracle
 from policies.registry import Policy
 from slipgym.config import load
 from slipgym.tasks import find
@@ -157,4 +158,6 @@ def opponents(
     key = find(task).key
     found = [best_constant(task, arguments, episodes), remembering(task, arguments, episodes)]
     found += [*controllers(key), *further(task), *learned(key)]
+    if key in oracle.TASKS:
+        found.append(Member("oracle, privileged", oracle.Oracle(), oracle.MODES))
     return found if folder is None else [*found, *imitated(task, folder)]

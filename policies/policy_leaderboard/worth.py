@@ -31,7 +31,10 @@ def worth(task: str, level: str, members: Sequence[Member], played: Mapping[str,
     row: dict[str, Any] = {"task": find(task).name, "level": level}
     entries = [
         Entry(
-            each.name, each.arguments["friction_source"], played[each.name].success, played[each.name].reward
+            each.name,
+            each.arguments.get("friction_source", "privileged"),
+            played[each.name].success,
+            played[each.name].reward,
         )
         for each in members
     ]

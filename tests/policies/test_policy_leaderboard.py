@@ -12,7 +12,7 @@ from policies.commands.policy_leaderboard import app
 from policies.evaluation.play import ROWS, Played
 from policies.evaluation.plots.style import styled
 from policies.learned import pretrained
-from policies.policy_leaderboard import entries, worlds
+from policies.policy_leaderboard import entries, oracle, worlds
 from policies.policy_leaderboard.entries import (
     Member,
     best_constant,
@@ -40,6 +40,15 @@ def test_firm_grips_win_and_the_table_says_how():
     assert weak["dropped [%]"] == 100.0
     assert firm["grip [N]"] == pytest.approx(20.0, abs=3.0)  # rises from the initial force
     assert weak["slid [mm]"] > 10.0 > 1.0 > firm["slid [mm]"]
+
+
+@pytest.mark.parametrize("world", [{}, {"sensors": "lab", "randomization": "lab"}], ids=["itself", "lab"])
+@pytest.mark.parametrize("task", ["hold", "fragile_hold"])
+def test_the_oracle_bounds_what_a_policy_can_solve(task, world):
+    best = Member("oracle, privileged", oracle.Oracle(), oracle.MODES)
+    played = episodes_of(task, best, 60, {"level": "hard", **world})
+    assert played.success.mean() >= 0.9
+    assert episodes_of("hold", best, 10, {"level": "easy"}).success.all()
 
 
 def episodes(*solved: int) -> Played:
