@@ -13,7 +13,14 @@ import pandas as pd
 import typer
 
 from lab.commands.options import wrong_arguments
-from policies.policy_leaderboard.entries import Member, best_constant, controllers, entered, remembering
+from policies.policy_leaderboard.entries import (
+    Member,
+    best_constant,
+    controllers,
+    entered,
+    learned,
+    remembering,
+)
 from policies.policy_leaderboard.run import kinds, outcomes, play_all
 from slipgym.config import load
 from slipgym.config.level import load_level
@@ -25,11 +32,12 @@ SHOWN = "controller, estimated", "controller, none"
 
 
 def members(task: str, arguments: dict[str, str], episodes: int, names: list[str]) -> list[Member]:
-    """The best constant grip with these sensors, the task's controller with them, and the user's policies."""
+    """The best constant grip with these sensors, the task's controller, the memories, the user's policies."""
     key = find(task).key
     own = [each for each in controllers(key) if each.name in SHOWN]
     with contextlib.suppress(ValueError):  # these sensors measure no slip
         own.append(remembering(task, arguments, episodes))
+    own += [each for each in learned(key) if each.arguments["friction_source"] == "none"]
     return [best_constant(task, arguments, episodes), *own, *entered(names, "none")]
 
 
