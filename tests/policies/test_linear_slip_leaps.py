@@ -38,8 +38,8 @@ def test_it_is_solved_however_late_the_velocity_is(latency, play_batch):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("source", ["estimated", "true"])
-def test_sensors_of_a_laboratory_cost_two_points_and_these_are_the_error_of_scale(source, play_batch):
+def test_what_sensors_of_a_laboratory_cost_is_the_error_of_scale(source, play_batch):
     made = policies.make("linear_slip_leaps")
     lab = {"sensors": "lab", "friction_source": source}
-    assert play_batch(LINEAR, made, 400, 40_000, **lab).success >= 0.98
+    assert play_batch(LINEAR, made, 400, 40_000, **lab).success <= 0.98
     assert play_batch(LINEAR, made, 200, 40_000, **lab, config=COUNTED).success >= 0.99
