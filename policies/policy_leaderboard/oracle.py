@@ -1,4 +1,4 @@
-"""A policy that is told what no robot knows: an upper bound of what others could solve."""
+"""A policy that knows what no robot does: an upper bound of what others could solve."""
 
 from __future__ import annotations
 
