@@ -87,6 +87,11 @@ def learned(key: str) -> list[Member]:
     return members
 
 
+def bounds(key: str) -> list[Member]:
+    """The policy that knows the right grip, for the tasks that have one."""
+    return [Member("oracle, privileged", oracle.Oracle(), oracle.MODES)] if key in oracle.TASKS else []
+
+
 def best_constant(task: str, arguments: Mapping[str, Any], episodes: int) -> Member:
     """The constant grip that solves most, among equals the one with the largest mean return.
 
@@ -158,6 +163,5 @@ def opponents(
     key = find(task).key
     found = [best_constant(task, arguments, episodes), remembering(task, arguments, episodes)]
     found += [*controllers(key), *further(task), *learned(key)]
-    if key in oracle.TASKS:
-        found.append(Member("oracle, privileged", oracle.Oracle(), oracle.MODES))
+    found += bounds(key)
     return found if folder is None else [*found, *imitated(task, folder)]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from policies.policy_leaderboard.entries import Member, controllers, further, learned, remembering
+from policies.policy_leaderboard.entries import Member, bounds, controllers, further, learned, remembering
 from policies.policy_leaderboard.run import outcomes, play_all
 from slipgym.tasks import find
 
@@ -49,7 +49,7 @@ def member(task: str, level: str, column: str) -> Member:
     key = find(task).key
     if column == "controller, memory of slips":
         return remembering(task, {**ARGUMENTS, "level": level}, EPISODES)
-    members = [*controllers(key), *further(task), *learned(key)]
+    members = [*controllers(key), *further(task), *learned(key), *bounds(key)]
     return {each.name: each for each in members}[column]
 
 
