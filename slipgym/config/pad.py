@@ -33,8 +33,8 @@ class PadRanges(Ranged):
     anisotropy: Drawn = ranged(
         -0.49, 0.49, "Relative difference of the friction along the pad's x from the mean"
     )
-    friction_by_area: bool = Field(
-        default=False, description="Whether load_exponent is 1 - 2 radius_exponent instead of free"
+    friction_by_area: bool | None = Field(
+        default=None, description="Whether load_exponent is 1 - 2 radius_exponent instead of free"
     )
 
 

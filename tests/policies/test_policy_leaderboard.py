@@ -42,7 +42,11 @@ def test_firm_grips_win_and_the_table_says_how():
     assert weak["slid [mm]"] > 10.0 > 1.0 > firm["slid [mm]"]
 
 
-@pytest.mark.parametrize("world", [{}, {"sensors": "lab", "randomization": "lab"}], ids=["itself", "lab"])
+@pytest.mark.parametrize(
+    "world",
+    [{}, pytest.param({"sensors": "lab", "randomization": "lab"}, marks=pytest.mark.slow)],
+    ids=["itself", "lab"],
+)
 @pytest.mark.parametrize("task", ["hold", "fragile_hold"])
 def test_the_oracle_bounds_what_a_policy_can_solve(task, world):
     best = Member("oracle, privileged", oracle.Oracle(), oracle.MODES)
