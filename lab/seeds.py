@@ -56,8 +56,9 @@ def _finished(root: Path, task: str) -> dict[int, Trained]:
 def shipped(name: str) -> dict[int, Trained]:
     """The policy that comes with slipgym and its seed."""
     origin = LearnedPolicy(pretrained.locate(name)).description.origin
-    seed = int(str(origin.command).partition("--seeds ")[2].split()[0])
-    return {seed: Trained(pretrained.locate(name), origin.steps, float(origin.cpu_seconds or np.nan))}
+    return {
+        origin.seeds[0]: Trained(pretrained.locate(name), origin.steps, float(origin.cpu_seconds or np.nan))
+    }
 
 
 def row(name: str, policies: Sequence[Trained], episodes: int) -> dict[str, object]:
