@@ -46,10 +46,14 @@ def __getattr__(name: str) -> Any:
         from slipgym.envs import register_task
 
         return register_task
+    import gymnasium
+
     from estimator.suggestions import asking
 
-    meant = [*__dir__(), "gymnasium.make", "gymnasium.make_vec", "policies.make_vec_env"]
-    raise AttributeError(asking(f"module {__name__!r} has no attribute {name!r}", name, meant))
+    said, own = f"module {__name__!r} has no attribute {name!r}", f"gymnasium.{name}"
+    if hasattr(gymnasium, name):  # `slipgym.make`
+        raise AttributeError(f"{said}; did you mean {own!r}?")
+    raise AttributeError(asking(said, name, [*__dir__(), "policies.make_vec_env"]))
 
 
 def __dir__() -> list[str]:

@@ -80,7 +80,11 @@ def test_a_file_in_the_working_folder_is_asked_for(load, name, tmp_path, monkeyp
 
 
 def test_who_makes_environments_is_said():
-    for name, maker in (("make_vec_env", "policies.make_vec_env"), ("make_vec", "gymnasium.make_vec")):
+    for name, maker in (
+        ("make_vec_env", "policies.make_vec_env"),
+        ("make_vec", "gymnasium.make_vec"),
+        ("make", "gymnasium.make"),
+    ):
         with pytest.raises(AttributeError, match=f"has no attribute '{name}'; did you mean '{maker}'"):
             getattr(slipgym, name)
     with pytest.raises(AttributeError, match="did you mean 'register_task'"):
