@@ -1,20 +1,21 @@
-"""Lifts an object of unknown friction from a support: the base of the controllers that carry."""
+"""Lifts objects of unknown friction from a support: the base, a swing, and a fragile object."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Any, TypeVar
+from collections.abc import Mapping
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
-from pydantic import Field
 
 from estimator.estimate import deviation_of
 from policies.controllers.base import Columns, State
-from policies.controllers.gains import Fraction, GainPolicy
-from policies.controllers.last_slip import combined, weight_of
+from policies.controllers.gains import Fraction, Gain, GainPolicy
 from policies.controllers.sensing import both, scaled_speed
+from policies.controllers.slip_memory import combined, weight_of
 from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
+from slipgym.tasks.carry import AHEAD
 
 _STILL = 3
 """Control steps after which a wrist without velocity rests, and is not just between two moves."""
@@ -26,37 +27,26 @@ _RISE = 6.0
 class LiftingGains(Frozen):
     """Gains of `LiftingPolicy`."""
 
-    guess: Positive = Field(default=2.0, description="mu_s assumed before the first slip [-]")
-    confidence: Positive = Field(default=0.05, description="Confidence from which mu_s is taken as it is [-]")
-    deviations: NonNegative = Field(
-        default=0.2, description="Standard deviations by which mu_s is taken below its estimate [-]"
+    guess: Positive = Gain(2.0, "mu_s assumed before the first slip [-]")
+    confidence: Positive = Gain(0.05, "Confidence from which mu_s is taken as it is [-]")
+    deviations: NonNegative = Gain(0.2, "Standard deviations by which mu_s is taken below its estimate [-]")
+    least: NonNegative = Gain(0.8, "Least grip [N]")
+    tare: Fraction = Gain(0.8, "Part of the time on the support in which the forces are zeroed [-]")
+    lead: NonNegative = Gain(0.05, "Time by which the grip leads a rising load [s]")
+    smoothing: Fraction = Gain(0.8, "Weight of the old load in each control step while the wrist rests [-]")
+    lightest: NonNegative = Gain(1.0, "Load per finger of the lightest object [N]")
+    fall: NonNegative = Gain(0.12, "Fall of the load that is a slip, over the load [-]")
+    noise: NonNegative = Gain(0.08, "Fall of the load that is always noise [N]")
+    speed: Positive = Gain(2e-3, "Scaled slip speed that is a slip [m/s]")
+    catch: Positive = Gain(1.5, "Least factor by which the grip rises then [-]")
+    jump: NonNegative = Gain(1.5, "Least share in that rise [-]")
+    kick: Positive = Gain(1.5, "Command in the control step of a catch, over the grip wanted [-]")
+    shown: NonNegative = Gain(
+        0.04, "Deviation of load over grip before a slip, relative; 0: it does not count [-]"
     )
-    least: NonNegative = Field(default=0.8, description="Least grip [N]")
-    tare: Fraction = Field(
-        default=0.8, description="Part of the time on the support in which the forces are zeroed [-]"
-    )
-    lead: NonNegative = Field(default=0.05, description="Time by which the grip leads a rising load [s]")
-    smoothing: Fraction = Field(
-        default=0.8, description="Weight of the old load in each control step while the wrist rests [-]"
-    )
-    lightest: NonNegative = Field(default=1.0, description="Load per finger of the lightest object [N]")
-    fall: NonNegative = Field(default=0.12, description="Fall of the load that is a slip, over the load [-]")
-    noise: NonNegative = Field(default=0.08, description="Fall of the load that is always noise [N]")
-    speed: Positive = Field(default=2e-3, description="Scaled slip speed that is a slip [m/s]")
-    catch: Positive = Field(default=1.5, description="Least factor by which the grip rises then [-]")
-    jump: NonNegative = Field(default=1.5, description="Least share in that rise [-]")
-    kick: Positive = Field(
-        default=1.5, description="Command in the control step of a catch, over the grip wanted [-]"
-    )
-    shown: NonNegative = Field(
-        default=0.04,
-        description="Deviation of load over grip before a slip, relative; 0: it does not count [-]",
-    )
-    sure: Positive = Field(default=0.8, description="Confidence up to which slips are caught [-]")
-    rest: NonNegative = Field(default=5, description="Control steps after a slip without another catch [-]")
-    decay: Fraction = Field(
-        default=0.97, description="Fraction of the grip after a slip that is left a control step later [-]"
-    )
+    sure: Positive = Gain(0.8, "Confidence up to which slips are caught [-]")
+    rest: NonNegative = Gain(5, "Control steps after a slip without another catch [-]")
+    decay: Fraction = Gain(0.97, "Fraction of the grip after a slip that is left a control step later [-]")
 
 
 L = TypeVar("L", bound=LiftingGains)
@@ -158,3 +148,67 @@ class LiftingPolicy(GainPolicy[L]):
         delay = self.gains.lead * self.config.physics.control_rate * (1.0 - s) / s + 1.0
         rises = rests & ~slides & (rest <= 0.0)
         return weight, weight + np.where(rises, np.maximum(delay * (load - weight), 0.0), 0.0)
+
+
+_NEAR = tuple(f"{1e3 * time:.0f}" for time in AHEAD if time <= 0.1)
+
+
+class CarryGains(LiftingGains):
+    """Gains of `CarryPolicy`."""
+
+    margin: Positive = Gain(1.15, "Grip over the least for the planned load [-]")
+    deviations: NonNegative = Gain(0.3, "Standard deviations by which mu_s is taken below its estimate [-]")
+
+
+class CarryPolicy(LiftingPolicy[CarryGains]):
+    """Grip as hard as the planned motion needs, with a margin.
+
+        f = margin W (a / g) / mu_s
+
+    a is the largest acceleration less gravity that the plan has from now to 100 ms ahead: the force follows a
+    command within about 30 ms, and acceleration changes between the times at which it is observed. For W and
+    friction see `LiftingPolicy`. Without friction in the observation mu_s stays at a guess.
+
+    Arguments are those of `GainPolicy`; of the prior r alone is used.
+    """
+
+    task = "Carry"
+    Gains = CarryGains
+    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.4, "shown": 0.0}
+
+    def share(self, columns: Columns) -> np.ndarray:
+        """See `LiftingPolicy.share`."""
+        gravity, most = self.config.physics.gravity, np.zeros(len(columns))
+        for ahead in _NEAR:
+            x, z = (columns[f"planned_acceleration_{axis}_{ahead}"] for axis in "xz")
+            most = np.maximum(most, np.hypot(x, z + gravity))
+        return self.gains.margin * most / gravity
+
+
+class FragileHoldGains(LiftingGains):
+    """Gains of `FragileHoldPolicy`."""
+
+    confidence: Positive = Gain(0.01, "Confidence from which mu_s is taken as it is [-]")
+    deviations: NonNegative = Gain(0.12, "Standard deviations by which mu_s is taken below its estimate [-]")
+    place: Fraction = Gain(0.45, "Place of the grip between least and breaking force, logarithmic [-]")
+
+
+class FragileHoldPolicy(LiftingPolicy[FragileHoldGains]):
+    """Grip between the least force that holds the object and the force that breaks it.
+
+        f = allowance^place W (a / g) / mu_s
+
+    a is the largest acceleration of the plan; for W and friction see `LiftingPolicy`. Without friction in the
+    observation mu_s stays at a guess, for which the middle of the range serves best.
+
+    Arguments are those of `GainPolicy`; of the prior r alone is used.
+    """
+
+    task = "FragileHold"
+    Gains = FragileHoldGains
+    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.5, "shown": 0.0}
+
+    def share(self, columns: Columns) -> np.ndarray:
+        """See `LiftingPolicy.share`."""
+        peak = columns["peak_acceleration"] / self.config.physics.gravity
+        return columns["allowance"] ** self.gains.place * peak

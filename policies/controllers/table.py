@@ -15,15 +15,15 @@ CLASSES = {
     "hinge": "policies.controllers.hinge:HingePolicy",
     "constant_force": "policies.controllers.constant_force:ConstantForcePolicy",
     "planar_slip": "policies.controllers.planar_slip:PlanarSlipPolicy",
-    "planar_slip_continuous": "policies.controllers.planar_slip_continuous:ContinuousPlanarSlipPolicy",
+    "planar_slip_continuous": "policies.controllers.planar_slip:ContinuousPlanarSlipPolicy",
     "hold": "policies.controllers.hold:HoldPolicy",
-    "fragile_hold": "policies.controllers.fragile_hold:FragileHoldPolicy",
-    "carry": "policies.controllers.carry:CarryPolicy",
+    "fragile_hold": "policies.controllers.lifting:FragileHoldPolicy",
+    "carry": "policies.controllers.lifting:CarryPolicy",
     "explore": "policies.controllers.explore:ExplorePolicy",
     "pivot_to": "policies.controllers.pivot_to:PivotToPolicy",
     "linear_slip": "policies.controllers.linear_slip:LinearSlipPolicy",
-    "linear_slip_continuous": "policies.controllers.linear_slip_continuous:ContinuousLinearSlipPolicy",
-    "linear_slip_leaps": "policies.controllers.linear_slip_leaps:LinearSlipLeapPolicy",
+    "linear_slip_continuous": "policies.controllers.linear_slip:ContinuousLinearSlipPolicy",
+    "linear_slip_leaps": "policies.controllers.linear_slip:LinearSlipLeapPolicy",
 }
 """Name -> module:class; imported on first use."""
 
@@ -75,7 +75,7 @@ def parameters_of(policy: type[Any]) -> list[str]:
     """Names of the parameters that a policy's class is made with; single gains are among them."""
     own = inspect.signature(policy).parameters.values()
     names = [each.name for each in own if each.kind is not inspect.Parameter.VAR_KEYWORD]
-    return [*policy.parameters(), *names] if issubclass(policy, GainPolicy) else names
+    return [*policy.Gains.model_fields, *names] if issubclass(policy, GainPolicy) else names
 
 
 def refuse(name: str, parameters: Mapping[str, Any], valid: Sequence[str]) -> None:

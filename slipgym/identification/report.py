@@ -10,13 +10,13 @@ import numpy as np
 
 from slipgym.config import load
 from slipgym.identification.fit import FAR, Result
-from slipgym.identification.next_motion import gains
+from slipgym.identification.motions import gains
 from slipgym.identification.parameters import NAMES, PARAMETERS, values_of
-from slipgym.identification.picture import draw
 from slipgym.identification.rollout import CHANNELS
 
 MATERIAL = "identified"
 """Name of the material in gripper.yaml."""
+UNITS = ("N", "N", "N", "N m", "m/s", "m/s", "rad/s")
 
 
 def overrides(result: Result) -> dict[str, Any]:
@@ -106,3 +106,24 @@ def write(result: Result, folder: Path) -> None:
     (folder / "gripper.yaml").write_text(text + yaml.safe_dump(values, sort_keys=False), encoding="utf-8")
     (folder / "report.md").write_text(summary(result), encoding="utf-8")
     draw(result, folder / "report.png")
+
+
+def draw(result: Result, path: Path) -> None:
+    """Writes the picture, a row per reading."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    present = np.flatnonzero(~np.isnan(result.noise))
+    t = np.arange(len(result.log.command)) / result.log.rate
+    figure = Figure(figsize=(11, 1.7 * len(present)), layout="constrained")
+    FigureCanvasAgg(figure)
+    rows = figure.subplots(len(present), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, k in zip(rows, present, strict=True):
+        there = np.isfinite(result.log.readings[:, k])
+        axes.plot(t[there], result.log.readings[there, k], color="0.6", lw=2.0, label="log")
+        axes.plot(t, result.before[:, k], color="tab:blue", lw=0.7, label="before")
+        axes.plot(t, result.after[:, k], color="tab:red", lw=0.7, label="after")
+        axes.set_ylabel(f"{CHANNELS[k]} [{UNITS[k]}]")
+    rows[0].legend(ncols=3, loc="upper right")
+    rows[-1].set_xlabel("time [s]")
+    figure.savefig(path, dpi=90)

@@ -13,8 +13,7 @@ import pytest
 from numba.core import config
 
 from estimator._numba import caching, folders
-from estimator._numba.folders import program_folder
-from estimator._numba.locking import only_one
+from estimator._numba.folders import only_one, program_folder
 from slipgym._numba.compiled import compiled
 
 ROOT = Path(__file__).resolve().parents[2]
