@@ -58,7 +58,8 @@ def gains(result: Result) -> list[tuple[str, float, str]]:
     before = np.sqrt(np.diag(np.linalg.inv(data + prior)))
     rate, ranked = result.log.rate, []
     for name, motion in MOTIONS.items():
-        of = slopes(result.point, result.contact, rate, *motion(np.arange(round(LENGTH * rate)) / rate))
+        moves = motion(np.arange(round(LENGTH * rate)) / rate)
+        of = slopes(result.point, rate, *moves, contact=result.contact, pressure=result.pressure)
         of = (of[:, :, present] / noise[present] / widened).reshape(len(of), -1)
         after = np.sqrt(np.diag(np.linalg.inv(data + prior + of @ of.T)))
         fall = 1.0 - after / before

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from slipgym.config import load
+from slipgym.contact.pressure import OUTER_RADII
 from slipgym.identification.fit import FAR, Result
 from slipgym.identification.motions import gains
 from slipgym.identification.parameters import NAMES, PARAMETERS, values_of
@@ -32,8 +33,10 @@ def overrides(result: Result) -> dict[str, Any]:
             place[last] = of[each.name]
     defaults = load()
     values["gripper"]["force_gain"] = [of["force gain"]] * 2
-    values["gripper"]["pad_radius"] = max(defaults.gripper.pad_radius, 1.5 * of["r"])
+    values["gripper"]["pad_radius"] = max(defaults.gripper.pad_radius, OUTER_RADII[result.pressure] * of["r"])
     values["contact"]["model"] = result.contact
+    if result.contact == "distributed":
+        values["contact"]["pressure"] = result.pressure
     values["contact"]["cop_offset"] = [[of["cop x"], of["cop y"]]] * 2
     mu_s = of["mu_c"] * (1.0 + of["static excess"])
     values["materials"] = {MATERIAL: {"mu_c": of["mu_c"], "mu_s": min(mu_s, 10.0)}}
@@ -83,12 +86,14 @@ def summary(result: Result) -> str:
     for name, noise, held in zip(CHANNELS, result.noise, result.held_out, strict=True):
         if not np.isnan(noise):
             fit.append(f"| {name} | {noise:.3g} | {held:.3g} | {held / noise:.2f} |")
+    pressed = f" with {result.pressure} pressure" if result.contact == "distributed" else ""
     ranked = gains(result)
     motions = ["| motion, 20 s | sum of what deviations shrink by [%] | most for |", "|---|---|---|"]
     motions += [f"| {name} | {100 * total:.0f} | {most} |" for name, total, most in ranked]
     return (
         f"# Identified gripper\n\n**{verdict(result)}**\n\n{table(result)}\n\n"
-        f"Friction model: {result.contact}. A deviation above half of the prior's counts as not shown.\n\n"
+        f"Friction model: {result.contact}{pressed}. "
+        "A deviation above half of the prior's counts as not shown.\n\n"
         f"## Held-out part\n\nEvery fourth second, which the fit has not seen.\n\n" + "\n".join(fit) + "\n\n"
         "![log and simulation](report.png)\n\n"
         f"## Record next\n\n20 s of **{ranked[0][0]}**.\n\n" + "\n".join(motions) + "\n"
