@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from numba.core import config, sigutils
+from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 
 from estimator._numba import folders, program_file
@@ -80,16 +81,17 @@ def _warn_unusable(reason: str, folder: Path) -> None:
     warnings.warn(f"a stored program in {folder} is not used, and compiled again: {reason}", stacklevel=2)
 
 
-class ProgramCache:
+class ProgramCache(_Cache):
     """Programs of one function on disk: a file for each signature, digest, processor and set of versions.
 
-    It has what numba asks of a cache. Programs are looked for among those of the user, then among those that
+    Programs are looked for among those of the user, then among those that
     the installation brings. The variant distinguishes programs of the same sources.
     """
 
     def __init__(self, dispatcher: Any, variant: tuple[str, ...]) -> None:
         self._dispatcher = dispatcher
         self._variant = variant
+        self._enabled = True
 
     @cached_property
     def _folder(self) -> Path | None:
@@ -111,6 +113,14 @@ class ProgramCache:
     def cache_path(self) -> str | None:
         """The folder; None if there is none that can be written."""
         return None if self._folder is None else str(self._folder)
+
+    def enable(self) -> None:
+        """Use the cache."""
+        self._enabled = True
+
+    def disable(self) -> None:
+        """Use no cache."""
+        self._enabled = False
 
     def flush(self) -> None:
         """Remove all programs of the function."""
@@ -165,7 +175,7 @@ class ProgramCache:
 
         There are none if programs of this function or for these arguments cannot be kept.
         """
-        if self._folder is None:
+        if not self._enabled or self._folder is None:
             return
         arguments, result = sigutils.normalize_signature(sig)
         types = [str(kind) for kind in (*arguments, result)]

@@ -1,4 +1,4 @@
-"""Identifies a compiled function by what is compiled: its byte code, its constants and all that it calls.
+"""Identifies a compiled function by what is compiled: its module, byte code, constants and all that it calls.
 
 Comments, docstrings, annotations, line numbers and file times do not count. What is compiled is found as
 numba finds it: a name in the byte code is looked up in the globals and the closure of the function.
@@ -51,7 +51,8 @@ def digest(function: Any) -> str:
 def _parts(dispatcher: Any) -> tuple[str, tuple[Any, ...]]:
     """Text of a function's own part, and the dispatchers that it uses, in the order of its text."""
     function = dispatcher.py_func
-    texts = [*_flat(dispatcher.targetoptions)]
+    # a stored program names the modules of its functions, and cannot be read without them
+    texts = [repr(function.__module__), *_flat(dispatcher.targetoptions)]
     called: list[Any] = []
     names: list[str] = []
     texts += _code(function.__code__, names)

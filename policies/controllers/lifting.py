@@ -1,10 +1,9 @@
-"""Lifts objects of unknown friction from a support: the base, a swing, and a fragile object."""
+"""Lifts an object of unknown friction from a support: the base of the controllers that carry."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping
-from typing import Any, ClassVar, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from policies.controllers.sensing import both, scaled_speed
 from policies.controllers.slip_memory import combined, weight_of
 from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
-from slipgym.tasks.carry import AHEAD
 
 _STILL = 3
 """Control steps after which a wrist without velocity rests, and is not just between two moves."""
@@ -148,67 +146,3 @@ class LiftingPolicy(GainPolicy[L]):
         delay = self.gains.lead * self.config.physics.control_rate * (1.0 - s) / s + 1.0
         rises = rests & ~slides & (rest <= 0.0)
         return weight, weight + np.where(rises, np.maximum(delay * (load - weight), 0.0), 0.0)
-
-
-_NEAR = tuple(f"{1e3 * time:.0f}" for time in AHEAD if time <= 0.1)
-
-
-class CarryGains(LiftingGains):
-    """Gains of `CarryPolicy`."""
-
-    margin: Positive = Gain(1.15, "Grip over the least for the planned load [-]")
-    deviations: NonNegative = Gain(0.3, "Standard deviations by which mu_s is taken below its estimate [-]")
-
-
-class CarryPolicy(LiftingPolicy[CarryGains]):
-    """Grip as hard as the planned motion needs, with a margin.
-
-        f = margin W (a / g) / mu_s
-
-    a is the largest acceleration less gravity that the plan has from now to 100 ms ahead: the force follows a
-    command within about 30 ms, and acceleration changes between the times at which it is observed. For W and
-    friction see `LiftingPolicy`. Without friction in the observation mu_s stays at a guess.
-
-    Arguments are those of `GainPolicy`; of the prior r alone is used.
-    """
-
-    task = "Carry"
-    Gains = CarryGains
-    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.4, "shown": 0.0}
-
-    def share(self, columns: Columns) -> np.ndarray:
-        """See `LiftingPolicy.share`."""
-        gravity, most = self.config.physics.gravity, np.zeros(len(columns))
-        for ahead in _NEAR:
-            x, z = (columns[f"planned_acceleration_{axis}_{ahead}"] for axis in "xz")
-            most = np.maximum(most, np.hypot(x, z + gravity))
-        return self.gains.margin * most / gravity
-
-
-class FragileHoldGains(LiftingGains):
-    """Gains of `FragileHoldPolicy`."""
-
-    confidence: Positive = Gain(0.01, "Confidence from which mu_s is taken as it is [-]")
-    deviations: NonNegative = Gain(0.12, "Standard deviations by which mu_s is taken below its estimate [-]")
-    place: Fraction = Gain(0.45, "Place of the grip between least and breaking force, logarithmic [-]")
-
-
-class FragileHoldPolicy(LiftingPolicy[FragileHoldGains]):
-    """Grip between the least force that holds the object and the force that breaks it.
-
-        f = allowance^place W (a / g) / mu_s
-
-    a is the largest acceleration of the plan; for W and friction see `LiftingPolicy`. Without friction in the
-    observation mu_s stays at a guess, for which the middle of the range serves best.
-
-    Arguments are those of `GainPolicy`; of the prior r alone is used.
-    """
-
-    task = "FragileHold"
-    Gains = FragileHoldGains
-    without_friction: ClassVar[Mapping[str, Any]] = {"guess": 0.5, "shown": 0.0}
-
-    def share(self, columns: Columns) -> np.ndarray:
-        """See `LiftingPolicy.share`."""
-        peak = columns["peak_acceleration"] / self.config.physics.gravity
-        return columns["allowance"] ** self.gains.place * peak

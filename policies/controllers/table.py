@@ -15,15 +15,15 @@ CLASSES = {
     "hinge": "policies.controllers.hinge:HingePolicy",
     "constant_force": "policies.controllers.constant_force:ConstantForcePolicy",
     "planar_slip": "policies.controllers.planar_slip:PlanarSlipPolicy",
-    "planar_slip_continuous": "policies.controllers.planar_slip:ContinuousPlanarSlipPolicy",
+    "planar_slip_continuous": "policies.controllers.planar_slip_continuous:ContinuousPlanarSlipPolicy",
     "hold": "policies.controllers.hold:HoldPolicy",
-    "fragile_hold": "policies.controllers.lifting:FragileHoldPolicy",
-    "carry": "policies.controllers.lifting:CarryPolicy",
+    "fragile_hold": "policies.controllers.fragile_hold:FragileHoldPolicy",
+    "carry": "policies.controllers.carry:CarryPolicy",
     "explore": "policies.controllers.explore:ExplorePolicy",
     "pivot_to": "policies.controllers.pivot_to:PivotToPolicy",
     "linear_slip": "policies.controllers.linear_slip:LinearSlipPolicy",
-    "linear_slip_continuous": "policies.controllers.linear_slip:ContinuousLinearSlipPolicy",
-    "linear_slip_leaps": "policies.controllers.linear_slip:LinearSlipLeapPolicy",
+    "linear_slip_continuous": "policies.controllers.linear_slip_continuous:ContinuousLinearSlipPolicy",
+    "linear_slip_leaps": "policies.controllers.linear_slip_leaps:LinearSlipLeapPolicy",
 }
 """Name -> module:class; imported on first use."""
 

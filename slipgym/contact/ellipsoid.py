@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,7 +13,7 @@ from slipgym.contact.soft_kernel import prescribed_step
 from slipgym.contact.validation import check_friction, finite_vector, positive
 
 
-class PrescribedContact:
+class PrescribedContact(ABC):
     """Friction of one pad, the first record of `_pads`, for a prescribed slip twist."""
 
     _pads: np.ndarray
@@ -70,8 +71,9 @@ class PrescribedContact:
         """Forget the bristle states, as after a loss of contact."""
         rest(self._pads)
 
+    @abstractmethod
     def _advance(self, v_x: float, v_y: float, omega: float, normal: float, dt: float) -> Vector:
-        raise NotImplementedError
+        """Friction after a step that `step` has checked."""
 
     def _resize(self, effective_radius: float, present: float) -> None:
         self._pads["r"] = effective_radius

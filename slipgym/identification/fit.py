@@ -225,7 +225,7 @@ def _minimised(problem: _Problem, point: np.ndarray, scale: np.ndarray) -> np.nd
                 break
             continue
         gain, cost, point, damping, residual = cost - costs[k], costs[k], trials[k], dampings[k], residuals[k]
-        if gain < 1e-2:
+        if gain < 1e-2:  # of the log-likelihood: a seventh of a standard deviation
             break
     return point
 

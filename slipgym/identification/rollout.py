@@ -24,7 +24,7 @@ LOOSE = 0.05  # [N]; a pad pressed less has no friction
 SURFACES = {"distributed": ELLIPSOID, "disc": DISC, "ellipsoid": ELLIPSOID}
 """Contact models, and the limit surface of those without cells."""
 CELLS, FINE_CELLS = 5, 9
-"""Along each side of a patch: 21 cells carry load, or 69, with which its error is small beside the noise."""
+"""Along each side of a patch: 25 cells carry load, or 77, with which its error is small beside the noise."""
 CHANNELS = ("f_x", "f_y", "f_n", "tau", "v_x", "v_y", "omega")
 """Columns of the readings: load on the finger at the pad's centre, slip twist there."""
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import policies
-from policies.controllers.linear_slip import LinearSlipLeapPolicy
+from policies.controllers.linear_slip_leaps import LinearSlipLeapPolicy
 from slipgym.config import load
 
 LINEAR = "slipgym/LinearSlip-v0"

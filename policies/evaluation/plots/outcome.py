@@ -29,7 +29,8 @@ def outcome(task: Task, trials: pd.DataFrame) -> dict[str, Figure]:
     unit = "mm" if task.motion.unit == "m" else "deg"
     if not {f"final_error_{unit}", f"tolerance_{unit}"} <= set(trials):
         return {}
-    return {"errors": plot_errors(trials, unit, f"final error: {task.motion.title}")}
+    sign = "" if task.motion.axis is None else "; negative: too short"
+    return {"errors": plot_errors(trials, unit, f"final error: {task.motion.title}{sign}")}
 
 
 def plot_errors(trials: pd.DataFrame, unit: str, label: str) -> Figure:
