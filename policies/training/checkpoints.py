@@ -1,7 +1,7 @@
-"""Nested plain data as one file, without pickle: what is read back can run no code.
+"""The checkpoints of a run: the last few and the best, each one whole file of nested plain data.
 
-A file is an uncompressed zip: `tree.json`, the arrays as `<k>.npy`, and `sums.json` with the SHA-256 of each
-of them. It is whole or it does not open.
+They are without pickle: what is read back can run no code. A file is an uncompressed zip: `tree.json`, the
+arrays as `<k>.npy`, and `sums.json` with the SHA-256 of each of them. It is whole or it does not open.
 """
 
 from __future__ import annotations
@@ -27,6 +27,45 @@ from slipgym.world.snapshot import EngineState
 _RECORDS = {
     record.__name__: record for record in (EnvState, VectorState, SimulationState, EngineState, Box, Plant)
 }
+_SUFFIX = ".checkpoint"
+
+
+def folder(run: Path) -> Path:
+    """Folder of the checkpoints of a run."""
+    return run / "checkpoints"
+
+
+def best(run: Path) -> Path:
+    """The best one of a run, see `policies.training.curve.best`."""
+    return folder(run) / f"best{_SUFFIX}"
+
+
+def kept(run: Path) -> list[Path]:
+    """The last ones of a run, oldest first."""
+    return sorted(path for path in folder(run).glob(f"*{_SUFFIX}") if path.stem.isdigit())
+
+
+def save(run: Path, steps: int, state: Any, keep: int) -> None:
+    """Writes a checkpoint, then removes those before the last `keep`; OSError if it cannot be written."""
+    write(folder(run) / f"{steps:012d}{_SUFFIX}", state)
+    for path in kept(run)[:-keep]:
+        path.unlink()
+
+
+def last(run: Path) -> Any:
+    """The newest readable checkpoint of a run; None if there is none yet.
+
+    Raises:
+        ValueError: There are checkpoints, and all are damaged.
+    """
+    found = kept(run)
+    while found:
+        try:
+            return read(found.pop())
+        except ValueError:
+            if not found:
+                raise
+    return None
 
 
 def write(path: Path, tree: Any) -> None:
