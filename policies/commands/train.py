@@ -67,11 +67,8 @@ def main(
     with usage_errors(ValueError, OSError, ModuleNotFoundError):
         if resume is not None:
             others = {"a configuration": configuration, "--seeds": seeds, "--friction-source": sources}
-            others |= {
-                "--set": sets,
-                "--sweep": sweep,
-                **{f"--{name.rpartition('.')[2]}": value for name, value in options.items()},
-            }
+            others |= {"--set": sets, "--sweep": sweep}
+            others |= {f"--{name.rpartition('.')[2]}": value for name, value in options.items()}
             from policies.training.run_set import resumed
 
             work = resumed(resume, others, jobs, ray)
