@@ -24,11 +24,7 @@ from estimator.window.unloaded import is_unloaded, learn_zeros
 
 
 def filter_matrices(states: NDArray[np.void]) -> FilterMatrices:
-    """Covariance of (ln mu_c, ln r) [-].
-
-    Args:
-        states: Structured array (n,) of dtype STATE.
-    """
+    """Covariance of (ln mu_c, ln r) [-]."""
     kept: Any = (MU, R)
     return FilterMatrices(covariance=states["covariance"][:, kept][:, :, kept].copy())
 

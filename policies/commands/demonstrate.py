@@ -33,7 +33,7 @@ def main(
     ] = None,
 ) -> None:
     """Play episodes of a policy and store observations, actions and rewards."""
-    from policies.evaluation.demonstrations import demonstrate
+    from policies.evaluation.one_policy import demonstrate
 
     with usage_errors(FileNotFoundError, FileExistsError, TypeError, ValueError, extra="minari"):
         changes = {"engine": "planar", **environment_arguments(set_ or [])}

@@ -86,10 +86,10 @@ def main(
             book.close()
     typer.echo(session.report())
     if mcap is not None and log is not None:
-        from estimator.live.mcap import convert
+        from estimator.live.log import to_mcap
 
         with usage_errors(ModuleNotFoundError, OSError, ValueError, hint="--mcap"):
-            typer.echo(f"{convert(log, mcap)} messages: {mcap}")
+            typer.echo(f"{to_mcap(log, mcap)} messages: {mcap}")
 
 
 def _serve(session: Any, door: str, host: str, port: int | None, fingers: int, seconds: float | None) -> None:

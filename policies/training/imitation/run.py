@@ -27,7 +27,7 @@ from policies.learned import files
 from policies.learned.description import Column
 from policies.learned.export import described, origin
 from policies.learned.fitting import column_of
-from policies.learned.forward import Network
+from policies.learned.policy import Network
 from policies.training import seeds
 from policies.training.imitation.config import Imitation
 from policies.training.imitation.episodes import Demonstrations, Scene, arguments, demonstrate
@@ -46,7 +46,7 @@ class Outcome:
     """State of an imitation after a round.
 
     Attributes:
-        weights: Tensors of the network, see `policies.learned.tensors.expected`.
+        weights: Tensors of the network, see `policies.learned.files.expected`.
         curve: Of each round: its number, episodes so far, share that the network solved, loss at its end.
         steps: Steps of experience.
     """
