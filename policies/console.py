@@ -1,7 +1,8 @@
-"""Lets consoles that are not UTF-8 show what the commands print."""
+"""Runs a command from a console, also from one that is not UTF-8."""
 
 import io
 import sys
+from importlib import import_module
 
 
 def spell_out() -> None:
@@ -12,3 +13,9 @@ def spell_out() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+
+
+def run(name: str) -> None:
+    """Run the command of a file of `policies.commands` with the command line's arguments."""
+    spell_out()
+    import_module(f"policies.commands.{name}").app()

@@ -12,9 +12,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 
 @app.command()
-def main(
-    pictures: Annotated[bool, typer.Option(help="Whether to make the pictures too.")] = True,
-) -> None:
+def main(pictures: Annotated[bool, typer.Option(help="Whether to make the pictures too.")] = True) -> None:
     """Write the pages and a picture of every registered environment, and an animation of all."""
     from lab.montage import write_montage, write_screenshots
 

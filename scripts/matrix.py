@@ -70,16 +70,7 @@ def row(python: str, requirements: list[str], folder: Path, tests: list[str]) ->
     if not run.exists():
         subprocess.run([python, "-m", "venv", str(folder)], check=True)
     wanted = [f"{ROOT}[{','.join(EXTRAS)}]", "pytest", "hypothesis", "psutil", "filterpy"]
-    install = [
-        str(run),
-        "-m",
-        "pip",
-        "install",
-        "--only-binary",
-        ":all:",
-        "--no-binary",
-        "filterpy",
-    ]
+    install = [str(run), "-m", "pip", "install", "--only-binary", ":all:", "--no-binary", "filterpy"]
     done = subprocess.run([*install, *wanted, *requirements], capture_output=True, text=True, check=False)
     if done.returncode:
         return f"not installed: {reason(done.stdout + done.stderr)}"

@@ -1,8 +1,6 @@
 """The command `slipgym validate`."""
 
-from policies.commands.validate import app
-from policies.console import spell_out
+from policies.console import run
 
 if __name__ == "__main__":
-    spell_out()
-    app()
+    run("validate")

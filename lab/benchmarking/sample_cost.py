@@ -10,7 +10,7 @@ from stable_baselines3.common.callbacks import CallbackList
 from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
 
 from lab.benchmarking.stopwatches import Stopwatches
-from policies.training import evaluate, files, seeds, vector
+from policies.training import callback, files, seeds, vector
 from policies.training import model as learners
 from policies.training.adapter import SlipVecEnv
 from policies.training.derived import DerivedVecEnv
@@ -51,9 +51,9 @@ def sample_cost(name: str, updates: int) -> list[Figure]:
         (_watch_privileged if isinstance(model, PrivilegedPPO) else _watch)(watches, model)
         model.learn(samples, idle, reset_num_timesteps=False)
     spent = {part: seconds / samples for part, seconds in watches.spent.items()}
-    evaluate.evaluate(config, model, held_out)  # the first one also prepares its options
+    callback.evaluate(config, model, held_out)  # the first one also prepares its options
     start = process_time()
-    evaluate.evaluate(config, model, held_out)
+    callback.evaluate(config, model, held_out)
     spent["evaluation"] = (process_time() - start) / config.evaluation.every
     model.get_env().close()
     held_out.close()

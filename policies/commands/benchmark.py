@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from policies.commands.several import usage_errors
+
 EPILOG = """
 Examples:\n
 \b
@@ -20,16 +22,12 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 def main(
     env: Annotated[str, typer.Option(help="Task, also LinearSlip or an id.")] = "linear_slip",
     pairs: Annotated[int, typer.Option(min=1, help="Ten times the timed blocks of each figure.")] = 300,
-    json: Annotated[
-        Path | None, typer.Option(help="File to write the figures to, too.", show_default=False)
-    ] = None,
+    json: Annotated[Path | None, typer.Option(help="File to write the figures to, too.")] = None,
 ) -> None:
     """Print steps per second of single environments and of batches, and their memory."""
     from slipgym.benchmarking.run import benchmark
     from slipgym.tasks import find
 
-    try:
+    with usage_errors(ValueError):
         env_id = find(env).id
-    except ValueError as error:
-        raise typer.BadParameter(str(error)) from error
     benchmark(env_id, pairs, json)

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from policies.commands.several import usage_errors
+
 EPILOG = """
 Examples:\n
 \b
@@ -21,15 +23,10 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    name: Annotated[
-        str | None, typer.Argument(help="Set to fetch; lists all if none.", show_default=False)
-    ] = None,
+    name: Annotated[str | None, typer.Argument(help="Set to fetch; lists all if none.")] = None,
     into: Annotated[Path, typer.Option(help="Folder in which a folder NAME is made.")] = Path("data"),
     source: Annotated[
-        Path | None,
-        typer.Option(
-            "--from", help="Clone that was made by hand, in place of the network.", show_default=False
-        ),
+        Path | None, typer.Option("--from", help="Clone that was made by hand, in place of the network.")
     ] = None,
 ) -> None:
     """List public sets of real contacts, or fetch one: every file is checked, and none is executed."""
@@ -41,11 +38,9 @@ def main(
             typer.echo(f"{each.name:<9} {each.what}; {each.licence}, {each.size / 1e6:.1f} MB")
             typer.echo(f"{'':<9} {each.citation}\n{'':<9} {each.url} at {each.commit}")
         return
-    try:
+    with usage_errors(ValueError, OSError):
         public, target = find(name), into / name
         new = store(public, target, source)
-    except (ValueError, OSError) as error:
-        raise typer.BadParameter(str(error)) from error
     typer.echo(
         f"{target}: {'' if new else 'was there, '}{len(public.files)} files, each with the known SHA-256"
     )

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import taking_several
+from policies.commands.several import environment_arguments, taking_several, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -26,23 +26,16 @@ def main(
     dataset: Annotated[str, typer.Argument(help="Name of the dataset: namespace/name-v0.")],
     episodes: Annotated[int, typer.Option(min=1, help="How many.")] = 100,
     seed: Annotated[int, typer.Option(min=0, help="Of the first episode.")] = 0,
-    task: Annotated[
-        str | None, typer.Option(help="For a controller of every task.", show_default=False)
-    ] = None,
+    task: Annotated[str | None, typer.Option(help="For a controller of every task.")] = None,
     set_: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="Arguments of the environment; several."),
     ] = None,
 ) -> None:
     """Play episodes of a policy and store observations, actions and rewards."""
-    from policies.commands.several import environment_arguments
     from policies.evaluation.one_policy import demonstrate
 
-    try:
+    with usage_errors(FileNotFoundError, FileExistsError, TypeError, ValueError, extra="minari"):
         changes = {"engine": "planar", **environment_arguments(set_ or [])}
         stored = demonstrate(policy, dataset, episodes, seed, task, changes)
-    except ModuleNotFoundError as error:
-        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[minari]'") from error
-    except (FileNotFoundError, FileExistsError, TypeError, ValueError) as error:
-        raise typer.BadParameter(str(error)) from error
     typer.echo(f"{dataset}: {stored.episodes} episodes, {stored.steps} steps, {stored.solved} solved")

@@ -9,10 +9,10 @@ try:
     import typer
 
     from estimator import DEFAULT
+    from policies.commands.several import usage_errors
 except ModuleNotFoundError as error:
     raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
 
-_INSTALL = "pip install 'slipgym[cli]'"
 EPILOG = """
 Examples:\n
 \b
@@ -33,17 +33,12 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 @app.command(epilog=EPILOG)
 def main(
     log: Annotated[
-        Path,
-        typer.Argument(
-            help="The record: csv, parquet, npz, HDF5, mat, xlsx, mcap or a bag.", show_default=False
-        ),
+        Path, typer.Argument(help="The record: csv, parquet, npz, HDF5, mat, xlsx, mcap or a bag.")
     ],
     columns: Annotated[
-        Path | None, typer.Option(help="YAML: which column is what, its unit and sign.", show_default=False)
+        Path | None, typer.Option(help="YAML: which column is what, its unit and sign.")
     ] = None,
-    velocity: Annotated[
-        Path | None, typer.Option(help="A file of its own for the velocities.", show_default=False)
-    ] = None,
+    velocity: Annotated[Path | None, typer.Option(help="A file of its own for the velocities.")] = None,
     estimator: Annotated[str, typer.Option(help="Name of the estimator.")] = DEFAULT,
     set_: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Its parameters; repeatable.")
@@ -59,7 +54,7 @@ def main(
     a summary and a figure. Prints the final values, warnings about implausible values and faulty readings,
     what was not observable, and with "adaptive" the delay and the errors of the sensors that it found.
     """
-    try:
+    with usage_errors(ValueError, OSError, extra="cli"):
         from estimator import records
         from slipgym import loading
         from slipgym.atomic_io import check_folder, new_folder
@@ -77,11 +72,6 @@ def main(
             for finger, result in results.items():
                 (folder / finger).mkdir(exist_ok=True)
                 records.write(result, folder / finger)
-    except ModuleNotFoundError as error:
-        missing = str(error) if "pip install" in str(error) else f"{error.name} is not installed: {_INSTALL}"
-        raise typer.BadParameter(missing) from error
-    except (ValueError, OSError) as error:
-        raise typer.BadParameter(str(error)) from error
     for finger, result in results.items():
         typer.echo(f"Finger {finger}\n" if finger else "", nl=False)
         typer.echo(f"{records.report(result)}\n")

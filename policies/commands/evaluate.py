@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import taking_several
+from policies.commands.several import environment_arguments, taking_several, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -29,8 +29,7 @@ def main(
     experiments: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Names of experiments (a task's: linear_slip, also LinearSlip), or paths of YAML files.",
-            show_default=False,
+            help="Names of experiments (a task's: linear_slip, also LinearSlip), or paths of YAML files."
         ),
     ] = None,
     demo: Annotated[bool, typer.Option("--demo", help="Run the experiment 'demo': about a minute.")] = False,
@@ -43,18 +42,15 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the experiment's.")] = None,
     level: Annotated[
-        str | None, typer.Option(help="Level of difficulty instead of the experiment's.", show_default=False)
+        str | None, typer.Option(help="Level of difficulty instead of the experiment's.")
     ] = None,
     policy: Annotated[
         str | None,
         typer.Option(
-            help="Instead: one policy in its environment, a name, module:class or folder of a learned one.",
-            show_default=False,
+            help="Instead: one policy in its environment, a name, module:class or folder of a learned one."
         ),
     ] = None,
-    task: Annotated[
-        str | None, typer.Option(help="With --policy: for a controller of every task.", show_default=False)
-    ] = None,
+    task: Annotated[str | None, typer.Option(help="With --policy: for a controller of every task.")] = None,
     set_: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="With --policy: arguments of its environment."),
@@ -79,14 +75,12 @@ def main(
     if demo == bool(experiments):
         known = ", ".join(evaluation.experiment_names())
         raise typer.BadParameter(f"give experiments ({known}, or YAML files) or --demo")
-    try:
+    with usage_errors(ValueError, FileNotFoundError, ModuleNotFoundError):
         parallel.check(ray)
         chosen = [
             evaluation.narrowed(evaluation.load_experiment(name), trials, seed, friction_source or (), level)
             for name in experiments or ["demo"]
         ]
-    except (ValueError, FileNotFoundError, ModuleNotFoundError) as error:
-        raise typer.BadParameter(str(error)) from error
     for experiment in chosen:
         try:
             folder = evaluation.evaluate(experiment, output, jobs, ray=ray)
@@ -104,13 +98,10 @@ def main(
 def _outcome(policy: str, episodes: int, first: int | None, task: str | None, texts: list[str]) -> str:
     from tqdm import tqdm
 
-    from policies.commands.several import environment_arguments
     from policies.evaluation import one_policy
 
-    try:
+    with usage_errors(FileNotFoundError, TypeError, ValueError):
         changes = environment_arguments(texts)
         start = one_policy.FRESH if first is None else first
         found = one_policy.episodes(policy, episodes, start, task, changes)
         return one_policy.outcome(policy, list(tqdm(found, total=episodes, disable=None, leave=False)))
-    except (FileNotFoundError, TypeError, ValueError) as error:
-        raise typer.BadParameter(str(error)) from error

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from policies.commands.several import usage_errors
+
 EPILOG = """
 Examples:\n
 \b
@@ -28,8 +30,6 @@ def main(
             f"needs {error.name}: pip install 'slipgym[onnx]'", param_hint="--onnx"
         ) from error
 
-    try:
+    with usage_errors(ValueError, OSError):
         write_onnx(policy, onnx)
-    except (ValueError, OSError) as error:
-        raise typer.BadParameter(str(error)) from error
     typer.echo(f"graph: {onnx}")

@@ -5,6 +5,8 @@ from typing import Annotated
 
 try:
     import typer
+
+    from policies.commands.several import usage_errors
 except ModuleNotFoundError as error:
     raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
 
@@ -24,10 +26,9 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    log: Annotated[Path, typer.Argument(help="Any file that slipgym estimate reads.", show_default=False)],
+    log: Annotated[Path, typer.Argument(help="Any file that slipgym estimate reads.")],
     columns: Annotated[
-        Path | None,
-        typer.Option(help="YAML: which column is what, its unit and sign.", show_default=False),
+        Path | None, typer.Option(help="YAML: which column is what, its unit and sign.")
     ] = None,
     output: Annotated[Path, typer.Option(help="New folder for gripper.yaml and report.")] = Path(
         "identified"
@@ -43,7 +44,7 @@ def main(
     parameters with intervals, what the log does not show, the residual on a held-out part, and what to
     record next.
     """
-    try:
+    with usage_errors(ValueError, OSError, extra="cli"):
         from estimator.records import load_columns
         from slipgym import identification
         from slipgym.atomic_io import check_folder, new_folder
@@ -52,10 +53,6 @@ def main(
         result = identification.identify(identification.read_log(log, load_columns(columns)), contact, seed)
         with new_folder(output.expanduser().resolve()) as folder:
             identification.write(result, folder)
-    except ModuleNotFoundError as error:
-        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
-    except (ValueError, OSError) as error:
-        raise typer.BadParameter(str(error)) from error
     typer.echo(f"{identification.table(result)}\n\nLook at:")
     for name in ("report.md", "report.png", "gripper.yaml"):
         typer.echo(f"  {output / name}")

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import TASK_HELP, taking_several
+from policies.commands.several import TASK_HELP, taking_several, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -36,15 +36,13 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the runs' own folders.")] = Path("runs/imitation"),
 ) -> None:
     """Play rounds of episodes, fit the network, write it as a policy."""
-    from policies.training.imitation import command
+    from policies.training.imitation.config import configured
 
     given = {"friction_source": friction_source, "sensors": sensors, "randomization": randomization}
-    try:
-        config = command.configured(network, task, given, set_ or [])
-    except (ValueError, FileNotFoundError) as error:
-        raise typer.BadParameter(str(error)) from error
-    try:
-        for line in command.imitated(config, seeds or [0], output):
+    with usage_errors(ValueError, FileNotFoundError):
+        config = configured(network, task, given, set_ or [])
+    from policies.training.imitation.run import imitated
+
+    with usage_errors(FloatingPointError, OSError):
+        for line in imitated(config, seeds or [0], output):
             typer.echo(line)
-    except (FloatingPointError, OSError) as error:
-        raise typer.BadParameter(str(error)) from error

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import environment_arguments, taking_several
+from policies.commands.several import environment_arguments, taking_several, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -23,15 +23,12 @@ def main(
     folder: Annotated[Path, typer.Argument(help="Folder to write.")],
     environment: Annotated[str, typer.Option(help="Id of the environment of the training.")],
     set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help="Arguments of that environment."),
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Arguments of that environment.")
     ] = None,
 ) -> None:
     """Write a policy's folder from the tensors of a zip (extra `train`)."""
     from policies.learned.sb3_zip import import_zip
 
-    try:
+    with usage_errors(ValueError, TypeError, OSError):
         import_zip(zip_, folder, environment, environment_arguments(set_ or []))
-    except (ValueError, TypeError, OSError) as error:
-        raise typer.BadParameter(str(error)) from error
     typer.echo(f"policy: {folder}")

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from policies.commands.several import usage_errors
+
 EPILOG = """
 Examples:\n
 \b
@@ -19,8 +21,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 @app.command(epilog=EPILOG)
 def main(
     estimator: Annotated[
-        list[str] | None,
-        typer.Option(help="An own estimator to enter, module:attribute; repeatable.", show_default=False),
+        list[str] | None, typer.Option(help="An own estimator to enter, module:attribute; repeatable.")
     ] = None,
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
     quick: Annotated[
@@ -31,9 +32,7 @@ def main(
     """Run all estimators on all scenarios; writes a folder with tables and a picture."""
     from policies.leaderboard import run_leaderboard
 
-    try:
+    with usage_errors(ValueError):
         folder = run_leaderboard(output, quick, seed, own=estimator or ())
-    except ValueError as error:
-        raise typer.BadParameter(str(error)) from error
     typer.echo((folder / "leaderboard.md").read_text(encoding="utf-8").partition("\n## mu_c")[0])
     typer.echo(f"Look at:\n  {folder / 'leaderboard.png'}")

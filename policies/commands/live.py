@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from estimator import DEFAULT
-from policies.commands.several import taking_several
+from policies.commands.several import taking_several, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -26,19 +26,16 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 @app.command(epilog=EPILOG, cls=taking_several("--set", "--column"))
 def main(
     policy: Annotated[
-        str | None,
-        typer.Option(
-            help="Name of a policy, or its folder; without one nothing is commanded.", show_default=False
-        ),
+        str | None, typer.Option(help="Name of a policy, or its folder; without one nothing is commanded.")
     ] = None,
     task: Annotated[
-        str | None, typer.Option(help="For a controller of every task: its observations.", show_default=False)
+        str | None, typer.Option(help="For a controller of every task: its observations.")
     ] = None,
     column: Annotated[
         list[str] | None, typer.Option(metavar="NAME=VALUE", help="Of the observation; messages change it.")
     ] = None,
     firm: Annotated[
-        float | None, typer.Option(help="Grip when data stop [N]; the gripper's largest.", show_default=False)
+        float | None, typer.Option(help="Grip when data stop [N]; the gripper's largest.")
     ] = None,
     timeout: Annotated[float, typer.Option(help="Silence after which the grip is firm [s].")] = 0.1,
     estimator: Annotated[str, typer.Option(help="Name of the estimator.")] = DEFAULT,
@@ -50,18 +47,14 @@ def main(
     velocity_rate: Annotated[float, typer.Option(help="Of each slip-velocity sensor [Hz].")] = 120.0,
     lateness: Annotated[float, typer.Option(help="How late a reading may be [s].")] = 0.002,
     clocks: Annotated[str, typer.Option(help="stamps: one clock. arrival: each sensor its own.")] = "stamps",
-    log: Annotated[
-        Path | None, typer.Option(help="JSON lines to append all that passes to.", show_default=False)
-    ] = None,
-    mcap: Annotated[
-        Path | None, typer.Option(help="At the end, the log as MCAP.", show_default=False)
-    ] = None,
+    log: Annotated[Path | None, typer.Option(help="JSON lines to append all that passes to.")] = None,
+    mcap: Annotated[Path | None, typer.Option(help="At the end, the log as MCAP.")] = None,
     door: Annotated[str, typer.Option(help="udp, ros2 or rosbridge.")] = "udp",
     host: Annotated[
         str, typer.Option(help="Address to listen at, or of the rosbridge; 0.0.0.0: the network.")
     ] = "127.0.0.1",
     port: Annotated[int | None, typer.Option(min=0, max=65535, help="7741; rosbridge: 9090.")] = None,
-    seconds: Annotated[float | None, typer.Option(help="End by itself.", show_default=False)] = None,
+    seconds: Annotated[float | None, typer.Option(help="End by itself.")] = None,
 ) -> None:
     """Estimate friction from the readings of a running gripper, and command its grip."""
     from estimator.live import Live, Log
@@ -93,7 +86,10 @@ def main(
             book.close()
     typer.echo(session.report())
     if mcap is not None and log is not None:
-        _convert(log, mcap)
+        from estimator.live.log import to_mcap
+
+        with usage_errors(ModuleNotFoundError, OSError, ValueError, hint="--mcap"):
+            typer.echo(f"{to_mcap(log, mcap)} messages: {mcap}")
 
 
 def _serve(session: Any, door: str, host: str, port: int | None, fingers: int, seconds: float | None) -> None:
@@ -122,12 +118,3 @@ def _serve(session: Any, door: str, host: str, port: int | None, fingers: int, s
         pass
     finally:
         session.live.flush()
-
-
-def _convert(log: Path, target: Path) -> None:
-    from estimator.live.log import to_mcap
-
-    try:
-        typer.echo(f"{to_mcap(log, target)} messages: {target}")
-    except (ModuleNotFoundError, OSError, ValueError) as error:
-        raise typer.BadParameter(str(error), param_hint="--mcap") from error

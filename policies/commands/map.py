@@ -5,6 +5,8 @@ from typing import Annotated
 
 try:
     import typer
+
+    from policies.commands.several import usage_errors
 except ModuleNotFoundError as error:
     raise SystemExit(f"{error.name} is not installed: pip install 'slipgym[cli]'") from error
 
@@ -24,16 +26,12 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    log: Annotated[Path, typer.Argument(help="A log, or the folder of a ROS 2 bag.", show_default=False)],
-    output: Annotated[
-        Path | None, typer.Option(help="YAML file to write the mapping to.", show_default=False)
-    ] = None,
-    plot: Annotated[
-        Path | None, typer.Option(help="png to draw the proposed columns to.", show_default=False)
-    ] = None,
+    log: Annotated[Path, typer.Argument(help="A log, or the folder of a ROS 2 bag.")],
+    output: Annotated[Path | None, typer.Option(help="YAML file to write the mapping to.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="png to draw the proposed columns to.")] = None,
 ) -> None:
     """Propose a mapping of the columns of a log, for slipgym estimate --columns."""
-    try:
+    with usage_errors(ModuleNotFoundError, ValueError, OSError):
         from estimator.records import load, load_columns, proposal
         from estimator.records.alignment import align
         from estimator.records.summary import faults
@@ -48,8 +46,6 @@ def main(
         if plot is not None:
             with new_file(plot) as part:
                 proposal.plot([each for own in found.values() for each in own], part)
-    except (ModuleNotFoundError, ValueError, OSError) as error:
-        raise typer.BadParameter(str(error)) from error
     typer.echo(text + (f"\nnot used: {listed(left)}" if left else ""))
     for path in (output, plot):
         if path is not None:

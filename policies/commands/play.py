@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from estimator import DEFAULT
-from policies.commands.several import TASK_HELP
+from policies.commands.several import TASK_HELP, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -26,16 +26,11 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    task: Annotated[str, typer.Argument(help=TASK_HELP, show_default=False)],
+    task: Annotated[str, typer.Argument(help=TASK_HELP)],
     policy: Annotated[
-        str | None,
-        typer.Option(
-            help="Name or path of a policy, or keyboard; the task's own by default.", show_default=False
-        ),
+        str | None, typer.Option(help="Name or path of a policy, or keyboard; the task's own by default.")
     ] = None,
-    video: Annotated[
-        Path | None, typer.Option(help="MP4 or GIF to write instead of a window.", show_default=False)
-    ] = None,
+    video: Annotated[Path | None, typer.Option(help="MP4 or GIF to write instead of a window.")] = None,
     episodes: Annotated[int, typer.Option(help="How many.")] = 1,
     seed: Annotated[int, typer.Option(help="Seed of the first episode.")] = 0,
     speed: Annotated[float, typer.Option(help="Seconds of simulation per second of watching.")] = 1.0,
@@ -63,32 +58,22 @@ def main(
         "sensors": sensors,
         "engine": engine,
     }
-    try:
+    with usage_errors(ValueError, OSError, RuntimeError, ModuleNotFoundError):
         options = parse_settings(option or (), "--option")
         if viewer:
-            _view(task, policy, video, seed, options, port, keywords)
-            return
-        outcomes = watch(task, policy, video, episodes, seed, speed, options, **keywords)
-    except (ValueError, OSError, RuntimeError, ModuleNotFoundError) as error:
-        raise typer.BadParameter(str(error)) from error
+            from policies.play.viewer import open_viewer
+
+            outcomes = _shown(open_viewer(task, policy, video, seed, options, port, **keywords))
+        else:
+            outcomes = watch(task, policy, video, episodes, seed, speed, options, **keywords)
     for outcome in outcomes:
         typer.echo(outcome.words())
-    if video is not None:
+    if video is not None and not viewer:
         typer.echo(f"video: {video}")
 
 
-def _view(
-    task: str,
-    policy: str | None,
-    video: Path | None,
-    seed: int,
-    options: dict[str, Any],
-    port: int,
-    keywords: dict[str, Any],
-) -> None:
-    from policies.play.viewer import open_viewer
-
-    page = open_viewer(task, policy, video, seed, options, port, **keywords)
+def _shown(page: Any) -> Any:
+    """The outcomes of the episodes of a viewer's page, once it is closed."""
     typer.echo(f"open {page.url} in a browser; Ctrl-C ends")
     try:
         page.run()
@@ -96,5 +81,4 @@ def _view(
         pass
     finally:
         page.close()
-    for outcome in page.session.finished:
-        typer.echo(outcome.words())
+    return page.session.finished

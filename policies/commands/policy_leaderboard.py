@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from estimator import DEFAULT
-from policies.commands.several import TASKS, Tasks
+from policies.commands.several import TASKS, Tasks, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -27,28 +27,21 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 def main(
     tasks: Tasks = None,
     episodes: Annotated[int, typer.Option(min=2, help="Episodes of each policy.")] = 200,
-    level: Annotated[
-        list[str] | None, typer.Option(help="Only this level; repeatable.", show_default=False)
-    ] = None,
+    level: Annotated[list[str] | None, typer.Option(help="Only this level; repeatable.")] = None,
     sensors: Annotated[str, typer.Option(help="Sensor preset.")] = "realistic",
     without: Annotated[
-        list[str] | None,
-        typer.Option(help="Imperfection that sensors 'lab' then lack; repeatable.", show_default=False),
+        list[str] | None, typer.Option(help="Imperfection that sensors 'lab' then lack; repeatable.")
     ] = None,
     randomization: Annotated[str, typer.Option(help="A preset or a YAML file.")] = "none",
     estimator: Annotated[str, typer.Option(help="Estimator of the environments.")] = DEFAULT,
     engine: Annotated[str, typer.Option(help="planar or bullet.")] = "planar",
     policy: Annotated[
-        list[str] | None,
-        typer.Option(help="A policy to enter: module:class or a folder; repeatable.", show_default=False),
+        list[str] | None, typer.Option(help="A policy to enter: module:class or a folder; repeatable.")
     ] = None,
     friction_source: Annotated[str, typer.Option(help="Of the entered policies.")] = "estimated",
-    imitation: Annotated[
-        Path | None, typer.Option(help="Folder of the runs of slipgym imitate.", show_default=False)
-    ] = None,
+    imitation: Annotated[Path | None, typer.Option(help="Folder of the runs of slipgym imitate.")] = None,
     worlds: Annotated[
-        bool,
-        typer.Option("--worlds", help="Instead: each policy in other worlds, such as PyBullet."),
+        bool, typer.Option("--worlds", help="Instead: each policy in other worlds, such as PyBullet.")
     ] = False,
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
 ) -> None:
@@ -69,7 +62,7 @@ def main(
 
     same: dict[str, Any] = {"sensors": sensors, "randomization": randomization, "estimator": estimator}
     found, worths = [], []
-    try:
+    with usage_errors(ValueError, OSError):
         check_folder(output)
         same["config"] = lacking(without or [])
         if worlds and engine != "planar":
@@ -90,8 +83,6 @@ def main(
             found.append(run.outcomes(task, name, played))
             worths.append(worth(task, name, members, played))
             typer.echo(markdown(found[-1], 1))
-    except (ValueError, OSError) as error:
-        raise typer.BadParameter(str(error)) from error
     whole = pd.concat(found, ignore_index=True)
     if worlds:
         folder = write(whole, output, name="worlds")

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import TASK_HELP
+from policies.commands.several import TASK_HELP, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -22,22 +22,18 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    task: Annotated[str, typer.Argument(help=TASK_HELP, show_default=False)],
+    task: Annotated[str, typer.Argument(help=TASK_HELP)],
     files: Annotated[
         list[str],
         typer.Argument(
             metavar="[POLICY] RECORD",
             help="csv, csv.gz, parquet, h5 or mcap to write; a policy before it is as --policy.",
-            show_default=False,
         ),
     ],
     policy: Annotated[
-        str | None,
-        typer.Option(help="Name of a policy, or its folder; the task's own by default.", show_default=False),
+        str | None, typer.Option(help="Name of a policy, or its folder; the task's own by default.")
     ] = None,
-    velocity: Annotated[
-        Path | None, typer.Option(help="A file of its own for the velocities.", show_default=False)
-    ] = None,
+    velocity: Annotated[Path | None, typer.Option(help="A file of its own for the velocities.")] = None,
     finger: Annotated[int, typer.Option(help="1 or 2.")] = 1,
     seed: Annotated[int, typer.Option(help="Seed of the environment.")] = 0,
     material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
@@ -55,12 +51,10 @@ def main(
     if len(before) > (policy is None):
         raise typer.BadParameter(f"one RECORD, and at most one POLICY before it, got {' '.join(files)}")
     record = Path(last)
-    try:
+    with usage_errors(ValueError, OSError, ModuleNotFoundError):
         policy = policy or (before[0] if before else own_policy(task))
         options = parse_settings(option or (), "--option")
         check_targets(record, velocity)
         frame = record_sensors(task, policy, finger, seed, options, material=material, sensors=sensors)
         save_record(frame, record, velocity)
-    except (ValueError, OSError, ModuleNotFoundError) as error:
-        raise typer.BadParameter(str(error)) from error
     typer.echo(f"{len(frame)} rows, {frame['t'].iloc[-1]:.2f} s: {record}")

@@ -1,8 +1,9 @@
-"""Shared parts of command lines: several values of an option, the help of a task's name."""
+"""Shared parts of command lines: several values of an option, help of a task's name, refusals."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Annotated, Any, TypeAlias
 
 import typer
@@ -17,8 +18,7 @@ TASK_HELP = (
 TASKS = [module.rpartition(".")[2] for module in TASK_MODULES.values()]
 """Keys of the tasks that come with slipgym."""
 Tasks: TypeAlias = Annotated[
-    list[str] | None,
-    typer.Argument(help=f"Of {', '.join(TASKS)} (also LinearSlip or ids); all if none.", show_default=False),
+    list[str] | None, typer.Argument(help=f"Of {', '.join(TASKS)} (also LinearSlip or ids); all if none.")
 ]
 """Argument of a command that takes several tasks."""
 
@@ -48,6 +48,28 @@ def taking_several(*names: str) -> type[TyperCommand]:
             return super().parse_args(ctx, expanded(args, names))
 
     return Command
+
+
+@contextmanager
+def usage_errors(*kinds: type[Exception], extra: str = "", hint: str | None = None) -> Iterator[None]:
+    """Refuses the command line with the message of an error.
+
+    Args:
+        kinds: Of the errors.
+        extra: An extra of slipgym; where a package is missing, the message says how to install it.
+        hint: Name of the option that is wrong.
+
+    Raises:
+        typer.BadParameter: In place of an error of these kinds.
+    """
+    caught = (*kinds, ModuleNotFoundError) if extra else kinds
+    try:
+        yield
+    except caught as error:
+        message = str(error)
+        if extra and isinstance(error, ModuleNotFoundError) and "pip install" not in message:
+            message = f"{error.name} is not installed: pip install 'slipgym[{extra}]'"
+        raise typer.BadParameter(message, param_hint=hint) from error
 
 
 def environment_arguments(texts: Sequence[str]) -> dict[str, Any]:

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from policies.commands.several import usage_errors
+
 EPILOG = """
 Examples:\n
 \b
@@ -41,11 +43,9 @@ def main(
     seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the study's.")] = None,
 ) -> None:
     """Run a study and write its tables."""
-    try:
+    with usage_errors(extra="eval"):
         from policies import study as studies
-    except ModuleNotFoundError as error:
-        raise typer.BadParameter(f"{error.name} is not installed: pip install 'slipgym[eval]'") from error
-    try:
+    with usage_errors(ValueError, FileNotFoundError):
         chosen = studies.narrowed(
             studies.load_study(study),
             episodes=episodes,
@@ -55,7 +55,5 @@ def main(
             imitation=imitation,
             seed=seed,
         )
-    except (ValueError, FileNotFoundError) as error:
-        raise typer.BadParameter(str(error)) from error
     folder = studies.run_study(chosen, output, jobs)
     typer.echo("\n" + studies.words(chosen, folder))

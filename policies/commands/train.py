@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import taking_several
+from policies.commands.several import taking_several, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -29,8 +29,7 @@ def main(
         str | None,
         typer.Argument(
             help="Name of a configuration, or path of a YAML file; linear_slip and LinearSlip are "
-            "linear_slip_scratch.",
-            show_default=False,
+            "linear_slip_scratch."
         ),
     ] = None,
     task: Annotated[
@@ -56,7 +55,7 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
 ) -> None:
     """Train policies, one run for each seed and friction source; each keeps checkpoints and its curve."""
-    from policies.training import command
+    from policies.training import files
 
     options = {
         "task": task,
@@ -65,21 +64,20 @@ def main(
         "budget": budget,
     }
     sources, sets = friction_source or [], set_ or []
-    try:
+    with usage_errors(ValueError, OSError, ModuleNotFoundError):
         if resume is not None:
             others = {"a configuration": configuration, "--seeds": seeds, "--friction-source": sources}
-            others |= {
-                "--set": sets,
-                "--sweep": sweep,
-                **{f"--{name.rpartition('.')[2]}": value for name, value in options.items()},
-            }
-            work = command.resumed(resume, others, jobs, ray)
+            others |= {"--set": sets, "--sweep": sweep}
+            others |= {f"--{name.rpartition('.')[2]}": value for name, value in options.items()}
+            from policies.training.run_set import resumed
+
+            work = resumed(resume, others, jobs, ray)
         else:
-            config = command.chosen(configuration, options, sets)
-            path, work = command.begun(config, seeds or [], sources, sweep, output, jobs, ray)
+            config = files.chosen(configuration, options, sets)
+            from policies.training.run_set import begun
+
+            path, work = begun(config, seeds or [], sources, sweep, output, jobs, ray)
             typer.echo(f"If it is interrupted: slipgym train --resume {path}")
-    except (ValueError, OSError, ModuleNotFoundError) as error:
-        raise typer.BadParameter(str(error)) from error
     try:
         typer.echo(work())
     except (ValueError, OSError) as error:

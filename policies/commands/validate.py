@@ -25,9 +25,7 @@ docs/physics.md explains the figures.
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-Only: TypeAlias = Annotated[
-    list[str] | None, typer.Option(help="Experiments to run; all if none.", show_default=False)
-]
+Only: TypeAlias = Annotated[list[str] | None, typer.Option(help="Experiments to run; all if none.")]
 
 
 @app.command(epilog=EPILOG, cls=taking_several("--only"))

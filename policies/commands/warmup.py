@@ -12,6 +12,8 @@ from typing import Annotated, Any, get_args
 
 import typer
 
+from policies.commands.several import usage_errors
+
 EPILOG = """
 Examples:\n
 \b
@@ -31,12 +33,8 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 @app.command(epilog=EPILOG)
 def main(
-    task: Annotated[
-        list[str] | None, typer.Option(help="Only this task; repeatable.", show_default=False)
-    ] = None,
-    engine: Annotated[
-        list[str] | None, typer.Option(help="Only bullet or planar; repeatable.", show_default=False)
-    ] = None,
+    task: Annotated[list[str] | None, typer.Option(help="Only this task; repeatable.")] = None,
+    engine: Annotated[list[str] | None, typer.Option(help="Only bullet or planar; repeatable.")] = None,
     randomization: Annotated[str, typer.Option(help="Preset or YAML file of the episodes.")] = "none",
     sensors: Annotated[str, typer.Option(help="Sensor preset.")] = "realistic",
     variants: Annotated[
@@ -46,9 +44,7 @@ def main(
         str | None,
         typer.Option(help="Processors to compile for, as LLVM names them.", show_default="this machine's"),
     ] = None,
-    into: Annotated[
-        Path | None, typer.Option(help="Folder of the programs; with --variants.", show_default=False)
-    ] = None,
+    into: Annotated[Path | None, typer.Option(help="Folder of the programs; with --variants.")] = None,
 ) -> None:
     """Compile the environments once, so that no later process waits for it."""
     if target is not None or into is not None:
@@ -59,7 +55,7 @@ def main(
     from slipgym.registration import TASK_MODULES
     from slipgym.tasks import find
 
-    try:
+    with usage_errors(ValueError, RuntimeError, ModuleNotFoundError):
         ids = [find(name).id for name in task] if task else [*TASK_MODULES]
         engines = engine or [*(("bullet",) if find_spec("pybullet") else ()), "planar"]
         wanted: list[tuple[str, dict[str, Any]]] = [
@@ -70,8 +66,6 @@ def main(
             wanted += [(find(VARIED).id, options) for options in _variants(engines)]
         for env_id, options in tqdm(wanted, disable=None, leave=False):
             _step(env_id, options)
-    except (ValueError, RuntimeError, ModuleNotFoundError) as error:
-        raise typer.BadParameter(str(error)) from error
     typer.echo(f"compiled: {len(wanted)} environments")
 
 

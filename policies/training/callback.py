@@ -8,15 +8,15 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.vec_env import VecEnv
 from tqdm import tqdm
 
-from policies.training import checkpoint_io, checkpoints, folder
+from policies.training import checkpoints, folder, seeds
 from policies.training import model as learners
 from policies.training.config import Training
 from policies.training.curve import Row, best
-from policies.training.evaluate import evaluate
 
 STOPS_UNTRAINED = (
     "before any learning the policy solves {:.0%} of the evaluation episodes, and stop.success is {}: the "
@@ -91,7 +91,7 @@ class TrainingCallback(BaseCallback):
         self.curve.append(row)
         if best(self.curve, config.evaluation.episodes) is row:
             state = {"row": asdict(row), "learner": learners.get_state(self.model, replay=False)}
-            checkpoint_io.write(checkpoints.best(self._path), state)
+            checkpoints.write(checkpoints.best(self._path), state)
         folder.write_curve(self._path, self.curve)
         for name, value in asdict(row).items():
             self.logger.record(f"evaluation/{name}", value)
@@ -107,3 +107,34 @@ class TrainingCallback(BaseCallback):
             warnings.warn(STOPS_UNTRAINED.format(row.success, stop.success), stacklevel=2)
         if len(last) == stop.evaluations and all(reached):
             self.ended = "success"
+
+
+def evaluate(config: Training, model: Any, envs: VecEnv) -> Row:
+    """Runs episodes without exploration, always the same ones, with the learner's statistics as they are."""
+    frozen: Any = envs
+    if config.algorithm != "privileged_ppo":
+        frozen = learners.normalised(config, envs, training=False)
+        if frozen.norm_obs:
+            frozen.obs_rms = model.get_vec_normalize_env().obs_rms
+    wanted, found = config.evaluation.episodes, []
+    for begun in range(0, wanted, envs.num_envs):
+        count = min(envs.num_envs, wanted - begun)
+        found += _episodes(model, frozen, seeds.held_out(config.evaluation.first_seed + begun))[:count]
+    success, drops, reward, length = np.mean(found, axis=0).tolist()
+    return Row(model.num_timesteps, success, drops, reward, length)
+
+
+def _episodes(model: Any, envs: Any, seed: int) -> list[tuple[float, ...]]:
+    """One episode of each environment: success, drop, sum of rewards, length."""
+    envs.seed(seed)
+    observations: Any = envs.reset()
+    outcomes: dict[int, tuple[float, ...]] = {}
+    state, starts = None, np.ones(envs.num_envs, dtype=bool)
+    while len(outcomes) < envs.num_envs:
+        actions, state = model.predict(observations, state, starts, deterministic=True)
+        observations, _, starts, infos = envs.step(actions)
+        for i in np.flatnonzero(starts).tolist():
+            info = infos[i]
+            outcome = info["is_success"], info["dropped"], info["episode"]["r"], info["episode"]["l"]
+            outcomes.setdefault(i, outcome)
+    return [outcomes[i] for i in range(envs.num_envs)]

@@ -42,14 +42,19 @@ def coefficients(derived: Derived, columns: Sequence[Any], history: int, width: 
 
 
 def folded(
-    weight: np.ndarray, bias: np.ndarray, matrix: np.ndarray, mean: np.ndarray, scale: np.ndarray
+    weight: np.ndarray, bias: np.ndarray, matrix: np.ndarray, moments: Any, epsilon: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Weight (m, k) and bias (m,) of a layer that reads the observation alone and computes the same.
 
     The given layer, weight (m, k + d) and bias (m,), reads the derived columns of `coefficients` (d, k)
-    behind the observation, after their mean (k + d,) was subtracted and they were divided by their scale.
+    behind the observation. What it reads is normalised by `moments`, mean and variance of the first columns,
+    all or k; `epsilon` is added to the variance. None: nothing is.
     """
-    count = matrix.shape[1]
+    count, width = matrix.shape[1], sum(matrix.shape)
+    mean, scale = np.zeros(width), np.ones(width)
+    if moments is not None:
+        mean[: len(moments.mean)] = moments.mean
+        scale[: len(moments.var)] = np.sqrt(moments.var + epsilon)
     own, derived = weight[:, :count].astype(np.float64), weight[:, count:].astype(np.float64)
     of_normalised = matrix * scale[:count] / scale[count:, None]
     offset = (matrix @ mean[:count] - mean[count:]) / scale[count:]
@@ -112,13 +117,10 @@ def fold(
     The clipping of normalised derived columns is left out. Parameters are the state of an "MlpPolicy" of PPO,
     its observations are normalised (k + d columns), and derived by `matrix`, (d, k).
     """
-    mean, scale = np.zeros(sum(matrix.shape)), np.ones(sum(matrix.shape))
-    if normalisation.norm_obs:
-        moments: Any = normalisation.obs_rms
-        mean, scale = moments.mean, np.sqrt(moments.var + normalisation.epsilon)
+    moments = normalisation.obs_rms if normalisation.norm_obs else None
     found = dict(parameters)
     for layer in _FIRST_LAYERS:
         weight, bias = (parameters[f"{layer}.{part}"].detach().numpy() for part in ("weight", "bias"))
-        weight, bias = folded(weight, bias, matrix, mean, scale)
+        weight, bias = folded(weight, bias, matrix, moments, normalisation.epsilon)
         found[f"{layer}.weight"], found[f"{layer}.bias"] = torch.from_numpy(weight), torch.from_numpy(bias)
     return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import yaml
@@ -11,6 +11,7 @@ import yaml
 from policies.task_names import file_name
 from policies.training.config import Training
 from slipgym.config import files, yaml_model
+from slipgym.tasks import find
 
 _FOLDER = "training"
 OWN = "_scratch"
@@ -35,6 +36,24 @@ def load(which: str | os.PathLike[str], overrides: Mapping[str, Any] | None = No
     """
     found = yaml_model.read_model(file_name(which, _FOLDER, OWN), Training, _FOLDER, "training configuration")
     return changed(found, overrides or {})
+
+
+def chosen(name: str | None, options: Mapping[str, Any], texts: Sequence[str]) -> Training:
+    """The configuration that a command line names, or its option "task", with what it sets.
+
+    Assignments as texts win over options; an option that is None leaves a value as it is.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        ValueError: Nothing is named, or a name, key or value is wrong.
+    """
+    given = {key: value for key, value in options.items() if value is not None}
+    if name is None:
+        task = given.get("task")
+        if task is None:
+            raise ValueError(f"name a configuration ({', '.join(names())}, or a YAML file) or a --task")
+        name = find(task).key
+    return load(name, {**given, **assignments(texts)})
 
 
 def changed(training: Training, overrides: Mapping[str, Any], source: str = "command line") -> Training:

@@ -1,10 +1,12 @@
-"""Reads and writes the folder of a run: its configuration, curve and result."""
+"""Reads and writes the folder of a run: its configuration, curve and result; locks it."""
 
 from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -20,6 +22,14 @@ from policies.versions import write_versions
 from slipgym import atomic_io
 from slipgym.config import files
 
+fcntl: Any
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+
+LOCK = ".lock"
+"""Name of the file that is locked; it stays in the folder."""
 _ORDER, _RESULT, _CURVE = "run.yaml", "result.json", "curve.csv"
 _NONE = f"{{}} holds no training run: there is no {_ORDER} in it"
 
@@ -94,3 +104,28 @@ def result(folder: Path) -> dict[str, Any] | None:
     """Result of a run; None before its end."""
     path = folder / _RESULT
     return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else None
+
+
+@contextmanager
+def only_process(folder: Path) -> Iterator[None]:
+    """Hold the folder of a run; a process that ends, however it does, gives it back.
+
+    Where files cannot be locked (Windows, some network file systems) nothing is held.
+
+    Raises:
+        ValueError: Another process holds it.
+        OSError: The folder cannot be written to.
+    """
+    handle = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o666)
+    try:
+        if fcntl is not None:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                said = f"{folder}: another process trains this run; wait for it, or end it"
+                raise ValueError(said) from None
+            except OSError:  # a file system without locks
+                pass
+        yield
+    finally:
+        os.close(handle)

@@ -39,13 +39,9 @@ def take(actor: Any, moments: Any, matrix: np.ndarray) -> dict[str, np.ndarray]:
         found = {"observation.mean": np.array(moments.mean), "observation.var": np.array(moments.var)}
     found |= {ours: array(state[theirs]) for ours, theirs in places(state, *_LAYERS).items()}
     if len(matrix):
-        mean, scale = np.zeros(sum(matrix.shape)), np.ones(sum(matrix.shape))
-        if moments is not None:
-            mean[: matrix.shape[1]] = moments.mean
-            scale[: matrix.shape[1]] = np.sqrt(moments.var + EPSILON)
         first = "memory.0.input_" if "memory.0.input_weight" in found else "layers.0."
         weight, bias = f"{first}weight", f"{first}bias"
-        found[weight], found[bias] = folded(found[weight], found[bias], matrix, mean, scale)
+        found[weight], found[bias] = folded(found[weight], found[bias], matrix, moments, EPSILON)
     return found
 
 

@@ -12,11 +12,10 @@ from torch.utils.tensorboard import SummaryWriter
 from tqdm import tqdm
 
 from policies.evaluation.plots.style import STYLE, styled
-from policies.training import checkpoint_io, checkpoints, curve, export, folder, seeds, vector
+from policies.training import checkpoints, curve, export, folder, seeds, vector
 from policies.training import model as learners
 from policies.training.callback import TrainingCallback
 from policies.training.config import Training
-from policies.training.locking import only_process
 from policies.training.state_checks import fits
 
 _COMMAND = "python scripts/train.py --resume {}"
@@ -41,7 +40,7 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
         OSError: It cannot be written.
     """
     config, seed = folder.order(path)
-    with only_process(path):
+    with folder.only_process(path):
         return folder.result(path) or _train(path, config, seed, progress, position)
 
 
@@ -74,7 +73,7 @@ def _train(path: Path, config: Training, seed: int, progress: bool, position: in
 def _best(path: Path, callback: TrainingCallback) -> dict[str, Any]:
     """The best checkpoint of a run, or the last one if the best is damaged and another is whole."""
     try:
-        return checkpoint_io.read(checkpoints.best(path))
+        return checkpoints.read(checkpoints.best(path))
     except (ValueError, FileNotFoundError) as error:
         last = checkpoints.last(path)
         if last is None:

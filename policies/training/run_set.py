@@ -1,8 +1,9 @@
-"""Several seeds and conditions side by side, each a run of its own."""
+"""Several seeds and conditions side by side, each a run of its own, as `slipgym train` begins them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,54 @@ from policies.training.config import Training
 from policies.training.files import changed
 from policies.training.run import train
 from policies.versions import stamped
+from slipgym.atomic_io import check_folder
 from slipgym.tasks import find
+
+
+def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Callable[[], str]:
+    """The work that continues the run or study of a folder; no other option may be given beside it.
+
+    Raises:
+        FileNotFoundError: The folder holds no run.
+        ValueError: Another option is given.
+    """
+    for name in (name for name, value in others.items() if value):
+        raise ValueError(f"--resume goes on as the run was begun: leave out {name}")
+    folder.runs(path)
+    return partial(train_all, path, jobs, ray)
+
+
+def begun(
+    config: Training,
+    seeds: Sequence[int],
+    sources: Sequence[str],
+    trials: int,
+    output: Path,
+    jobs: int,
+    ray: str,
+) -> tuple[Path, Callable[[], str]]:
+    """The folder of a new study in `output`, or of a sweep if there are `trials`, and what carries it out.
+
+    Without any seed it is 0, without any friction source the configuration's.
+
+    Raises:
+        ModuleNotFoundError: Ray is asked for and not installed.
+        OSError: The output cannot be written.
+        ValueError: A seed or source is wrong, or a sweep has several.
+    """
+    parallel.check(ray)
+    check_folder(output)
+    if not trials:
+        path = begin(config, seeds or [0], sources, output)
+        return path, partial(train_all, path, jobs, ray)
+    from policies.training import sweep
+
+    if len(seeds) > 1 or len(sources) > 1:
+        raise ValueError("a sweep takes one seed and one friction source")
+    for source in sources:
+        config = changed(config, {"environment.friction_source": source}, "--friction-source")
+    path = sweep.begin(config, output)
+    return path, partial(sweep.sweep, path, config, trials, *seeds or (0,), jobs, ray)
 
 
 def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output: Path) -> Path:

@@ -16,7 +16,7 @@ import numpy as np
 import policies
 from estimator.records import load as load_record
 from policies.learned import files as policy_files
-from policies.training import checkpoint_io
+from policies.training import checkpoints
 from slipgym.config import files, load, load_randomization
 from tests.attacks.arguments import environment
 from tests.attacks.cases import ACCEPTED, REFUSED, STOPPED, Attack, attempt, mutated, value
@@ -104,7 +104,7 @@ def _members() -> dict[str, bytes]:
     env.reset(seed=0)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "a.checkpoint"
-        checkpoint_io.write(path, {"state": env.get_state()})
+        checkpoints.write(path, {"state": env.get_state()})
         with zipfile.ZipFile(path) as archive:
             return {name: archive.read(name) for name in archive.namelist() if name != "sums.json"}
 
@@ -127,7 +127,7 @@ def checkpoint(rng: np.random.Generator) -> str:
 
     def resume(path: Path) -> None:
         env = environment("slipgym/LinearSlip-v0", "bullet")
-        tree = checkpoint_io.read(path)
+        tree = checkpoints.read(path)
         if not isinstance(tree, dict) or "state" not in tree:
             raise ValueError("it holds no state")
         try:

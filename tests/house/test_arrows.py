@@ -99,7 +99,7 @@ def test_import_slipgym_is_light():
 
 
 def test_import_policies_loads_no_learning_library():
-    loaded = loaded_by("import policies, policies.training.files, policies.training.command")
+    loaded = loaded_by("import policies, policies.training.files")
     assert "policies" in loaded
     assert loaded & (LEARNING | {"optuna", "ray"}) == set()
 

@@ -33,7 +33,7 @@ INNER = {
     "policies/play/watch.py": "makes an environment of a class",
     "policies/policy_leaderboard/entries.py": "reads the privileged group by its columns",
     "policies/training/adapter.py": "wraps the vector environment",
-    "policies/training/checkpoint_io.py": "writes the state of environments",
+    "policies/training/checkpoints.py": "writes the state of environments",
 }
 """Files that may import inner modules, and why."""
 

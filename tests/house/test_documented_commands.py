@@ -28,7 +28,7 @@ OPTION = re.compile(r"`slipgym ([a-z][\w-]*) (--[\w-]+)`|`scripts/(\w+)\.py (--[
 """A sentence that names an option of a command."""
 USAGE_ERROR = typer.BadParameter.__bases__[0]
 COMMANDS = PRODUCT | LAB
-OWN = {"first-use", "lock", "make-docs", "make-notebooks", "matrix", "wheel-smoke"}
+OWN = {"lock", "make-docs", "make-notebooks", "matrix", "wheel-smoke"}
 """Scripts of the repository alone."""
 TARGETS = {"make validate", "make benchmark"}
 """Commands within a sentence that state figures; the other targets are those of development."""

@@ -23,7 +23,7 @@ def called(invoke):
 
 @spelled
 def test_train(name):
-    from policies.training.command import chosen
+    from policies.training.files import chosen
 
     expected = chosen("hold", {}, [])
     assert chosen(name, {}, []) == chosen(None, {"task": name}, []) == expected

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import math
 import os
+import shlex
 import shutil
-from collections.abc import Callable, Sequence
+import sys
+from collections.abc import Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -41,19 +43,31 @@ LIMIT = 1.0
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result of an imitation.
+    """State of an imitation after a round.
 
     Attributes:
         weights: Tensors of the network, see `policies.learned.files.expected`.
         curve: Of each round: its number, episodes so far, share that the network solved, loss at its end.
-        solved: Share of the held-out episodes that the network solves; NaN without any.
         steps: Steps of experience.
     """
 
     weights: dict[str, np.ndarray]
     curve: list[dict[str, float]]
-    solved: float
     steps: int
+
+
+def imitated(config: Imitation, seeds: Sequence[int], output: Path) -> Iterator[str]:
+    """Carries out an imitation with each seed; says where each is and how good it is.
+
+    Raises:
+        FloatingPointError: A loss is not finite.
+        OSError: The output cannot be written, or a run's folder is there already.
+    """
+    folders = [destination(config, output, seed) for seed in seeds]
+    yield f"If it is interrupted, the last round's policy is in {folders[0].parent / '*' / UNFINISHED}"
+    for seed in seeds:
+        folder, solved = imitate(config, output, seed, shlex.join(sys.argv))
+        yield f"{folder / 'policy'}: solves {solved:.1%} of {config.held_out} held-out episodes"
 
 
 def imitate(
@@ -84,15 +98,15 @@ def imitate(
         curve = pd.DataFrame(outcome.curve).to_csv(index=False, lineterminator="\n")
         atomic_io.write(folder / "curve.csv", curve.encode())
 
-    def keep(outcome: Outcome) -> None:
+    outcome: Any = None
+    for outcome in run(config, seed):
         rounds = len(outcome.curve)
         write(folder / UNFINISHED / f"round_{rounds}", outcome)
         shutil.rmtree(folder / UNFINISHED / f"round_{rounds - 1}", ignore_errors=True)
-
-    outcome = run(config, seed, keep=keep)
+    solved = judged(config, Network(network_of(config), NORMALISATION, outcome.weights))
     write(folder / POLICY, outcome)
     shutil.rmtree(folder / UNFINISHED, ignore_errors=True)
-    return folder, outcome.solved
+    return folder, solved
 
 
 def destination(config: Imitation, output: str | os.PathLike[str], seed: int) -> Path:
@@ -110,20 +124,15 @@ def destination(config: Imitation, output: str | os.PathLike[str], seed: int) ->
     return folder
 
 
-def run(
-    config: Imitation, seed: int = 0, progress: bool = True, keep: Callable[[Outcome], None] | None = None
-) -> Outcome:
-    """Trains a network; see `imitate`. Calls `keep` after each round with what there is."""
+def run(config: Imitation, seed: int) -> Iterator[Outcome]:
+    """Trains a network, see `imitate`; yields what there is after each round."""
     torch.set_num_threads(config.threads)
     torch.manual_seed(seed)
     rng = np.random.default_rng(seed)
     data: list[Demonstrations] = []
     fit: Any = None
     curve = []
-    with (
-        closing(Scene(config, config.rows)) as scene,
-        tqdm(range(config.rounds), desc="rounds", disable=not progress) as bar,
-    ):
+    with closing(Scene(config, config.rows)) as scene, tqdm(range(config.rounds), desc="rounds") as bar:
         columns = [column_of(column) for column in scene.envs.action_columns]
         for number in bar:
             acts = np.arange(config.rows) >= config.controlled * config.rows
@@ -136,10 +145,7 @@ def run(
             episodes, steps = len(data) * config.rows, int(sum(one.lengths.sum() for one in data))
             curve.append({"round": number, "episodes": episodes, "solved": solved, "loss": loss})
             bar.set_postfix(loss=f"{loss:.3g}", solved=f"{solved:.0%}")
-            outcome = Outcome(fit.student.tensors(), curve, math.nan, steps)
-            if keep is not None:
-                keep(outcome)
-    return replace(outcome, solved=judged(config, fit.network()))
+            yield Outcome(fit.student.tensors(), curve, steps)
 
 
 def judged(config: Imitation, network: Network) -> float:

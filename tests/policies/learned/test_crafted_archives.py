@@ -17,7 +17,7 @@ from estimator import records
 from policies.commands import front
 from policies.evaluation.one_policy import episodes
 from policies.learned import files as policy_files
-from policies.training import checkpoint_io, checkpoints
+from policies.training import checkpoints
 
 
 class Payload:
@@ -104,7 +104,7 @@ def test_a_checkpoint_with_a_payload_is_damaged(tmp_path, mark, kind):
     checkpoints.folder(tmp_path).mkdir()
     path = checkpoints.folder(tmp_path) / "000000000064.checkpoint"
     path.write_bytes(BINARIES[kind](Payload(mark)))
-    for read in (lambda: checkpoint_io.read(path), lambda: checkpoints.last(tmp_path)):
+    for read in (lambda: checkpoints.read(path), lambda: checkpoints.last(tmp_path)):
         with pytest.raises(ValueError, match=r"000000000064\.checkpoint is damaged"):
             read()
 
@@ -183,7 +183,7 @@ def test_a_crafted_tree_is_refused(tmp_path, members, message):
     path = tmp_path / "one.checkpoint"
     path.write_bytes(with_sums(members))
     with pytest.raises(ValueError, match=rf"one\.checkpoint is damaged: .*{message}"):
-        checkpoint_io.read(path)
+        checkpoints.read(path)
 
 
 def test_a_small_file_does_not_grow(tmp_path):
@@ -191,7 +191,7 @@ def test_a_small_file_does_not_grow(tmp_path):
     path.write_bytes(with_sums({"tree.json": b'"' + bytes(10**7) + b'"'}, compression=zipfile.ZIP_DEFLATED))
     assert path.stat().st_size < 20_000
     with pytest.raises(ValueError, match=r"'tree\.json' is compressed"):
-        checkpoint_io.read(path)
+        checkpoints.read(path)
 
 
 def test_sums_of_another_kind_are_refused(tmp_path):
@@ -199,4 +199,4 @@ def test_sums_of_another_kind_are_refused(tmp_path):
     for sums in (b"[]", b"3", b"", b'{"tree.json": 1}'):
         path.write_bytes(zipped({"tree.json": b"1", "sums.json": sums}))
         with pytest.raises(ValueError, match="is damaged"):
-            checkpoint_io.read(path)
+            checkpoints.read(path)

@@ -6,7 +6,6 @@ import yaml
 from estimator.records import load_columns, parse_settings
 from policies.commands import front
 from policies.evaluation import load_experiment
-from policies.training import command as training_command
 from policies.training import files as trainings
 from policies.training import folder
 from slipgym.config import load, load_randomization
@@ -55,7 +54,7 @@ def test_yaml_makes_no_objects(tmp_path, mark, kind, tag):
 @pytest.mark.parametrize("tag", TAGS)
 def test_nor_does_yaml_on_a_command_line(mark, capsys, tag):
     setting = f"key={TAGS[tag].format(mark=mark)}"
-    for parse in (parse_settings, lambda texts: training_command.chosen("hold", {}, texts)):
+    for parse in (parse_settings, lambda texts: trainings.chosen("hold", {}, texts)):
         with pytest.raises(ValueError, match="--set"):
             parse([setting])
     with pytest.raises(SystemExit):

@@ -5,7 +5,7 @@ import pytest
 
 pytest.importorskip("stable_baselines3")
 import policies
-from policies.training import checkpoint_io, checkpoints, folder, run, vector
+from policies.training import checkpoints, folder, run, vector
 from policies.training import model as learners
 
 DERIVED = {
@@ -59,7 +59,7 @@ def test_the_file_acts_as_the_learner(config, tmp_path, observation):
     policy = policies.load(tmp_path / "run" / "policy")
     envs = vector.make(config, 5)
     model = learners.make(config, learners.normalised(config, envs, training=False), 3)
-    best = checkpoint_io.read(checkpoints.best(tmp_path / "run"))["learner"]
+    best = checkpoints.read(checkpoints.best(tmp_path / "run"))["learner"]
     learners.set_parameters(model, best)
     frozen = model.get_vec_normalize_env()
     learners.set_normalisation(frozen, best["normalisation"])

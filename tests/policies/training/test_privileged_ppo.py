@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("stable_baselines3")
 pytest.importorskip("rsl_rl")
 import policies
-from policies.training import checkpoint_io, checkpoints, files, folder, model, run, vector
+from policies.training import checkpoints, files, folder, model, run, vector
 from policies.training.adapter import make_vec_env
 from policies.training.files import checked
 from policies.training.imitation.config import Imitation
@@ -62,7 +62,7 @@ def test_the_policy_of_a_run_acts_as_its_best_learner(trained):
     config, path = trained
     by_file = played(config, of_file(path / "policy"))
     learner = model.begin(config, 0)
-    model.set_parameters(learner, checkpoint_io.read(checkpoints.best(path))["learner"])
+    model.set_parameters(learner, checkpoints.read(checkpoints.best(path))["learner"])
     np.testing.assert_allclose(by_file, played(config, acting(learner)), atol=2e-5)
     learner.get_env().close()
 

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 pytest.importorskip("stable_baselines3")
-from policies.training import checkpoint_io, checkpoints, folder, run
-from policies.training.locking import only_process
+from policies.training import checkpoints, folder, run
+from policies.training.folder import only_process
 from slipgym import atomic_io
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -97,19 +97,19 @@ CRAFTED = {
 @pytest.mark.parametrize("path", CRAFTED)
 def test_a_checkpoint_of_another_shape_with_right_checksums(unfinished, path):
     for checkpoint in checkpoints.kept(unfinished):
-        state = checkpoint_io.read(checkpoint)
+        state = checkpoints.read(checkpoint)
         crafted(state, path, CRAFTED[path])
-        checkpoint_io.write(checkpoint, state)
+        checkpoints.write(checkpoint, state)
     with pytest.raises(ValueError, match="the last checkpoint"):
         run.train(unfinished, progress=False)
 
 
 def test_states_of_environments_inside_are_checked(unfinished):
     for checkpoint in checkpoints.kept(unfinished):
-        state = checkpoint_io.read(checkpoint)
+        state = checkpoints.read(checkpoint)
         for one in state["learner"]["environments"]["envs"]:
             one.simulation.plant.fingers["queued"][:] = 2**62
-        checkpoint_io.write(checkpoint, state)
+        checkpoints.write(checkpoint, state)
     with pytest.raises(ValueError, match=r"the last checkpoint .*plant\.fingers is not as"):
         run.train(unfinished, progress=False)
 
@@ -125,13 +125,13 @@ def test_parts_of_an_archive_do_not_overlap(tmp_path):
                 setattr(other, name, getattr(entry, name))
             archive.filelist.append(other)
     with pytest.raises(ValueError, match="is damaged"):
-        checkpoint_io.read(path)
+        checkpoints.read(path)
 
 
 def test_a_pipe_is_no_checkpoint(tmp_path):
     os.mkfifo(tmp_path / "pipe.checkpoint")
     with pytest.raises(ValueError, match="is no regular file"):
-        checkpoint_io.read(tmp_path / "pipe.checkpoint")
+        checkpoints.read(tmp_path / "pipe.checkpoint")
 
 
 def test_a_second_process_is_kept_out(unfinished):

@@ -1,7 +1,7 @@
 import pytest
 import yaml
 
-from policies.training import command, files, seeds
+from policies.training import files, seeds
 from policies.training.config import Training
 from slipgym.tasks import TASKS
 
@@ -9,7 +9,7 @@ from slipgym.tasks import TASKS
 @pytest.mark.parametrize("name", files.names())
 def test_every_configuration_loads_and_is_written_as_it_was_read(name):
     training = files.load(name)
-    assert command.chosen(None, {"task": training.task}, []).task == training.task
+    assert files.chosen(None, {"task": training.task}, []).task == training.task
     assert files.checked(yaml.safe_load(files.text(training)), name) == training
 
 
@@ -17,7 +17,7 @@ def test_every_configuration_loads_and_is_written_as_it_was_read(name):
 def test_a_tasks_name_stands_for_learning_it_from_nothing(task):
     own = files.load(f"{task.key}_scratch")
     for name in (task.key, task.name, task.id):
-        assert files.load(name) == command.chosen(None, {"task": name}, []) == own
+        assert files.load(name) == files.chosen(None, {"task": name}, []) == own
     with pytest.raises(ValueError, match=rf"configuration '{task.key}_nothing'.*carry_scratch"):
         files.load(f"{task.key}_nothing")
 
@@ -56,7 +56,7 @@ def test_every_sweep_tries_keys_that_exist():
 )
 def test_what_is_wrong_is_named(texts, message):
     with pytest.raises(ValueError, match=message):
-        command.chosen("linear_slip", {}, texts)
+        files.chosen("linear_slip", {}, texts)
 
 
 def test_a_wrong_file_is_named(tmp_path):
@@ -67,25 +67,27 @@ def test_a_wrong_file_is_named(tmp_path):
     with pytest.raises(FileNotFoundError):
         files.load(tmp_path / "nowhere.yaml")
     with pytest.raises(ValueError, match="linear_slip"):
-        command.chosen(None, {"task": None}, [])
+        files.chosen(None, {"task": None}, [])
 
 
 def test_assignments_win_over_options_and_both_over_the_file():
     options = {"task": "LinearSlip", "budget": 1000, "algorithm": None}
-    chosen = command.chosen(None, options, ["budget=2000", "ppo.learning_rate=1e-3", "ppo.net_arch=[8]"])
+    chosen = files.chosen(None, options, ["budget=2000", "ppo.learning_rate=1e-3", "ppo.net_arch=[8]"])
     assert (chosen.budget, chosen.ppo.learning_rate, chosen.ppo.net_arch) == (2000, 1e-3, (8,))
     assert chosen.ppo.n_steps == files.load("linear_slip_scratch").ppo.n_steps
 
 
 def test_estimates_need_an_estimator(tmp_path):
     pytest.importorskip("stable_baselines3")
+    from policies.training import run_set
+
     with pytest.raises(ValueError, match=r"--friction-source: .*'estimated' needs an estimator"):
-        command.begun(files.load("carry"), [], ["true", "estimated"], 0, tmp_path, 1, "")
+        run_set.begun(files.load("carry"), [], ["true", "estimated"], 0, tmp_path, 1, "")
     assert not list(tmp_path.iterdir())
     wanted = ["environment.friction_source=estimated"]
     with pytest.raises(ValueError, match=r"environment\.estimator=adaptive runs one"):
-        command.chosen("carry", {}, wanted)
-    told = command.chosen("carry", {}, [*wanted, "environment.estimator=adaptive"])
+        files.chosen("carry", {}, wanted)
+    told = files.chosen("carry", {}, [*wanted, "environment.estimator=adaptive"])
     assert (told.environment.friction_source, told.environment.estimator) == ("estimated", "adaptive")
 
 
@@ -101,7 +103,9 @@ def test_no_training_seed_is_held_out():
 
 def test_resuming_takes_no_other_option(tmp_path):
     pytest.importorskip("stable_baselines3")
+    from policies.training import run_set
+
     with pytest.raises(ValueError, match="leave out --budget"):
-        command.resumed(tmp_path, {"--seeds": None, "--budget": 3}, 1, "")
+        run_set.resumed(tmp_path, {"--seeds": None, "--budget": 3}, 1, "")
     with pytest.raises(FileNotFoundError, match="holds no training run"):
-        command.resumed(tmp_path, {"--seeds": None}, 1, "")
+        run_set.resumed(tmp_path, {"--seeds": None}, 1, "")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip("stable_baselines3")
-from policies.training import checkpoint_io, checkpoints, files, folder, run
+from policies.training import checkpoints, files, folder, run
 from policies.training.files import changed
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -83,7 +83,7 @@ def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algori
         assert end["record"].pop("seconds") > 0
         assert end["record"].pop("cpu_seconds") > 0
     assert differing(*ends) == []
-    assert differing(*(checkpoint_io.read(checkpoints.best(path)) for path in (whole, broken))) == []
+    assert differing(*(checkpoints.read(checkpoints.best(path)) for path in (whole, broken))) == []
 
 
 @pytest.mark.parametrize("memory", [0, 4])
@@ -150,14 +150,14 @@ def dying_at(number):
 @pytest.mark.parametrize("number", range(4))
 def test_a_file_is_the_old_one_or_the_new_one(tmp_path, monkeypatch, number):
     path = tmp_path / "file"
-    checkpoint_io.write(path, {"version": 1})
+    checkpoints.write(path, {"version": 1})
     with monkeypatch.context() as patch:
         patched(patch, dying_at(number))
         with pytest.raises(Killed):
-            checkpoint_io.write(path, {"version": 2})
-    assert checkpoint_io.read(path) == {"version": 2 if number == 3 else 1}
-    checkpoint_io.write(path, {"version": 3})
-    assert checkpoint_io.read(path) == {"version": 3}
+            checkpoints.write(path, {"version": 2})
+    assert checkpoints.read(path) == {"version": 2 if number == 3 else 1}
+    checkpoints.write(path, {"version": 3})
+    assert checkpoints.read(path) == {"version": 3}
 
 
 @pytest.mark.slow
@@ -246,7 +246,7 @@ def test_ten_kills_at_random_moments_lose_nothing_but_an_interval(small, tmp_pat
         assert end["record"].pop("seconds") > 0
         assert end["record"].pop("cpu_seconds") > 0
     assert differing(*ends) == []
-    assert differing(*(checkpoint_io.read(checkpoints.best(path)) for path in (whole, killed))) == []
+    assert differing(*(checkpoints.read(checkpoints.best(path)) for path in (whole, killed))) == []
 
 
 def test_a_run_that_another_version_began_goes_on(small, tmp_path):
@@ -263,7 +263,7 @@ def test_a_run_that_another_version_began_goes_on(small, tmp_path):
         group["fused"] = None
     other = tmp_path / "other"
     folder.begin(other, changed(config, {"budget": 96}), seed)
-    checkpoint_io.write(checkpoints.best(other), checkpoint_io.read(checkpoints.best(path)))
+    checkpoints.write(checkpoints.best(other), checkpoints.read(checkpoints.best(path)))
     checkpoints.save(other, 64, state, keep=2)
     assert run.train(other, progress=False)["steps"] == 96
     groups = checkpoints.last(other)["learner"]["parameters"]["policy.optimizer"]["param_groups"]

@@ -13,7 +13,6 @@ import policies
 from policies import parallel
 from policies.commands.train import app
 from policies.training import (
-    checkpoint_io,
     checkpoints,
     export,
     files,
@@ -25,8 +24,8 @@ from policies.training import (
     vector,
 )
 from policies.training import model as learners
+from policies.training.callback import evaluate
 from policies.training.curve import Row
-from policies.training.evaluate import evaluate
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -54,7 +53,7 @@ def test_the_policy_of_a_run_acts_as_its_learner(small, tmp_path, engine):
     policy = policies.load(path / export.POLICY)
     envs = learners.normalised(config, vector.make(config, 0), training=False)
     model = learners.make(config, envs, 0)
-    best = checkpoint_io.read(checkpoints.best(path))["learner"]
+    best = checkpoints.read(checkpoints.best(path))["learner"]
     learners.set_parameters(model, best)
     learners.set_normalisation(envs, best["normalisation"])
     seen = envs.venv.reset()
