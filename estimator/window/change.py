@@ -12,7 +12,7 @@ from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
 from estimator.window.fit import conclude, descend
 from estimator.window.layout import EMPTY, ENTRIES, MU, OLD, SLIDE, STATES
-from estimator.window.slide import slide
+from estimator.window.residuals import slide
 
 FIRST, STEPS = 3, 4  # First fits, far from their start, and the steps of each
 NEWEST = 0.155  # Slip time of the newest slips [s]: friction that changed is right again after it

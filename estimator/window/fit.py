@@ -1,19 +1,71 @@
-"""Fits the states to the window: Gauss-Newton with robust weights and probabilities of a slip."""
+"""Fits the states to the window: Gauss-Newton with robust weights and probabilities of a slip.
+
+What is known of the states without any slip are normal distributions, with heavier tails for the exponents.
+"""
 
 import math
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
 from estimator.window import layout as at
-from estimator.window.cholesky import factor, invert, substitute
-from estimator.window.layout import STATES
-from estimator.window.priors import add_priors
-from estimator.window.slide import slide
-from estimator.window.stick import stick
+from estimator.window.layout import FALLS, GROWS, OLD, STATES
+from estimator.window.residuals import slide, stick
 
 TAILS = 2.0
 """Squared normalised residual at which an entry counts half: Cauchy, as in the Student distribution with few
 degrees of freedom."""
+HARD, RUBBER = 0.045, 0.12
+"""Half width of the exponents' Cauchy distribution for a hard pad, and for one that may be rubber: silicones
+have exponents of -0.1 to 0.4."""
+DRIFT, CHANGE = 0.03**2, 0.5**2
+"""Variance of the difference of the newest slips from the older ones: without a change, and with one."""
+
+
+@njit(error_model="numpy")
+def factor(a):
+    """Replaces the lower triangle of a (16, 16) by its Cholesky factor; False if it has none."""
+    for i in range(STATES):
+        for j in range(i + 1):
+            rest = a[i, j]
+            for k in range(j):
+                rest -= a[i, k] * a[j, k]
+            if i > j:
+                a[i, j] = rest / a[j, j]
+            elif rest > 0.0:
+                a[i, i] = math.sqrt(rest)
+            else:
+                return False
+    return True
+
+
+@njit(error_model="numpy")
+def substitute(a, g):
+    """Replaces g (16,) by the solution of L L' x = g."""
+    for i in range(STATES):
+        for k in range(i):
+            g[i] -= a[i, k] * g[k]
+        g[i] /= a[i, i]
+    for i in range(STATES - 1, -1, -1):
+        for k in range(i + 1, STATES):
+            g[i] -= a[k, i] * g[k]
+        g[i] /= a[i, i]
+
+
+@njit(error_model="numpy")
+def invert(a, inverse, factor_of_all):
+    """Writes factor_of_all (L L')^-1 into a matrix (16, 16)."""
+    column = matrix(1, STATES)[0]
+    for j in range(STATES):  # a column is zero above j, and the result is symmetric
+        for i in range(j, STATES):
+            rest = factor_of_all if i == j else 0.0
+            for k in range(j, i):
+                rest -= a[i, k] * column[k]
+            column[i] = rest / a[i, i]
+        for i in range(STATES - 1, j - 1, -1):
+            for k in range(i + 1, STATES):
+                column[i] -= a[k, i] * column[k]
+            column[i] /= a[i, i]
+            inverse[i, j] = inverse[j, i] = column[i]
 
 
 @njit(error_model="numpy")
@@ -80,6 +132,29 @@ def _gather(state, p, x, a, g):
 
 
 @njit(error_model="numpy")
+def _add_priors(state, p, x, changed, a, g):
+    """Adds the information of the priors to the normal equations, and returns their cost.
+
+    A Cauchy distribution of half width s has the cost 2 ln(1 + (x / s)^2), whose gradient is that of a normal
+    distribution with the variance (s^2 + x^2) / 2. `changed`: whether friction has changed since the older
+    slips.
+    """
+    cost, width = 0.0, HARD if state.spring <= p.compliance else RUBBER
+    for j in range(STATES):
+        off, variance = x[j] - state.mean[j], state.variance[j]
+        if j == OLD:
+            variance = CHANGE if changed else DRIFT
+        if j in (FALLS, GROWS):
+            variance = 0.5 * (width * width + off * off)
+            cost += 2.0 * math.log1p((off / width) ** 2)
+        else:
+            cost += off * off / variance
+        a[j, j] += 1.0 / variance
+        g[j] -= off / variance
+    return cost
+
+
+@njit(error_model="numpy")
 def _limit(p, x):
     """Keeps the states where the law is meant for."""
     x[at.MU] = min(max(x[at.MU], math.log(p.mu_min)), math.log(p.mu_max))
@@ -101,7 +176,7 @@ def descend(state, p, x, changed, steps, a, g):
     cost, misfit = 0.0, 1.0
     for _ in range(steps):
         cost, misfit = _gather(state, p, x, a, g)
-        cost += add_priors(state, p, x, changed, a, g)
+        cost += _add_priors(state, p, x, changed, a, g)
         if not factor(a):
             return math.inf, 1.0
         substitute(a, g)

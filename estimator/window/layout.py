@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimator.stick_slip import STICK_SLIP_STATE, start
-from estimator.window.timing import CANDIDATES
+from estimator.window.parameters import EARLIEST, LATEST
 
 MU, RATIO, R, SHAPE, SIGMA, ZERO, TORQUE, TILT, COP = 0, 1, 2, 3, 4, 5, 7, 8, 10
 FALLS, GROWS, OLD, STRIBECK, STATES = 12, 13, 14, 15, 16
@@ -47,7 +47,7 @@ STATE = np.dtype(
         *_numbers("elapsed timing sign power stored unloaded variance_normal noise spring slip_time changed"),
         *_numbers("split reference misfit at_bound unmeasured load look_time fit_time springs sd_lever"),
         *_numbers("drops drop_mean drop_static drop_largest"),
-        ("products", np.float64, (CANDIDATES,)),
+        ("products", np.float64, (LATEST - EARLIEST + 1,)),
         ("energies", np.float64, (2,)),
         ("zeros", np.float64, (4,)),
         ("peak", np.float64, (4,)),

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from estimator.parameters import Parameters, parameter
-from estimator.window.timing import EARLIEST, LATEST
+
+EARLIEST, LATEST = -1, 5  # Delays of the velocity [samples]; negative: the force itself is late
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from estimator.window.cholesky import factor, invert, substitute
+from estimator.window.fit import factor, invert, substitute
 from estimator.window.layout import STATES
 
 

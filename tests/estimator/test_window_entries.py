@@ -5,7 +5,7 @@ import pytest
 
 import estimator
 from estimator.window.layout import EMPTY, ENTRIES, FALLS, GROWS, MU, SLIDE, STATES, R
-from estimator.window.slide import slide
+from estimator.window.residuals import slide
 from estimator.window.window import new_entry, refer
 from tests.estimator.rigid_slips import FINE, Pad, Phase, Sensors, contact, planar, sense, steps
 

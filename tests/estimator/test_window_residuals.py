@@ -23,8 +23,7 @@ from estimator.window.layout import (
     ZERO,
     R,
 )
-from estimator.window.slide import slide
-from estimator.window.stick import stick
+from estimator.window.residuals import slide, stick
 
 SPREADS = {MU: 0.5, RATIO: 0.1, R: 0.3, SHAPE: 0.3, SIGMA: 0.1, ZERO: 0.1, ZERO + 1: 0.1, TORQUE: 5e-4}
 SPREADS |= {TILT: 0.02, TILT + 1: 0.02, COP: 5e-4, COP + 1: 5e-4, FALLS: 0.1, GROWS: 0.1}
