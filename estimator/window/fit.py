@@ -17,8 +17,6 @@ degrees of freedom."""
 HARD, RUBBER = 0.045, 0.12
 """Half width of the exponents' Cauchy distribution for a hard pad, and for one that may be rubber: silicones
 have exponents of -0.1 to 0.4."""
-DRIFT, CHANGE = 0.03**2, 0.5**2
-"""Variance of the difference of the newest slips from the older ones: without a change, and with one."""
 
 
 @njit(error_model="numpy")
@@ -52,23 +50,6 @@ def substitute(a, g):
 
 
 @njit(error_model="numpy")
-def invert(a, inverse, factor_of_all):
-    """Writes factor_of_all (L L')^-1 into a matrix (16, 16)."""
-    column = matrix(1, STATES)[0]
-    for j in range(STATES):  # a column is zero above j, and the result is symmetric
-        for i in range(j, STATES):
-            rest = factor_of_all if i == j else 0.0
-            for k in range(j, i):
-                rest -= a[i, k] * column[k]
-            column[i] = rest / a[i, i]
-        for i in range(STATES - 1, j - 1, -1):
-            for k in range(i + 1, STATES):
-                column[i] -= a[k, i] * column[k]
-            column[i] /= a[i, i]
-            inverse[i, j] = inverse[j, i] = column[i]
-
-
-@njit(error_model="numpy")
 def _spread(state, h):
     """Variance of an expected force by the states that are least known: ln mu_c, ln r and the exponent."""
     c, m, f, r = state.covariance, h[0, at.MU], h[0, at.FALLS], h[0, at.R]
@@ -96,9 +77,9 @@ def _gather(state, p, x, a, g):
         old = s.end < state.split
         if kind == at.SLIDE:
             rows = 3
-            slide(x, s, state.sign, old, p.law_error * p.law_error, e, h, var)
+            slide(x, s, p, state.sign, old, e, h, var)
         else:
-            stick(x, s, old, state.covariance[at.R, at.R], e, h, var)
+            stick(x, s, p, old, state.covariance[at.R, at.R], e, h, var)
         q = 0.0
         for k in range(rows):
             q += e[k] * e[k] / (rows * var[k])
@@ -112,7 +93,7 @@ def _gather(state, p, x, a, g):
             cost += weight * loss
         else:
             spread = var[0] + _spread(state, h)
-            odds = s.slides / max(1.0 - s.slides, 1e-9)
+            odds = s.slides / (1.0 - s.slides)
             odds *= (abs(h[0, at.MU]) + 1e-3) / math.sqrt(2.0 * math.pi * spread)
             cost -= 2.0 * weight * math.log((odds * math.exp(-0.5 * loss) + 1.0) / (odds + 1.0))
             likely = odds * math.exp(-0.5 * e[0] * e[0] / spread)
@@ -121,7 +102,7 @@ def _gather(state, p, x, a, g):
         weight /= 1.0 + q / TAILS
         for k in range(rows):
             information, off = weight / var[k], e[k]
-            for j in range(at.STATES):
+            for j in range(STATES):
                 by = information * h[k, j]
                 if by != 0.0:  # most derivatives are
                     g[j] += by * off
@@ -136,14 +117,14 @@ def _add_priors(state, p, x, changed, a, g):
     """Adds the information of the priors to the normal equations, and returns their cost.
 
     A Cauchy distribution of half width s has the cost 2 ln(1 + (x / s)^2), whose gradient is that of a normal
-    distribution with the variance (s^2 + x^2) / 2. `changed`: whether friction has changed since the older
-    slips.
+    distribution with the variance (s^2 + x^2) / 2. Friction of the newest slips differs from that of the
+    older ones by no more than the law is off, or if it has `changed` by as much as it may be at the start.
     """
     cost, width = 0.0, HARD if state.spring <= p.compliance else RUBBER
     for j in range(STATES):
         off, variance = x[j] - state.mean[j], state.variance[j]
         if j == OLD:
-            variance = CHANGE if changed else DRIFT
+            variance = (p.sd_log_mu_c0 if changed else p.law_error) ** 2
         if j in (FALLS, GROWS):
             variance = 0.5 * (width * width + off * off)
             cost += 2.0 * math.log1p((off / width) ** 2)
@@ -161,7 +142,7 @@ def _limit(p, x):
     x[at.RATIO] = min(max(x[at.RATIO], 0.0), 0.7)
     x[at.R] = min(max(x[at.R], math.log(p.r_min)), math.log(1.25 * p.r_max))
     x[at.SHAPE] = min(max(x[at.SHAPE], -0.2), 1.6)
-    x[at.FALLS] = min(max(x[at.FALLS], -0.5), 0.5)
+    x[FALLS] = min(max(x[FALLS], -0.5), 0.5)
     x[at.STRIBECK] = min(max(x[at.STRIBECK], -1.0), 1.0)
 
 
@@ -181,17 +162,7 @@ def descend(state, p, x, changed, steps, a, g):
             return math.inf, 1.0
         substitute(a, g)
         largest = max(abs(g[at.MU]), abs(g[at.R]), abs(g[at.SHAPE]), abs(g[at.RATIO]), 0.5)
-        for j in range(at.STATES):
+        for j in range(STATES):
             x[j] += 0.5 / largest * g[j]
         _limit(p, x)
     return cost, misfit
-
-
-@njit(error_model="numpy")
-def conclude(state, x, misfit, a):
-    """Stores the states, and their covariance times the reduced chi square."""
-    state.x[:] = x
-    invert(a, state.covariance, max(misfit, 1.0))
-    state.misfit = misfit
-    state.fits += 1
-    state.fitted = True

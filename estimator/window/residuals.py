@@ -17,29 +17,23 @@ import math
 
 from estimator._numba.caching import njit
 from estimator.window import layout as at
+from estimator.window.layout import EVENT, SHORTEST
 from estimator.window.surface import surface
 
-BRIEF = 0.016  # Duration of a stretch [s] whose beginning and end are off by as much as the law
-TURN = 2.0
-"""Error of a load's direction over that of its size: anisotropy of 5 % turns it by up to 5 %, and sizes by
-2.5."""
-SAMPLING = 0.08
-"""Relative deviation of one event: the load is read between ramp and fall, the largest of noisy samples
-counts, and friction depends on the place and on the time in stick by some per cent."""
 FLATTER = 0.27
 """How much ln of the size on a disc exceeds that on the ellipsoid, over share (1 - share) of the torque."""
 
 
 @njit(error_model="numpy")
-def slide(x, s, sign, old, law, e, h, var):
+def slide(x, s, p, sign, old, e, h, var):
     """Residual of an entry, its derivatives by the states, and its variances.
 
     Args:
         x: States (16,).
         s: Entry of the kind SLIDE.
+        p: Parameters.
         sign: 1 if the wrench is that on the finger, else -1.
         old: Whether the entry is older than the newest change.
-        law: Squared relative error of the law.
         e: Output (3,): force along the motion and across it [N], torque [N m].
         h: Output (3, 16): derivatives of the expected values.
         var: Output (3,) [N^2, N^2, N^2 m^2].
@@ -106,17 +100,16 @@ def slide(x, s, sign, old, law, e, h, var):
         h[2, at.COP + j] = sign * ((torque_v + arm * force_v) * along + (direct + off_arm * across) * f_t)
 
     size = f_t * f_t + (tau / r) ** 2
-    law *= 1.0 + (BRIEF / s.time) ** 2
-    off = law * size
-    angle = (v_t * v_t * r * r * s.var_spin + w * w * s.var_speed) / (square * square)
-    unsteady = s.var_speed / (v_t * v_t + s.var_speed)
-    var[0] = s.var_force + off + (k * by_t) ** 2 * angle + (unsteady * f_t) ** 2
-    var[1] = s.var_force + TURN * TURN * law * size + unsteady * f_t * f_t
-    var[2] = s.var_torque + r * r * (off + (k * by_r) ** 2 * angle)
+    off = p.law_error * p.law_error * (1.0 + (2.0 * SHORTEST / s.time) ** 2) * size  # both ends are off, too
+    angle, unsteady = s.var_speed / square, s.var_speed / (v_t * v_t + s.var_speed)
+    var[0] = s.noise * p.sd_force * p.sd_force + off + (k * by_t) ** 2 * angle + (unsteady * f_t) ** 2
+    # anisotropy of 5 % changes the size of a load by up to 2.5 %, and turns it by up to 5
+    var[1] = s.noise * p.sd_force * p.sd_force + 4.0 * off + unsteady * f_t * f_t
+    var[2] = s.noise * p.sd_torque * p.sd_torque + r * r * (off + (k * by_r) ** 2 * angle)
 
 
 @njit(error_model="numpy")
-def stick(x, s, old, of_r, e, h, var):
+def stick(x, s, p, old, of_r, e, h, var):
     """Residual of ln (load / f_n), derivatives and variance, in the first row of the outputs of `slide`.
 
     The load before a slip says what mu_s is, not what mu_c is: one that is wrong must not pull the other.
@@ -148,5 +141,5 @@ def stick(x, s, old, of_r, e, h, var):
         for j in range(2):
             f = f_x if j == 0 else f_y
             h[0, at.ZERO + j], h[0, at.TILT + j] = f / square, f_n * f / square
-    var[0] = SAMPLING * SAMPLING + (0.05 / f_n) ** 2 + s.var_force / square + unsure
-    var[0] += (0.2 * s.unknown) ** 2 + share * share * s.var_torque / (tau * tau + 1e-12)
+    var[0] = EVENT * EVENT + (0.05 / f_n) ** 2 + p.sd_force * p.sd_force / square + unsure
+    var[0] += (0.2 * s.unknown) ** 2 + (share * p.sd_torque) ** 2 / (tau * tau + 1e-12)
