@@ -17,11 +17,12 @@ degrees of freedom."""
 HARD, RUBBER = 0.045, 0.12
 """Half width of the exponents' Cauchy distribution for a hard pad, and for one that may be rubber: silicones
 have exponents of -0.1 to 0.4."""
+DRIFT, CHANGE = 0.03, 0.5  # Deviation of the newest slips from the older ones: without a change, and with one
 
 
 @njit(error_model="numpy")
 def factor(a):
-    """Replaces the lower triangle of a (16, 16) by its Cholesky factor; False if it has none."""
+    """Replaces the lower triangle of a (15, 15) by its Cholesky factor; False if it has none."""
     for i in range(STATES):
         for j in range(i + 1):
             rest = a[i, j]
@@ -38,7 +39,7 @@ def factor(a):
 
 @njit(error_model="numpy")
 def substitute(a, g):
-    """Replaces g (16,) by the solution of L L' x = g."""
+    """Replaces g (15,) by the solution of L L' x = g."""
     for i in range(STATES):
         for k in range(i):
             g[i] -= a[i, k] * g[k]
@@ -47,14 +48,6 @@ def substitute(a, g):
         for k in range(i + 1, STATES):
             g[i] -= a[k, i] * g[k]
         g[i] /= a[i, i]
-
-
-@njit(error_model="numpy")
-def _spread(state, h):
-    """Variance of an expected force by the states that are least known: ln mu_c, ln r and the exponent."""
-    c, m, f, r = state.covariance, h[0, at.MU], h[0, at.FALLS], h[0, at.R]
-    own = m * m * c[at.MU, at.MU] + f * f * c[at.FALLS, at.FALLS] + r * r * c[at.R, at.R]
-    return own + 2.0 * (m * f * c[at.MU, at.FALLS] + m * r * c[at.MU, at.R] + f * r * c[at.FALLS, at.R])
 
 
 @njit(error_model="numpy")
@@ -92,7 +85,7 @@ def _gather(state, p, x, a, g):
         if kind == at.BREAK or e[0] * (state.sign if kind == at.SLIDE else 1.0) > 0.0:
             cost += weight * loss
         else:
-            spread = var[0] + _spread(state, h)
+            spread = var[0] + h[0, at.MU] ** 2 * state.covariance[at.MU, at.MU]
             odds = s.slides / (1.0 - s.slides)
             odds *= (abs(h[0, at.MU]) + 1e-3) / math.sqrt(2.0 * math.pi * spread)
             cost -= 2.0 * weight * math.log((odds * math.exp(-0.5 * loss) + 1.0) / (odds + 1.0))
@@ -117,14 +110,14 @@ def _add_priors(state, p, x, changed, a, g):
     """Adds the information of the priors to the normal equations, and returns their cost.
 
     A Cauchy distribution of half width s has the cost 2 ln(1 + (x / s)^2), whose gradient is that of a normal
-    distribution with the variance (s^2 + x^2) / 2. Friction of the newest slips differs from that of the
-    older ones by no more than the law is off, or if it has `changed` by as much as it may be at the start.
+    distribution with the variance (s^2 + x^2) / 2. `changed`: whether friction has changed since the older
+    slips.
     """
     cost, width = 0.0, HARD if state.spring <= p.compliance else RUBBER
     for j in range(STATES):
         off, variance = x[j] - state.mean[j], state.variance[j]
         if j == OLD:
-            variance = (p.sd_log_mu_c0 if changed else p.law_error) ** 2
+            variance = (CHANGE if changed else DRIFT) ** 2
         if j in (FALLS, GROWS):
             variance = 0.5 * (width * width + off * off)
             cost += 2.0 * math.log1p((off / width) ** 2)
@@ -139,19 +132,18 @@ def _add_priors(state, p, x, changed, a, g):
 def _limit(p, x):
     """Keeps the states where the law is meant for."""
     x[at.MU] = min(max(x[at.MU], math.log(p.mu_min)), math.log(p.mu_max))
-    x[at.RATIO] = min(max(x[at.RATIO], 0.0), 0.7)
+    x[at.RATIO] = min(max(x[at.RATIO], 0.0), -math.log(at.AT_LEAST))
     x[at.R] = min(max(x[at.R], math.log(p.r_min)), math.log(1.25 * p.r_max))
     x[at.SHAPE] = min(max(x[at.SHAPE], -0.2), 1.6)
     x[FALLS] = min(max(x[FALLS], -0.5), 0.5)
-    x[at.STRIBECK] = min(max(x[at.STRIBECK], -1.0), 1.0)
 
 
 @njit(error_model="numpy")
 def descend(state, p, x, changed, steps, a, g):
-    """Takes Gauss-Newton steps from x (16,), in place; no logarithm moves by more than 0.5 in one.
+    """Takes Gauss-Newton steps from x (15,), in place; no logarithm moves by more than 0.5 in one.
 
     Returns:
-        Cost and mean squared residual at the last but one x, whose information is factored in `a` (16, 16).
+        Cost and mean squared residual at the last but one x, whose information is factored in `a` (15, 15).
 
     """
     cost, misfit = 0.0, 1.0

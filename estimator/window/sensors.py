@@ -20,7 +20,8 @@ LEFT = 0.1
 """Deviation that the zero errors keep, over that of the prior: they drift, and readings may be repeated. So
 their means fade after 2 / LEFT^2 readings."""
 GATE = 0.15
-"""Correlation from which a delay is believed: 2.6 deviations of what 7 / GATE^2 samples have by chance."""
+"""Correlation from which a delay is believed: 2.6 deviations of what 7 / GATE^2 samples have by chance. By
+this share it must also exceed that of the present one."""
 
 
 @njit(error_model="numpy")
@@ -29,9 +30,8 @@ def is_unloaded(state, p, f_n):
     off = abs(f_n - state.zeros[2])
     if state.touched:
         return state.unloaded > 0.0 and off < SIGMAS * p.sd_normal
-    state.touched = abs(f_n) > 2.0 * SIGMAS * p.sd_zero or (
-        state.unloaded > 0.0 and off > 2.0 * SIGMAS * p.sd_normal
-    )
+    loaded = state.unloaded > 0.0 and off > 2.0 * SIGMAS * p.sd_normal
+    state.touched = loaded or abs(f_n) > 2.0 * SIGMAS * p.sd_zero
     return not state.touched
 
 
@@ -80,6 +80,7 @@ def find_delay(state, p):
     noise = 7.0 / (GATE * GATE) * 12.0
     of_both = state.energies[0] + noise * p.sd_force * p.sd_force
     of_both *= state.energies[1] + noise * state.noise * state.noise
-    state.timing = abs(state.products[best]) / math.sqrt(of_both)
-    if state.timing > GATE:
+    largest, present = abs(state.products[best]), abs(state.products[state.delay - EARLIEST])
+    state.timing = largest / math.sqrt(of_both)
+    if state.timing > GATE and largest > (1.0 + GATE) * present:
         state.delay = EARLIEST + best

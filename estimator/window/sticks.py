@@ -5,24 +5,11 @@ import math
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
 from estimator.sample import norm
+from estimator.window import layout as at
 from estimator.window.change import fit
-from estimator.window.layout import (
-    EVENT,
-    FALL,
-    INTERVALS,
-    LATE,
-    SAMPLES,
-    SHORTEST,
-    SIGMAS,
-    TILT,
-    TORQUE,
-    ZERO,
-    R,
-)
+from estimator.window.layout import AT_LEAST, EVENT, FALL, INTERVALS, LATE, SAMPLES, SIGMAS, TORQUE, ZERO, R
 from estimator.window.spring import SAFETY, length
 from estimator.window.window import DOUBT, new_entry, store_break
-
-AT_LEAST = 0.5  # Smallest ratio of mu_c and mu_s
 
 
 @njit(error_model="numpy")
@@ -36,7 +23,9 @@ def _size(state, w):
 def find_peak(state):
     """Stores the wrench of the largest load over f_n shortly before the velocity begins to show a slip."""
     k, largest = state.samples - state.delay, 0.0
-    count = min(int(2 * LATE * SHORTEST / state.elapsed) + 3, min(state.in_a_row, SAMPLES) - state.delay - 2)
+    count = min(
+        int(2 * LATE * at.SHORTEST / state.elapsed) + 3, min(state.in_a_row, SAMPLES) - state.delay - 2
+    )
     for i in range(k - count, min(k + 2, state.samples + 1)):
         w = state.wrenches[i % SAMPLES]
         ratio = _size(state, w) / w[2]
@@ -56,13 +45,13 @@ def learn_tilt(state, p, wrench):
     if abs(step) < 40.0 * p.sd_force:
         return
     for axis in range(2):
-        at = TILT + axis
-        off = wrench[axis] - rest[axis] - state.mean[at] * step
+        k = at.TILT + axis
+        off = wrench[axis] - rest[axis] - state.mean[k] * step
         noise = 2.0 * p.sd_force * p.sd_force + 0.01 * norm(wrench[0], wrench[1]) ** 2
-        total = step * step * state.variance[at] + noise
+        total = step * step * state.variance[k] + noise
         if rest[2] > 0.0 and off * off < SIGMAS * SIGMAS * total:
-            state.mean[at] += state.variance[at] * step * off / total
-            state.variance[at] *= noise / total
+            state.mean[k] += state.variance[k] * step * off / total
+            state.variance[k] *= noise / total
     rest[:] = wrench
 
 
@@ -84,8 +73,7 @@ def _fall(state, p, first, last):
 def _store_fall(state, p, wrench, slow, time):
     """Stores the load before a slip and the one (4,) after its fall, and fits."""
     store_break(state)
-    s = new_entry(state, FALL, 1.0 - DOUBT, wrench)
-    s.unknown = slow
+    new_entry(state, FALL, 1.0 - DOUBT, slow, wrench)
     state.slip_time += time
     fit(state, p)
     state.updates_mu_c += 1
@@ -109,16 +97,14 @@ def learn_short_slip(state, p):
     ring = state.intervals
     w, before, after = ring[found % INTERVALS], ring[(first - 2) % INTERVALS], ring[last % INTERVALS]
     moved, change, work, fastest = matrix(1, 3)[0], matrix(1, 3)[0], 0.0, 0.0
-    moved[:] = 0.0
     for i in range(first, last + 1):
-        motion = ring[i % INTERVALS].motion
-        fastest = max(fastest, length(p, motion) / ring[i % INTERVALS].time)
-        for j in range(3):
-            moved[j] += motion[j]
+        fastest = max(fastest, length(p, ring[i % INTERVALS].motion) / ring[i % INTERVALS].time)
     for j in range(3):
-        at = j if j < 2 else 3
-        change[j] = (after.wrench[at] - before.wrench[at]) / (1.0 if j < 2 else rim * rim)
-        work += moved[j] * (w.wrench[at] - state.x[ZERO + j])
+        axis, moved[j] = j if j < 2 else 3, 0.0
+        for i in range(first, last + 1):
+            moved[j] += ring[i % INTERVALS].motion[j]
+        change[j] = (after.wrench[axis] - before.wrench[axis]) / (1.0 if j < 2 else rim * rim)
+        work += moved[j] * (w.wrench[axis] - state.x[ZERO + j])
     least = SAFETY * state.spring * length(p, change) + 6.0 * state.noise * w.time
     if state.power == 0.0:  # the first motion says which way the wrench is taken
         state.sign = 1.0 if work > 0.0 else -1.0

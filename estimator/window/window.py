@@ -20,7 +20,7 @@ ALIKE = 0.12  # Relative difference of forces in one stretch; 1 minus the cosine
 
 
 @njit(error_model="numpy")
-def new_entry(state, kind, slides, wrench):
+def new_entry(state, kind, slides, slow, wrench):
     """Writes a wrench (4,) into the next entry; the first one's normal force is the reference."""
     if state.entry == 0 and state.fits == 0:
         state.reference = math.log(wrench[2])
@@ -28,7 +28,7 @@ def new_entry(state, kind, slides, wrench):
     state.entry += 1
     s.kind, s.end, s.slides, s.load = kind, state.slip_time, slides, math.log(wrench[2]) - state.reference
     s.wrench[:] = wrench
-    s.slow, s.unknown, s.noise = 0.0, 0.0, 1.0
+    s.slow, s.noise = slow, 1.0
     return s
 
 
@@ -36,7 +36,7 @@ def new_entry(state, kind, slides, wrench):
 def store_break(state):
     """Stores the largest load before the present slip, once."""
     if state.peak[2] > 0.0:
-        new_entry(state, BREAK, 1.0, state.peak)
+        new_entry(state, BREAK, 1.0, 1.0, state.peak)
         state.peak[2] = 0.0
         state.events_mu_s += 1
 
@@ -54,13 +54,13 @@ def _store(state, p):
         state.entry -= 1
     else:
         store_break(state)
-    s = new_entry(state, SLIDE, slides, wrench)
-    s.time, s.slow, s.unknown = c.time, c.slow / c.time, c.unknown / c.time
+    s = new_entry(state, SLIDE, slides, c.slow / c.time, wrench)
+    s.time = c.time
     for j in range(3):
         s.motion[j] = c.motion[j] / c.time
     count = p.resolution / c.time
     s.var_speed = 0.25 * count * count + 0.6 * state.noise * state.noise * state.elapsed / c.time
-    s.noise = 1.5 / c.count + 0.16
+    s.noise = 1.5 / c.count
     state.stored, state.learned = c.instants, True
     fit(state, p)
     state.updates_mu_c += 1
@@ -79,7 +79,7 @@ def end_stretch(state, p):
         c.motion[:] = 0.0
         c.wrench[:] = 0.0
         c.time, c.count, c.instants, c.work = 0.0, 0.0, 0.0, 0.0
-        c.slow, c.unknown, state.stored = 0.0, 0.0, 0.0
+        c.slow, state.stored = 0.0, 0.0
 
 
 @njit(error_model="numpy")
@@ -116,7 +116,6 @@ def add_instant(state, p, before, after):
     rim = math.exp(x[R]) * motion[2]
     slow = (motion[0] * motion[0] + motion[1] * motion[1] + rim * rim) / (time * p.stribeck_velocity) ** 2
     c.slow += time * math.exp(-slow)
-    c.unknown += time * 2.0 * slow * math.exp(-slow)
     state.power = 0.98 * state.power + work / (before.wrench[2] * length(p, motion))
     state.sign = 1.0 if state.power > 0.0 else -1.0
     if c.instants >= max(3.0, 4.0 * state.stored):

@@ -20,7 +20,7 @@ def test_the_oldest_entry_makes_room():
     state = fresh()
     for k in range(ENTRIES + 5):
         state.slip_time = 0.1 * k
-        new_entry(state, SLIDE, 1.0, np.array([1.0, 0.0, 3.0, 0.0]))
+        new_entry(state, SLIDE, 1.0, 0.0, np.array([1.0, 0.0, 3.0, 0.0]))
     assert sorted(state.entries["end"]) == pytest.approx(0.1 * np.arange(5, ENTRIES + 5))
 
 

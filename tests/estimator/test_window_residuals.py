@@ -17,7 +17,6 @@ from estimator.window.layout import (
     SIGMA,
     SLIDE,
     STATES,
-    STRIBECK,
     TILT,
     TORQUE,
     ZERO,
@@ -27,7 +26,7 @@ from estimator.window.residuals import slide, stick
 
 SPREADS = {MU: 0.5, RATIO: 0.1, R: 0.3, SHAPE: 0.3, SIGMA: 0.1, ZERO: 0.1, ZERO + 1: 0.1, TORQUE: 5e-4}
 SPREADS |= {TILT: 0.02, TILT + 1: 0.02, COP: 5e-4, COP + 1: 5e-4, FALLS: 0.1, GROWS: 0.1}
-SPREADS |= {OLD: 0.2, STRIBECK: 0.2}
+SPREADS[OLD] = 0.2
 P = estimator.AdaptiveParameters().as_array().view(np.recarray)[0]
 SCALE = np.array([1.0, 1.0, 0.01])
 """Of forces [N] and torque [N m] at a few newtons."""
@@ -39,12 +38,7 @@ def drawn(rng, kind):
     x[MU], x[R], x[RATIO], x[SHAPE], x[SIGMA] = np.log(0.5), np.log(0.008), 0.2, 0.5, 0.2
     x += [SPREADS[j] * rng.uniform(-1.0, 1.0) for j in range(STATES)]
     s = estimator.make_batch("adaptive", 1).states.view(np.recarray)[0].entries[0]
-    s.kind, s.load, s.slow, s.unknown = (
-        kind,
-        rng.uniform(-1.0, 1.0),
-        rng.uniform(0.2, 0.8),
-        0.2 * rng.uniform(),
-    )
+    s.kind, s.load, s.slow = kind, rng.uniform(-1.0, 1.0), rng.uniform(0.2, 0.8)
     s.time = 0.1
     s.motion[:] = rng.uniform(-1.0, 1.0, 3) * (0.02, 0.02, 2.0)
     s.wrench[:] = *rng.uniform(-2.0, 2.0, 2), rng.uniform(1.0, 10.0), 0.02 * rng.uniform(-1.0, 1.0)
@@ -59,7 +53,7 @@ def residual(function, *arguments):
 
 
 def differences(of, x, step=1e-6):
-    """Derivatives (3, 16) of what is expected: of the negative residual."""
+    """Derivatives (3, 15) of what is expected: of the negative residual."""
     found = np.empty((3, STATES))
     for j in range(STATES):
         one = step * SPREADS[j] * np.eye(STATES)[j]
