@@ -16,6 +16,17 @@ def deviation_of(confidence: Any) -> Any:
     return 0.1 * np.sqrt(1.0 / confidence - 1.0)
 
 
+def _renamed(value: str) -> property:
+    """A deprecated property `support_…`."""
+
+    def read(self: "Estimate") -> float:
+        message = f"Estimate.support_{value} is now Estimate.confidence_{value}"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return getattr(self, f"confidence_{value}")
+
+    return property(read, doc=f"Deprecated name of `confidence_{value}`.")
+
+
 class Estimate(NamedTuple):
     """Contact properties of one finger after the newest sample.
 
@@ -68,25 +79,9 @@ class Estimate(NamedTuple):
     observable_r: bool
     """Whether this sample updated r."""
 
-    @property
-    def support_mu_s(self) -> float:
-        """Deprecated name of `confidence_mu_s`."""
-        return self._renamed("mu_s")
-
-    @property
-    def support_mu_c(self) -> float:
-        """Deprecated name of `confidence_mu_c`."""
-        return self._renamed("mu_c")
-
-    @property
-    def support_r(self) -> float:
-        """Deprecated name of `confidence_r`."""
-        return self._renamed("r")
-
-    def _renamed(self, value: str) -> float:
-        message = f"Estimate.support_{value} is now Estimate.confidence_{value}"
-        warnings.warn(message, DeprecationWarning, stacklevel=3)
-        return getattr(self, f"confidence_{value}")
+    support_mu_s = _renamed("mu_s")
+    support_mu_c = _renamed("mu_c")
+    support_r = _renamed("r")
 
 
 ESTIMATE = np.dtype(list(Estimate.__annotations__.items()), align=True)

@@ -69,14 +69,7 @@ STATE = np.dtype(
 
 
 def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
-    """States before the first sample.
-
-    Args:
-        parameters: Structured array (m,).
-
-    Returns:
-        Structured array (m,) of dtype STATE.
-    """
+    """States (m,) before the first sample, by parameters (m,)."""
     states = start(parameters, STATE)
     weight = 1.0 / parameters["sd_mu_c0"] ** 2
     states["information"][:, 0] = states["noise"][:, 0] = weight
@@ -86,11 +79,7 @@ def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
 
 
 def filter_matrices(states: NDArray[np.void]) -> FilterMatrices:
-    """Covariance of (mu_c, r) [1, m^2]; diagonal, because the two are averaged separately.
-
-    Args:
-        states: Structured array (n,) of dtype STATE.
-    """
+    """Covariance of (mu_c, r) [1, m^2]; diagonal, because the two are averaged separately."""
     deviations = np.stack([states["sd_mu_c"], states["sd_r"]], axis=1)
     return FilterMatrices(covariance=deviations[:, :, None] ** 2 * np.eye(2))
 
@@ -113,16 +102,7 @@ def _learn_mu_c(state, p, prior, y, noise, v):
     The viscosity keeps a prior of zero mean that does not fade. The information that fades is replaced, up to
     that of the start, by information about the present mu_c: poor samples cannot wind the memory down.
 
-    Args:
-        state: Changed in place, unless the sample is refused.
-        p: Parameters.
-        prior: As returned by `_priors`.
-        y: Measured friction [-].
-        noise: Relative variance of y.
-        v: Slip speed [m/s].
-
-    Returns:
-        Whether mu_c was updated.
+    `noise` is the relative variance of y. Returns whether mu_c was updated: not by a sample that overflows.
     """
     a, b, keep = state.information, state.noise, p.forgetting
     refill, _, of_viscosity = prior
@@ -154,11 +134,7 @@ def _learn_mu_c(state, p, prior, y, noise, v):
 
 @njit
 def _learn_r(state, p, prior, y, noise):
-    """Updates r from one measured radius y [m] with the relative variance `noise`.
-
-    Returns:
-        Whether r was updated.
-    """
+    """Updates r from one measured radius y [m] with the relative variance `noise`; returns whether it did."""
     _, refill, _ = prior
     y_squared = y * y
     w = 1.0 / (y_squared * (noise + p.law_error * p.law_error))
@@ -182,18 +158,11 @@ def _square(x):
 
 @njit
 def _slide(state, p, prior, instant, near):
-    """Learns mu_c from a slide, and r if the object also spins and `near`.
+    """Learns mu_c from a slide, and r if the object also spins about a centre that is `near`.
 
     With c = d ln mu_c / d ln(1 + q) and a = c q / (1 + q), the derivatives of ln mu_c are 1 - a by ln f_t,
     a by ln tau and ln omega, -a by ln v_t, -1 by ln f_n. With b = d ln r / d ln q, those of ln r are b by
     ln tau, -b by ln f_t, 1 - b by ln v_t, b - 1 by ln omega.
-
-    Args:
-        state: Changed in place.
-        p: Parameters.
-        prior: As returned by `_priors`.
-        instant: As returned by `open_sample`.
-        near: Whether the centre of rotation is near enough to learn r.
 
     Returns:
         Whether mu_c, and whether r, was updated.

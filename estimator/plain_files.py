@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import re
 import stat
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -47,11 +46,7 @@ def check_regular(path: Path) -> None:
 
 
 def content(path: Path, limit: int = BYTES) -> bytes:
-    """All of a regular file.
-
-    Args:
-        path: The file.
-        limit: Most bytes that it may have.
+    """All of a regular file that has at most `limit` bytes.
 
     Raises:
         FileNotFoundError: There is no such file.
@@ -66,11 +61,7 @@ def content(path: Path, limit: int = BYTES) -> bytes:
 
 
 def parse(text: str | bytes, source: str) -> Any:
-    """Reads a YAML text: numbers, texts, dates, lists and mappings alone.
-
-    Args:
-        text: The text.
-        source: Origin of the text, for error messages.
+    """Reads a YAML text: numbers, texts, dates, lists and mappings alone; messages name its source.
 
     Raises:
         ValueError: It is not YAML, holds a key twice, or is too large, too deep or refers to itself.
@@ -91,17 +82,23 @@ class _Loader(yaml.SafeLoader):
         self._nodes = self._depth = 0
         self._sizes: dict[int, tuple[int, int]] = {}
 
-    def get_single_node(self) -> Any:
-        node = super().get_single_node()
-        if node is not None:
-            self._measure(node, 1, set())
-        return node
-
     def compose_node(self, parent: Any, index: Any) -> Any:
         self._nodes, self._depth = self._nodes + 1, self._depth + 1
         if self._nodes > NODES or self._depth > DEPTH:
             _refuse_size(self._depth > DEPTH, self.peek_event().start_mark)
-        node = super().compose_node(parent, index)
+        alias = self.check_event(yaml.AliasEvent)
+        node: Any = super().compose_node(parent, index)
+        if alias and id(node) not in self._sizes:
+            raise yaml.MarkedYAMLError(problem="it refers to itself", problem_mark=node.start_mark)
+        if not alias:  # number of values and height of a node, each alias counted with all that it stands for
+            children = [] if isinstance(node, yaml.ScalarNode) else node.value
+            if isinstance(node, yaml.MappingNode):
+                children = [each for pair in children for each in pair]
+            inner = [self._sizes[id(child)] for child in children]
+            self._sizes[id(node)] = 1 + sum(n for n, _ in inner), 1 + max((h for _, h in inner), default=0)
+        size, height = self._sizes[id(node)]
+        if size > NODES or self._depth + height - 1 > DEPTH:
+            _refuse_size(size <= NODES, node.start_mark)
         self._depth -= 1
         return node
 
@@ -128,28 +125,6 @@ class _Loader(yaml.SafeLoader):
                 )
             seen.add(key.value)
         return super().construct_mapping(node, deep)
-
-    def _measure(self, node: Any, depth: int, above: set[int]) -> tuple[int, int]:
-        """Number of values and height of a node, each alias counted with all that it stands for."""
-        if id(node) in above:
-            raise yaml.MarkedYAMLError(problem="it refers to itself", problem_mark=node.start_mark)
-        size, height = self._sizes.get(id(node), (1, 1))
-        if id(node) not in self._sizes:
-            for child in _children(node):
-                inner, deeper = self._measure(child, depth + 1, above | {id(node)})
-                size, height = size + inner, max(height, 1 + deeper)
-            self._sizes[id(node)] = size, height
-        if size > NODES or depth + height - 1 > DEPTH:
-            _refuse_size(size <= NODES, node.start_mark)
-        return size, height
-
-
-def _children(node: Any) -> Iterator[Any]:
-    if isinstance(node, yaml.MappingNode):
-        for pair in node.value:
-            yield from pair
-    elif isinstance(node, yaml.SequenceNode):
-        yield from node.value
 
 
 def _refuse_size(deep: bool, mark: Any) -> None:

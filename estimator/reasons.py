@@ -79,10 +79,7 @@ def reasons(
 def causes(estimate: Estimate, misfit: float = 1.0, at_bound: float = 0.0) -> dict[str, tuple[str, ...]]:
     """Evidence against each of "mu_s", "mu_c" and "r", whatever its confidence; the most important first.
 
-    Args:
-        estimate: What an estimator published.
-        misfit: As for `reasons`.
-        at_bound: As for `reasons`.
+    The arguments are those of `reasons`.
     """
     found = {}
     contradict = estimate.events_mu_s > 0 < estimate.updates_mu_c and estimate.mu_s == estimate.mu_c

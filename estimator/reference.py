@@ -10,10 +10,7 @@ def is_reference(name: object) -> bool:
 
 
 def referenced(name: str) -> Any:
-    """Imports the module of a reference and returns the attribute.
-
-    Args:
-        name: "module:attribute".
+    """The object of a reference "module:attribute", whose module is imported.
 
     Raises:
         ValueError: There is no such module or attribute; the message says which.

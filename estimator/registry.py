@@ -14,10 +14,8 @@ from estimator.suggestions import asking
 DEFAULT = "adaptive"
 """Name of the default estimator, also of the environments (docs/leaderboard.md compares them)."""
 
-_MODULES = {name: f"estimator.{name}" for name in ("adaptive", "disc", "joint", "rls", "ukf")}
-"""Name -> module that holds its SPECIFICATION; imported on first use, because numba is slow to import."""
-_LABORATORY = {"gru": "lab.learned_estimator.gru:SPECIFICATION"}
-"""Name -> reference of an estimator that only a clone of the repository has."""
+_NAMES = "adaptive", "disc", "joint", "rls", "ukf"
+"""Modules that hold a SPECIFICATION; imported on first use, because numba is slow to import."""
 
 
 class FilterMatrices(NamedTuple):
@@ -63,7 +61,7 @@ class Specification:
 
 def names() -> list[str]:
     """Names that `make` and `make_batch` know."""
-    return sorted(_MODULES)
+    return list(_NAMES)
 
 
 def specification(name: str) -> Specification:
@@ -80,8 +78,10 @@ def specification(name: str) -> Specification:
         if not isinstance(found, Specification) or found.name != name:
             raise ValueError(f"{name!r} is no Specification of this name")
         return found
-    if isinstance(name, str) and name in _LABORATORY:
-        raise ValueError(f'"{name}" is part of the laboratory: use "{_LABORATORY[name]}" in a clone')
-    if name not in names():
-        raise ValueError(asking(f"unknown estimator {name!r}; valid: {', '.join(names())}", name, names()))
-    return referenced(f"{_MODULES[name]}:SPECIFICATION")
+    if name == "gru":
+        raise ValueError(
+            '"gru" is part of the laboratory: use "lab.learned_estimator.gru:SPECIFICATION" in a clone'
+        )
+    if name not in _NAMES:
+        raise ValueError(asking(f"unknown estimator {name!r}; valid: {', '.join(_NAMES)}", name, _NAMES))
+    return referenced(f"estimator.{name}:SPECIFICATION")

@@ -86,14 +86,7 @@ STATE = np.dtype(
 
 
 def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
-    """States before the first sample.
-
-    Args:
-        parameters: Structured array (m,).
-
-    Returns:
-        Structured array (m,) of dtype STATE.
-    """
+    """States (m,) before the first sample, by parameters (m,)."""
     states = start(parameters, STATE)
     states["covariance_mu_c"] = parameters["p0"]
     states["covariance_r"] = parameters["p0"]
@@ -104,9 +97,6 @@ def filter_matrices(states: NDArray[np.void]) -> FilterMatrices:
     """Matrices of both regressions; they are independent, so gain and covariance are diagonal.
 
     The covariance is P [1/N^2], without the variance of the noise; `sd_mu_c` and `sd_r` include it.
-
-    Args:
-        states: Structured array (n,) of dtype STATE.
     """
     pairs = {
         name: np.stack([states[f"{name}_mu_c"], states[f"{name}_r"]], axis=1)
@@ -197,16 +187,7 @@ def _motion(state, p, f_t, f_n, tau, gamma_t, gamma_tau):
 
 @njit
 def _update(state, p, t, wrench, twist, estimate):
-    """One finger, one sample.
-
-    Args:
-        state: STATE record, changed in place.
-        p: RlsParameters record.
-        t: Time [s].
-        wrench: (4,) f_x, f_y, f_n, tau [N, N, N, N m].
-        twist: (3,) v_x, v_y, omega [m/s, m/s, rad/s].
-        estimate: ESTIMATE record, written.
-    """
+    """One finger, one sample."""
     f_t = norm(wrench[0], wrench[1])
     f_n = wrench[2]
     tau = abs(wrench[3])

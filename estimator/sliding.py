@@ -45,8 +45,10 @@ JUMP = 3.0
 
 
 @dataclass(frozen=True)
-class NoiseParameters(StickSlipParameters):
+class SlidingParameters(StickSlipParameters):
     """Table 1 of Waltersson & Karayiannidis (ISER 2025) where shared; the noise is that of realistic sensors.
+
+    They also say how velocities are paired with forces, and events averaged.
 
     Raises:
         ValueError: A value has the wrong type, is NaN, lies outside its interval or contradicts another one.
@@ -77,16 +79,6 @@ class NoiseParameters(StickSlipParameters):
     law_error: float = parameter(
         0.02, "Relative error of the friction law in a sample, as if it were white.", "[0, inf)"
     )
-
-
-@dataclass(frozen=True)
-class SlidingParameters(NoiseParameters):
-    """Those of sensors and pad, and how velocities are paired with forces and events averaged.
-
-    Raises:
-        ValueError: A value has the wrong type, is NaN, lies outside its interval or contradicts another one.
-    """
-
     disc: bool = parameter(
         False, "Whether the limit surface is that of a uniform disc; otherwise it is the ellipsoid."
     )
@@ -188,12 +180,7 @@ def _stick_slip(state, p, f_t, f_n, tau, still, moves, halted):
 def open_sample(state, p, t, wrench, twist):
     """Checks and stores a sample, and finds the instant of sliding to learn from.
 
-    Args:
-        state: Record whose dtype holds SLIDING_STATE, changed in place.
-        p: Record of a subclass of SlidingParameters.
-        t: Time [s].
-        wrench: (4,) f_x, f_y, f_n, tau [N, N, N, N m].
-        twist: (3,) v_x, v_y, omega [m/s, m/s, rad/s].
+    `state` holds SLIDING_STATE, `p` is of a subclass of SlidingParameters.
 
     Returns:
         taken: Whether the sample is finite and later than the last; if not, nothing has changed.
@@ -220,18 +207,7 @@ def open_sample(state, p, t, wrench, twist):
 
 @njit
 def close_sample(state, p, t, seen, halted, saw_mu_c, saw_r, estimate):
-    """Advances the stick-slip state machine and publishes the estimate.
-
-    Args:
-        state: As in `open_sample`.
-        p: As in `open_sample`.
-        t: Time [s].
-        seen: As returned by `open_sample`.
-        halted: As returned by `open_sample`.
-        saw_mu_c: Whether mu_c was updated.
-        saw_r: Whether r was updated.
-        estimate: ESTIMATE record, written.
-    """
+    """Advances the stick-slip state machine and publishes the estimate; `seen` is that of `open_sample`."""
     f_t, f_n, tau, v_t, omega, speed_2 = seen
     gamma_t, gamma_tau = 0.0, 0.0
     if f_n >= p.eps_fn:

@@ -113,16 +113,9 @@ SCATTER_GAIN = 0.2
 
 
 def start(parameters: NDArray[np.void], dtype: np.dtype[np.void]) -> NDArray[np.void]:
-    """Start values of the shared fields; the others are zero.
+    """States (m,) with the start values of the shared fields, by parameters (m,); the others are zero.
 
     The standard deviation of mu_s, mu_c and r is initialised to the value itself.
-
-    Args:
-        parameters: Structured array (m,).
-        dtype: Dtype of the state; holds STICK_SLIP_STATE.
-
-    Returns:
-        Structured array (m,).
     """
     states = np.zeros(len(parameters), dtype)
     for name in ("mu_s", "mu_c", "r"):
@@ -176,13 +169,7 @@ def take_event(state, p):
 
 @njit
 def transition(state, p, still, moves):
-    """Advances the stick-slip state machine by one sample.
-
-    Args:
-        state: Changed in place.
-        p: Parameters.
-        still: Whether the speed is within stick_band.
-        moves: Whether it is above eps_v.
+    """Advances the stick-slip state machine by a sample, `still` within stick_band or it `moves` above eps_v.
 
     Returns:
         Whether a slip starts, and whether one stops, at this sample.

@@ -59,14 +59,7 @@ STATE = np.dtype(
 
 
 def initial_states(parameters: NDArray[np.void]) -> NDArray[np.void]:
-    """States before the first sample.
-
-    Args:
-        parameters: Structured array (m,).
-
-    Returns:
-        Structured array (m,) of dtype STATE.
-    """
+    """States (m,) before the first sample, by parameters (m,)."""
     states = start(parameters, STATE)
     states["covariance"][:, 0] = parameters["sd_log_mu_c0"] ** 2
     states["covariance"][:, 2] = parameters["sd_log_r0"] ** 2
@@ -77,9 +70,6 @@ def filter_matrices(states: NDArray[np.void]) -> FilterMatrices:
     """Matrices of the filter on (ln mu_c, ln r): the covariance has no unit, the gain is in [1/N, 1/(N m)].
 
     A measurement that is within its noise has a gain of 0.
-
-    Args:
-        states: Structured array (n,) of dtype STATE.
     """
     symmetric = [[0, 1], [1, 2]]
     return FilterMatrices(

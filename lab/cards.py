@@ -8,9 +8,8 @@ import pandas as pd
 from tqdm import tqdm
 
 from policies.learned import LearnedPolicy, pretrained
-from policies.policy_leaderboard import worlds
+from policies.policy_leaderboard import run
 from policies.policy_leaderboard.entries import Member
-from policies.policy_leaderboard.worlds import play_in
 from slipgym.tasks import find
 
 
@@ -19,7 +18,7 @@ def cards(names: Sequence[str], episodes: int, progress: bool = True) -> pd.Data
 
     Args:
         names: Of policies that come with slipgym; none: all of them.
-        episodes: In each world; see `policies.policy_leaderboard.worlds`.
+        episodes: In each world; see `policies.policy_leaderboard.run`.
         progress: Whether to show a progress bar.
 
     Returns:
@@ -37,9 +36,9 @@ def cards(names: Sequence[str], episodes: int, progress: bool = True) -> pd.Data
         task, level = find(where.id).name, str(where.arguments["level"])
         source = str(where.arguments["friction_source"])
         member = Member(name, policy, {"friction_source": source, **policy.modes})
-        played = {"easy": play_in(worlds.WORLDS[0], task, "easy", member, episodes, {})}
-        for world in worlds.WORLDS:
-            played[world.name] = play_in(world, task, level, member, episodes, {})
+        played = {"easy": run.play_in(run.WORLDS[0], task, "easy", member, episodes, {})}
+        for world in run.WORLDS:
+            played[world.name] = run.play_in(world, task, level, member, episodes, {})
         rows.append(
             {
                 "policy": name,

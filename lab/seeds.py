@@ -12,7 +12,7 @@ import pandas as pd
 from policies.evaluation.statistics import over_seeds
 from policies.learned import LearnedPolicy, pretrained
 from policies.policy_leaderboard.entries import Member
-from policies.policy_leaderboard.worlds import WORLDS, play_in
+from policies.policy_leaderboard.run import WORLDS, play_in
 from policies.training import curve, export, files, folder, run_set
 from slipgym.tasks import find
 

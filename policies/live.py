@@ -118,7 +118,11 @@ class PolicyPilot:
         self._commands = [name for name in COMMANDS if name == "grip_force" or name in given]
 
     def set_columns(self, values: Mapping[str, Any]) -> None:
-        """See `estimator.live.session.Pilot`."""
+        """Takes what no sensor reads: the observation's columns of task and wrist.
+
+        Raises:
+            ValueError: A name is unknown, or a value is no number.
+        """
         for name, value in values.items():
             if name not in self._given:
                 raise ValueError(unknown("observation column", name, self._given))
@@ -133,8 +137,7 @@ class PolicyPilot:
         self._new = set()
         self._given.update({name: 0.0 for name in self._commands if name in self._given})
         self._slip["measured_slip"] = 0.0
-        force = max(self._firm, float(self._episode["command"][0]))
-        self._episode["command"] = force
+        self._episode["command"] = max(self._firm, float(self._episode["command"][0]))
 
     def _try(self) -> None:
         """Acts once on zeros, to refuse a policy that reads what nobody gives."""
@@ -150,7 +153,7 @@ class PolicyPilot:
         self._estimates[:] = np.zeros((), ESTIMATE)
 
     def act(self, outputs: list[Output], now: float) -> dict[str, Any] | None:
-        """See `estimator.live.session.Pilot`."""
+        """The command after new estimates; None: none is due."""
         for output in outputs:
             self._take(output)
         if len(self._new) < self._live.fingers or self._live.silent(now, self._timeout):
@@ -172,7 +175,7 @@ class PolicyPilot:
         return command
 
     def watch(self, live: Live, now: float) -> dict[str, Any] | None:
-        """See `estimator.live.session.Pilot`."""
+        """The command that is due without new data; None: none is."""
         silent = live.silent(now, self._timeout)
         if not silent and now - self._acted <= self._timeout:
             return None
@@ -217,9 +220,8 @@ class PolicyPilot:
         out[0, at : at + len(given)] = np.clip(given, low[at : at + len(given)], high[at : at + len(given)])
         self._frames = [*(self._frames or [out[0]] * (self._history + 1))[1:], out[0]]
         action, self._state = self.policy.predict(np.concatenate(self._frames), self._state)
-        commands = np.zeros((1, len(COMMANDS)))
+        commands = np.full((1, len(COMMANDS)), np.nan)
         if np.isfinite(action).all():
+            commands[:] = 0.0
             interpret(np.atleast_2d(np.asarray(action, np.float64)), self._table, self._episode, commands)
-        else:
-            commands[:] = np.nan
         return commands[0]

@@ -37,16 +37,11 @@ def environment_for(policy: Policy, env_id: str, **arguments: Any) -> Iterator[g
 class Step(NamedTuple):
     """Values that `env.step` returned."""
 
-    observation: Any
-    """The observation after the step: an array, or a mapping of groups."""
-    reward: float
-    """Reward of the step."""
-    terminated: bool
-    """Whether the task ended the episode."""
-    truncated: bool
-    """Whether its time was over."""
-    info: Mapping[str, Any]
-    """See `slipgym.envs.infos`."""
+    observation: Any  # that after the step: an array, or a mapping of groups
+    reward: float  # reward of the step
+    terminated: bool  # whether the task ended the episode
+    truncated: bool  # whether its time was over
+    info: Mapping[str, Any]  # see `slipgym.envs.infos`
 
     @property
     def over(self) -> bool:
@@ -75,16 +70,11 @@ def steps(env: Any, policy: Policy, observation: Any) -> Iterator[Step]:
 class BatchStep(NamedTuple):
     """Values that the `step` of a vector environment returned; arrays have a leading axis of n."""
 
-    observations: Any
-    """The observations after the step: an array, or a mapping of groups."""
-    rewards: np.ndarray
-    """Rewards of the step, (n,)."""
-    infos: Mapping[str, Any]
-    """See `slipgym.envs.infos`."""
-    running: np.ndarray
-    """Whether the first episode of each environment was running before the step, (n,) bool."""
-    ended: np.ndarray
-    """Whether it ended with the step, (n,) bool."""
+    observations: Any  # those after the step: an array, or a mapping of groups
+    rewards: np.ndarray  # rewards of the step, (n,)
+    infos: Mapping[str, Any]  # see `slipgym.envs.infos`
+    running: np.ndarray  # whether the first episode of each was running before the step, (n,) bool
+    ended: np.ndarray  # whether it ended with the step, (n,) bool
 
 
 def batch_steps(envs: Any, policy: Policy, observations: Any) -> Iterator[BatchStep]:

@@ -29,17 +29,8 @@ def write(path: Path, data: bytes) -> None:
     Raises:
         OSError: It cannot be written.
     """
-    partial = _partial(path)
-    try:
-        with partial.open("xb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(partial, path)
-    except BaseException:
-        partial.unlink(missing_ok=True)
-        raise
-    _sync_folder(path.parent)
+    with new_files(path.parent) as folder:
+        (folder / path.name).write_bytes(data)
 
 
 @contextmanager
@@ -56,17 +47,8 @@ def new_file(path: Path) -> Iterator[Path]:
         OSError: It cannot be written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    folder = _partial(path)
-    folder.mkdir()
-    try:
-        partial = folder / path.name
-        yield partial
-        if partial.exists():
-            _sync(partial)
-            os.replace(partial, path)
-            _sync_folder(path.parent)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+    with new_files(path.parent) as folder:
+        yield folder / path.name
 
 
 @contextmanager
@@ -90,13 +72,13 @@ def new_folder(path: Path) -> Iterator[Path]:
     try:
         yield partial
         for each in partial.rglob("*"):
-            _sync_folder(each) if each.is_dir() else _sync(each)
-        _sync_folder(partial)
+            _sync(each)
+        _sync(partial)
         partial.rename(path)
     except BaseException:
         shutil.rmtree(partial, ignore_errors=True)
         raise
-    _sync_folder(path.parent)
+    _sync(path.parent)
 
 
 @contextmanager
@@ -119,7 +101,7 @@ def new_files(folder: Path) -> Iterator[Path]:
             _sync(each)
         for each in sorted(partial.iterdir()):
             os.replace(each, folder / each.name)
-        _sync_folder(folder)
+        _sync(folder)
     finally:
         shutil.rmtree(partial, ignore_errors=True)
 
@@ -172,19 +154,11 @@ def _partial(path: Path) -> Path:
 
 
 def _sync(path: Path) -> None:
-    """Waits until the disk has a file's content."""
-    descriptor = os.open(path, os.O_RDWR)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-
-
-def _sync_folder(path: Path) -> None:
-    """Waits until the disk has the names in a folder; Windows does so by itself."""
-    if os.name == "nt":
+    """Waits until the disk has a file's content, or the names in a folder (Windows does that itself)."""
+    is_folder = path.is_dir()
+    if is_folder and os.name == "nt":
         return
-    descriptor = os.open(path, os.O_RDONLY)
+    descriptor = os.open(path, os.O_RDONLY if is_folder else os.O_RDWR)
     try:
         os.fsync(descriptor)
     finally:

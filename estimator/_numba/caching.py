@@ -24,7 +24,6 @@ from numba.core.compiler import CompileResult
 from estimator._numba import folders, program_file
 from estimator._numba.digest import digest
 from estimator._numba.linking import Kernel
-from estimator._numba.locking import only_one
 
 if vars(config)["DISABLE_JIT"]:
     raise ImportError(
@@ -41,10 +40,8 @@ def compiler(
 ) -> Callable[[Callable[..., Any]], Any]:
     """Returns a decorator that compiles on first use and keeps the result on disk.
 
-    Args:
-        variant: Distinguishes programs of the same sources.
-        kind: `Kernel`, or `Pointed` for functions that Python does not call.
-        **options: Options of `numba.njit`.
+    The variant distinguishes programs of the same sources. `Pointed` is for functions that Python does not
+    call. Options are those of `numba.njit`.
     """
 
     def compiled(function: Callable[..., Any]) -> Any:
@@ -60,10 +57,8 @@ def compiler(
 def njit(function: Any = None, **options: Any) -> Any:
     """Decorates a function that other compiled functions call: it becomes a part of their programs.
 
-    Args:
-        function: The function, if the decorator is used without options.
-        **options: Options of `numba.njit`; those that are not given are those of the caller, except
-            `fastmath`, which is False: what a function computes does not depend on who calls it first.
+    Options of `numba.njit` that are not given are those of the caller, except `fastmath`, which is False:
+    what a function computes does not depend on who calls it first.
     """
     decorate = compiler(**{"fastmath": False, **options})
     return decorate if function is None else decorate(function)
@@ -89,11 +84,8 @@ def _warn_unusable(reason: str, folder: Path) -> None:
 class ProgramCache(_Cache):
     """Programs of one function on disk: a file for each signature, digest, processor and set of versions.
 
-    They are looked for among the user's programs, then among those that the installation brings.
-
-    Args:
-        dispatcher: The function.
-        variant: Distinguishes programs of the same sources.
+    Programs are looked for among those of the user, then among those that
+    the installation brings. The variant distinguishes programs of the same sources.
     """
 
     def __init__(self, dispatcher: Any, variant: tuple[str, ...]) -> None:
@@ -176,7 +168,7 @@ class ProgramCache(_Cache):
         """While a program that is not stored is compiled: keeps other processes from compiling it, too."""
         paths = [path for path, _ in self._candidates(sig, self._dispatcher.targetctx.codegen())]
         stored = not paths or any(path.is_file() for path in paths)
-        return nullcontext() if stored else only_one(paths[0].with_suffix(".lock"))
+        return nullcontext() if stored else folders.only_one(paths[0].with_suffix(".lock"))
 
     def _candidates(self, sig: Any, codegen: Any) -> Iterator[tuple[Path, str]]:
         """Files that may hold a program, with its key; the first is the one to write.
@@ -212,11 +204,8 @@ class ProgramCache(_Cache):
         if self._folder is None:
             return []
         pattern = re.compile(rf"{re.escape(self._name)}-[0-9a-f]{{24}}(\.user\d+)?\.nbc")
-        with os.scandir(self._folder) as entries:
-            found = [
-                (entry.stat().st_mtime_ns, entry.name) for entry in entries if pattern.fullmatch(entry.name)
-            ]
-        return [self._folder / name for _, name in sorted(found, reverse=True)]
+        found = [path for path in self._folder.iterdir() if pattern.fullmatch(path.name)]
+        return sorted(found, key=lambda path: (path.stat().st_mtime_ns, path.name), reverse=True)
 
 
 def _own(path: Path) -> Path:
@@ -226,11 +215,8 @@ def _own(path: Path) -> Path:
 
 def _symbols(descriptor: Any) -> list[str]:
     """Symbols that a program defines for others."""
-    return [
-        descriptor.llvm_func_name,
-        descriptor.llvm_cpython_wrapper_name,
-        descriptor.llvm_cfunc_wrapper_name,
-    ]
+    kinds = "llvm_func_name", "llvm_cpython_wrapper_name", "llvm_cfunc_wrapper_name"
+    return [getattr(descriptor, kind) for kind in kinds]
 
 
 def _define(descriptor: Any, key: str, machine_code: bytes) -> None:

@@ -1,4 +1,4 @@
-"""Identifies a compiled function by what is compiled: its byte code, its constants and all that it calls.
+"""Identifies a compiled function by what is compiled: its module, byte code, constants and all that it calls.
 
 Comments, docstrings, annotations, line numbers and file times do not count. What is compiled is found as
 numba finds it: a name in the byte code is looked up in the globals and the closure of the function.
@@ -24,17 +24,14 @@ _VERSIONED = {*sys.stdlib_module_names, "numpy", "numba", "llvmlite"}
 """Packages that change with their version only, which the cache compares."""
 _LINKER = Path(__file__).with_name("linking.py")
 """The file that decides what becomes of compiled functions: an edit of it makes other programs."""
+_PLAIN = bool, int, float, complex, str, bytes, type(None), enum.Enum, np.generic, np.ndarray, np.dtype
 _ARGUMENT_FLAGS = 0x2F
 """Flags of a code object that say how it takes arguments and whether it is a generator."""
 
 
 @cache
 def digest(function: Any) -> str:
-    """Hash of a compiled function and of all compiled functions, constants and types that it uses.
-
-    Args:
-        function: A dispatcher of numba.
-    """
+    """Hash of a dispatcher of numba and of all compiled functions, constants and types that it uses."""
     hashed = hashlib.sha256(_LINKER.read_bytes())
     places: dict[int, int] = {}
     waiting: list[Any] = [function]
@@ -54,7 +51,8 @@ def digest(function: Any) -> str:
 def _parts(dispatcher: Any) -> tuple[str, tuple[Any, ...]]:
     """Text of a function's own part, and the dispatchers that it uses, in the order of its text."""
     function = dispatcher.py_func
-    texts = [*_flat(dispatcher.targetoptions)]
+    # a stored program names the modules of its functions, and cannot be read without them
+    texts = [repr(function.__module__), *_flat(dispatcher.targetoptions)]
     called: list[Any] = []
     names: list[str] = []
     texts += _code(function.__code__, names)
@@ -104,7 +102,7 @@ def _uses(value: Any, names: list[str]) -> Iterator[Any]:
         yield f"{type(value).__qualname__} {len(value)}"
         for item in value:
             yield from _uses(item, names)
-    elif _is_plain(value):
+    elif isinstance(value, _PLAIN):
         yield from _flat(value)
     else:  # a Python function with overloads, an intrinsic, a class
         module = getattr(value, "__module__", None) or type(value).__module__
@@ -113,11 +111,6 @@ def _uses(value: Any, names: list[str]) -> Iterator[Any]:
             text, dispatchers = _module(module)
             yield text
             yield from dispatchers
-
-
-def _is_plain(value: Any) -> bool:
-    simple = (bool, int, float, complex, str, bytes, type(None), enum.Enum, np.generic, np.ndarray, np.dtype)
-    return isinstance(value, simple)
 
 
 def _flat(value: Any) -> Iterator[str]:

@@ -13,22 +13,14 @@ from estimator.estimate import ESTIMATE
 _compiled = compiler(error_model="numpy", forceinline=True)
 
 
-def _array(dtype: Any, ndim: int) -> Any:
-    return types.Array(dtype, ndim, "C")
-
-
 def entry_point(state: np.dtype[np.void], parameters: np.dtype[np.void]) -> Callable[[Any], Any]:
-    """Decorates an `update_batch(states, parameters, t, wrenches, twists, estimates)`.
+    """Decorates an `update_batch(states, parameters, t, wrenches, twists, estimates)` for the dtypes of two.
 
     The function is compiled at import, or read from the cache, so the first call is not slow. Arguments of
     other types are a TypeError.
-
-    Args:
-        state: The dtype of a state.
-        parameters: The dtype of a parameter set.
     """
-    rows = [_array(from_dtype(dtype), 1) for dtype in (state, parameters, ESTIMATE)]
-    matrix = _array(types.float64, 2)
+    rows = [types.Array(from_dtype(dtype), 1, "C") for dtype in (state, parameters, ESTIMATE)]
+    matrix = types.Array(types.float64, 2, "C")
     signature = types.void(rows[0], rows[1], types.float64, matrix, matrix, rows[2])
 
     def decorate(function: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Finds the folders of compiled programs.
+"""Finds the folders of compiled programs, and lets one process at a time compile what others can use.
 
 Programs of the user are written beside their source, or where the user or the system allows it. A wheel may
 carry programs that were compiled for `TARGET`: they are read only.
@@ -11,9 +11,13 @@ import json
 import os
 import sys
 import tempfile
+import time
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import llvmlite
 import numba
@@ -24,6 +28,12 @@ from numba.misc.appdirs import AppDirs
 from estimator._numba.program_file import trusted_owners
 from estimator.own_folder import own_temporary_folder
 
+fcntl: Any
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+
 SHIPPED = Path(__file__).resolve().parents[1] / "_programs"
 """Folder of the programs that a wheel carries; a clone has none."""
 ABOUT = "about.json"
@@ -31,6 +41,9 @@ ABOUT = "about.json"
 TARGET = "x86-64-v3"
 """Processors that the programs of a wheel are for: those with AVX2, which are all since about 2015."""
 _NEEDED = ("avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe")
+PATIENCE = 300.0
+"""Time after which a process stops waiting and does the work itself [s]."""
+_PAUSE = 0.05
 
 
 @cache
@@ -80,9 +93,6 @@ def program_folder(file: str) -> Path | None:
 
     It is the first that can be written: a folder in NUMBA_CACHE_DIR, if that is set; `__pycache__` beside the
     source; numba's folder in the user's cache; a folder of the user among the temporary files.
-
-    Args:
-        file: The source file.
     """
     path = Path(file).absolute()
     return _program_folder(path.parent, str(vars(config)["CACHE_DIR"])) if path.is_file() else None
@@ -129,3 +139,44 @@ def _is_writable(folder: Path) -> bool:
             return True
     except OSError:
         return False
+
+
+@contextmanager
+def only_one(path: Path, patience: float = PATIENCE) -> Iterator[None]:
+    """Wait until no other process is in a block with the same path.
+
+    A process that ends, however it does, leaves its block. Where files cannot be locked nobody waits; after
+    `patience` [s] the block is entered all the same. The file is made for the purpose, and removed.
+    """
+    handle = _acquired(path, time.monotonic() + patience) if fcntl is not None else None
+    try:
+        yield
+    finally:
+        if handle is not None:
+            path.unlink(missing_ok=True)
+            os.close(handle)
+
+
+def _acquired(path: Path, until: float) -> int | None:
+    """Descriptor of the locked file; None if it could not be locked in time."""
+    while True:
+        try:
+            handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        except OSError:
+            return None
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if os.path.samestat(os.fstat(handle), path.stat()):
+                return handle
+        except FileNotFoundError:  # removed by the process that held it
+            pass
+        except BlockingIOError:
+            if time.monotonic() > until:
+                os.close(handle)
+                return None
+            time.sleep(_PAUSE)
+        except OSError:  # a file system without locks
+            os.close(handle)
+            return None
+        with suppress(OSError):
+            os.close(handle)

@@ -64,14 +64,7 @@ def _reading(_: Any, record: Any, count: Any) -> Any:
 
 
 def without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """An array, or a tuple, of which nothing owns the arrays: numba counts no references to them.
-
-    Args:
-        context: Numba's.
-        builder: LLVM's.
-        kind: Numba type.
-        value: LLVM value of this type.
-    """
+    """An array, or a tuple, of which nothing owns the arrays: numba counts no references to them."""
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
         for name in ("meminfo", "parent"):

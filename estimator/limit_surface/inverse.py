@@ -98,16 +98,7 @@ def spin_radius(disc, arm, pivot):
 
 @njit
 def load_size(disc, f_t, rim):
-    """Smallest mu f_n that carries a load.
-
-    Args:
-        disc: As in `slip_factors`.
-        f_t: Tangential force [N].
-        rim: tau / r [N].
-
-    Returns:
-        [N]; 0 without load.
-    """
+    """Smallest mu f_n [N] that carries the load of f_t and rim = tau / r [N]; 0 without load."""
     size = math.sqrt(f_t * f_t + rim * rim)
     if not disc or size == 0.0:
         return size

@@ -6,7 +6,7 @@
     for output in live.feed_wrench(1, stamp, wrench) + live.feed_twist(1, stamp, twist):
         output.estimate.mu_c, output.estimate.sd_mu_c, output.status
 
-Nothing here opens a port; `estimator.live.udp`, `.ros2` and `.rosbridge` do.
+Nothing here opens a port; `estimator.live.udp` and `.ros` do.
 """
 
 from estimator.live.hand import Output

@@ -23,12 +23,7 @@ DEPTH = 1000
 
 
 def serve_ros2(session: Session, fingers: int, going: Callable[[], bool] = lambda: True) -> None:
-    """Answers on ROS 2 until `going` says no.
-
-    Args:
-        session: What understands the messages.
-        fingers: 1 or 2.
-        going: Asked after each message or tick.
+    """Answers on ROS 2 until `going`, asked after each message or tick, says no.
 
     Raises:
         ModuleNotFoundError: rclpy or the messages are not installed.
@@ -73,14 +68,7 @@ def serve_ros2(session: Session, fingers: int, going: Callable[[], bool] = lambd
 def serve_rosbridge(
     session: Session, fingers: int, host: str, port: int = 9090, going: Callable[[], bool] = lambda: True
 ) -> None:
-    """Answers on a rosbridge, of ROS 1 or 2, until `going` says no.
-
-    Args:
-        session: What understands the messages.
-        fingers: 1 or 2.
-        host: Of the rosbridge.
-        port: Of the rosbridge.
-        going: Asked after each message or tick.
+    """Answers on a rosbridge, of ROS 1 or 2, until `going`, asked after each message or tick, says no.
 
     Raises:
         ModuleNotFoundError: roslibpy is not installed.

@@ -7,7 +7,7 @@ import math
 import time
 from collections import Counter
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any
 
 from estimator.live.hand import Output
 from estimator.live.live import KINDS, Live, as_line
@@ -21,39 +21,19 @@ _ERRORS = 10
 """Messages a second at most whose error is answered and recorded; all are counted."""
 
 
-class Pilot(Protocol):
-    """Commands the gripper: `policies.live.PolicyPilot`, or one of your own."""
-
-    def act(self, outputs: list[Output], now: float) -> dict[str, Any] | None:
-        """The command after new estimates; None: none is due."""
-        ...
-
-    def watch(self, live: Live, now: float) -> dict[str, Any] | None:
-        """The command that is due without new data."""
-        ...
-
-    def set_columns(self, values: Mapping[str, Any]) -> None:
-        """Takes what no sensor reads: the observation's columns of task and wrist.
-
-        Raises:
-            ValueError: A name is unknown, or a value is no number.
-        """
-        ...
-
-
 class Session:
     """One gripper's traffic.
 
     Args:
         live: The core.
-        pilot: What commands the gripper; None: nothing does.
+        pilot: What commands the gripper, with the methods of `policies.live.PolicyPilot`; None: nothing does.
         log: Where errors and commands go, best that of the core; None: nowhere.
 
     Attributes:
         malformed: How many messages were refused by their form, by why.
     """
 
-    def __init__(self, live: Live, pilot: Pilot | None = None, log: Log | None = None) -> None:
+    def __init__(self, live: Live, pilot: Any = None, log: Log | None = None) -> None:
         self.live, self.pilot, self.malformed = live, pilot, Counter()
         self._log, self._second, self._errors = log, 0, 0
         self._looked, self._warnings = -math.inf, {}
@@ -101,10 +81,8 @@ class Session:
     def tick(self, now: float | None = None) -> list[dict[str, Any]]:
         """The commands that are due without a message, the watchdog's. Call it at least every 20 ms."""
         now = time.monotonic() if now is None else now
-        return [
-            *self._warned(now),
-            *self._commanded(self.pilot.watch(self.live, now) if self.pilot else None),
-        ]
+        command = self.pilot.watch(self.live, now) if self.pilot else None
+        return [*self._warned(now), *self._commanded(command)]
 
     def _warned(self, now: float) -> list[dict[str, Any]]:
         """Once a second, the warnings that were not there a second ago."""

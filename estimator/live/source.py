@@ -20,6 +20,7 @@ CAPACITY = 4096
 _CAME = ("accepted", "not_finite", "too_large", "width", "late", "overflow")
 """What became of samples that a sensor took at its rate."""
 _BUCKET = 5.0  # [s]
+_EMPTY = -math.inf, math.inf, math.inf  # of the buckets: begin, smallest in it, smallest in the one before
 
 
 class Source:
@@ -48,19 +49,13 @@ class Source:
         self._width, self._spans, self._first, self._last = 0, 0, math.inf, -math.inf
         self._others, self._learned = 0, 0 if by_arrival else LEARNED
         self._by_arrival, self._shift = by_arrival, math.inf if by_arrival else 0.0
-        self._buckets = (-math.inf, math.inf, math.inf)  # begin, smallest in it, smallest in the one before
+        self._buckets = _EMPTY
 
     def judge(self, stamp: float, arrival: float, values: Sequence[float], done: float) -> tuple[str, float]:
-        """Decides on a sample.
-
-        Args:
-            stamp: Of its sensor's clock [s].
-            arrival: Of the receiver's clock [s].
-            values: Readings.
-            done: Time before which nothing is taken any more [s].
+        """Decides on a sample by its sensor's stamp and its arrival; before `done` none is taken [s].
 
         Returns:
-            "accepted", "restart" (accepted, on a clock set anew), or why it is refused; and its time.
+            "accepted", "restart" (accepted, on a clock set anew), or why it is refused; and its time [s].
         """
         if not (math.isfinite(stamp) and all(map(math.isfinite, values))):
             return "not_finite", stamp
@@ -75,7 +70,7 @@ class Source:
             self._others, self._candidate = self._others * same + 1, arrival - stamp
             if self._others < RESTART:
                 return "jump", stamp
-            restart, self._buckets = True, (-math.inf, math.inf, math.inf)
+            restart, self._buckets = True, _EMPTY
             if self._by_arrival:
                 self._learned, self._shift = 0, math.inf
         self._others, self._stamp = 0, stamp

@@ -39,13 +39,8 @@ def opened(host: str = "127.0.0.1", port: int = PORT) -> socket.socket:
 def serve(session: Session, door: socket.socket, going: Callable[[], bool] = lambda: True) -> None:
     """Answers until `going` says no.
 
-    A datagram holds one or several lines. Every sender of a valid reading gets all estimates and commands;
-    errors go to their sender alone.
-
-    Args:
-        session: What understands the messages.
-        door: From `opened`.
-        going: Asked after each datagram or tick.
+    It is asked after each datagram, of one or several lines, or tick. Every sender of a valid reading gets
+    all estimates and commands; errors go to their sender alone.
     """
     listeners: dict[tuple[str, int], float] = {}
     while going():

@@ -14,9 +14,8 @@ from estimator.records.calibration import Calibration, Found
 from estimator.records.columns import Column, Columns, load_columns
 from estimator.records.reading import from_arrays, load
 from estimator.records.record import Record
-from estimator.records.results import write
+from estimator.records.results import parse_settings, run_name, write
 from estimator.records.run import Result, estimate
-from estimator.records.settings import parse_settings, run_name
 from estimator.records.summary import report
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""Pairs each velocity sample with the newest force."""
+"""Pairs each velocity sample with the newest force, and takes velocities that a log repeats once."""
 
 from __future__ import annotations
 
@@ -8,19 +8,25 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from estimator.records.record import Array, Record, seconds, twist_at
+from estimator.records.record import Array, Record, Rows, seconds, twist_at
 
 GAP_PERIODS = 5.0
 """Sample periods without a sample that make a gap."""
+_ENOUGH = 20
+"""Changes of the velocity from which its rate shows."""
+_SIZES = 8
+"""Distinct changes at least: a ramp in coarse counts changes by one count each time."""
+_SHORT, _REGULAR = 0.05, 0.8
+"""Quantile of the times between changes that is still longer than a row; share of them that fits a rate."""
+_NEAR = 4
+"""Periods between two changes up to which their number is certain."""
 
 
 class Limits(NamedTuple):
-    """Longest times without a sample that are no gap."""
+    """Longest times without a sample that are no gap [s]."""
 
     force: float
-    """[s]."""
     velocity: float
-    """[s]."""
 
     @classmethod
     def of(cls, force_period: float, velocity_period: float) -> Self:
@@ -60,15 +66,7 @@ class Samples:
 
 
 def newest(force_t: Array, t: Array) -> NDArray[np.int64]:
-    """The newest force at or before each time.
-
-    Args:
-        force_t: Increasing, (n,) [s].
-        t: (m,) [s].
-
-    Returns:
-        Index into force_t, (m,); -1 where there is none yet.
-    """
+    """Places (m,) of the newest force at or before each time t (m,) [s]; -1 where there is none yet."""
     return np.searchsorted(force_t, t, side="right") - 1
 
 
@@ -93,11 +91,7 @@ def pair(force_t: Array, twist_t: Array, limits: Limits, last: tuple[float, int]
 
 
 def align(record: Record, allow_gaps: bool = False) -> Samples:
-    """Resamples the forces at the times of the velocities.
-
-    Args:
-        record: The record.
-        allow_gaps: Whether to go on after a gap, in a new segment.
+    """Resamples the forces at the times of the velocities; with `allow_gaps` a gap begins a new segment.
 
     Raises:
         ValueError: There is a gap, or fewer than 2 velocity samples have a force.
@@ -142,3 +136,37 @@ def _refuse_gaps(source: str, what: str, t: Array, limit: float) -> None:
 
 def _span(t: Array) -> str:
     return f"{seconds(t[0])} to {seconds(t[-1])} s"
+
+
+def held(t: Array, twist: Array) -> tuple[Rows, float] | None:
+    """Places of the rows in which a sensor delivered, if the velocities are held between, and its period [s].
+
+    A held velocity never changes in two rows one after the other, and changes at multiples of a period. In
+    stick, where all samples are zero, the rows are those at that period after the last change.
+
+    Args:
+        t: Increasing, (n,) [s].
+        twist: (n, 3) [m/s, m/s, rad/s].
+    """
+    steps = np.diff(twist, axis=0)
+    change = np.flatnonzero((steps != 0.0).any(axis=1)) + 1
+    if len(change) <= _ENOUGH:
+        return None
+    row, apart = float(np.median(np.diff(t))), np.diff(t[change])
+    short = np.quantile(apart, _SHORT)
+    if short < 1.5 * row or len(np.unique(steps[change - 1].round(12), axis=0)) < _SIZES:
+        return None
+    period = float(apart[apart < 1.5 * short].mean())
+    for _ in range(3):
+        periods = np.maximum(np.round(apart / period), 1.0)
+        near = periods <= _NEAR
+        period = float(apart[near].sum() / periods[near].sum())
+    off = np.abs(apart - periods * period)[near]
+    if (off <= max(1.1 * row, 0.25 * period)).mean() < _REGULAR:
+        return None
+    begin = t[change[0]] - period * np.floor((t[change[0]] - t[0]) / period)
+    starts = np.concatenate(([begin], t[change]))
+    ends = np.concatenate((t[change], [t[-1] + period])) - 0.5 * period
+    samples = [np.arange(start, end, period) for start, end in zip(starts, ends, strict=True)]
+    at = np.unique(np.searchsorted(t, np.concatenate(samples) - 0.5 * row))
+    return at[at < len(t)], period

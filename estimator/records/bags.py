@@ -6,62 +6,50 @@ import io
 import json
 import struct
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from estimator.records.columns import Wanted, is_wanted
 from estimator.records.extras import extra
-from estimator.records.messages import Layout, decoded, definitions, layout
-from estimator.records.sources import LARGEST, Source
+from estimator.records.messages import Layout, decoded, definitions
+from estimator.records.sources import LARGEST
+from estimator.records.table import Table
 from estimator.suggestions import brief
 
 _STAMPS = "header.stamp", "stamp"
 """Fields that are the time of a message, where they are filled in."""
 _AT_ONCE = 2**15
 """Messages that are decoded together."""
-
-
-class _Kind(NamedTuple):
-    """How the messages of a topic are written."""
-
-    encoding: str
-    """cdr, ros1 or json."""
-    type: str
-    """Name of the type."""
-    definition: str
-    """Its text."""
+_Kind = tuple[str, str, str]
+"""How messages are written: encoding (cdr, ros1 or json), name of the type, text of its definition."""
 
 
 class _Topic:
     """Collects the messages of a topic as columns.
-
-    Args:
-        name: Of the topic.
-        kind: Of its messages.
-        wanted: Which columns to read.
-        first: A message of it.
 
     Raises:
         ValueError: Its messages cannot be decoded.
     """
 
     def __init__(self, name: str, kind: _Kind, wanted: Wanted, first: bytes) -> None:
-        self._name, self._kind, self._wanted = name, kind, wanted
+        self._name, self._wanted = name, wanted
         self._raws: list[bytes] = []
         self._stamps: list[int] = []
         self._pieces: list[dict[str, Any]] = []
         self._names: dict[str, None] = {}
-        if kind.encoding == "json":
+        encoding, type_, definition = kind
+        if encoding == "json":
             self._decode: Callable[[list[bytes]], dict[str, Any]] = self._json
-        elif kind.encoding in ("cdr", "ros1") and kind.definition:
-            self._defined = definitions(kind.definition, kind.type)
-            self._decode = self._ros
+        elif encoding in ("cdr", "ros1") and definition:
+            layout = partial(Layout, definitions(definition, type_), type_, encoding == "cdr")
+            self._decode = partial(self._ros, layout)
         else:
             raise ValueError(
-                f"{name}: no definition of ROS, and no JSON, says what a message {brief(kind.type)} in the "
-                f"encoding {brief(kind.encoding)} is; `ros2 bag convert` to MCAP adds the definitions"
+                f"{name}: no definition of ROS, and no JSON, says what a message {brief(type_)} in the "
+                f"encoding {brief(encoding)} is; `ros2 bag convert` to MCAP adds the definitions"
             )
         self._decode([first])
         self.asked = any(is_wanted(each, wanted) for each in self._names)
@@ -75,12 +63,12 @@ class _Topic:
         if len(self._raws) == _AT_ONCE:
             self._flush()
 
-    def source(self) -> Source:
+    def table(self) -> Table:
         """The columns, in order of time: that of the header, where it is filled in, else that of the log."""
         self._flush()
         pandas = extra("pandas")
         if not self._pieces:
-            return Source(pandas.DataFrame(), ["t", "t_log", *self._names])
+            return Table(pandas.DataFrame(), ["t", "t_log", *self._names])
         frame = pandas.concat([pandas.DataFrame(piece) for piece in self._pieces], ignore_index=True)
         self._pieces = []
         logged = frame.pop("")
@@ -90,7 +78,7 @@ class _Topic:
         frame["t_log"] = logged
         if not frame["t"].is_monotonic_increasing:
             frame = frame.sort_values("t", kind="stable", ignore_index=True)
-        return Source(frame, ["t", "t_log", *self._names])
+        return Table(frame, ["t", "t_log", *self._names])
 
     def _asks(self, path: str) -> bool:
         full = f"{self._name}.{path}"
@@ -103,21 +91,11 @@ class _Topic:
             self._pieces.append({**found, "": np.array(self._stamps, np.int64) / 1e9})
             self._raws, self._stamps = [], []
 
-    def _ros(self, raws: list[bytes]) -> dict[str, Any]:
-        found: dict[str, Any] = {}
-
-        def find(raw: bytes) -> Layout:
-            try:
-                return layout(self._defined, self._kind.type, raw, self._kind.encoding == "cdr")
-            except ValueError as error:
-                raise ValueError(f"{self._name}: {error}") from error
-
-        for at, columns in decoded(raws, find, self._asks):
-            if len(at) == len(raws):
-                return dict(columns)
-            for path, values in columns.items():
-                found.setdefault(path, np.full(len(raws), np.nan))[at] = values
-        return found
+    def _ros(self, layout: Callable[[bytes], Layout], raws: list[bytes]) -> dict[str, Any]:
+        try:
+            return decoded(raws, layout, self._asks)
+        except ValueError as error:
+            raise ValueError(f"{self._name}: {error}") from error
 
     def _json(self, raws: list[bytes]) -> dict[str, Any]:
         found: dict[str, Any] = {}
@@ -128,7 +106,7 @@ class _Topic:
         return found
 
 
-def read_bag(path: Path, wanted: Wanted) -> list[Source]:
+def read_bag(path: Path, wanted: Wanted) -> list[Table]:
     """Reads the topics that have a column which is asked for.
 
     Args:
@@ -152,7 +130,7 @@ def read_bag(path: Path, wanted: Wanted) -> list[Source]:
             topics[name].add(stamp, raw)
     if not topics:
         raise next(iter(refused.values()), ValueError("it has no messages"))
-    return [topic.source() for topic in topics.values()]
+    return [topic.table() for topic in topics.values()]
 
 
 def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
@@ -186,8 +164,8 @@ def _of_mcap(path: Path) -> _Messages:
                     known = found.encoding in ("ros1msg", "ros2msg")
                     schemas[found.id] = found.name, found.data.decode() if known else ""
                 elif isinstance(found, of.Channel):
-                    kind = _Kind(found.message_encoding, *schemas.get(found.schema_id, ("", "")))
-                    kinds[found.id] = found.topic, kind
+                    schema = schemas.get(found.schema_id, ("", ""))
+                    kinds[found.id] = found.topic, (found.message_encoding, *schema)
 
 
 def _in_chunk(chunk: Any) -> Iterator[Any]:
@@ -224,10 +202,10 @@ def _of_connection(connection: Any, encoding: str) -> _Kind:
     """Bags of ROS 2 in SQLite before Iron have no definitions: those of its own messages are known."""
     definition, kind = connection.msgdef, connection.msgtype
     if definition.format.name == "MSG":
-        return _Kind(encoding, kind, definition.data)
+        return encoding, kind, definition.data
     stores = extra("rosbags.typesys")
     try:
         text = stores.get_typestore(stores.Stores.LATEST).generate_msgdef(kind, ros_version=2)[0]
     except Exception:  # of its own kinds: the type is unknown
         text = ""
-    return _Kind(encoding, kind, text)
+    return encoding, kind, text

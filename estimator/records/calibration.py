@@ -106,11 +106,7 @@ def calibration_rows(found: Calibration, step: float) -> list[list[str]]:
     """A heading, then a row of cells for the delay and for each error; dashes for what was not seen.
 
     To calibrate with it, subtract a zero error from the readings and f_n times the tilt from f_x and f_y;
-    give the CoP as `cop_x` and `cop_y`.
-
-    Args:
-        found: From `calibration`.
-        step: Time between two velocity samples [s].
+    give the CoP as `cop_x` and `cop_y`. `step` is the time between two velocity samples [s].
     """
     samples = f"{found.delay} sample{'' if abs(found.delay) == 1 else 's'}"
     seen = f"correlation {found.correlation:.2f}" if found.delay_seen else "not seen: assumed"

@@ -17,14 +17,11 @@ _SECOND = np.timedelta64(1, "s")
 
 
 def numbers(cells: Any, comma: bool = False) -> Array:
-    """Floats; NaN where a cell is empty.
+    """Floats, (n,); NaN where a cell is empty.
 
     Args:
         cells: A pandas.Series of numbers or texts of numbers, (n,); its index counts rows from 0.
         comma: Whether the file has decimal commas, so that a text with a point is no number.
-
-    Returns:
-        (n,).
 
     Raises:
         ValueError: A cell is not a finite number, an unsigned counter wraps, or the column is of another
@@ -54,12 +51,7 @@ def numbers(cells: Any, comma: bool = False) -> Array:
 def times(cells: Any, comma: bool = False) -> Array | None:
     """Seconds of a column that says its unit itself: dates with times, durations, or texts of either.
 
-    Args:
-        cells: A pandas.Series, (n,).
-        comma: As for `numbers`.
-
-    Returns:
-        Since 1970 (UTC) or 0, NaN where a cell is empty, (n,) [s]; None: the column is of another kind.
+    They count from 1970 (UTC) or 0, (n,); NaN where a cell is empty. None: the column is of another kind.
 
     Raises:
         ValueError: A text is neither a number nor a time.

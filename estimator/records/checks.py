@@ -1,4 +1,4 @@
-"""Checks of a record; the message of a refusal says what to do.
+"""Checks of a record: each raises ValueError, whose message says what to do.
 
 The bounds are an order of magnitude beyond the finger of a gripper, so every plausible record passes.
 """
@@ -38,17 +38,7 @@ _REPEATED = (
 
 
 def check_time(source: str, t: Array, rows: Rows, what: str) -> None:
-    """Refuses a time that is missing or does not increase.
-
-    Args:
-        source: Name of the file.
-        t: Time of the samples of one stream, (n,) [s].
-        rows: Their rows in the file, counted from 1, (n,).
-        what: "force" or "velocity".
-
-    Raises:
-        ValueError: As said.
-    """
+    """Refuses times of a stream, (n,) [s], that are missing or do not increase, by their rows in the file."""
     if len(t) < 2:
         raise ValueError(f"{source}: {len(t)} {what} samples; at least 2 are needed")
     if np.isnan(t).any():
@@ -76,9 +66,6 @@ def check_rate(source: str, t: Array, what: str, key: str, column: Column | None
         what: "force" or "velocity".
         key: Key of the time.
         column: Its column; None if it is of dates or durations, which have a unit of their own.
-
-    Raises:
-        ValueError: As said.
     """
     period = float(np.median(np.diff(t)))
     least, most = _USUAL_PERIODS if column is not None and column.assumed else _PERIODS
@@ -96,16 +83,7 @@ def check_rate(source: str, t: Array, what: str, key: str, column: Column | None
 
 
 def check_wrench(source: str, wrench: Array, rows: Rows) -> None:
-    """Refuses normal forces of the wrong sign, and forces of the wrong unit.
-
-    Args:
-        source: Name of the file.
-        wrench: f_x, f_y, f_n, tau, (n, 4) [N, N, N, N m].
-        rows: Rows in the file, counted from 1, (n,).
-
-    Raises:
-        ValueError: As said.
-    """
+    """Refuses normal forces of the wrong sign, and forces of the wrong unit, in wrenches (n, 4)."""
     f_n = wrench[:, WRENCH.index("f_n")]
     typical = np.median(f_n)
     if np.quantile(f_n, 0.99) < 0.0 or (typical < 0.0 and -f_n.min() > 10.0 * f_n.max()):
@@ -130,15 +108,7 @@ def check_wrench(source: str, wrench: Array, rows: Rows) -> None:
 
 
 def check_torque(source: str, wrench: Array) -> None:
-    """Refuses torques at the centre of pressure that no friction of these forces can make.
-
-    Args:
-        source: Name of the file.
-        wrench: At the centre of pressure, (n, 4) [N, N, N, N m].
-
-    Raises:
-        ValueError: As said.
-    """
+    """Refuses torques at the centre of pressure, in wrenches (n, 4), that no friction of the forces makes."""
     force, torque = (np.quantile(np.abs(wrench[:, k]), 0.95) for k in (2, 3))
     if torque > _LEVER_MAX * max(force, 1.0):
         unit = likely_unit("tau", float(torque), USUAL_LEVER * max(force, 1.0))
@@ -150,16 +120,7 @@ def check_torque(source: str, wrench: Array) -> None:
 
 
 def check_twist(source: str, twist: Array, rows: Rows) -> None:
-    """Refuses velocities that no slip in a grip has.
-
-    Args:
-        source: Name of the file.
-        twist: v_x, v_y, omega, (m, 3) [m/s, m/s, rad/s].
-        rows: Rows in the file, counted from 1, (m,).
-
-    Raises:
-        ValueError: As said.
-    """
+    """Refuses velocities (m, 3) [m/s, m/s, rad/s] that no slip in a grip has."""
     _bounded(source, TWIST, twist, rows, (*((_SPEED_MAX, USUAL_SPEED),) * 2, (_SPIN_MAX, _USUAL_SPIN)))
 
 
@@ -175,15 +136,7 @@ def _bounded(source: str, names: Sequence[str], values: Array, rows: Rows, bound
 
 
 def check_cop(source: str, cop: Array) -> None:
-    """Refuses a centre of pressure far from any pad.
-
-    Args:
-        source: Name of the file.
-        cop: (n, 2) [m].
-
-    Raises:
-        ValueError: As said.
-    """
+    """Refuses a centre of pressure, (n, 2) [m], far from any pad."""
     distance = np.median(np.hypot(cop[:, 0], cop[:, 1]))
     if distance > _COP_MAX:
         raise ValueError(

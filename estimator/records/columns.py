@@ -79,20 +79,7 @@ def load_columns(path: str | os.PathLike[str] | None) -> Columns:
     if path is None:
         return Columns()
     path, files = Path(path), extra("estimator.plain_files")
-    return parse_columns(files.content(path), path.name)
-
-
-def parse_columns(text: str | bytes, source: str) -> Columns:
-    """Reads a mapping from a text.
-
-    Args:
-        text: YAML.
-        source: What messages call it.
-
-    Raises:
-        ValueError: As `load_columns`.
-    """
-    return _columns(source, extra("estimator.plain_files").parse(text, source))
+    return _columns(path.name, files.parse(files.content(path), path.name))
 
 
 def _columns(source: str, values: Any, shared: Columns | None = None) -> Columns:

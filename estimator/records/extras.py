@@ -10,10 +10,7 @@ _OF_RECORDS = ("h5py", "mcap", "openpyxl", "pyarrow", "rosbags", "scipy")
 
 
 def extra(module: str) -> Any:
-    """Imports a module that an extra of slipgym installs.
-
-    Args:
-        module: Its full name.
+    """The module of that full name, which an extra of slipgym installs.
 
     Raises:
         ModuleNotFoundError: It is not installed; the message says how to install it.

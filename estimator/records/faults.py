@@ -1,4 +1,4 @@
-"""Warns about what streams say of each other: a force zeroed in the grip, dead channels, two clocks."""
+"""Warns about what streams say of each other: a force zeroed in the grip, dead channels, clocks, signs."""
 
 from __future__ import annotations
 
@@ -24,17 +24,19 @@ _LOOKED_AT = 20_000
 _SEEN, _CHANCE, _CLEARLY = 0.25, 2.0, 1.4
 """Correlation of an offset that is believed; the same times the root of the number of changes, since few of
 them correlate by chance; and how much larger than that of any usual delay it must be."""
+_AXES = ((0, 0), (1, 1), (3, 2))
+"""Components of the wrench and of the twist that go along with each other."""
+_CLEAR, _TURNS, _LOADED, _TORQUE, _LEVER = 3e-3, 0.1, 0.5, 3e-3, 0.003
+"""Speed [m/s], rate [rad/s], force [N], torque [N m] torque over force [m] at which their signs are clear."""
+_PART, _USUAL, _WAY, _MOST = 0.6, 0.008, 2e-3, 0.8
+"""Share of the axis in the motion, by the usual radius r [m]; way of the samples [m], farther than a pad
+springs back; the share of them that shows the sign."""
 
 
 def fault_warnings(record: Record, samples: Samples) -> list[str]:
-    """A line for each fault.
-
-    Args:
-        record: As read.
-        samples: Its samples as given to an estimator.
-    """
+    """A line for each fault of a record, as read, with its samples as given to an estimator."""
     lines = [*_zeroed(record, samples), *_own_force(record), *_dead(record), *_two_clocks(record)]
-    return [f"Warning: {line}" for line in lines]
+    return [f"Warning: {line}" for line in (*lines, *_against(samples))]
 
 
 def _zeroed(record: Record, samples: Samples) -> list[str]:
@@ -134,8 +136,34 @@ def _two_clocks(record: Record) -> list[str]:
 
 def _correlation(change: Array, force: Array) -> float:
     """Of second differences of velocities, (n - 2, 3), with changes of the forces, smoothed as these are."""
-    n = len(force)
-    after, before = force[2:n] + force[1 : n - 1], force[1 : n - 1] + force[: n - 2]
-    moved = after - before
+    moved = force[2:] - force[:-2]
     energy = float((moved * moved).sum() * (change * change).sum())
     return abs(float((moved * change).sum())) / np.sqrt(energy) if energy > 0.0 else 0.0
+
+
+def _against(samples: Samples) -> list[str]:
+    """Axes along which the force goes against the slip: friction takes energy from the motion along each."""
+    wrench, twist = samples.wrench, samples.twist * [1.0, 1.0, _USUAL]
+    speed, force = np.linalg.norm(twist, axis=1), np.hypot(*wrench[:, :2].T)
+    least = _LOADED, _LOADED, np.maximum(_TORQUE, _LEVER * force)
+    slowest = _CLEAR, _CLEAR, _USUAL * _TURNS
+    shown, against = 0, []
+    for (k, axis), loaded, slow in zip(_AXES, least, slowest, strict=True):
+        along, moved = wrench[:, k], twist[:, axis]
+        clear = (np.abs(moved) > np.maximum(slow, _PART * speed)) & (np.abs(along) > loaded)
+        way = float(np.abs(moved * np.diff(samples.t, prepend=samples.t[0]))[clear].sum())
+        if np.count_nonzero(clear) >= _ENOUGH and way > _WAY:
+            shown += 1
+            if (along * moved < 0.0)[clear].mean() > _MOST:
+                against.append((WRENCH[k], TWIST[axis]))
+    if shown == len(against) > 1:
+        turns = ", ".join(f"`{name}: {{sign: -1}}`" for name, _ in against)
+        return [
+            "the forces go against the slip, but friction goes along with it: are they those of the "
+            f"pad on the object? {turns} in the mapping turn them."
+        ]
+    return [
+        f"{force} goes against {speed} in slip, but friction goes along with it: one of them has "
+        f"the wrong sign. `{speed}: {{sign: -1}}` or `{force}: {{sign: -1}}` in the mapping turns it."
+        for force, speed in against
+    ]

@@ -7,8 +7,7 @@ one, and thousands of messages are then decoded at once.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -30,11 +29,9 @@ Definitions = Mapping[str, list[Field]]
 
 
 def definitions(text: str, name: str) -> Definitions:
-    """The fields of a type of messages, and of those in it.
+    """The fields of a type of messages, as geometry_msgs/msg/Wrench, and of those in it.
 
-    Args:
-        text: Its definition, with those of others below lines of = and `MSG: package/Type`.
-        name: Its name, as geometry_msgs/msg/Wrench.
+    In the text other definitions follow below lines of = and `MSG: package/Type`.
     """
     found: dict[str, list[Field]] = {}
     name = name.replace("/msg/", "/")
@@ -49,51 +46,46 @@ def definitions(text: str, name: str) -> Definitions:
     return found
 
 
-@dataclass
 class Layout:
-    """Places of the numbers in a message."""
+    """Places of the numbers in a message, found by going through one in the order of its bytes.
 
-    length: int
-    """Of a message [bytes]."""
-    order: str = "<"
-    """Order of its bytes."""
-    places: dict[str, tuple[str, int]] = field(default_factory=dict)
-    """Path of a field -> its type and its first byte; the type "t" is a time."""
-    keys: list[int] = field(default_factory=list)
-    """Bytes that messages of the same layout have in common: lengths, and names of joints."""
+    Args:
+        defined: Definitions of its type and of those in it.
+        kind: Its type.
+        cdr: Whether it is of ROS 2.
+        raw: Its bytes.
+
+    Raises:
+        ValueError: The definition does not fit, or is not one of these encodings.
+    """
+
+    def __init__(self, defined: Definitions, kind: str, cdr: bool, raw: bytes) -> None:
+        if cdr and (len(raw) < 4 or raw[0] or raw[1] > 1):
+            raise ValueError(f"the encoding {brief(raw[:4].hex())} of a message is not plain CDR")
+        self._defined, self._raw, self._cdr = defined, raw, cdr
+        self._values, self._at = 0, 4 if cdr else 0
+        self._order = ">" if cdr and raw[1] == 0 else "<"
+        self._places: dict[str, tuple[str, int]] = {}
+        """Path of a field -> its type and its first byte; the type "t" is a time."""
+        self.keys: list[int] = []
+        """Bytes that messages of the same layout have in common: lengths, and names of joints."""
+        self._one(kind.replace("/msg/", "/"), "")
 
     def decode(self, block: Any, wanted: Callable[[str], bool]) -> dict[str, Any]:
-        """Columns of messages of this layout, each (n,).
-
-        Args:
-            block: Their bytes, (n, length).
-            wanted: Whether a path is asked for.
-        """
+        """Columns, each (n,), of messages of this layout, whose bytes are (n, length)."""
 
         def column(code: str, at: int) -> Array:
-            dtype = np.dtype(self.order + code)
+            dtype = np.dtype(self._order + code)
             cells = np.ascontiguousarray(block[:, at : at + dtype.itemsize]).view(dtype)[:, 0]
             return cells.astype(dtype.newbyteorder("="))
 
         found = {}
-        for path, (code, at) in self.places.items():
+        for path, (code, at) in self._places.items():
             if wanted(path) and code == "t":
                 found[path] = (column("i4", at) * np.int64(10**9) + column("u4", at + 4)) / 1e9
             elif wanted(path):
                 found[path] = column(code, at)
         return found
-
-
-class _Walk:
-    """Goes through one message, in the order of its bytes."""
-
-    def __init__(self, defined: Definitions, raw: bytes, cdr: bool) -> None:
-        if cdr and (len(raw) < 4 or raw[0] or raw[1] > 1):
-            raise ValueError(f"the encoding {brief(raw[:4].hex())} of a message is not plain CDR")
-        self._defined, self._raw, self._cdr = defined, raw, cdr
-        self._values = 0
-        self.layout = Layout(len(raw), ">" if cdr and raw[1] == 0 else "<")
-        self._at = 4 if cdr else 0
 
     def _take(self, size: int, align: int) -> int:
         """The place of the next bytes."""
@@ -106,19 +98,19 @@ class _Walk:
 
     def _count(self) -> int:
         at = self._take(4, 4)
-        self.layout.keys += range(at, at + 4)
-        return int.from_bytes(self._raw[at : at + 4], "little" if self.layout.order == "<" else "big")
+        self.keys += range(at, at + 4)
+        return int.from_bytes(self._raw[at : at + 4], "little" if self._order == "<" else "big")
 
     def _text(self, key: bool) -> str:
         n = self._count()
         at = self._take(n, 1)
         if key:
-            self.layout.keys += range(at, at + n)
+            self.keys += range(at, at + n)
         return self._raw[at : at + n].rstrip(b"\0").decode("utf-8", "replace")
 
-    def one(self, kind: str, path: str, depth: int = 0) -> None:
+    def _one(self, kind: str, path: str, depth: int = 0) -> None:
         """A value of any type but a text."""
-        places, self._values = self.layout.places, self._values + 1
+        places, self._values = self._places, self._values + 1
         if self._values > _MOST:
             raise ValueError(f"{brief(path)}: a message has more than {_MOST} values")
         if kind in _TIMES:
@@ -140,7 +132,7 @@ class _Walk:
         for inner, count, name in fields:
             below = f"{path}.{name}" if path else name
             if count is None:
-                self.one(_absolute(inner, kind), below, depth + 1)
+                self._one(_absolute(inner, kind), below, depth + 1)
                 continue
             n = self._count() if count < 0 else count
             if inner == "string":
@@ -157,7 +149,7 @@ class _Walk:
                 named = len(names) == n == len(set(names))
                 for k in range(n):
                     each = f"{below}[{names[k] if named else k}]"
-                    self.one(_absolute(inner, kind), each, depth + 1)
+                    self._one(_absolute(inner, kind), each, depth + 1)
 
     def _fields(self, kind: str, path: str) -> list[Field]:
         if kind in self._defined:
@@ -174,42 +166,22 @@ def _absolute(kind: str, within: str) -> str:
     return f"{'std_msgs' if kind == 'Header' else within.rpartition('/')[0]}/{kind}"
 
 
-def layout(defined: Definitions, kind: str, raw: bytes, cdr: bool) -> Layout:
-    """Finds where the numbers of a message are.
-
-    Args:
-        defined: Its definitions.
-        kind: Its type.
-        raw: Its bytes.
-        cdr: Whether it is of ROS 2.
-
-    Raises:
-        ValueError: The definition does not fit, or is not one of these encodings.
-    """
-    walk = _Walk(defined, raw, cdr)
-    walk.one(kind.replace("/msg/", "/"), "")
-    return walk.layout
-
-
 def decoded(
     raws: list[bytes], find: Callable[[bytes], Layout], wanted: Callable[[str], bool]
-) -> Iterator[tuple[Any, Mapping[str, Any]]]:
-    """Decodes messages of one topic, those of each layout at once.
-
-    Args:
-        raws: Their bytes, (n,).
-        find: Gives the layout of one of them.
-        wanted: Whether a path is asked for.
-
-    Yields:
-        Places among them, (k,), and their columns, each (k,).
-    """
+) -> dict[str, Any]:
+    """Wanted columns, each (n,), of n messages of a topic; those of each layout are decoded at once."""
     lengths, left = np.array([len(raw) for raw in raws]), np.arange(len(raws))
+    found: dict[str, Any] = {}
     while len(left):
-        one = find(raws[left[0]])
-        of_length = np.flatnonzero(lengths[left] == one.length)
+        first = raws[left[0]]
+        one, of_length = find(first), np.flatnonzero(lengths[left] == len(first))
         alike = left[of_length]
-        block = np.frombuffer(b"".join([raws[k] for k in alike]), np.uint8).reshape(len(alike), one.length)
+        block = np.frombuffer(b"".join([raws[k] for k in alike]), np.uint8).reshape(len(alike), len(first))
         same = (block[:, one.keys] == block[0, one.keys]).all(axis=1)
-        yield alike[same], one.decode(block[same], wanted)
+        columns = one.decode(block[same], wanted)
+        if same.sum() == len(raws):
+            return columns
+        for path, values in columns.items():
+            found.setdefault(path, np.full(len(raws), np.nan))[alike[same]] = values
         left = np.delete(left, of_length[same])
+    return found

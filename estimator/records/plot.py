@@ -31,18 +31,13 @@ _RC: Any = {
     "lines.linewidth": 1.4,
     "lines.solid_capstyle": "round",
 }
+_NAMES = "mu_s", "mu_c", "r"
 _DOTS = 10_000  # parts of which the extremes are drawn
 _TOP_FRICTION = 1.0  # start values above it are cut off once data has taken over
 
 
 def plot(result: Result) -> Any:
-    """Four panels over one time axis; halts are shaded, truth is dashed.
-
-    Args:
-        result: From `estimate`.
-
-    Returns:
-        A matplotlib.figure.Figure.
+    """A matplotlib figure of four panels over one time axis; halts are shaded, truth is dashed.
 
     Raises:
         ModuleNotFoundError: The extra `slipgym[cli]` is not installed.
@@ -59,7 +54,9 @@ def plot(result: Result) -> Any:
         panels[-1].set_xlabel(clock)
         first, last = result.samples.t[[0, -1]]
         panels[-1].set_xlim(0.0 if 0.0 <= first < 0.05 * last else first, last)
-        figure.suptitle(_title(result), x=0.01, ha="left", fontsize=9.0, color=_MUTED)
+        changed = [f"{name} {value}" for name, value in result.given.items()]
+        title = "   ·   ".join([result.record.name, f"estimator {result.estimator}", *changed])
+        figure.suptitle(title, x=0.01, ha="left", fontsize=9.0, color=_MUTED)
         figure.align_ylabels()
     return figure
 
@@ -70,10 +67,8 @@ def _near_zero(result: Result) -> tuple[Result, str]:
     start = min(record.force_t[0], samples.t[0])
     if abs(start) <= 10.0 * (samples.t[-1] - start):
         return result, "time [s]"
-    record = replace(record, force_t=record.force_t - start)
-    return replace(
-        result, record=record, samples=replace(samples, t=samples.t - start)
-    ), "time since the start [s]"
+    record, samples = replace(record, force_t=record.force_t - start), replace(samples, t=samples.t - start)
+    return replace(result, record=record, samples=samples), "time since the start [s]"
 
 
 def _forces(axes: Any, result: Result) -> None:
@@ -101,8 +96,7 @@ def _friction(axes: Any, result: Result) -> None:
     estimates = result.estimates
     labels = {}
     for k, (name, symbol, colour) in enumerate((("mu_s", "μ$_s$", _GREEN), ("mu_c", "μ$_c$", _VERMILION))):
-        known = _estimate(axes, result, name, 1.0, colour)
-        _truth(axes, result, k, 1.0, colour)
+        known = _estimate(axes, result, k, 1.0, colour)
         value = f"{estimates[name][-1]:.3f}" if known else "not observed"
         labels[f"{symbol} {value}"] = (estimates[name][-1], colour)
     axes.set_ylabel("friction [–]")
@@ -114,40 +108,34 @@ def _friction(axes: Any, result: Result) -> None:
 
 def _radius(axes: Any, result: Result) -> None:
     r = 1e3 * result.estimates["r"]
-    known = _estimate(axes, result, "r", 1e3, _PURPLE)
-    _truth(axes, result, 2, 1e3, _PURPLE)
+    known = _estimate(axes, result, 2, 1e3, _PURPLE)
     axes.set_ylabel("radius [mm]")
     true = 0.0 if result.samples.truth is None else 1e3 * np.nan_to_num(result.samples.truth[:, 2]).max()
     axes.set_ylim(0.0, 1.15 * max(r.max(), true))
     _beside(axes, {f"r {r[-1]:.1f}" if known else "r not observed": (r[-1], _PURPLE)})
 
 
-def _estimate(axes: Any, result: Result, name: str, scale: float, colour: str) -> bool:
-    """Draws one value, pale while it is the start value; says whether data stands behind the last."""
-    t, value = result.samples.t, scale * result.estimates[name]
+def _estimate(axes: Any, result: Result, k: int, scale: float, colour: str) -> bool:
+    """Draws a value, pale while it is the start value, and its truth; whether data stands behind the last."""
+    name, t, truth = _NAMES[k], result.samples.t, result.samples.truth
+    value = scale * result.estimates[name]
     known = result.estimates[f"confidence_{name}"] > 0.0
     _line(axes, t, np.where(known, np.nan, value), color=colour, alpha=0.35, drawstyle="steps-post")
     _line(axes, t, np.where(known, value, np.nan), color=colour, drawstyle="steps-post")
+    if truth is not None:
+        _line(axes, t, scale * truth[:, k], color=colour, linestyle="--", linewidth=1.0)
     return bool(known[-1])
 
 
 def _line(axes: Any, t: Array, values: Array, **style: Any) -> None:
     """Draws a line that breaks where the record has a gap; of a long one, the extremes."""
-    t, values = extremes(t, values)
+    t, values = _extremes(t, values)
     gaps = np.flatnonzero(np.diff(t) > GAP_PERIODS * period(t)) + 1
     axes.plot(np.insert(t, gaps, np.nan), np.insert(values, gaps, np.nan), **style)
 
 
-def extremes(t: Array, values: Array) -> tuple[Array, Array]:
-    """The smallest and the largest of neighbouring values, where there are more than a picture shows.
-
-    Args:
-        t: (n,) [s].
-        values: (n,); NaN where there is none.
-
-    Returns:
-        Some of both, in order, (k,).
-    """
+def _extremes(t: Array, values: Array) -> tuple[Array, Array]:
+    """The smallest and the largest of neighbouring values (n,), where there are more than a picture shows."""
     size = len(t) // _DOTS
     if size < 2:
         return t, values
@@ -160,30 +148,15 @@ def extremes(t: Array, values: Array) -> tuple[Array, Array]:
     return t[at], values[at]
 
 
-def _truth(axes: Any, result: Result, k: int, scale: float, colour: str) -> None:
-    if result.samples.truth is not None:
-        _line(
-            axes,
-            result.samples.t,
-            scale * result.samples.truth[:, k],
-            color=colour,
-            linestyle="--",
-            linewidth=1.0,
-        )
-
-
 def _shade_halts(axes: Any, result: Result) -> None:
-    t, halted = extremes(result.samples.t, result.estimates["halted"].astype(np.float64))
-    inside = axes.get_xaxis_transform()
-    shaded = halted > 0.0
-    axes.fill_between(
-        t, 0.0, 1.0, where=shaded, step="post", color=_BAND, linewidth=0, transform=inside, zorder=0
-    )
+    t, halted = _extremes(result.samples.t, result.estimates["halted"].astype(np.float64))
+    style: Any = {"step": "post", "color": _BAND, "linewidth": 0, "zorder": 0}
+    axes.fill_between(t, 0.0, 1.0, where=halted > 0.0, transform=axes.get_xaxis_transform(), **style)
 
 
 def _name_halts(axes: Any, result: Result) -> None:
     words = ["shaded: halted by the heuristic"] if result.estimates["halted"].any() else []
-    started = any((result.estimates[f"confidence_{name}"] == 0.0).any() for name in ("mu_s", "mu_c", "r"))
+    started = any((result.estimates[f"confidence_{name}"] == 0.0).any() for name in _NAMES)
     words += ["pale: start value"] if started else []
     words += ["dashed: truth"] if result.samples.truth is not None else []
     axes.set_title("   ·   ".join(words), loc="right", fontsize=8.0, color=_MUTED)
@@ -206,8 +179,3 @@ def _beside(axes: Any, labels: dict[str, tuple[float, str]]) -> None:
             va="center",
             annotation_clip=False,
         )
-
-
-def _title(result: Result) -> str:
-    changed = [f"{name} {value}" for name, value in result.given.items()]
-    return "   ·   ".join([result.record.name, f"estimator {result.estimator}", *changed])

@@ -91,29 +91,15 @@ class Proposal:
     """In SI units with the sign, NaN where a cell is empty."""
 
 
-def propose(path: Path) -> tuple[list[Proposal], list[str]]:
-    """Proposes what the columns of a file are.
-
-    Args:
-        path: A file that `load` reads, or the folder of a ROS 2 bag.
+def propose_fingers(path: Path) -> tuple[dict[str, list[Proposal]], list[str]]:
+    """Proposes what the columns of a file are, for each finger if the names of the forces say two.
 
     Returns:
-        The proposals, in the order of `UNITS`; the columns that nothing was found for.
+        Name of the finger -> its proposals, in the order of `UNITS`, a single empty name if there is one
+        finger; the columns that nothing was found for.
 
     Raises:
         FileNotFoundError, ValueError, ModuleNotFoundError: As `load`.
-    """
-    frame = read_columns(path)
-    found = _proposed(frame)
-    used = [each.column for each in found]
-    return found, [name for name in frame if name not in used]
-
-
-def propose_fingers(path: Path) -> tuple[dict[str, list[Proposal]], list[str]]:
-    """The same for each finger, if the names of the forces say that there are two.
-
-    Returns:
-        Name of the finger -> its proposals, a single empty name if there is one finger; the rest.
     """
     frame, found = read_columns(path), {}
     sides = {name: _side(name) for name in frame}
@@ -149,56 +135,49 @@ def _proposed(frame: Mapping[str, Any]) -> list[Proposal]:
                 numeric[name] = values, read is times
                 break
     chosen = _by_name({name: len(values) for name, (values, _) in numeric.items()})
-    places = _places([name for name in numeric if name not in chosen.values()], chosen)
+    plain = {
+        name: _UNIT.sub("", name).strip().lower().rpartition("/")[2]
+        for name in numeric
+        if name not in chosen.values()
+    }
+    places: dict[str, str] = {}  # velocity -> column of the displacement, where there is none of the velocity
+    for key, pattern in _PLACES.items():
+        hits = [name for name in plain if re.fullmatch(pattern, plain[name])]
+        if key not in chosen and hits:
+            places[key] = hits[0]
     found: dict[str, Proposal] = {}
     for key in (key for key in UNITS if key in chosen):
         values, dated = numeric[chosen[key]]
         alike = [numeric[chosen[other]][0] for other in chosen if UNITS[other] is UNITS[key]]
         unit, sign, why = ("s", 1, "dates") if dated else _unit(key, chosen[key], values, alike, found)
         found[key] = Proposal(key, chosen[key], unit, sign, why, False, sign * UNITS[key][unit] * values)
-    spans = {
-        key: float(np.ptp(numeric[name][0][np.isfinite(numeric[name][0])])) for key, name in places.items()
-    }
+    ways = {key: numeric[name][0] for key, name in places.items()}
+    spans = {key: float(np.ptp(way[np.isfinite(way)])) for key, way in ways.items()}
     for key, name in places.items():
         units = units_of(key, position=True)
         span = max(spans[other] for other in places if POSITIONS[other] == POSITIONS[key])
         likely = [unit for unit, factor in units.items() if span * factor <= _SPANS[key]]
         unit = unit_in_name(key, name, position=True) or (likely or list(units))[0]
         why = f"a way of up to {span * units[unit]:.3g} {next(iter(units))}"
-        found[key] = Proposal(key, name, unit, 1, why, True, units[unit] * numeric[name][0])
+        found[key] = Proposal(key, name, unit, 1, why, True, units[unit] * ways[key])
     return list(found.values())
 
 
-def _places(free: list[str], chosen: dict[str, str]) -> dict[str, str]:
-    """Velocity -> column of the displacement, where there is no column of the velocity."""
-    found: dict[str, str] = {}
-    for key, pattern in _PLACES.items():
-        plain = {name: re.split(r"[/]", _UNIT.sub("", name).strip().lower())[-1] for name in free}
-        hits = [name for name in free if re.fullmatch(pattern, plain[name])]
-        if key not in chosen and hits:
-            found[key] = hits[0]
-    return found
-
-
-def mapping_text(proposals: list[Proposal], indent: str = "") -> str:
-    """The mapping as YAML, with the reason of each line as a comment."""
-    lines = ["# Proposed by slipgym map: look at every line. docs/records.md lists keys, units and frames."]
-    lines = [] if indent else lines
-    for each in proposals:
-        column = each.column.replace("'", "''")
-        sign, kind = ", sign: -1" if each.sign < 0 else "", "position" if each.position else "column"
-        lines.append(f"{each.key}: {{{kind}: '{column}', unit: '{each.unit}'{sign}}}  # {each.why}")
-    given = {each.key for each in proposals}
-    lines += [f"# {key}: ?  nothing looks like it" for key in REQUIRED if key not in given]
-    return "".join(f"{indent}{line}\n" for line in lines)
-
-
 def text_of_fingers(found: Mapping[str, list[Proposal]]) -> str:
-    """The mapping of one finger, or of each of several."""
-    if "" in found:
-        return mapping_text(found[""])
-    parts = [f"  {name}:\n{mapping_text(own, '    ')}" for name, own in found.items()]
-    return "".join([mapping_text([]).splitlines(keepends=True)[0], f"{FINGERS}:\n", *parts])
+    """The mapping of one finger, or of each of several, as YAML with the reason of each line as a comment."""
+    lines = ["# Proposed by slipgym map: look at every line. docs/records.md lists keys, units and frames."]
+    lines += [] if "" in found else [f"{FINGERS}:"]
+    for finger, proposals in found.items():
+        lines += [f"  {finger}:"] if finger else []
+        own = []
+        for each in proposals:
+            sign, kind = ", sign: -1" if each.sign < 0 else "", "position" if each.position else "column"
+            column = each.column.replace("'", "''")
+            own.append(f"{each.key}: {{{kind}: '{column}', unit: '{each.unit}'{sign}}}  # {each.why}")
+        given = {each.key for each in proposals}
+        own += [f"# {key}: ?  nothing looks like it" for key in REQUIRED if key not in given]
+        lines += ["    " * bool(finger) + line for line in own]
+    return "\n".join([*lines, ""])
 
 
 def _by_name(lengths: Mapping[str, int]) -> dict[str, str]:

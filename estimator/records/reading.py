@@ -12,12 +12,11 @@ import numpy as np
 
 from estimator.online import TWIST, WRENCH
 from estimator.records import checks
-from estimator.records.alignment import GAP_PERIODS
+from estimator.records.alignment import GAP_PERIODS, held
 from estimator.records.columns import Columns, Wanted
 from estimator.records.extras import extra
-from estimator.records.holding import held
-from estimator.records.record import Array, Record, Rows, cop_of_tilt, move_torque
-from estimator.records.sources import Source, of_frame, read_sources
+from estimator.records.record import Array, Record, Rows, cop_of_tilt, wrench_at
+from estimator.records.sources import of_frame, read_sources
 from estimator.records.streams import of_one_finger, read_tables, stream
 from estimator.records.table import Table, listed
 from estimator.records.units import COP, GRIP, REQUIRED, TILT, TIME, TRUTH, VELOCITY_TIME
@@ -77,7 +76,7 @@ def from_arrays(
     return _record([read_tables(name, columns, partial(_of_memory, each, name)) for each in given], columns)
 
 
-def _of_memory(given: Mapping[str, Any] | Any, name: str, wanted: Wanted) -> list[Source]:
+def _of_memory(given: Mapping[str, Any] | Any, name: str, wanted: Wanted) -> list[Table]:
     """The columns of a DataFrame, or of a mapping of names to arrays (n,)."""
     pandas = extra("pandas")
     if isinstance(given, pandas.DataFrame):
@@ -122,7 +121,7 @@ def _record(files: list[list[Table]], columns: Columns) -> Record:
     cop = _cop(forces, extra_keys, wrench, at)
     if cop is not None:
         checks.check_cop(forces.name, cop)
-        move_torque(wrench, cop)
+        wrench_at(wrench, cop)
     checks.check_torque(forces.name, wrench)
     own = columns.given.get(GRIP) and forces.has(GRIP)  # a column of that name may be anything
     grip = forces.numbers([GRIP], at)[:, 0] if own else None

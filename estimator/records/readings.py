@@ -6,6 +6,8 @@ that are zero in stick pass.
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -44,12 +46,7 @@ _LONG = 0.5
 
 
 def reading_warnings(record: Record, samples: Samples) -> list[str]:
-    """A line for each fault that the readings show.
-
-    Args:
-        record: As read.
-        samples: Its samples as given to an estimator.
-    """
+    """A line for each fault that the readings of a record show, with its samples as given to an estimator."""
     force = record.wrench if record.cop is None else record.wrench[:, :3]  # a torque that was moved is mixed
     names = WRENCH[: force.shape[1]]
     lines = [
@@ -85,7 +82,7 @@ def _saturated(names: tuple[str, ...], values: Array) -> list[str]:
             extreme, often = found[inwards][0], counts[inwards]
             share = often[0] / len(channel)
             piled = often[0] > _PILE * often[1 : 1 + _NEAR].max()
-            if extreme != 0.0 and share >= _SHARE and piled and _runs(channel == extreme).max() >= _STAYS:
+            if extreme != 0.0 and share >= _SHARE and piled and _runs(channel == extreme)[1].max() >= _STAYS:
                 lines.append(
                     f"{name} has its {word} value, {extreme:.4g}, in {100.0 * share:.0f} % of the samples: "
                     f"is that the end of the sensor's range{', or a held speed' * (names == TWIST)}?"
@@ -101,7 +98,7 @@ def _frozen_forces(names: tuple[str, ...], t: Array, force: Array, record: Recor
         begin, end = t[moving[0]], t[moving[1]]
         inside = (record.twist_t >= begin) & (record.twist_t <= end)
         alive = len(np.unique(record.twist[inside], axis=0)) > 2
-        others = np.sort(_runs(~new))[:-1]  # of a sensor that is slower than the record
+        others = np.sort(_runs(~new)[1])[:-1]  # of a sensor that is slower than the record
         usual = np.quantile(others, 0.95) if len(others) else 0.0
         long = end - begin > max(_FROZEN_FORCE, 20.0 * usual * period(t))
         if alive and long:
@@ -115,13 +112,9 @@ def _frozen_forces(names: tuple[str, ...], t: Array, force: Array, record: Recor
         value = channel[1:][new][run[0]]
         if value in (channel.min(), channel.max()) or (run[0] == 0 and value == 0.0):
             continue  # saturated, or a component without load that is seen without noise
-        others = np.ones(len(changed), bool)
-        others[run[0] : run[1] + 1] = False
-        if (
-            times[run[1]] - times[run[0]] > _FROZEN_FORCE
-            and others.any()
-            and changed[others].mean() >= _LIVELY
-        ):
+        others = np.delete(changed, slice(run[0], run[1] + 1))
+        long = times[run[1]] - times[run[0]] > _FROZEN_FORCE
+        if long and len(others) and others.mean() >= _LIVELY:
             lines.append(_says(f"{name} does", times[run[0]], times[run[1]], "while the other forces do"))
     return lines
 
@@ -134,22 +127,19 @@ def _frozen_velocity(record: Record) -> list[str]:
     run = _longest(same)
     if run is None or t[run[1] + 1] - t[run[0]] <= _FROZEN_VELOCITY:
         return []
-    others = slips.copy()
-    others[run[0] : run[1] + 1] = False
-    if not others.any() or (~same[others]).mean() < _LIVELY:
+    slips[run[0] : run[1] + 1] = False
+    if not slips.any() or (~same[slips]).mean() < _LIVELY:
         return []
     return [_says("the velocities do", t[run[0]], t[run[1] + 1], "and are not zero")]
 
 
 def _alike(names: tuple[str, ...], values: Array) -> list[str]:
     """Pairs of channels that have the same values."""
-    lines = []
-    for i, first in enumerate(names):
-        for j in range(i + 1, len(names)):
-            same = np.array_equal(values[:, i], values[:, j])
-            if same and len(np.unique(values[:, i])) > 2:
-                lines.append(f"{first} and {names[j]} have the same values: is one column read twice?")
-    return lines
+    return [
+        f"{first} and {second} have the same values: is one column read twice?"
+        for (first, a), (second, b) in combinations(zip(names, values.T, strict=True), 2)
+        if np.array_equal(a, b) and len(np.unique(a)) > 2
+    ]
 
 
 def _units(samples: Samples) -> list[str]:
@@ -203,10 +193,10 @@ def _says(what: str, begin: float, end: float, meanwhile: str) -> str:
     return f"{what} not change from {seconds(begin)} to {seconds(end)} s, {meanwhile}: is the reading frozen?"
 
 
-def _runs(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Lengths of the runs of True; a single 0 if there are none."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False]))))
-    return edges[1::2] - edges[::2] if len(edges) else np.zeros(1, np.int64)
+def _runs(flags: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Begin and length of each run of True."""
+    edges = np.flatnonzero(np.diff(flags, prepend=False, append=False))
+    return edges[::2], edges[1::2] - edges[::2]
 
 
 def _farthest(t: Array, v_t: Array, flags: NDArray[np.bool_]) -> float:
@@ -218,8 +208,8 @@ def _farthest(t: Array, v_t: Array, flags: NDArray[np.bool_]) -> float:
 
 def _longest(flags: NDArray[np.bool_]) -> tuple[int, int] | None:
     """First and last place of the longest run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False]))))
-    if not len(edges):
+    begins, lengths = _runs(flags)
+    if not len(begins):
         return None
-    k = int(np.argmax(edges[1::2] - edges[::2]))
-    return int(edges[2 * k]), int(edges[2 * k + 1]) - 1
+    k = int(np.argmax(lengths))
+    return int(begins[k]), int(begins[k] + lengths[k]) - 1

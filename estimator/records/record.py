@@ -47,40 +47,16 @@ def seconds(t: Any) -> str:
 
 
 def wrench_at(wrench: Array, cop: Array) -> Array:
-    """Moves wrenches from the sensor's origin to the centre of pressure: tau - c × f_t.
+    """Moves wrenches (n, 4) from the sensor's origin to the CoP (n, 2) [m]: tau - c × f_t.
 
-    Args:
-        wrench: f_x, f_y, f_n, tau, (n, 4) [N, N, N, N m].
-        cop: (n, 2) [m].
-
-    Returns:
-        (n, 4), a new array.
-    """
-    moved = wrench.copy()
-    move_torque(moved, cop)
-    return moved
-
-
-def move_torque(wrench: Array, cop: Array) -> None:
-    """Moves wrenches to the centre of pressure in their place, which a long record has memory for.
-
-    Args:
-        wrench: As for `wrench_at`; its torque is changed.
-        cop: (n, 2) [m].
+    It changes the torque in its place, which a long record has memory for.
     """
     wrench[:, 3] -= cop[:, 0] * wrench[:, 1] - cop[:, 1] * wrench[:, 0]
+    return wrench
 
 
 def twist_at(twist: Array, cop: Array) -> Array:
-    """Moves twists from the sensor's origin to the centre of pressure: v + omega × c.
-
-    Args:
-        twist: v_x, v_y, omega, (n, 3) [m/s, m/s, rad/s].
-        cop: (n, 2) [m].
-
-    Returns:
-        (n, 3), a new array.
-    """
+    """Twists (n, 3), moved from the sensor's origin to the CoP (n, 2) [m]: v + omega × c; a new array."""
     moved = twist.copy()
     moved[:, 0] -= twist[:, 2] * cop[:, 1]
     moved[:, 1] += twist[:, 2] * cop[:, 0]
@@ -88,15 +64,12 @@ def twist_at(twist: Array, cop: Array) -> Array:
 
 
 def cop_of_tilt(tilt: Array, f_n: Array, threshold: float) -> Array:
-    """Centre of pressure from the tilting torques: c = (-tau_y, tau_x) / f_n.
+    """Centre of pressure (n, 2) [m] from the tilting torques: c = (-tau_y, tau_x) / f_n.
 
     Args:
         tilt: tau_x, tau_y at the sensor's origin, (n, 2) [N m].
         f_n: Normal force, (n,) [N].
         threshold: Normal force below which it is taken as the origin [N].
-
-    Returns:
-        (n, 2) [m].
     """
     pressed = f_n >= threshold
     cop = np.stack((-tilt[:, 1], tilt[:, 0]), axis=1)

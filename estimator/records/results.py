@@ -1,7 +1,11 @@
-"""Writes the files of a run."""
+"""Parses the settings of a run, names its folder and writes its files."""
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
+from contextlib import suppress
+from datetime import datetime
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -15,6 +19,39 @@ from estimator.records.plot import plot
 from estimator.records.run import Result
 from estimator.records.summary import markdown
 from estimator.records.units import TRUTH
+
+
+def parse_settings(settings: Sequence[str], flag: str = "--set") -> dict[str, Any]:
+    """Reads `name=value` pairs; a value is what YAML takes it for, and 1e-3 is a number.
+
+    Args:
+        settings: Such as ["heuristic=false", "eps_v=1e-3"].
+        flag: The option of the command line they were given by, for the message of an error.
+
+    Raises:
+        ValueError: One has no "=", or its value is no YAML.
+    """
+    values = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        source = f"{flag} {setting!r}"
+        if not equals or not name.strip():
+            raise ValueError(f"{source}: must be name=value")
+        try:
+            value = extra("estimator.plain_files").parse(text, source)
+        except ValueError as error:
+            raise ValueError(f"{source}: the value cannot be read") from error
+        if isinstance(value, str):
+            with suppress(ValueError):
+                value = float(value)
+        values[name.strip()] = value
+    return values
+
+
+def run_name(log: str | os.PathLike[str]) -> str:
+    """Name for the folder of a run that starts now: <record>__<timestamp>."""
+    stamp = datetime.now().strftime("%Y%m%d-%H%M%S-%f")[:-3]
+    return f"{Path(log).name.partition('.')[0]}__{stamp}"
 
 
 def write(result: Result, folder: Path) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 
 from estimator.records.columns import Wanted, is_wanted
 from estimator.records.extras import extra
+from estimator.records.table import Table
 
 SEPARATORS = (",", ";", "\t", r"\s+")
 _LOOKED_AT = 200  # lines in which the header and a decimal comma are looked for
@@ -35,21 +36,12 @@ _TOO_LONG = (
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?")
 
 
-def read_csv(path: Path, wanted: Wanted, only: bool = False) -> tuple[Any, list[str], dict[str, str], bool]:
-    """Reads a csv file, packed by gzip or not.
+def read_csv(path: Path, wanted: Wanted, only: bool = False) -> Table:
+    """Reads a csv file, packed by gzip or not, as a table whose names may occur twice.
 
-    The header is the line that has most of the expected names, or else most texts, between one of
+    The header is the line that has most of the wanted names, or else most texts, between one of
     `SEPARATORS`. Lines that begin with #, % or // are comments. A row below the header that has texts alone
-    has units. A decimal comma needs another separator than the comma.
-
-    Args:
-        path: The file.
-        wanted: The expected names.
-        only: Whether no other columns are read.
-
-    Returns:
-        Its pandas.DataFrame, whose names may occur twice; all names; column -> unit that the file says;
-        whether its numbers have decimal commas.
+    has units. A decimal comma needs another separator than the comma. With `only`, no other columns are read.
 
     Raises:
         ValueError: It is no text, has no header, or its rows have more cells than its header.
@@ -61,7 +53,7 @@ def read_csv(path: Path, wanted: Wanted, only: bool = False) -> tuple[Any, list[
     return _read(lambda: io.TextIOWrapper(_binary(path), encoding), wanted, only)
 
 
-def read_cells(rows: list[list[Any]], wanted: Wanted) -> tuple[Any, list[str], Any, bool]:
+def read_cells(rows: list[list[Any]], wanted: Wanted) -> Table:
     """Reads the cells of a sheet as those of a csv file; None is an empty one. As `read_csv`."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(
@@ -70,7 +62,7 @@ def read_cells(rows: list[list[Any]], wanted: Wanted) -> tuple[Any, list[str], A
     return _read(lambda: io.StringIO(text.getvalue()), wanted, wanted is not None)
 
 
-def _read(open_text: Callable[[], Any], wanted: Wanted, only: bool) -> tuple[Any, list[str], Any, bool]:
+def _read(open_text: Callable[[], Any], wanted: Wanted, only: bool) -> Table:
     """Reads a text that can be opened more than once."""
     pandas, expected = extra("pandas"), wanted or ()
     with open_text() as text:
@@ -107,7 +99,7 @@ def _read(open_text: Callable[[], Any], wanted: Wanted, only: bool) -> tuple[Any
         longer = re.search(r"Expected \d+ fields", str(error))
         raise ValueError(_TOO_LONG.format(len(names)) if longer else str(error)) from error
     frame.columns = [names[k] for k in frame.columns]
-    return frame, names, units, comma
+    return Table(frame, names, units, comma)
 
 
 def _in_pieces(open_body: Callable[[], Any], settings: dict[str, Any]) -> Any:
@@ -124,13 +116,7 @@ def _in_pieces(open_body: Callable[[], Any], settings: dict[str, Any]) -> Any:
 
 
 class _Body(io.TextIOBase):
-    """The lines below the header, without comments and the row of units.
-
-    Args:
-        text: The whole text.
-        at: Lines above them.
-        units: The row of units, if there is one.
-    """
+    """The lines of a text below its first `at`, without comments and without the row of units, if any."""
 
     def __init__(self, text: Any, at: int, units: str | None) -> None:
         self._text, self._units = text, units

@@ -1,11 +1,10 @@
-"""Reads a file of any known type as sources: tables of named columns, one for each topic or length."""
+"""Reads a file of any known type as tables of named columns, one for each topic or length."""
 
 from __future__ import annotations
 
 import os
 import zipfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ import numpy as np
 from estimator.records.columns import Wanted, is_wanted
 from estimator.records.extras import extra
 from estimator.records.separated import read_cells, read_csv
+from estimator.records.table import Table
 from estimator.suggestions import brief
 
 BYTES = 4 * 10**9
@@ -22,26 +22,8 @@ LARGEST = 4096
 """Most columns of an array or message; one with more is a picture, and is left out."""
 
 
-@dataclass(frozen=True)
-class Source:
-    """Columns that have a common length."""
-
-    frame: Any
-    """pandas.DataFrame of those that were asked for."""
-    names: Sequence[str]
-    """All that it has."""
-    units: Mapping[str, str] = field(default_factory=dict)
-    """Column -> unit, where the file says it."""
-    comma: bool = False
-    """Whether numbers have decimal commas."""
-
-
-def read_sources(path: Path, wanted: Wanted) -> list[Source]:
-    """Reads the columns of a file that are asked for.
-
-    Args:
-        path: A file of one of `TYPES`, in any case, or the folder of a ROS 2 bag.
-        wanted: Which columns.
+def read_sources(path: Path, wanted: Wanted) -> list[Table]:
+    """Reads the wanted columns of a file of one of `TYPES`, in any case, or of the folder of a ROS 2 bag.
 
     Raises:
         FileNotFoundError: There is no such file.
@@ -71,40 +53,30 @@ def read_sources(path: Path, wanted: Wanted) -> list[Source]:
         raise ValueError(f"{path.name}: cannot be read: {text}") from error
 
 
-def of_frame(frame: Any) -> Source:
+def of_frame(frame: Any) -> Table:
     """The columns of a pandas.DataFrame, and its index where that may be the time."""
     if not isinstance(frame.index, extra("pandas").RangeIndex) or frame.index.name is not None:
         frame = frame.reset_index(allow_duplicates=True)
     names = [str(name).strip() for name in frame.columns]
-    return Source(frame.set_axis(names, axis=1), names)
+    return Table(frame.set_axis(names, axis=1), names)
 
 
 def read_columns(path: Path) -> dict[str, Any]:
-    """All columns of a file, by name; those of different topics or arrays may have different lengths.
-
-    Raises:
-        FileNotFoundError, ValueError, ModuleNotFoundError: As `read_sources`.
-    """
+    """All columns of a file, by name; those of different topics or arrays may have different lengths."""
     found: dict[str, Any] = {}
-    for source in read_sources(path, None):
-        for name in source.frame.columns:
-            found.setdefault(name, source.frame[name])
+    for table in read_sources(path, None):
+        for name in table.frame.columns:
+            found.setdefault(name, table.frame[name])
     return found
 
 
-def from_columns(
-    columns: Iterable[tuple[str, int, Callable[[], Any]]], wanted: Wanted, units: Mapping[str, str]
-) -> list[Source]:
-    """Groups columns by their length.
-
-    Args:
-        columns: Name, length and a function that loads it, of each.
-        wanted: Which of them to load.
-        units: Column -> unit.
-    """
+def _of_arrays(
+    arrays: Iterable[tuple[str, Any]], wanted: Wanted, units: Mapping[str, str] | None = None
+) -> list[Table]:
+    """Groups the columns of named arrays by their length, and loads those that are wanted."""
     names: dict[int, list[str]] = {}
     loaded: dict[int, dict[str, Any]] = {}
-    for name, length, load in columns:
+    for name, length, load in (column for each in arrays for column in _columns_of(*each)):
         names.setdefault(length, []).append(name)
         found = loaded.setdefault(length, {})
         if is_wanted(name, wanted):
@@ -112,24 +84,22 @@ def from_columns(
             found[name] = load()
     pandas = extra("pandas")
     return [
-        Source(pandas.DataFrame(found, index=pandas.RangeIndex(n), copy=False), names[n], units)
+        Table(pandas.DataFrame(found, index=pandas.RangeIndex(n), copy=False), names[n], units or {})
         for n, found in loaded.items()
     ]
 
 
-def columns_of(name: str, array: Any) -> Iterable[tuple[str, int, Callable[[], Any]]]:
-    """The columns of an array: one for each field, and for each place beside the longest axis.
+def _columns_of(name: str, array: Any) -> Iterable[tuple[str, int, Callable[[], Any]]]:
+    """The columns of an array (numpy, HDF5): one for each field, and for each place beside the longest axis.
 
-    Args:
-        name: Its name; a column of several is `name[k]`, counted from 0, a field is `name.field`.
-        array: Has a shape, a dtype and slices, as those of numpy and HDF5 do.
+    A column of several is `name[k]`, counted from 0, a field is `name.field`.
     """
     shape, dtype = tuple(array.shape), array.dtype
     if dtype.names:
         _refuse_large(array.nbytes)
         whole = array[...]
         for each in dtype.names:
-            yield from columns_of(f"{name}.{each}", whole[each])
+            yield from _columns_of(f"{name}.{each}", whole[each])
         return
     along = int(np.argmax(shape)) if len(shape) == 2 else 0
     rest = shape[:along] + shape[along + 1 :]
@@ -149,11 +119,11 @@ def _plain(column: Any) -> Any:
     return np.ascontiguousarray(column, column.dtype.newbyteorder("="))
 
 
-def _csv(path: Path, wanted: Wanted) -> list[Source]:
-    return [Source(*read_csv(path, wanted, only=wanted is not None))]
+def _csv(path: Path, wanted: Wanted) -> list[Table]:
+    return [read_csv(path, wanted, only=wanted is not None)]
 
 
-def _excel(path: Path, wanted: Wanted) -> list[Source]:
+def _excel(path: Path, wanted: Wanted) -> list[Table]:
     """Each sheet as a csv file."""
     with zipfile.ZipFile(path) as file:
         _refuse_large(*(each.file_size for each in file.infolist()))
@@ -167,51 +137,43 @@ def _excel(path: Path, wanted: Wanted) -> list[Source]:
         raise ValueError("no sheet has cells")
     found = []
     for title, rows in sheets.items():
-        source = Source(*read_cells(rows, wanted))
-        if len(sheets) > 1:
-            source = _below(title, source)
-        found.append(source)
+        table, before = read_cells(rows, wanted), f"{title}/" * (len(sheets) > 1)
+        units = {before + name: unit for name, unit in table.units.items()}
+        names = [before + name for name in table.names]
+        found.append(Table(table.frame.add_prefix(before), names, units, table.comma))
     return found
 
 
-def _below(title: str, source: Source) -> Source:
-    """A source whose columns are called title/name."""
-    units = {f"{title}/{name}": unit for name, unit in source.units.items()}
-    frame = source.frame.rename(columns=lambda name: f"{title}/{name}")
-    return Source(frame, [f"{title}/{name}" for name in source.names], units, source.comma)
-
-
-def _parquet(path: Path, wanted: Wanted) -> list[Source]:
+def _parquet(path: Path, wanted: Wanted) -> list[Table]:
     parquet = extra("pyarrow.parquet")
     names = parquet.read_schema(path).names
     columns = None if wanted is None else [name for name in names if is_wanted(name.strip(), wanted)]
-    table = parquet.read_table(
+    stored = parquet.read_table(
         path, columns=columns, use_pandas_metadata=True, page_checksum_verification=True, partitioning=None
     )
-    source = of_frame(
-        table.to_pandas(split_blocks=True, self_destruct=True)
-    )  # column by column, to save memory
-    del table
+    # column by column, to save memory
+    table = of_frame(stored.to_pandas(split_blocks=True, self_destruct=True))
+    del stored
     extra("pyarrow").default_memory_pool().release_unused()
-    there = dict.fromkeys([*source.names, *map(str.strip, names)])
-    return [Source(source.frame, [name for name in there if not name.startswith("__index_level_")])]
+    there = dict.fromkeys([*table.names, *map(str.strip, names)])
+    return [Table(table.frame, [name for name in there if not name.startswith("__index_level_")])]
 
 
-def _npz(path: Path, wanted: Wanted) -> list[Source]:
+def _npz(path: Path, wanted: Wanted) -> list[Table]:
+    def plain(stored: Any) -> Iterable[tuple[str, Any]]:
+        for name in stored.files:
+            try:
+                array = stored[name]
+            except ValueError as error:
+                if "pickle" not in str(error):
+                    raise
+                continue  # an array of objects would have to be executed
+            yield name, array
+
     with path.open("rb") as file:
-        arrays = np.load(file, allow_pickle=False)
-        _refuse_large(*(each.file_size for each in arrays.zip.infolist()))
-        return from_columns((each for name in arrays.files for each in _of_npz(name, arrays)), wanted, {})
-
-
-def _of_npz(name: str, arrays: Any) -> Iterable[Any]:
-    try:
-        array = arrays[name]
-    except ValueError as error:
-        if "pickle" not in str(error):
-            raise
-        return  # an array of objects would have to be executed
-    yield from columns_of(name, array)
+        stored = np.load(file, allow_pickle=False)
+        _refuse_large(*(each.file_size for each in stored.zip.infolist()))
+        return _of_arrays(plain(stored), wanted)
 
 
 def _refuse_large(*sizes: int) -> None:
@@ -220,7 +182,7 @@ def _refuse_large(*sizes: int) -> None:
         raise ValueError(f"what is read has {sum(sizes):.2g} bytes, more than {BYTES:.0e}")
 
 
-def _hdf5(path: Path, wanted: Wanted, matlab: bool = False) -> list[Source]:
+def _hdf5(path: Path, wanted: Wanted, matlab: bool = False) -> list[Table]:
     h5py, datasets, units = extra("h5py"), [], {}
     with h5py.File(path, "r") as file:
 
@@ -235,24 +197,21 @@ def _hdf5(path: Path, wanted: Wanted, matlab: bool = False) -> list[Source]:
         file.visititems(visit)
         if matlab:
             datasets = [(name.replace("/", "."), item) for name, item in datasets if name[0] != "#"]
-        columns = (column for name, item in datasets for column in columns_of(name, item))
-        return from_columns(columns, wanted, units)
+        return _of_arrays(datasets, wanted, units)
 
 
-def _mat(path: Path, wanted: Wanted) -> list[Source]:
+def _mat(path: Path, wanted: Wanted) -> list[Table]:
     """A file of MATLAB; since version 7.3 it is HDF5."""
     with path.open("rb") as file:
         if file.read(10) == b"MATLAB 7.3":
             return _hdf5(path, wanted, matlab=True)
     values = extra("scipy.io").loadmat(path, squeeze_me=False, struct_as_record=True)
-    columns = (
-        column for name, value in values.items() if name[:2] != "__" for column in _of_matlab(name, value)
-    )
-    return from_columns(columns, wanted, {})
+    plain = (name for name in values if name[:2] != "__")
+    return _of_arrays((each for name in plain for each in _of_matlab(name, values[name])), wanted)
 
 
-def _of_matlab(name: str, value: Any, depth: int = 0) -> Iterable[Any]:
-    """The columns of a variable: of a struct those of its fields."""
+def _of_matlab(name: str, value: Any, depth: int = 0) -> Iterable[tuple[str, Any]]:
+    """The arrays of a variable: of a struct those of its fields."""
     if not isinstance(value, np.ndarray) or depth > 16 or type(value).__name__ == "MatlabOpaque":
         return
     if value.dtype.names:
@@ -260,14 +219,14 @@ def _of_matlab(name: str, value: Any, depth: int = 0) -> Iterable[Any]:
             for field_ in value.dtype.names:
                 yield from _of_matlab(f"{name}.{field_}", value.flat[0][field_], depth + 1)
     elif value.dtype.kind in "biuf":
-        yield from columns_of(name, value)
+        yield name, value
 
 
-def _bag(path: Path, wanted: Wanted) -> list[Source]:
+def _bag(path: Path, wanted: Wanted) -> list[Table]:
     return extra("estimator.records.bags").read_bag(path, wanted)
 
 
-_READERS: dict[str, tuple[Callable[..., list[Source]], tuple[str, ...]]] = {
+_READERS: dict[str, tuple[Callable[..., list[Table]], tuple[str, ...]]] = {
     ".csv": (_csv, ()),
     ".csv.gz": (_csv, ()),
     ".parquet": (_parquet, ("pyarrow",)),

@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from estimator.records.alignment import GAP_PERIODS, newest, period
 from estimator.records.columns import Columns, Wanted, is_wanted
 from estimator.records.extras import extra
-from estimator.records.sources import Source
 from estimator.records.table import Table, listed
 from estimator.records.units import ROWS, TIME, UNITS
 from estimator.suggestions import brief
 
 
-def read_tables(name: str, columns: Columns, read: Callable[[Wanted], list[Source]]) -> list[Table]:
-    """Reads what a mapping may mean.
+def read_tables(name: str, columns: Columns, read: Callable[[Wanted], list[Table]]) -> list[Table]:
+    """Reads what a mapping may mean: a table for each topic or length; one of csv and parquet.
 
     Args:
         name: Of the file.
         columns: The mapping.
         read: Reads the columns of the file that are asked for.
-
-    Returns:
-        A table for each topic or length; one of csv and parquet.
 
     Raises:
         FileNotFoundError: There is no such file.
@@ -33,16 +28,22 @@ def read_tables(name: str, columns: Columns, read: Callable[[Wanted], list[Sourc
     """
     mapped = [column.column for key in UNITS if (column := columns[key])] + list(columns.rows)
     tables = []
-    for source in read(dict.fromkeys(mapped)):
-        _refuse_repeated(name, list(source.frame.columns), mapped)
-        frame, units = source.frame, dict(source.units)
+    for table in read(dict.fromkeys(mapped)):
+        frame, units = table.frame, dict(table.units)
+        for short in mapped:
+            places = [str(k) for k, each in enumerate(frame.columns, start=1) if each == short]
+            if len(places) > 1:
+                raise ValueError(
+                    f"{name}: {brief(repr(short))} is the name of columns {' and '.join(places[:5])}; "
+                    "rename or remove all but one"
+                )
         for short in dict.fromkeys(mapped):
             full = [each for each in frame.columns if is_wanted(each, (short,))]
             if short not in frame.columns and len(full) == 1:
                 frame = frame.assign(**{short: frame[full[0]]})
                 units.setdefault(short, units.get(full[0], ""))
         frame.index = extra("pandas").RangeIndex(len(frame))
-        tables.append(Table(name, frame, columns, units, source.comma, source.names))
+        tables.append(table._replace(frame=frame, units=units, name=name, columns=columns))
     return tables
 
 
@@ -65,21 +66,18 @@ def of_one_finger(tables: Sequence[Table], columns: Columns) -> list[Table]:
             if frame.empty:
                 found = f"no row has {brief(name)} = {brief(value)}; it has: {listed(text.unique())}"
                 raise ValueError(f"{tables[k].name}: {found}")
-            tables[k] = replace(tables[k], frame=frame)
+            tables[k] = tables[k]._replace(frame=frame)
     return tables
 
 
 def stream(tables: Sequence[Table], keys: Sequence[str], others: Sequence[str] = ()) -> tuple[int, Table]:
-    """The table that has most of the columns of a stream.
+    """The table that has most of the columns of a stream, and its place among the tables.
 
     Args:
         tables: Of one file.
         keys: What the stream consists of, without its time.
         others: Keys whose columns may be in another table; its newest value at or before each time is taken;
             a row that lacks one of the stream, because the other table has none or an old one, is left out.
-
-    Returns:
-        Its place among the tables, and it.
 
     Raises:
         ValueError: Two tables have the same number of them.
@@ -96,7 +94,7 @@ def stream(tables: Sequence[Table], keys: Sequence[str], others: Sequence[str] =
             f"it has: {listed(there)}"
         )
     place = counts.index(max(counts))
-    table = replace(tables[place], names=there)
+    table = tables[place]._replace(names=there)
     for key in others:
         column = table.columns[key]
         if column is not None and column.column not in table.frame.columns:
@@ -115,15 +113,4 @@ def _brought(table: Table, other: Table, name: str, needed: bool) -> Table:
     there = (at >= 0) & (t - its[at] <= GAP_PERIODS * max(period(its), period(t)))
     frame = table.frame.assign(**{name: other.frame[name].to_numpy()[at]})
     frame = frame[there] if needed else frame.assign(**{name: frame[name].where(there)})
-    return replace(table, frame=frame, units={**table.units, name: other.units.get(name, "")})
-
-
-def _refuse_repeated(source: str, names: list[str], columns: Sequence[str]) -> None:
-    """Refuses a header that has a column twice that the mapping reads."""
-    for column in columns:
-        if names.count(column) > 1:
-            places = [str(k) for k, name in enumerate(names, start=1) if name == column]
-            raise ValueError(
-                f"{source}: {brief(repr(column))} is the name of columns {' and '.join(places[:5])}; "
-                "rename or remove all but one"
-            )
+    return table._replace(frame=frame, units={**table.units, name: other.units.get(name, "")})

@@ -11,14 +11,16 @@ from estimator.reasons import COUNTS, Doubts, reasons
 from estimator.records.alignment import Samples, period
 from estimator.records.calibration import calibration_rows
 from estimator.records.faults import fault_warnings
-from estimator.records.plausibility import warnings
 from estimator.records.reading import CONTACT
 from estimator.records.readings import reading_warnings
 from estimator.records.record import Record
 from estimator.records.run import Result
-from estimator.records.signs import sign_warnings
 
 _NAMES = ("mu_s", "mu_c", "r")
+FRICTION = (0.05, 3.0)
+"""Plausible friction coefficients [-], from lubricated steel to silicone rubber on glass."""
+RADIUS = (0.001, 0.05)
+"""Plausible radii of the equivalent rim contact of a fingertip or pad [m]."""
 
 
 def report(result: Result) -> str:
@@ -31,25 +33,21 @@ def report(result: Result) -> str:
 
 def markdown(result: Result) -> str:
     """The summary as a Markdown page."""
-    heading, *rows = final_rows(result)
-    facts = record_facts(result)
-    settings = (
-        ", ".join(f"{name} = {value}" for name, value in result.given.items()) or "all at their defaults"
-    )
+    settings = ", ".join(f"{name} = {value}" for name, value in result.given.items())
     sensors: list[str] = []
     if result.calibration is not None:
         sensors = ["## What it found about the sensors", _table(_sensors(result))]
     parts = [
         f"# {result.record.name}",
-        f"Estimator `{result.estimator}`; parameters: {settings}.",
+        f"Estimator `{result.estimator}`; parameters: {settings or 'all at their defaults'}.",
         "## Final values",
-        _table([heading, *rows]),
+        _table(final_rows(result)),
         "Confidence is 0 for an untouched start value and near 1 once data has replaced it.",
         "## Warnings, and what was not observable",
         "\n".join(f"- {line}" for line in findings(result)),
         *sensors,
         "## The record",
-        "\n".join(["| | |", "| --- | ---: |", *(_row(fact) for fact in facts)]),
+        "\n".join(["| | |", "| --- | ---: |", *map(_row, record_facts(result))]),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -86,7 +84,52 @@ def findings(result: Result) -> list[str]:
 
 def faults(record: Record, samples: Samples) -> list[str]:
     """Warnings about the readings alone, whatever an estimator makes of them."""
-    return [*reading_warnings(record, samples), *fault_warnings(record, samples), *sign_warnings(samples)]
+    return [*reading_warnings(record, samples), *fault_warnings(record, samples)]
+
+
+def warnings(result: Result) -> list[str]:
+    """A line for each final value that was estimated from data and is not plausible for a fingertip.
+
+    Friction coefficients are expected within 0.05 to 3, mu_s above mu_c, and r within 1 to 50 mm and between
+    the bounds `r_min` and `r_max` of the estimator, where it has them.
+    """
+    last, lines = result.estimates[-1], []
+    seen = {name: float(last[name]) for name in ("mu_s", "mu_c", "r") if last[f"confidence_{name}"] > 0.0}
+    for name in ("mu_s", "mu_c"):
+        if name in seen and not FRICTION[0] <= seen[name] <= FRICTION[1]:
+            lines.append(
+                f"Warning: {name} = {seen[name]:.3g} is implausible, outside {FRICTION[0]:g} to "
+                f"{FRICTION[1]:g}: check units and columns, or use another estimator."
+            )
+    if "mu_s" in seen and seen["mu_s"] <= last["mu_c"]:
+        lines.append(
+            f"Warning: mu_s is not above mu_c = {last['mu_c']:.3g}: the stick-slip events show no more than "
+            "Coulomb friction. Do not rely on mu_s."
+        )
+    if "r" in seen:
+        lines += _radius_warnings(result, seen["r"])
+    lines += [
+        f"Warning: sigma_2 = {error.value:.3g} s/m: friction falls as the speed rises, which is no "
+        "viscosity: check the signs of the velocities and the zeros of the forces."
+        for error in (() if result.calibration is None else result.calibration.errors)
+        if error.name == "sigma_2" and error.seen and error.value < -2.0 * error.sd
+    ]
+    return lines
+
+
+def _radius_warnings(result: Result, r: float) -> list[str]:
+    what = f"Warning: r = {1e3 * r:.3g} mm"
+    smallest, largest = (getattr(result.parameters, name, None) for name in ("r_min", "r_max"))
+    if largest is not None and r >= largest:
+        return [f"{what} is at its upper bound r_max: is the pad larger, or is the CoP wrong?"]
+    if smallest is not None and r <= smallest:
+        return [f"{what} is at its lower bound r_min: check omega and tau."]
+    if not RADIUS[0] <= r <= RADIUS[1]:
+        return [
+            f"{what} is implausible, outside {1e3 * RADIUS[0]:g} to {1e3 * RADIUS[1]:g} mm: "
+            "check units and columns, or use another estimator."
+        ]
+    return []
 
 
 def not_observable(result: Result) -> list[str]:
@@ -106,9 +149,11 @@ def not_observable(result: Result) -> list[str]:
 def record_facts(result: Result) -> list[list[str]]:
     """Facts about the record, as pairs of cells."""
     record, samples, estimates = result.record, result.samples, result.estimates
-    halted, slipping = estimates["halted"], estimates["slipping"]
+    halted = estimates["halted"]
     ends = np.append(np.flatnonzero(np.diff(samples.segment)), len(estimates) - 1)
+    halts = np.count_nonzero(np.diff(halted.astype(int), prepend=0) == 1)
     contact = samples.wrench[:, 2] >= CONTACT
+    pressed = f"{np.median(samples.wrench[contact, 2]):.2f} N" if contact.any() else "–"
     facts: list[tuple[str, Any]] = [
         ("duration", f"{samples.t[-1] - samples.t[0]:.2f} s"),
         ("force samples", f"{len(record.force_t)} at {1.0 / period(record.force_t):.0f} Hz"),
@@ -117,14 +162,11 @@ def record_facts(result: Result) -> list[list[str]]:
         ("gaps", samples.segment[-1]),
         ("centre of pressure", "the origin" if record.cop is None else "from the record"),
         ("in contact", _percent(contact)),
-        ("slipping", _percent(slipping)),
-        (
-            "normal force in contact, median",
-            f"{np.median(samples.wrench[contact, 2]):.2f} N" if contact.any() else "–",
-        ),
+        ("slipping", _percent(estimates["slipping"])),
+        ("normal force in contact, median", pressed),
         ("slip speed, largest", f"{1e3 * np.hypot(*samples.twist[:, :2].T).max():.1f} mm/s"),
         ("stick-slip events that set mu_s", estimates["events_mu_s"][ends].sum()),
-        ("halts by the heuristic", f"{_starts(halted)}, {_percent(halted)} of the samples"),
+        ("halts by the heuristic", f"{halts}, {_percent(halted)} of the samples"),
     ]
     return [[name, str(value)] for name, value in facts]
 
@@ -155,7 +197,3 @@ def _row(cells: list[str]) -> str:
 
 def _percent(flags: np.ndarray) -> str:
     return f"{100.0 * flags.mean():.0f} %"
-
-
-def _starts(flags: np.ndarray) -> int:
-    return int(np.count_nonzero(np.diff(flags.astype(int), prepend=0) == 1))

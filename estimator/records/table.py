@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,22 +21,21 @@ _SHOWN = 40
 """Most names of columns or values in a message."""
 
 
-@dataclass(frozen=True)
-class Table:
-    """A file and how to find things in it."""
+class Table(NamedTuple):
+    """Columns of a file that have a common length, and how to find things in them."""
 
-    name: str
-    """Name of the file."""
     frame: Any
-    """The columns that the mapping may mean, a pandas.DataFrame; the index counts the rows from 0."""
-    columns: Columns
-    """The mapping."""
-    units: Mapping[str, str] = field(default_factory=dict)
-    """Column -> unit, where the file has a row of units."""
+    """pandas.DataFrame of the columns that were asked for; the index counts the rows from 0."""
+    names: Sequence[str]
+    """All columns of the file."""
+    units: Mapping[str, str] = MappingProxyType({})
+    """Column -> unit, where the file says it."""
     comma: bool = False
     """Whether its numbers have decimal commas."""
-    names: Sequence[str] = ()
-    """All columns of the file."""
+    name: str = ""
+    """Name of the file."""
+    columns: Columns = Columns()
+    """The mapping."""
 
     def has(self, key: str) -> bool:
         """Whether it holds what a key means; a column that the mapping names must be there.
@@ -50,15 +50,12 @@ class Table:
         return found
 
     def require(self, keys: Sequence[str]) -> None:
-        """Refuses a file that lacks a column.
-
-        Args:
-            keys: What it must hold.
+        """Refuses a file that lacks a column of one of these keys, with a line for each that is missing.
 
         Raises:
-            ValueError: One line for each that is missing, then what is there and what a mapping may hold.
+            ValueError: Also says what is there and what a mapping may hold.
         """
-        there, lines = self.names or list(self.frame.columns), []
+        there, lines = self.names, []
         for key in keys:
             column = self.columns[key]
             if column is not None and column.column not in self.frame.columns:
@@ -72,20 +69,15 @@ class Table:
 
     def filled(self, keys: Sequence[str]) -> Rows:
         """Places of the rows that have a cell of any of these keys, (n,); `require` them first."""
-        there = np.zeros(len(self.frame), bool)
-        for key in keys:
-            there |= np.asarray(self.frame[self.column(key).column].notna(), bool)
-        return np.flatnonzero(there)
+        cells = [self.frame[self.column(key).column] for key in keys]
+        return np.flatnonzero(np.logical_or.reduce([np.asarray(each.notna(), bool) for each in cells]))
 
     def numbers(self, keys: Sequence[str], at: Rows | None = None) -> Array:
-        """Columns in SI units and slipgym's signs; NaN where a cell is empty.
+        """Columns in SI units and slipgym's signs, (n, len(keys)); NaN where a cell is empty.
 
         Args:
             keys: What to read; `require` them first.
             at: Places of the rows to read, (n,); None: all.
-
-        Returns:
-            (n, len(keys)).
 
         Raises:
             ValueError: A column is of a type that is no number, its unit is unknown, or a cell is not a
@@ -100,18 +92,7 @@ class Table:
         return found
 
     def seconds(self, key: str, at: Rows | None = None) -> tuple[Array, Column | None]:
-        """A time in seconds; dates and durations have a unit of their own.
-
-        Args:
-            key: The time of forces or velocities.
-            at: As for `numbers`.
-
-        Returns:
-            (n,) [s], NaN where it is missing; its column, None if its type decided the unit.
-
-        Raises:
-            ValueError: As `numbers`.
-        """
+        """A time, (n,) [s], and its column, None if its type decided the unit; otherwise as `numbers`."""
         own = self._read(times, key, at)
         if own is None:
             return self.numbers([key], at)[:, 0], self.column(key)

@@ -50,12 +50,7 @@ POSITIONS: dict[str, dict[str, float]] = {
 
 
 def units_of(key: str, position: bool = False) -> dict[str, float]:
-    """Unit -> factor to SI.
-
-    Args:
-        key: Of a mapping.
-        position: Whether the column counts displacement.
-    """
+    """Unit -> factor to SI, of a key of a mapping or of the displacement that is its position."""
     return (POSITIONS if position else UNITS)[key]
 
 

@@ -15,8 +15,7 @@ from itertools import repeat
 from slipgym.config import Config
 from slipgym.world import scene
 from slipgym.world.quiet_pybullet import p
-from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box
-from slipgym.world.snapshot import load_engine
+from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_FORCE, WRIST_JOINTS, Box, load_engine
 
 
 class BareLoop:
@@ -51,7 +50,7 @@ class BareLoop:
         self.replay(repeat(self._constant, steps))
 
     def load(self, state: bytes) -> None:
-        """Restore the state of an environment's engine, from `slipgym.world.snapshot.save_engine`."""
+        """Restore the state of an environment's engine, from `slipgym.world.scene.save_engine`."""
         load_engine(self._client, state)
 
     def replay(self, loads: Iterable[tuple]) -> None:

@@ -15,7 +15,7 @@ from lab.benchmarking.split import COMPILED, RESETS, parts, watched
 from lab.benchmarking.timing import Comparison, compare
 from lab.benchmarking.twins import Twins
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.vector_player import SLIP_LIMIT, VectorPlayer
+from slipgym.benchmarking.run import SLIP_LIMIT, VectorPlayer
 from slipgym.threads import Threads
 
 SIZES = 1, 16, 256, 4096

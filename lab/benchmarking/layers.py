@@ -17,7 +17,7 @@ from lab.benchmarking.bare import BareLoop
 from slipgym.benchmarking.report import Figure
 from slipgym.envs.bullet_simulation import BulletSimulation
 from slipgym.envs.slip_env import SlipEnv
-from slipgym.world.snapshot import save_engine
+from slipgym.world.scene import save_engine
 
 _ACTIVE = np.ones(1, dtype=bool)
 

@@ -19,7 +19,7 @@ from lab.benchmarking.stopwatches import Stopwatches
 from slipgym._numba.compiled import unlocked
 from slipgym._numba.rows import row_of
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.vector_player import VectorPlayer
+from slipgym.benchmarking.run import VectorPlayer
 from slipgym.contact.coupled import step_pads
 from slipgym.world.planar_engine import step_world
 

@@ -18,7 +18,7 @@ import policies
 from lab.benchmarking.batch import EVERY_FORCE
 from slipgym.benchmarking import report
 from slipgym.benchmarking.report import Figure
-from slipgym.benchmarking.vector_player import SLIP_LIMIT, action_bounds
+from slipgym.benchmarking.run import SLIP_LIMIT, action_bounds
 from slipgym.registration import TASK_MODULES
 from slipgym.tasks import find
 

@@ -11,6 +11,7 @@ EPILOG = """
 Examples:\n
 \b
   slipgym hidden-grippers --grippers 2
+  slipgym hidden-grippers --grippers 2 --tune
   slipgym hidden-grippers --seed 1 --log hidden.csv
 """
 app = application()
@@ -23,9 +24,12 @@ def main(
     log: Annotated[
         Path | None, typer.Option(help="csv to write the log of one to, and end.", show_default=False)
     ] = None,
+    tune: Annotated[
+        bool, typer.Option("--tune", help="What a controller loses that is tuned on the identified one.")
+    ] = False,
 ) -> None:
     """Identify hidden grippers, simulated by another patch and rate: about a minute each."""
-    from lab.hidden_grippers import rows
+    from lab import hidden_grippers, tuned_controller
     from lab.simulated_gripper import draw_gripper, simulated_log, write_log
     from slipgym.atomic_io import new_file
 
@@ -38,5 +42,5 @@ def main(
         typer.echo(f"Wrote {log}")
         return
 
-    for row in rows(range(seed, seed + grippers)):
+    for row in (tuned_controller if tune else hidden_grippers).rows(range(seed, seed + grippers)):
         typer.echo(row)

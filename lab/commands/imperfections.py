@@ -33,7 +33,7 @@ def main(
 
 def one_imperfection() -> Mapping[str, Mapping[str, Any]]:
     """Label -> arguments of the environments: none, one imperfection of "lab" each, all."""
-    from policies.leaderboard.one_imperfection import IMPERFECTIONS, values_of
+    from policies.leaderboard.imperfections import IMPERFECTIONS, values_of
 
     cases: dict[str, Mapping[str, Any]] = {"realistic": {"sensors": "realistic"}}
     for label in IMPERFECTIONS:

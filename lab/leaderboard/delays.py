@@ -6,9 +6,8 @@ import numpy as np
 import pandas as pd
 
 from policies.leaderboard.imperfect import unknown_delay
-from policies.leaderboard.replay import replay
+from policies.leaderboard.scenario import relative, replay
 from policies.leaderboard.scenarios import Effort
-from policies.leaderboard.score import relative
 
 
 def delays(effort: Effort) -> pd.DataFrame:

@@ -15,8 +15,7 @@ from lab.learned_estimator.config import Training
 from lab.learned_estimator.episodes import record
 from lab.learned_estimator.fit import Curve, fit
 from lab.learned_estimator.weights import Tensors, save
-from policies.evaluation.folder import stamped
-from policies.versions import write_versions
+from policies.versions import stamped, write_versions
 from slipgym.atomic_io import new_file
 
 WEIGHTS = "gru.npz"

@@ -19,10 +19,9 @@ from lab.reproduction.rerun import explorations, rows, variants
 from lab.reproduction.table_plot import plot_table
 from lab.reproduction.tables import markdown, mechanism_markdown, nine_columns
 from lab.reproduction.trial_plots import plot_slip, plot_trial
-from policies.evaluation.folder import stamped
 from policies.evaluation.frames import distinct
 from policies.evaluation.plots.style import STYLE, styled
-from policies.versions import write_versions
+from policies.versions import stamped, write_versions
 from slipgym.atomic_io import new_folder
 from slipgym.config import load
 

@@ -13,10 +13,9 @@ from lab.reproduction.fixed_point import Slip, slope, slope_closed_form
 from lab.reproduction.lock_out import errors
 from lab.reproduction.plots import plot_lock_out, plot_map
 from lab.reproduction.tables import grid
-from policies.evaluation.folder import stamped
 from policies.evaluation.frames import distinct, values, where
 from policies.evaluation.plots.style import STYLE, styled
-from policies.versions import write_versions
+from policies.versions import stamped, write_versions
 from slipgym.atomic_io import new_folder
 
 GAMMAS = np.linspace(0.05, 0.99, 48)

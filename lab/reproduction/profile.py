@@ -13,11 +13,10 @@ import estimator
 from lab.reproduction.fixed_point import disc_bias
 from lab.reproduction.profile_page import page
 from lab.reproduction.profile_plot import plot_profile
-from policies.evaluation.folder import stamped
 from policies.evaluation.plots.style import STYLE, styled
 from policies.leaderboard.profile_course import STEADY, STOP, profile
-from policies.leaderboard.replay import replay
-from policies.versions import write_versions
+from policies.leaderboard.scenario import replay
+from policies.versions import stamped, write_versions
 from slipgym.atomic_io import new_folder
 from slipgym.contact import DistributedContact
 from slipgym.synthetic import Record, Trace, ideal, integrate, sense

@@ -13,10 +13,9 @@ from lab.limit_surface_exact import FRICTION
 from lab.reproduction.fixed_point import disc_bias
 from lab.reproduction.surface_plot import plot_surface
 from lab.validation.patch_surface import friction_error, surface_twists
-from policies.evaluation.folder import stamped
 from policies.evaluation.frames import markdown
 from policies.evaluation.plots.style import STYLE, styled
-from policies.versions import write_versions
+from policies.versions import stamped, write_versions
 from slipgym.atomic_io import new_folder
 
 CELLS = (11, 15, 21, 31, 41, 81)

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from lab.study_report.marks import COLOURS
 from policies.evaluation.frames import distinct, values, where
 from policies.evaluation.plots.style import STYLE
-from policies.study.changes import TITLES
+from policies.study.conditions import TITLES
 from policies.study.config import SOURCES
 
 _LABELS = {

@@ -23,12 +23,10 @@ from lab.study_report.videos import Scene, scene
 from policies.evaluation.frames import distinct, groups, records, where
 from policies.evaluation.plots.style import styled
 from policies.study import load_study, tables
-from policies.study.benefit import benefits
-from policies.study.conditions import conditions
+from policies.study.conditions import conditions, missing, policies_of
 from policies.study.config import Study
-from policies.study.learned import missing, policies_of
 from policies.study.store import sources
-from policies.study.tables import ALL
+from policies.study.tables import ALL, benefits
 from policies.versions import versions
 from slipgym import atomic_io
 

@@ -60,7 +60,7 @@ class SlipgymRig:
             linear, angular = (x, 0.0, z), (0.0, -omega, 0.0)
             p.resetBaseVelocity(world.body, linear, angular, physicsClientId=world.client)
             pose, _, *rest = world.reading
-            world._reading = pose, (linear, angular), *rest
+            world.reading = pose, (linear, angular), *rest
 
     @property
     def position(self) -> np.ndarray:

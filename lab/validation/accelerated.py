@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.validation.bench import Bench, Friction
+from slipgym.validation.bench import Bench, Figure, Friction
 from slipgym.validation.breakaway import BROKEN, broken_away
-from slipgym.validation.figure import Figure
 
 BOUND = 1.0  # [%]
 RATE = 0.4  # of the limit [1/s]: within a control step the load grows by 0.33 %

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from lab.validation.halving import stick_slip_grip
-from slipgym.validation.bench import Bench
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Bench, Figure
 from slipgym.world.bullet_engine import BulletWorld
 
 # Over one engine step of 1/480 s this reads as 5e-7 m/s, a three-hundredth of the slip sensor's noise

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from slipgym.config import load
-from slipgym.validation.bench import Bench, Signal, Trace
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Bench, Figure, Signal, Trace
 
 BOUND = 0.1  # [mm]
 ANGLE_BOUND = 0.1  # [deg]; at the pad's rim of 15 mm it is 0.03 mm

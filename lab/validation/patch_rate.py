@@ -22,7 +22,7 @@ from scipy.sparse import csr_array
 from lab.validation.patch_steps import friction
 from slipgym.contact import DistributedContact
 from slipgym.synthetic import Course
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Figure
 
 STEP = 1e-4  # [s]
 RADIUS = 0.015  # [m]

@@ -8,7 +8,7 @@ import numpy as np
 
 from slipgym.contact import DistributedContact
 from slipgym.synthetic import Course
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Figure
 
 BOUND = 0.1  # [%]
 STEP = 1e-4  # [s]

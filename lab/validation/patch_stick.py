@@ -10,7 +10,7 @@ import numpy as np
 from lab.limit_surface_exact import FRICTION
 from lab.validation.patch_surface import MU_C, MU_S, NORMAL, RADIUS, ROUNDING
 from slipgym.contact import DistributedContact
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Figure
 
 SIGMA_0, SIGMA_1, SIGMA_2 = 1e6, 80.0, 0.2
 CREEP_BOUND = 1e-3  # [mm]

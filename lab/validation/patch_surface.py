@@ -10,7 +10,7 @@ import numpy as np
 from lab.limit_surface_exact import FRICTION, exact_friction
 from slipgym.contact import DistributedContact
 from slipgym.contact.pressure import OUTER_RADII
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Figure
 
 RADIUS = 0.015  # [m]
 NORMAL = 5.0  # [N]

@@ -8,12 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from estimator.limit_surface import DISC_RADIUS, disc_friction
+from slipgym.validation.bench import Figure
 from slipgym.validation.breakaway import BOUND, ramp
 from slipgym.validation.creep import ANGLE_BOUND, DISTANCE_BOUND, drift, sway
-from slipgym.validation.energy import slide, throw
-from slipgym.validation.fall import BOUND as FALL_BOUND
-from slipgym.validation.fall import drop
-from slipgym.validation.figure import Figure
+from slipgym.validation.energy import FALL_BOUND, drop, slide, throw
 from slipgym.validation.steady import deviation, summary
 
 DIRECTIONS = 7  # gamma_t from 1 to 0

@@ -8,8 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from lab.validation.halving import ANGLE_BOUND, BOUND, DURATION
-from slipgym.validation.bench import Bench, Friction
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Bench, Figure, Friction
 
 ENGINE = "planar"
 SLIDES = 40

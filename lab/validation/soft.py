@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.validation.bench import Bench, Friction
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Bench, Figure, Friction
 
 BOUND = 1.0  # [%]
 FRICTION = Friction(mu_s=0.6, mu_c=0.4, r=0.008)

@@ -10,8 +10,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lab.validation.tilt_oracle import free_attitude, slope_of_balance
-from slipgym.validation.bench import Bench, Friction
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Bench, Figure, Friction
 from slipgym.world.wrist import ramp_tilt
 
 BOUND, FREE_BOUND = 1.0, 0.1  # [%]

@@ -36,7 +36,7 @@ def main(
 ) -> None:
     """Play episodes of a policy and store observations, actions and rewards."""
     from policies.commands.several import environment_arguments
-    from policies.evaluation.demonstrations import demonstrate
+    from policies.evaluation.one_policy import demonstrate
 
     try:
         changes = {"engine": "planar", **environment_arguments(set_ or [])}

@@ -125,9 +125,9 @@ def _serve(session: Any, door: str, host: str, port: int | None, fingers: int, s
 
 
 def _convert(log: Path, target: Path) -> None:
-    from estimator.live.mcap import convert
+    from estimator.live.log import to_mcap
 
     try:
-        typer.echo(f"{convert(log, target)} messages: {target}")
+        typer.echo(f"{to_mcap(log, target)} messages: {target}")
     except (ModuleNotFoundError, OSError, ValueError) as error:
         raise typer.BadParameter(str(error), param_hint="--mcap") from error

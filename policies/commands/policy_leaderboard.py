@@ -56,11 +56,11 @@ def main(
     import pandas as pd
 
     from policies.evaluation.frames import markdown
-    from policies.leaderboard.one_imperfection import without as lacking
+    from policies.evaluation.one_policy import environment_of
+    from policies.leaderboard.imperfections import without as lacking
     from policies.policy_leaderboard import entries, run
     from policies.policy_leaderboard.folder import write
-    from policies.policy_leaderboard.worlds import generalisation
-    from policies.policy_leaderboard.worth import table, worth
+    from policies.policy_leaderboard.run import generalisation, table, worth
     from slipgym.atomic_io import check_folder
     from slipgym.config.level import level_names
     from slipgym.envs.arguments import ENGINES, FRICTION_SOURCES, one_of
@@ -77,7 +77,8 @@ def main(
         engine = resolved(one_of("engine", engine, ENGINES))
         mine = entries.entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
         for task in tasks or TASKS:
-            entries.check_task(mine, task)
+            for each in mine:  # one for another task, whose observations may be as long, is refused
+                environment_of(each.name, each.policy, task)
         cells = [(task, name) for task in tasks or TASKS for name in level or level_names(find(task).key)]
         for task, name in cells:
             others = entries.opponents(task, {**same, "level": name}, max(episodes // 2, 1), imitation)

@@ -48,8 +48,7 @@ def main(
 ) -> None:
     """Run an episode and write what one finger's sensors said, with its truth."""
     from estimator.records import parse_settings
-    from policies.evaluation.record_files import check_targets, save_record
-    from policies.evaluation.sensor_record import record_sensors
+    from policies.evaluation.sensor_record import check_targets, record_sensors, save_record
     from policies.task_names import own_policy
 
     *before, last = files

@@ -33,26 +33,29 @@ class ObservationIndex:
 
     def __init__(self, task_name: str | None, config: Config, action_mode: str | None = None) -> None:
         self.task_name, self.action_mode = task_name, action_mode
-        if task_name is None:
-            columns, tail = layout.sensor_columns(config), ()
-        else:
+        columns = sensors = layout.sensor_columns(config)
+        if task_name is not None:
             self.action_mode = action_mode or find(task_name).action_mode
             columns = layout.columns(config, find(task_name), "true", self.action_mode, "deviations")
-            tail = tuple(column.name for column in columns[len(layout.sensor_columns(config)) :])
-        self._at = {column.name: k for k, column in enumerate(columns)}
-        self._others = [
-            {name: k for k, name in enumerate((*(reading.name for reading in readings), *tail))}
+        names = tuple(column.name for column in columns)
+        self._at = {name: k for k, name in enumerate(names)}
+        others = [
+            {name: k for k, name in enumerate((*(each.name for each in readings), *names[len(sensors) :]))}
             for readings in layout.LAYOUTS.values()
         ]
+        self._shortest = min(others, key=len)
+        deviations, friction = len(layout.DEVIATION_COLUMNS), len(layout.FRICTION_COLUMNS)
+        self._full = len(names) - deviations
+        self._fits: dict[int, tuple[int, Mapping[str, int]]] = {}  # length -> without the load part, places
+        kinds = [(at, 0) for at in others if len(at) != len(names)]
+        for at, more in (*kinds, (self._at, 0), (self._at, len(LOAD))):
+            for width in (len(at), len(at) - deviations, len(at) - deviations - friction):
+                self._fits.setdefault(width + more, (width, at))
 
     def __getitem__(self, name: str) -> int:
         if name not in self._at:
             raise ValueError(unknown("observation column", name, self._at))
         return self._at[name]
-
-    def get(self, name: str) -> int | None:
-        """The place of a column; None if there is none."""
-        return self._at.get(name)
 
     def fitted(self, observations: np.ndarray) -> tuple[np.ndarray, Mapping[str, int]]:
         """Observations (n, m) without the load part, and where each column is: the length shows the sensors.
@@ -60,35 +63,23 @@ class ObservationIndex:
         No two kinds of sensors give a task observations of the same length.
 
         Raises:
-            ValueError: No observation of the task has this length.
+            ValueError: No observation of the task, or of its action mode, has this length.
         """
-        width, shortest = observations.shape[1], min(self._others, key=len)
+        width, full, longest = observations.shape[1], self._full, len(self._at)
         if self.task_name is None:
-            if width < len(shortest):
-                raise ValueError(f"observation has {width} columns; every task has at least {len(shortest)}")
-            if width < len(self._at):
-                return observations, shortest
-        else:
-            for at in self._others:
-                full = len(at) - len(layout.DEVIATION_COLUMNS)
-                if len(at) != len(self._at) and width in (len(at), full, full - len(layout.FRICTION_COLUMNS)):
-                    return observations, at
-        return self._checked(observations), self._at
-
-    def _checked(self, observations: np.ndarray) -> np.ndarray:
-        """Observations (n, m) without the load part; those of another task or mode are refused."""
-        width, loaded = observations.shape[1], observations.shape[1] - len(LOAD)
-        longest = len(self._at)
-        full = longest - len(layout.DEVIATION_COLUMNS)
-        bare = full - len(layout.FRICTION_COLUMNS)
-        if self.task_name is None or width in (longest, full, bare):
-            return observations
-        if loaded not in (longest, full, bare):
+            if width < len(self._shortest):
+                raise ValueError(
+                    f"observation has {width} columns; every task has at least {len(self._shortest)}"
+                )
+            return observations, self._at if width >= longest else self._shortest
+        if width not in self._fits:
             raise ValueError(
-                f"observation has {width} columns; {self.task_name} has {full}, {bare} without friction, or "
-                f"{longest} with deviations, with action_mode={self.action_mode!r} and history=0"
+                f"observation has {width} columns; {self.task_name} has {full}, "
+                f"{full - len(layout.FRICTION_COLUMNS)} without friction, or {longest} with deviations, "
+                f"with action_mode={self.action_mode!r} and history=0"
             )
-        return observations[:, :loaded]
+        kept, at = self._fits[width]
+        return observations[:, :kept], at
 
 
 _WHOLE = {
@@ -136,11 +127,9 @@ class Columns:
             )
         return self._observations[:, at].astype(np.float64)
 
-    def has(self, name: str) -> bool:
-        """Whether the environment shows a column of the task; `name in columns` says the same."""
+    def __contains__(self, name: str) -> bool:
+        """Whether the environment shows a column of the task."""
         return self._at.get(name, np.inf) < self._observations.shape[1]
-
-    __contains__ = has
 
     def _unmeasured(self, name: str) -> np.ndarray:
         """A column that these sensors do not have: from those of wrist and motor, or 0, (n,) float64.
@@ -225,13 +214,9 @@ class ForcePolicy(ABC):
         episode_start: np.ndarray | None = None,
         deterministic: bool = True,
     ) -> tuple[np.ndarray, State]:
-        """Action for an observation (m,) or for a batch of them (n, m).
+        """Action for an observation (m,) or for a batch of them (n, m); arguments as in `policies.Policy`.
 
-        Args:
-            observation: From the environment.
-            state: As returned by the last call; None before the first.
-            episode_start: Rows that begin a new episode and forget their memory, (n,) bool.
-            deterministic: Without effect: controllers do not explore.
+        `deterministic` is without effect: controllers do not explore.
 
         Returns:
             Action (m,) or (n, m), float32 within [-1, 1], m = 1 unless the policy commands the wrist, and

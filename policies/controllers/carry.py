@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
-from pydantic import Field
 
 from policies.controllers.base import Columns
+from policies.controllers.gains import Gain
 from policies.controllers.lifting import LiftingGains, LiftingPolicy
 from slipgym.config.base import NonNegative, Positive
 from slipgym.tasks.carry import AHEAD
@@ -19,10 +19,8 @@ _NEAR = tuple(f"{1e3 * time:.0f}" for time in AHEAD if time <= 0.1)
 class CarryGains(LiftingGains):
     """Gains of `CarryPolicy`."""
 
-    margin: Positive = Field(default=1.15, description="Grip over the least for the planned load [-]")
-    deviations: NonNegative = Field(
-        default=0.3, description="Standard deviations by which mu_s is taken below its estimate [-]"
-    )
+    margin: Positive = Gain(1.15, "Grip over the least for the planned load [-]")
+    deviations: NonNegative = Gain(0.3, "Standard deviations by which mu_s is taken below its estimate [-]")
 
 
 class CarryPolicy(LiftingPolicy[CarryGains]):
@@ -34,13 +32,7 @@ class CarryPolicy(LiftingPolicy[CarryGains]):
     command within about 30 ms, and acceleration changes between the times at which it is observed. For W and
     friction see `LiftingPolicy`. Without friction in the observation mu_s stays at a guess.
 
-    Args:
-        gains: See `CarryGains`; each is a keyword argument of its own, too.
-        prior: As in the other controllers; here r alone is used.
-        config: Overrides of the environment's configuration.
-
-    Raises:
-        ValueError: A parameter or the configuration is not valid.
+    Arguments are those of `GainPolicy`; of the prior r alone is used.
     """
 
     task = "Carry"

@@ -29,14 +29,10 @@ _OPEN = {"slips": (0, np.inf), "keep": (0, 1), "low": (0, 1), "high": (1, np.inf
 class ExplorationState(NamedTuple):
     """Memory of an exploration, arrays (n,)."""
 
-    load: np.ndarray
-    """Smoothed load per finger [N]."""
-    slips: np.ndarray
-    """Slips caught so far."""
-    rest: np.ndarray
-    """Control steps that the grip still rests after a slip."""
-    high: np.ndarray
-    """Whether the last command of an exploration was the high one, 0 or 1."""
+    load: np.ndarray  # smoothed load per finger [N]
+    slips: np.ndarray  # slips caught so far
+    rest: np.ndarray  # control steps that the grip still rests after a slip
+    high: np.ndarray  # whether the last command of an exploration was the high one, 0 or 1
 
 
 @dataclass(frozen=True)
@@ -78,44 +74,40 @@ class ActiveExploration:
         if self.smoothing > 1.0:
             raise ValueError(f"smoothing = {self.smoothing!r} of an exploration must be at most 1")
 
-    def slipping(self, state: ExplorationState, load: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Whether the object slips, (n,) bool.
-
-        Args:
-            state: Memory of n rows.
-            load: Load per finger, (n,) [N].
-            speed: Scaled slip speed, (n,) [m/s].
-        """
-        fell = state.load - load > self.fall * np.maximum(state.load, 1.0)
-        return fell | (speed > self.speed)
-
     def act(
         self,
         state: ExplorationState,
         level: np.ndarray,
-        slips: np.ndarray,
-        wanted: np.ndarray,
+        load: np.ndarray,
+        speed: np.ndarray,
+        begun: np.ndarray,
+        unknown: np.ndarray,
         limits: tuple[float, float],
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, ExplorationState]:
-        """One control step of exploration where it is wanted, and of the rest after a slip.
+        """One control step of exploration where friction is unknown, and of the rest after a slip.
 
         Args:
-            state: Memory of n rows; `load` is taken as it is.
+            state: Memory of n rows.
             level: Grip that the exploration varies, (n,) [N].
-            slips: Whether the object slips, (n,).
-            wanted: Whether to explore, (n,).
+            load: Load per finger, (n,) [N].
+            speed: Scaled slip speed, (n,) [m/s].
+            begun: Whether it is not the first control step, (n,); only then it explores.
+            unknown: Whether to explore, (n,).
             limits: The smallest and the largest command [N]. What the smallest holds is not explored further.
 
         Returns:
             Which rows the exploration commands (n,), their commands and levels (n,) [N], and the new memory.
         """
+        smooth = np.where(begun, state.load, load)
+        slips = (smooth - load > self.fall * np.maximum(smooth, 1.0)) | (speed > self.speed)
         resting = state.rest > 0
-        exploring = wanted & ~resting & (state.slips < self.slips)
+        exploring = begun & unknown & ~resting & (state.slips < self.slips)
         caught, ramp = exploring & slips, exploring & ~slips
         high = np.where(ramp, 1.0 - state.high, 1.0)
         level = np.where(ramp, self.keep * level, np.where(caught, self.catch * level, level))
         command = np.where(ramp, np.where(high > 0.0, self.high, self.low) * level, level)
         rest = np.where(caught, self.rest, np.maximum(state.rest - 1, 0))
         held = ramp & (self.high * level <= limits[0])
-        memory = ExplorationState(state.load, np.where(held, self.slips, state.slips + caught), rest, high)
+        smooth = smooth + self.smoothing * (load - smooth)
+        memory = ExplorationState(smooth, np.where(held, self.slips, state.slips + caught), rest, high)
         return exploring | resting, np.where(caught, limits[1], command), level, memory

@@ -9,11 +9,10 @@ import numpy as np
 
 from estimator.estimate import deviation_of
 from policies.controllers.base import Columns, State
-from policies.controllers.explore_forces import Events, Forces, watch
 from policies.controllers.explore_gains import ExploreGains
-from policies.controllers.force_friction import merge
+from policies.controllers.force_friction import Events, Forces, Ratios, merge, solve, watch
 from policies.controllers.gains import GainPolicy
-from policies.controllers.sensing import both, tangential
+from policies.controllers.sensing import both, relative, tangential
 from slipgym.envs.actions import GUESSED_DEVIATION
 
 SETTLE, HANG, RELAX, REST, TURN, HOLD = range(6)
@@ -25,39 +24,23 @@ _NAMES = "mu_s", "mu_c", "r"
 class ExploreState(NamedTuple):
     """Memory of an exploration, arrays (n,)."""
 
-    phase: np.ndarray
-    """One of the phases."""
-    count: np.ndarray
-    """Control steps since it began."""
-    level: np.ndarray
-    """Grip, but for the pulse that catches a slip [N]."""
-    force: np.ndarray
-    """Tangential force per finger at rest [N]."""
-    torque: np.ndarray
-    """Torque per finger at rest [N m]."""
-    held: np.ndarray
-    """Grip at which the last slip began [N]."""
-    slips: np.ndarray
-    """Slips caught so far."""
-    slow: np.ndarray
-    """1 if the last slip began slowly, else 0."""
-    turns: np.ndarray
-    """Turns of the wrist so far."""
-    rate: np.ndarray
-    """Pitch rate of the wrist [rad/s]."""
-    braking: np.ndarray
-    """1 while the wrist brakes before the first slip, else 0."""
-    x: np.ndarray
-    """Measured slip after the last control step [m]."""
+    phase: np.ndarray  # one of the phases
+    count: np.ndarray  # control steps since it began
+    level: np.ndarray  # grip, but for the pulse that catches a slip [N]
+    force: np.ndarray  # tangential force per finger at rest [N]
+    torque: np.ndarray  # torque per finger at rest [N m]
+    held: np.ndarray  # grip at which the last slip began [N]
+    slips: np.ndarray  # slips caught so far
+    slow: np.ndarray  # 1 if the last slip began slowly, else 0
+    turns: np.ndarray  # turns of the wrist so far
+    rate: np.ndarray  # pitch rate of the wrist [rad/s]
+    braking: np.ndarray  # 1 while the wrist brakes before the first slip, else 0
+    x: np.ndarray  # measured slip after the last control step [m]
     y: np.ndarray
-    theta: np.ndarray
-    """The same, the angle [rad]."""
-    uneven: np.ndarray
-    """Tangential force of finger 1 less that of finger 2, in the first grip [N]."""
-    slid: np.ndarray
-    """Path of the measured slip [m]."""
-    turned: np.ndarray
-    """Path of its angle [rad]."""
+    theta: np.ndarray  # the same, the angle [rad]
+    uneven: np.ndarray  # tangential force of finger 1 less that of finger 2, in the first grip [N]
+    slid: np.ndarray  # path of the measured slip [m]
+    turned: np.ndarray  # path of its angle [rad]
 
 
 class ExplorePolicy(GainPolicy[ExploreGains]):
@@ -79,23 +62,15 @@ class ExplorePolicy(GainPolicy[ExploreGains]):
     fast again if the deviation of mu_c or r is still larger than `sure`. The larger `margin`, the purer the
     turn, and the less r depends on the limit surface.
 
-    The guess combines the observed friction with what the forces have shown (`explore_forces`,
-    `force_friction`), each with the weight of its variance; its deviations are the smaller ones of both. That
-    of mu_s is stated as 1 until `slips` slips were caught. Sensors count as tared; where the fingers carry
-    unlike forces by more than noise, the sensors have errors, which half of it counts for.
+    The guess combines the observed friction with what the forces have shown (`force_friction`), each with the
+    weight of its variance; its deviations are the smaller ones of both. That of mu_s is stated as 1 until
+    `slips` slips were caught. Sensors count as tared; where the fingers carry unlike forces by more than
+    noise, the sensors have errors, which half of it counts for.
 
     It goes on until all deviations are at most `sure` or the path of the measured slip is `slide`, and
     then rests. Friction without confidence is what the grip at the last slip shows. It reads the
     deviations of the estimates, and where the environment does not show them the confidences of the
     estimator "adaptive".
-
-    Args:
-        gains: See `ExploreGains`; each is a keyword argument of its own, too.
-        prior: Friction assumed until the estimate has confidence or a slip shows it.
-        config: Overrides of the environment's configuration.
-
-    Raises:
-        ValueError: A parameter or the configuration is not valid.
     """
 
     task = "Explore"
@@ -106,14 +81,16 @@ class ExplorePolicy(GainPolicy[ExploreGains]):
 
     def initial_state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """`ExploreState`, (n, 17), and `Forces`, (n, 20)."""
-        return np.zeros((n, len(ExploreState._fields))), np.zeros((n, len(Forces._fields)))
+        return np.zeros((n, len(ExploreState._fields))), np.zeros((n, 20))
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force, wrist velocity and guess, (n, 10), see `ForcePolicy.control`."""
         g, s = self.gains, ExploreState(*np.asarray(state[0]).T)
         slips, fall = self._slips(columns, s)
         s = self._measured(columns, s, slips)
-        forces = self._watched(columns, Forces(*np.asarray(state[1]).T), s, slips)
+        seen = np.asarray(state[1]).T
+        forces = Forces(*seen[:5], *(Ratios(*seen[k : k + 5]) for k in (5, 10, 15)))
+        forces = self._watched(columns, forces, s, slips)
         slow = np.where(slips, fall < g.slow, s.slow)
         (mu_s, mu_c, r), deviations = self._known(columns, s, forces)
         load = np.hypot(s.force, s.torque / r)
@@ -152,10 +129,9 @@ class ExplorePolicy(GainPolicy[ExploreGains]):
         )  # fmt: skip
         still = np.zeros(len(columns))
         guess = np.log([mu_s, mu_c, r, *np.clip(deviations, *GUESSED_DEVIATION)]).T
-        return np.column_stack((force, still, still, rate, guess)), (
-            np.column_stack(s),
-            np.column_stack(forces),
-        )
+        seen = (*forces[:5], *forces.static, *forces.slide, *forces.turn)
+        memory = np.column_stack(s), np.column_stack(seen)
+        return np.column_stack((force, still, still, rate, guess)), memory
 
     def _watched(self, columns: Columns, past: Forces, s: ExploreState, slips: np.ndarray) -> Forces:
         """Adds what the forces show."""
@@ -182,7 +158,8 @@ class ExplorePolicy(GainPolicy[ExploreGains]):
         shared = np.sqrt(g.sd_shared**2 + 0.25 * uneven / np.maximum(s.force, 1e-3) ** 2)
         if not g.forces:
             return observed, deviations
-        own = forces.found(s.turned > g.turned, self._radius(columns), shared)
+        turn = forces.turn._replace(weight=np.where(s.turned > g.turned, forces.turn.weight, 0.0))
+        own = solve(forces.static, forces.slide, turn, self._radius(columns), shared)
         values, merged = merge(observed, deviations, own)
         merged[0] = np.where((s.slips < g.slips) & (deviations[0] > 0.0), 1.0, merged[0])
         return values, merged
@@ -257,9 +234,8 @@ class ExplorePolicy(GainPolicy[ExploreGains]):
         found = []
         for name in _NAMES:
             confidence = columns[f"confidence_{name}"]
-            if columns.has(f"sd_{name}"):
-                deviation = columns[f"sd_{name}"] / np.maximum(columns[name], 1e-9)
-            else:
+            deviation = relative(columns, name, columns[name])
+            if f"sd_{name}" not in columns:
                 deviation = deviation_of(np.clip(confidence, 1e-6, 1.0))
             found.append(np.where(confidence > 0.0, np.minimum(deviation, 1.0), 1.0))
         return np.array(found)

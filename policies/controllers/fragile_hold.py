@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
-from pydantic import Field
 
 from policies.controllers.base import Columns
-from policies.controllers.gains import Fraction
+from policies.controllers.gains import Fraction, Gain
 from policies.controllers.lifting import LiftingGains, LiftingPolicy
 from slipgym.config.base import NonNegative, Positive
 
@@ -17,13 +16,9 @@ from slipgym.config.base import NonNegative, Positive
 class FragileHoldGains(LiftingGains):
     """Gains of `FragileHoldPolicy`."""
 
-    confidence: Positive = Field(default=0.01, description="Confidence from which mu_s is taken as it is [-]")
-    deviations: NonNegative = Field(
-        default=0.12, description="Standard deviations by which mu_s is taken below its estimate [-]"
-    )
-    place: Fraction = Field(
-        default=0.45, description="Place of the grip between least and breaking force, logarithmic [-]"
-    )
+    confidence: Positive = Gain(0.01, "Confidence from which mu_s is taken as it is [-]")
+    deviations: NonNegative = Gain(0.12, "Standard deviations by which mu_s is taken below its estimate [-]")
+    place: Fraction = Gain(0.45, "Place of the grip between least and breaking force, logarithmic [-]")
 
 
 class FragileHoldPolicy(LiftingPolicy[FragileHoldGains]):
@@ -34,13 +29,7 @@ class FragileHoldPolicy(LiftingPolicy[FragileHoldGains]):
     a is the largest acceleration of the plan; for W and friction see `LiftingPolicy`. Without friction in the
     observation mu_s stays at a guess, for which the middle of the range serves best.
 
-    Args:
-        gains: See `FragileHoldGains`; each is a keyword argument of its own, too.
-        prior: As in the other controllers; here r alone is used.
-        config: Overrides of the environment's configuration.
-
-    Raises:
-        ValueError: A parameter or the configuration is not valid.
+    Arguments are those of `GainPolicy`; of the prior r alone is used.
     """
 
     task = "FragileHold"

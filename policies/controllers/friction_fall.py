@@ -30,24 +30,15 @@ LEAST_GRIP = 0.2
 class FallState(NamedTuple):
     """Memory, arrays (n,)."""
 
-    bound: np.ndarray
-    """Largest friction to assume [-]."""
-    trusted: np.ndarray
-    """The same before the present fall, which the measured slip has not confirmed yet [-]."""
-    x: np.ndarray
-    """Measured slip before it, along the pads' x axis [m]."""
-    y: np.ndarray
-    """The same along their y axis [m]."""
-    load: np.ndarray
-    """Scaled load per finger at the last control step [N]."""
-    ratio: np.ndarray
-    """Load over grip at the last control step [-]."""
-    before: np.ndarray
-    """The same one control step earlier [-]."""
-    speed: np.ndarray
-    """Scaled speed at the last control step [m/s]."""
-    rest: np.ndarray
-    """Control steps left of `REST`."""
+    bound: np.ndarray  # largest friction to assume [-]
+    trusted: np.ndarray  # the same before the present fall, which the measured slip has not confirmed yet [-]
+    x: np.ndarray  # measured slip before it, along the pads' x axis [m]
+    y: np.ndarray  # the same along their y axis [m]
+    load: np.ndarray  # scaled load per finger at the last control step [N]
+    ratio: np.ndarray  # load over grip at the last control step [-]
+    before: np.ndarray  # the same one control step earlier [-]
+    speed: np.ndarray  # scaled speed at the last control step [m/s]
+    rest: np.ndarray  # control steps left of `REST`
 
 
 def begin(n: int) -> FallState:

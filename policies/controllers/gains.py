@@ -21,6 +21,11 @@ RENAMED = {"caution": "prior", "probe": "exploration", "worth": "least"}
 """Keyword of version 0.1.0 -> its present name; the old ones go in the version after the next."""
 
 
+def Gain(default: Any, description: str, **limits: Any) -> Any:
+    """A gain with its default, its meaning with the unit in brackets, and limits as of pydantic's `Field`."""
+    return Field(default=default, description=description, **limits)
+
+
 class GainPolicy(ForcePolicy, Generic[G]):
     """A controller with gains, and a conservative prior for friction that is not known yet.
 
@@ -59,21 +64,12 @@ class GainPolicy(ForcePolicy, Generic[G]):
         self._prepare(config)
 
     def _prepare(self, config: Overrides | None) -> None:
-        """Set what follows from gains, prior and configuration; by default nothing does.
-
-        Args:
-            config: Overrides of the environment's configuration.
-        """
+        """Set what follows from gains, prior and configuration, of which `config` holds the overrides."""
 
     @property
     def modes(self) -> dict[str, Any]:
         """Keyword arguments of its environments: it reads the deviations of the estimates."""
         return {"action_mode": self.action_mode, "observation_mode": "deviations"}
-
-    @classmethod
-    def parameters(cls) -> list[str]:
-        """Names of the gains, for `policies.make`."""
-        return list(cls.Gains.model_fields)
 
 
 def renamed(parameters: Mapping[str, Any]) -> dict[str, Any]:

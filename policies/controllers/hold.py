@@ -6,46 +6,38 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
-from pydantic import Field
 
 from policies.controllers import friction_fall
 from policies.controllers.base import Columns, State
 from policies.controllers.exploration import ActiveExploration, ExplorationState
 from policies.controllers.friction_fall import FallState
-from policies.controllers.gains import Fraction, GainPolicy, renamed
+from policies.controllers.gains import Fraction, Gain, GainPolicy, renamed
 from policies.controllers.sensing import ConservativePrior, both, relative, scaled_load, scaled_speed
 from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
 
 _EXPLORATION = ActiveExploration()
 _FIRST = 0.003  # confidence of a relative deviation of 1.8
-_DEVIATIONS = 0.3
+_OWN = 1 + len(ExplorationState._fields)  # columns of the memory ahead of `FallState`
 
 
 class HoldGains(Frozen):
     """Gains of `HoldPolicy`."""
 
-    reserve: NonNegative = Field(default=1.0, description="Disturbance per finger to be ready for [N]")
-    margin: Positive = Field(default=1.0, description="Safety factor on load and reserve [-]")
-    stale: Positive = Field(
-        default=1.15,
-        description="Grip where friction is an estimate, which may have fallen since, over the usual [-]",
+    reserve: NonNegative = Gain(1.0, "Disturbance per finger to be ready for [N]")
+    margin: Positive = Gain(1.0, "Safety factor on load and reserve [-]")
+    stale: Positive = Gain(
+        1.15, "Grip where friction is an estimate, which may have fallen since, over the usual [-]"
     )
-    k_v: NonNegative = Field(default=100.0, description="Force per scaled slip speed [N s/m]")
-    decay: Fraction = Field(
-        default=0.95, description="Fraction of the force that is left a control step later when it falls [-]"
+    k_v: NonNegative = Gain(100.0, "Force per scaled slip speed [N s/m]")
+    decay: Fraction = Gain(0.95, "Fraction of the force that is left a control step later when it falls [-]")
+    doubt: NonNegative = Gain(
+        0.95, "Load over grip in a slip, over mu_c, below which friction has fallen; 0: never [-]"
     )
-    doubt: NonNegative = Field(
-        default=0.95,
-        description="Load over grip in a slip, over mu_c, below which friction has fallen; 0: never [-]",
+    jolt: NonNegative = Gain(
+        0.08, "Rise of the load in a control step that is a push [N]; without `doubt` none is"
     )
-    jolt: NonNegative = Field(
-        default=0.08,
-        description="Rise of the load in a control step that is a push [N]; without `doubt` none is",
-    )
-    brace: Positive = Field(
-        default=6.0, description="Grip in the control step after a push, over the usual [-]"
-    )
+    brace: Positive = Gain(6.0, "Grip in the control step after a push, over the usual [-]")
 
 
 class HoldPolicy(GainPolicy[HoldGains]):
@@ -85,6 +77,7 @@ class HoldPolicy(GainPolicy[HoldGains]):
 
     task = "Hold"
     Gains = HoldGains
+    prior_default = ConservativePrior(confidence=_FIRST, deviations=0.3)
     needs_slip = False
     without_friction: ClassVar[Mapping[str, Any]] = {"exploration": None}
 
@@ -98,59 +91,36 @@ class HoldPolicy(GainPolicy[HoldGains]):
     ) -> None:
         parameters = renamed(parameters)
         self.exploration = parameters.pop("exploration", exploration)
-        own = (
-            ConservativePrior()
-            if self.exploration is None
-            else ConservativePrior(confidence=_FIRST, deviations=_DEVIATIONS)
-        )
-        super().__init__(gains, parameters.pop("prior", prior) or own, config, **parameters)
+        if self.exploration is None:
+            prior = prior or ConservativePrior()
+        super().__init__(gains, prior, config, **parameters)
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Last level of the grip [N], 0 before the first, then `ExplorationState` and `FallState`, (n, 14).
-
-        Without `doubt` the last is left out, (n, 5).
-        """
-        state = np.zeros((n, 1 + len(ExplorationState._fields)))
-        state[:, -1] = 1.0
-        return np.column_stack((state, *friction_fall.begin(n))) if self.gains.doubt > 0.0 else state
+        """Last level of the grip [N], 0 at the start, then `ExplorationState` and `FallState`, (n, 14)."""
+        return np.column_stack((np.zeros((n, _OWN - 1)), np.ones(n), *friction_fall.begin(n)))
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
-        memory = np.asarray(state).T
-        own = 1 + len(ExplorationState._fields)
+        g, memory = self.gains, np.asarray(state).T
+        level, seen, past = memory[0], ExplorationState(*memory[1:_OWN]), FallState(*memory[_OWN:])
         mu_c, r = self.prior.hold(columns, "mu_c"), self.prior.hold(columns, "r")
         load, speed = scaled_load(columns, r), scaled_speed(columns, r)
-        if self.gains.doubt == 0.0:
-            command, kept = self._hold(columns, memory, mu_c, load, speed)
-            return command, np.column_stack(kept)
-        past = FallState(*memory[own:])
-        settled = (memory[0] > 0.0) & (columns["confidence_mu_c"] >= self.prior.confidence)
-        known = settled & (ExplorationState(*memory[1:own]).rest == 0.0)
-        assumed = self.gains.doubt * mu_c
+        settled = (level > 0.0) & (columns["confidence_mu_c"] >= self.prior.confidence)
+        known = settled & (seen.rest == 0.0) & (g.doubt > 0.0)
+        assumed = g.doubt * mu_c
         slip = columns["measured_slip_x"], columns["measured_slip_y"]
         catch, fall = friction_fall.notice(past, load, both(columns, "f_n"), speed, slip, assumed, known)
-        command, kept = self._hold(columns, memory[:own], np.minimum(mu_c, fall.bound), load, speed)
-        pushed = known & (load - past.load > self.gains.jolt)
-        command = np.where(pushed, self.gains.brace * command, command)
-        return np.where(catch, self.config.gripper.force_max, command), np.column_stack((*kept, *fall))
-
-    def _hold(
-        self, columns: Columns, memory: np.ndarray, mu_c: np.ndarray, load: np.ndarray, speed: np.ndarray
-    ) -> tuple[np.ndarray, list[np.ndarray]]:
-        """Grip (n,) [N], with exploration, and the memory but for that of falls."""
-        g = self.gains
-        level, *rest = memory
+        mu_c = np.minimum(mu_c, fall.bound)
         margin = np.where(relative(columns, "mu_c", mu_c) > 0.0, g.stale * g.margin, g.margin)
         force = margin * (load + g.reserve) / mu_c + g.k_v * speed
-        force = np.maximum(force, g.decay * level)
-        if self.exploration is None:
-            return force, [force, *rest]
-        begun, seen = level > 0.0, ExplorationState(*rest)
-        seen = seen._replace(load=np.where(begun, seen.load, load))
-        wanted = begun & (columns["confidence_mu_c"] < self.prior.confidence)
-        slips = self.exploration.slipping(seen, load, speed)
+        command = force = np.maximum(force, g.decay * level)
         limits = self.config.gripper.force_min, self.config.gripper.force_max
-        probes, command, lower, seen = self.exploration.act(seen, level, slips, wanted, limits)
-        seen = seen._replace(load=seen.load + self.exploration.smoothing * (load - seen.load))
-        level = np.where(probes, lower, force)
-        return np.where(probes, command, force), [level, *seen]
+        if self.exploration is not None:
+            unknown = columns["confidence_mu_c"] < self.prior.confidence
+            probes, lowered, lower, seen = self.exploration.act(
+                seen, level, load, speed, level > 0.0, unknown, limits
+            )
+            command, force = np.where(probes, lowered, force), np.where(probes, lower, force)
+        pushed = known & (load - past.load > g.jolt)
+        command = np.where(pushed, g.brace * command, command)
+        return np.where(catch, limits[1], command), np.column_stack((force, *seen, *fall))

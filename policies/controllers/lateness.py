@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from pydantic import Field
 
 from policies.controllers import leaps
+from policies.controllers.gains import Gain
 from policies.controllers.leaps import LeapGains
 from slipgym.config.base import Frozen, NonNegative, Positive
 
@@ -23,33 +23,22 @@ RESTS, SHOWN = 0.0, -1.0
 class LatenessGains(Frozen):
     """Gains of deciding that a velocity is late."""
 
-    prompt: NonNegative = Field(
-        default=0.02,
-        description="Time from the fall of the force, after which a velocity that shows it is late [s]",
+    prompt: NonNegative = Gain(
+        0.02, "Time from the fall of the force, after which a velocity that shows it is late [s]"
     )
-    seen: Positive = Field(
-        default=0.004, description="Scaled slip speed that shows a slip; at half of it the object rests [m/s]"
-    )
-    longest: Positive = Field(
-        default=0.0025, description="Length of a slip, beside what is asked for, beyond which it was late [m]"
-    )
+    seen: Positive = Gain(0.004, "Scaled slip speed that shows a slip; at half of it the object rests [m/s]")
+    longest: Positive = Gain(0.0025, "Length of a slip beyond what is asked for, from which it was late [m]")
 
 
 class Lateness(NamedTuple):
     """Memory, arrays (n,); all 0 at the start."""
 
-    late: np.ndarray
-    """1 once the velocity has been late, else 0."""
-    waited: np.ndarray
-    """Control steps since the break-away that the velocity has not shown, from 1 on; or `RESTS`, `SHOWN`."""
-    begun: np.ndarray
-    """Measured distance beyond the reference at the last rest [m]."""
-    load: np.ndarray
-    """Smoothed load per finger at rest [N]."""
-    last: np.ndarray
-    """Load at the last control step [N]."""
-    noise: np.ndarray
-    """Standard deviation of the measured load [N]."""
+    late: np.ndarray  # 1 once the velocity has been late, else 0
+    waited: np.ndarray  # control steps since a break-away unseen by the velocity, from 1; or `RESTS`, `SHOWN`
+    begun: np.ndarray  # measured distance beyond the reference at the last rest [m]
+    load: np.ndarray  # smoothed load per finger at rest [N]
+    last: np.ndarray  # load at the last control step [N]
+    noise: np.ndarray  # standard deviation of the measured load [N]
 
 
 def watched(

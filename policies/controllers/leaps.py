@@ -20,8 +20,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from pydantic import Field
 
+from policies.controllers.gains import Gain
 from slipgym.config.base import Frozen, NonNegative, Positive
 
 BEGUN = 1.5
@@ -35,53 +35,36 @@ LEAST_LOAD = 1.0
 class LeapState(NamedTuple):
     """Memory of the leaps, arrays (n,)."""
 
-    load: np.ndarray
-    """Smoothed load per finger while the object rests [N]."""
-    last: np.ndarray
-    """Load at the last control step [N]."""
-    noise: np.ndarray
-    """Standard deviation of the measured load [N]."""
-    ratio: np.ndarray
-    """Grip over load at which the object is about to break away [-]."""
-    clock: np.ndarray
-    """Control steps that a leap has run, minus those that the object still rests; 0: the grip falls."""
-    steps: np.ndarray
-    """Control steps that the present leap is given."""
-    left: np.ndarray
-    """Distance left when the last leap had been measured [m or rad]."""
-    reach: np.ndarray
-    """Length of a slide over the squared number of its control steps [m]."""
-    brake: np.ndarray
-    """Grip in a turn over that of the break-away [-]."""
+    load: np.ndarray  # smoothed load per finger while the object rests [N]
+    last: np.ndarray  # load at the last control step [N]
+    noise: np.ndarray  # standard deviation of the measured load [N]
+    ratio: np.ndarray  # grip over load at which the object is about to break away [-]
+    clock: np.ndarray  # control steps that a leap has run, minus those of rest left; 0: the grip falls
+    steps: np.ndarray  # control steps that the present leap is given
+    left: np.ndarray  # distance left when the last leap had been measured [m or rad]
+    reach: np.ndarray  # length of a slide over the squared number of its control steps [m]
+    brake: np.ndarray  # grip in a turn over that of the break-away [-]
 
 
 class LeapGains(Frozen):
     """Gains of the leaps; numbers of control steps are at 120 Hz (`at_rate`)."""
 
-    start: Positive = Field(
-        default=1.3, description="Grip from which it falls to the first break-away, over f_slip [-]"
-    )
-    keep: Positive = Field(
-        default=0.96, lt=1, description="Fraction of the grip left a control step later [-]"
-    )
-    again: Positive = Field(
-        default=1.12, description="Ratio of the grip after a leap to the grip at the break-away [-]"
-    )
-    fall: Positive = Field(default=0.1, description="Fall of the load that is a break-away [-]")
-    deviations: NonNegative = Field(default=2.5, description="And over the noise of the load, at least [-]")
-    quiet: NonNegative = Field(default=0.05, description="Largest noise allowed for, over the load [-]")
-    speed: Positive = Field(default=0.012, description="Scaled slip speed that is a break-away [m/s]")
-    slide: Positive = Field(default=0.0012, description="Longest leap of a slide [m]")
-    turn: Positive = Field(default=0.02, description="Longest leap of a turn [rad]")
-    share: Positive = Field(default=0.6, description="Length of a leap over the distance left, at most [-]")
-    reach: Positive = Field(default=1.5e-4, description="Length of a slide over squared steps, at first [m]")
-    slide_steps: int = Field(default=5, ge=0, description="Control steps of a slide, at most [-]")
-    turn_steps: int = Field(default=8, ge=0, description="Control steps of a turn [-]")
-    learn: NonNegative = Field(default=0.1, description="Exponent with which the grip of a turn adapts [-]")
-    rest: int = Field(
-        default=9, ge=1, description="Control steps of rest after a leap; cover the latency of the sensor [-]"
-    )
-    firm: int = Field(default=3, ge=0, description="The first of them, in which the grip is doubled [-]")
+    start: Positive = Gain(1.3, "Grip from which it falls to the first break-away, over f_slip [-]")
+    keep: Positive = Gain(0.96, "Fraction of the grip left a control step later [-]", lt=1)
+    again: Positive = Gain(1.12, "Ratio of the grip after a leap to the grip at the break-away [-]")
+    fall: Positive = Gain(0.1, "Fall of the load that is a break-away [-]")
+    deviations: NonNegative = Gain(2.5, "And over the noise of the load, at least [-]")
+    quiet: NonNegative = Gain(0.05, "Largest noise allowed for, over the load [-]")
+    speed: Positive = Gain(0.012, "Scaled slip speed that is a break-away [m/s]")
+    slide: Positive = Gain(0.0012, "Longest leap of a slide [m]")
+    turn: Positive = Gain(0.02, "Longest leap of a turn [rad]")
+    share: Positive = Gain(0.6, "Length of a leap over the distance left, at most [-]")
+    reach: Positive = Gain(1.5e-4, "Length of a slide over squared steps, at first [m]")
+    slide_steps: int = Gain(5, "Control steps of a slide, at most [-]", ge=0)
+    turn_steps: int = Gain(8, "Control steps of a turn [-]", ge=0)
+    learn: NonNegative = Gain(0.1, "Exponent with which the grip of a turn adapts [-]")
+    rest: int = Gain(9, "Control steps of rest after a leap; cover the latency of the sensor [-]", ge=1)
+    firm: int = Gain(3, "The first of them, in which the grip is doubled [-]", ge=0)
 
 
 def at_rate(gains: LeapGains, rate: float) -> LeapGains:
@@ -102,22 +85,14 @@ def at_rate(gains: LeapGains, rate: float) -> LeapGains:
 class Slip(NamedTuple):
     """Request to the leaps, arrays (n,)."""
 
-    wanted: np.ndarray
-    """Whether the object is to slip."""
-    begins: np.ndarray
-    """Whether that is new."""
-    turning: np.ndarray
-    """Whether it is to turn; else it is to slide."""
-    distance: np.ndarray
-    """Distance left [m or rad]."""
-    load: np.ndarray
-    """Measured load per finger, scaled as on the limit surface [N]."""
-    speed: np.ndarray
-    """Measured scaled slip speed [m/s]."""
-    f_slip: np.ndarray
-    """Grip over load that balances at the Coulomb friction of the observation [-]."""
-    held: np.ndarray
-    """Grip that holds the object [N]."""
+    wanted: np.ndarray  # whether the object is to slip
+    begins: np.ndarray  # whether that is new
+    turning: np.ndarray  # whether it is to turn; else it is to slide
+    distance: np.ndarray  # distance left [m or rad]
+    load: np.ndarray  # measured load per finger, scaled as on the limit surface [N]
+    speed: np.ndarray  # measured scaled slip speed [m/s]
+    f_slip: np.ndarray  # grip over load that balances at the Coulomb friction of the observation [-]
+    held: np.ndarray  # grip that holds the object [N]
 
 
 def begin(n: int, gains: LeapGains) -> LeapState:

@@ -6,13 +6,12 @@ from abc import abstractmethod
 from typing import Any, TypeVar
 
 import numpy as np
-from pydantic import Field
 
 from estimator.estimate import deviation_of
 from policies.controllers.base import Columns, State
-from policies.controllers.gains import Fraction, GainPolicy
-from policies.controllers.last_slip import combined, weight_of
+from policies.controllers.gains import Fraction, Gain, GainPolicy
 from policies.controllers.sensing import both, scaled_speed
+from policies.controllers.slip_memory import combined, weight_of
 from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
 
@@ -26,37 +25,26 @@ _RISE = 6.0
 class LiftingGains(Frozen):
     """Gains of `LiftingPolicy`."""
 
-    guess: Positive = Field(default=2.0, description="mu_s assumed before the first slip [-]")
-    confidence: Positive = Field(default=0.05, description="Confidence from which mu_s is taken as it is [-]")
-    deviations: NonNegative = Field(
-        default=0.2, description="Standard deviations by which mu_s is taken below its estimate [-]"
+    guess: Positive = Gain(2.0, "mu_s assumed before the first slip [-]")
+    confidence: Positive = Gain(0.05, "Confidence from which mu_s is taken as it is [-]")
+    deviations: NonNegative = Gain(0.2, "Standard deviations by which mu_s is taken below its estimate [-]")
+    least: NonNegative = Gain(0.8, "Least grip [N]")
+    tare: Fraction = Gain(0.8, "Part of the time on the support in which the forces are zeroed [-]")
+    lead: NonNegative = Gain(0.05, "Time by which the grip leads a rising load [s]")
+    smoothing: Fraction = Gain(0.8, "Weight of the old load in each control step while the wrist rests [-]")
+    lightest: NonNegative = Gain(1.0, "Load per finger of the lightest object [N]")
+    fall: NonNegative = Gain(0.12, "Fall of the load that is a slip, over the load [-]")
+    noise: NonNegative = Gain(0.08, "Fall of the load that is always noise [N]")
+    speed: Positive = Gain(2e-3, "Scaled slip speed that is a slip [m/s]")
+    catch: Positive = Gain(1.5, "Least factor by which the grip rises then [-]")
+    jump: NonNegative = Gain(1.5, "Least share in that rise [-]")
+    kick: Positive = Gain(1.5, "Command in the control step of a catch, over the grip wanted [-]")
+    shown: NonNegative = Gain(
+        0.04, "Deviation of load over grip before a slip, relative; 0: it does not count [-]"
     )
-    least: NonNegative = Field(default=0.8, description="Least grip [N]")
-    tare: Fraction = Field(
-        default=0.8, description="Part of the time on the support in which the forces are zeroed [-]"
-    )
-    lead: NonNegative = Field(default=0.05, description="Time by which the grip leads a rising load [s]")
-    smoothing: Fraction = Field(
-        default=0.8, description="Weight of the old load in each control step while the wrist rests [-]"
-    )
-    lightest: NonNegative = Field(default=1.0, description="Load per finger of the lightest object [N]")
-    fall: NonNegative = Field(default=0.12, description="Fall of the load that is a slip, over the load [-]")
-    noise: NonNegative = Field(default=0.08, description="Fall of the load that is always noise [N]")
-    speed: Positive = Field(default=2e-3, description="Scaled slip speed that is a slip [m/s]")
-    catch: Positive = Field(default=1.5, description="Least factor by which the grip rises then [-]")
-    jump: NonNegative = Field(default=1.5, description="Least share in that rise [-]")
-    kick: Positive = Field(
-        default=1.5, description="Command in the control step of a catch, over the grip wanted [-]"
-    )
-    shown: NonNegative = Field(
-        default=0.04,
-        description="Deviation of load over grip before a slip, relative; 0: it does not count [-]",
-    )
-    sure: Positive = Field(default=0.8, description="Confidence up to which slips are caught [-]")
-    rest: NonNegative = Field(default=5, description="Control steps after a slip without another catch [-]")
-    decay: Fraction = Field(
-        default=0.97, description="Fraction of the grip after a slip that is left a control step later [-]"
-    )
+    sure: Positive = Gain(0.8, "Confidence up to which slips are caught [-]")
+    rest: NonNegative = Gain(5, "Control steps after a slip without another catch [-]")
+    decay: Fraction = Gain(0.97, "Fraction of the grip after a slip that is left a control step later [-]")
 
 
 L = TypeVar("L", bound=LiftingGains)

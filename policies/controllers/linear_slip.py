@@ -25,13 +25,7 @@ class LinearSlipPolicy(GainPolicy[LinearSlipGains]):
     (`LinearSlipLeapPolicy`). With a prompt velocity it is the continuous controller. That also slips at the
     load of the hold, so that an estimator is sure of friction there.
 
-    Args:
-        gains: See `LinearSlipGains`; each is a keyword argument of its own, too; leaps have the defaults.
-        prior: Friction assumed until the estimate has confidence.
-        config: Overrides of the environment's configuration.
-
-    Raises:
-        ValueError: A parameter or the configuration is not valid.
+    Arguments are those of `GainPolicy`; leaps have the default gains.
     """
 
     task = "LinearSlip"

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from pydantic import Field
 
 from policies.controllers.base import Columns, State
-from policies.controllers.gains import Fraction, GainPolicy
+from policies.controllers.gains import Fraction, Gain, GainPolicy
 from policies.controllers.sensing import both, tangential
 from slipgym.config.base import Frozen, NonNegative, Positive
 
@@ -14,17 +13,13 @@ from slipgym.config.base import Frozen, NonNegative, Positive
 class ContinuousLinearSlipGains(Frozen):
     """Gains of `ContinuousLinearSlipPolicy`."""
 
-    k_x: NonNegative = Field(default=2.0, description="Position gain [1/s]")
-    k_e: NonNegative = Field(default=1000.0, description="Integral gain [N/m]")
-    k_a: NonNegative = Field(default=0.1, description="Feed-forward of the reference acceleration [s^2/m]")
-    k_v: NonNegative = Field(default=50.0, description="Velocity gain over f_slip [s/m]")
-    stop_band: NonNegative = Field(
-        default=0.001, description="Distance left at the end that is not worth another slip [m]"
-    )
-    hold_margin: Positive = Field(
-        default=1.3, description="Grip there, over what the load needs at Coulomb friction [-]"
-    )
-    smoothing: Fraction = Field(default=0.95, description="Weight of the old f_slip in each control step [-]")
+    k_x: NonNegative = Gain(2.0, "Position gain [1/s]")
+    k_e: NonNegative = Gain(1000.0, "Integral gain [N/m]")
+    k_a: NonNegative = Gain(0.1, "Feed-forward of the reference acceleration [s^2/m]")
+    k_v: NonNegative = Gain(50.0, "Velocity gain over f_slip [s/m]")
+    stop_band: NonNegative = Gain(0.001, "Distance left at the end that is not worth another slip [m]")
+    hold_margin: Positive = Gain(1.3, "Grip there, over what the load needs at Coulomb friction [-]")
+    smoothing: Fraction = Gain(0.95, "Weight of the old f_slip in each control step [-]")
 
 
 class ContinuousLinearSlipPolicy(GainPolicy[ContinuousLinearSlipGains]):
@@ -40,14 +35,6 @@ class ContinuousLinearSlipPolicy(GainPolicy[ContinuousLinearSlipGains]):
     half a leap is left, another one would only overshoot, so the object is then held.
 
     The velocity has to arrive in time; where nobody knows that, "linear_slip" watches it.
-
-    Args:
-        gains: See `ContinuousLinearSlipGains`; each is a keyword argument of its own, too.
-        prior: Friction assumed until the estimate has confidence.
-        config: Overrides of the environment's configuration.
-
-    Raises:
-        ValueError: A parameter or the configuration is not valid.
     """
 
     task = "LinearSlip"

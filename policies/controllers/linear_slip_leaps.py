@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from pydantic import Field
 
 from policies.controllers import leaps
 from policies.controllers.base import Columns, State
-from policies.controllers.gains import GainPolicy
+from policies.controllers.gains import Gain, GainPolicy
 from policies.controllers.leaps import BEGUN, LeapGains, LeapState, Slip
 from policies.controllers.sensing import scaled_speed, tangential
 from slipgym.config import Overrides
@@ -17,14 +16,10 @@ from slipgym.config.base import Positive
 class LinearSlipLeapGains(LeapGains):
     """Gains of `LinearSlipLeapPolicy`."""
 
-    start: Positive = Field(
-        default=1.6, description="Grip from which it falls to the first break-away, over f_slip [-]"
-    )
-    again: Positive = Field(
-        default=1.2, description="Ratio of the grip after a leap to the grip at the break-away [-]"
-    )
-    slide: Positive = Field(default=0.002, description="Longest leap [m]")
-    hold_margin: Positive = Field(default=1.4, description="Grip while holding, over the need [-]")
+    start: Positive = Gain(1.6, "Grip from which it falls to the first break-away, over f_slip [-]")
+    again: Positive = Gain(1.2, "Ratio of the grip after a leap to the grip at the break-away [-]")
+    slide: Positive = Gain(0.002, "Longest leap [m]")
+    hold_margin: Positive = Gain(1.4, "Grip while holding, over the need [-]")
 
 
 class LinearSlipLeapPolicy(GainPolicy[LinearSlipLeapGains]):
@@ -33,14 +28,6 @@ class LinearSlipLeapPolicy(GainPolicy[LinearSlipLeapGains]):
     "linear_slip" regulates the slip by its measured velocity: if that is late, the object is caught late. A
     leap begins when the force falls and ends after a planned time. The object then rests until the sensor has
     shown how long the leap was. There is another one if more is left than half of the shortest.
-
-    Args:
-        gains: See `LinearSlipLeapGains`; each is a keyword argument of its own, too.
-        prior: Friction assumed until the estimate has confidence.
-        config: Overrides of the environment's configuration.
-
-    Raises:
-        ValueError: A parameter or the configuration is not valid.
     """
 
     task = "LinearSlip"

@@ -29,10 +29,6 @@ class NoFrictionInfo:
         self._controller = controllers.make(controller, {"config": config, **given, **parameters})
         self.modes = {"action_mode": self._controller.action_mode}
 
-    def initial_state(self, n: int) -> Any:
-        """See `policies.controllers.base.ForcePolicy.initial_state`."""
-        return self._controller.initial_state(n)
-
     def predict(
         self,
         observation: np.ndarray,

@@ -7,14 +7,12 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from pydantic import Field
 
 from policies.controllers.base import Columns, State
-from policies.controllers.gains import Fraction, GainPolicy
+from policies.controllers.gains import Fraction, Gain, GainPolicy
 from policies.controllers.sensing import ConservativePrior, both
 from slipgym.config import Overrides
 from slipgym.config.base import Frozen, NonNegative, Positive
-from slipgym.tasks import configure, find
 
 BACK, SWING, BRAKE, HOLD = range(4)
 """Stages: the wrist moves back, it makes the stroke, the grip brakes, the grip holds."""
@@ -25,16 +23,11 @@ _MARGIN = 0.1
 class PivotState(NamedTuple):
     """Memory, (n,) each; all 0 at the start."""
 
-    stage: np.ndarray
-    """One of the stages."""
-    weight: np.ndarray
-    """Mean weight measured while the wrist moves back [N]."""
-    samples: np.ndarray
-    """Control steps of that mean."""
-    acceleration: np.ndarray
-    """Last commanded acceleration of the wrist in the direction of the stroke [m/s^2]."""
-    probed: np.ndarray
-    """Control steps since the probe ended; 0 before, infinite without a probe."""
+    stage: np.ndarray  # one of the stages
+    weight: np.ndarray  # mean weight measured while the wrist moves back [N]
+    samples: np.ndarray  # control steps of that mean
+    acceleration: np.ndarray  # last commanded acceleration of the wrist along the stroke [m/s^2]
+    probed: np.ndarray  # control steps since the probe ended; 0 before, infinite without a probe
 
 
 class Motion(NamedTuple):
@@ -44,36 +37,28 @@ class Motion(NamedTuple):
     them.
     """
 
-    goal: np.ndarray
-    """Angle to turn, > 0 [rad]."""
-    angle: np.ndarray
-    """Angle turned [rad]."""
-    rate: np.ndarray
-    """Its rate [rad/s]."""
-    speed: np.ndarray
-    """Speed of the wrist in the direction of the stroke [m/s]."""
-    per_force: np.ndarray
-    """Torque of Coulomb friction over the grip force, over m d [m/s^2 / N]."""
-    loose: np.ndarray
-    """The torque of Coulomb friction in the grip of the swing, over m d [m/s^2]."""
+    goal: np.ndarray  # angle to turn, > 0 [rad]
+    angle: np.ndarray  # angle turned [rad]
+    rate: np.ndarray  # its rate [rad/s]
+    speed: np.ndarray  # speed of the wrist in the direction of the stroke [m/s]
+    per_force: np.ndarray  # torque of Coulomb friction over the grip force, over m d [m/s^2 / N]
+    loose: np.ndarray  # the torque of Coulomb friction in the grip of the swing, over m d [m/s^2]
 
 
 class PivotToGains(Frozen):
     """Gains of `PivotToPolicy`."""
 
-    k: Positive = Field(default=11.0, description="2 mu_c f_n over the weight while the object swings [-]")
-    arrive: NonNegative = Field(default=2.0, description="Rate at the goal for which the stroke goes [rad/s]")
-    brake: Positive = Field(
-        default=0.8, description="Torque at which braking begins, over the largest of friction [-]"
-    )
-    still: Positive = Field(default=0.2, description="Rate below which the object is held [rad/s]")
-    hold: Positive = Field(default=0.7, description="Load while held, over the largest of friction [-]")
-    age: NonNegative = Field(default=0.012, description="Age of the measured slip [s]")
-    delay: NonNegative = Field(default=0.01, description="Time for which braking looks ahead [s]")
-    speed: Fraction = Field(default=0.995, description="Speed of the wrist, over the task's largest [-]")
-    guess: Positive = Field(default=0.5, description="mu_c for which the grip of the probe is [-]")
-    probe_turn: Positive = Field(default=0.1, description="Turn away from the goal that ends the probe [rad]")
-    wait: NonNegative = Field(default=6.0, description="Control steps between probe and stroke, at least [-]")
+    k: Positive = Gain(11.0, "2 mu_c f_n over the weight while the object swings [-]")
+    arrive: NonNegative = Gain(2.0, "Rate at the goal for which the stroke goes [rad/s]")
+    brake: Positive = Gain(0.8, "Torque at which braking begins, over the largest of friction [-]")
+    still: Positive = Gain(0.2, "Rate below which the object is held [rad/s]")
+    hold: Positive = Gain(0.7, "Load while held, over the largest of friction [-]")
+    age: NonNegative = Gain(0.012, "Age of the measured slip [s]")
+    delay: NonNegative = Gain(0.01, "Time for which braking looks ahead [s]")
+    speed: Fraction = Gain(0.995, "Speed of the wrist, over the task's largest [-]")
+    guess: Positive = Gain(0.5, "mu_c for which the grip of the probe is [-]")
+    probe_turn: Positive = Gain(0.1, "Turn away from the goal that ends the probe [rad]")
+    wait: NonNegative = Gain(6.0, "Control steps between probe and stroke, at least [-]")
 
 
 class PivotToPolicy(GainPolicy[PivotToGains]):
@@ -98,13 +83,7 @@ class PivotToPolicy(GainPolicy[PivotToGains]):
     Without full confidence in friction the grip stays loose when the wrist begins to move back. The object
     turns a little away from its goal, from which an estimator learns, and is then held.
 
-    Args:
-        gains: See `PivotToGains`; each is a keyword argument of its own, too.
-        prior: Friction assumed until the estimate has confidence.
-        config: Overrides of the environment's configuration; depth and inertia are those of its object.
-
-    Raises:
-        ValueError: A parameter or the configuration is not valid.
+    Arguments are those of `GainPolicy`; depth and inertia are those of the object in `config`.
     """
 
     task = "PivotTo"
@@ -114,14 +93,12 @@ class PivotToPolicy(GainPolicy[PivotToGains]):
     Gains = PivotToGains
 
     def _prepare(self, config: Overrides | None) -> None:
-        settings: Any = configure(find("PivotTo"), config)[1]
+        settings: Any = self.settings
         box = settings.object or self.config.object
         self._depth = max(math.dist(box.grasp_offset, box.com_offset), 1e-3)
         self._length = self._depth + box.grip_axis_inertia / box.mass / self._depth
-        self._fastest, self._acceleration = (
-            self.gains.speed * settings.wrist_speed,
-            settings.wrist_acceleration,
-        )
+        self._fastest = self.gains.speed * settings.wrist_speed
+        self._acceleration = settings.wrist_acceleration
 
     def initial_state(self, n: int) -> np.ndarray:
         """Columns of `PivotState`, (n, 5)."""

@@ -6,10 +6,10 @@ from abc import abstractmethod
 from typing import Annotated, Any, ClassVar, Generic, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator
 
 from policies.controllers.base import Columns, State
-from policies.controllers.gains import GainPolicy
+from policies.controllers.gains import Gain, GainPolicy
 from policies.controllers.sensing import ConservativePrior, both, tangential
 from slipgym.config.base import Frozen, NonNegative, Positive, as_tuple
 
@@ -26,62 +26,38 @@ _REST = (0.0006, 0.02)
 class PlanState(NamedTuple):
     """Memory of the plan, (n,) each; all 0 at the start."""
 
-    x: np.ndarray
-    """Slip displacement along the pads' x axis [m]."""
-    y: np.ndarray
-    """The same along their y axis [m]."""
-    measured_slip_x: np.ndarray
-    """Measured slip at the last control step [m]."""
-    measured_slip_y: np.ndarray
-    """The same along y [m]."""
-    measured_slip_theta: np.ndarray
-    """The same about the grip axis [rad]."""
-    weight: np.ndarray
-    """Filtered tangential force per finger [N]."""
-    stage: np.ndarray
-    """One of the stages."""
-    slipping: np.ndarray
-    """1 while the object is let slip, 0 while it is held and the wrist turns."""
-    side: np.ndarray
-    """Sign of the turn."""
+    x: np.ndarray  # slip displacement along the pads' x axis [m]
+    y: np.ndarray  # the same along their y axis [m]
+    measured_slip_x: np.ndarray  # measured slip at the last control step [m]
+    measured_slip_y: np.ndarray  # the same along y [m]
+    measured_slip_theta: np.ndarray  # the same about the grip axis [rad]
+    weight: np.ndarray  # filtered tangential force per finger [N]
+    stage: np.ndarray  # one of the stages
+    slipping: np.ndarray  # 1 while the object is let slip, 0 while it is held and the wrist turns
+    side: np.ndarray  # sign of the turn
 
 
 class Motion(NamedTuple):
     """Request of the plan to the grip, arrays (n,)."""
 
-    turning: np.ndarray
-    """Whether the object is to turn; else it is to slide."""
-    distance: np.ndarray
-    """Distance left [m or rad]."""
-    speed: np.ndarray
-    """Measured speed of the slide or rate of the turn [m/s or rad/s]."""
-    wanted: np.ndarray
-    """Whether the object is to slip."""
-    held: np.ndarray
-    """Grip that holds the object [N]."""
+    turning: np.ndarray  # whether the object is to turn; else it is to slide
+    distance: np.ndarray  # distance left [m or rad]
+    speed: np.ndarray  # measured speed of the slide or rate of the turn [m/s or rad/s]
+    wanted: np.ndarray  # whether the object is to slip
+    held: np.ndarray  # grip that holds the object [N]
 
 
 class PlanGains(Frozen):
     """Gains of the plan; pairs are of slide and turn."""
 
-    least: Pair = Field(
-        default=(0.0013, 0.03), description="Least slide [m] and turn [rad] to begin; it stops at half"
-    )
-    short: NonNegative = Field(default=0.0015, description="How far before its goal the first slide ends [m]")
-    lean: float = Field(
-        default=1.5, description="Angle of the centre of mass to straight down, in the middle of a turn [rad]"
-    )
-    ready: Positive = Field(
-        default=0.02, description="Error of the wrist's angle at which the box may slip [rad]"
-    )
-    astray: Positive = Field(
-        default=0.006, description="Distance of the pads from their goal from which a turn is given up [m]"
-    )
-    hold_margin: Positive = Field(default=1.4, description="Grip while holding, over the largest need [-]")
-    wrist_rate: Positive = Field(default=2.0, description="Largest pitch rate of the wrist [rad/s]")
-    wrist_acceleration: Positive = Field(
-        default=12.0, description="Its largest change; the held box has to follow [rad/s^2]"
-    )
+    least: Pair = Gain((0.0013, 0.03), "Least slide [m] and turn [rad] to begin; it stops at half")
+    short: NonNegative = Gain(0.0015, "How far before its goal the first slide ends [m]")
+    lean: float = Gain(1.5, "Angle of the centre of mass to straight down, in the middle of a turn [rad]")
+    ready: Positive = Gain(0.02, "Error of the wrist's angle at which the box may slip [rad]")
+    astray: Positive = Gain(0.006, "Distance of the pads from their goal from which a turn is given up [m]")
+    hold_margin: Positive = Gain(1.4, "Grip while holding, over the largest need [-]")
+    wrist_rate: Positive = Gain(2.0, "Largest pitch rate of the wrist [rad/s]")
+    wrist_acceleration: Positive = Gain(12.0, "Its largest change; the held box has to follow [rad/s^2]")
 
 
 P = TypeVar("P", bound=PlanGains)
@@ -98,14 +74,6 @@ class PlanarPlanPolicy(GainPolicy[P], Generic[P]):
     pads; then the box hangs again and slides the rest. Every stage uses the measured slip, so that
     each one corrects what the one before has left over. A turn in which the pads go astray is given up:
     the box would slide on until it falls. Subclasses say how the object slips.
-
-    Args:
-        gains: Gains of the class; each is a keyword argument of its own, too.
-        prior: Friction assumed until the estimate has confidence.
-        config: Overrides of the environment's configuration.
-
-    Raises:
-        ValueError: A parameter or the configuration is not valid.
     """
 
     task = "PlanarSlip"
@@ -145,9 +113,9 @@ class PlanarPlanPolicy(GainPolicy[P], Generic[P]):
         memory = np.asarray(state).T
         past, slips = followed(columns, PlanState(*memory[:width])), self.Slips(*memory[width:])
         r = self.prior.blend(columns, "r")
-        turning = (past.stage == TURN) | (past.stage == TRIM)
+        turning, slips_on = (past.stage == TURN) | (past.stage == TRIM), past.slipping > 0.0
         left = columns["target_theta"] - columns["measured_slip_theta"]
-        side = np.where(past.slipping > 0.0, past.side, np.sign(left))
+        side = np.where(slips_on, past.side, np.sign(left))
         attitude = columns["wrist_pitch"] + columns["measured_slip_theta"]
         place = turned((-past.x, -past.y), -columns["measured_slip_theta"])
         under = np.arctan2(*place)  # attitude in which the box hangs
@@ -159,14 +127,19 @@ class PlanarPlanPolicy(GainPolicy[P], Generic[P]):
         steer = np.where(near, attitude, np.arctan2(*way))
         wanted = np.where(past.stage == APPROACH, steer, under)
         wanted = np.where(turning, under - side * (self.gains.lean + 0.5 * np.abs(left)), wanted)
-        fixed = (past.stage == DONE) | ((past.slipping > 0.0) & (past.stage != APPROACH))
+        fixed = (past.stage == DONE) | (slips_on & (past.stage != APPROACH))
         off = np.where(fixed, 0.0, wrapped(wanted - attitude))
         speed = np.where(turning, side * both(columns, "omega"), _falling(columns))
         aligned = (np.abs(off) < self.gains.ready) & (np.abs(columns["wrist_pitch_rate"]) < 0.1)
         free = self.interruptible(slips)
-        stage, slipping = self._decide(past, turning, distance, speed, aligned, free)
+        unfinished = past.stage < DONE
+        least = np.where(turning, self.gains.least[1], self.gains.least[0])
+        arrived = free & (distance <= np.where(slips_on, 0.5, 1.0) * least)
+        rests = np.abs(speed) < np.where(turning, _REST[1], _REST[0])
+        stage = np.where(~slips_on & arrived & rests & unfinished, past.stage + 1, past.stage)
         lost = free & turning & (np.hypot(*way) > self.gains.astray)  # it slides more than it turns
-        stage, slipping = np.where(lost, DONE, stage), slipping & ~lost
+        stage = np.where(lost, DONE, stage)
+        slipping = ~arrived & (slips_on | (free & aligned & unfinished)) & ~lost
         lever = np.hypot(*place) + self.gains.short
         need = np.hypot(1.0, lever / self.prior.hold(columns, "r")) / self.prior.hold(columns, "mu_c")
         held = self.gains.hold_margin * past.weight * need
@@ -184,24 +157,6 @@ class PlanarPlanPolicy(GainPolicy[P], Generic[P]):
         arc = np.where(stage == APPROACH, creep / np.maximum(reach, self.gains.short), 0.0)
         sin, cos = np.sin(bearing), np.cos(bearing)
         return goal[0] - short * sin + arc * cos - place[0], goal[1] - short * cos - arc * sin - place[1]
-
-    def _decide(
-        self,
-        past: PlanState,
-        turning: np.ndarray,
-        distance: np.ndarray,
-        speed: np.ndarray,
-        aligned: np.ndarray,
-        free: np.ndarray | bool,
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The stage, and whether the object is let slip."""
-        slipping = past.slipping > 0.0
-        least = np.where(turning, self.gains.least[1], self.gains.least[0])
-        arrived = free & (distance <= np.where(slipping, 0.5, 1.0) * least)
-        rests = np.abs(speed) < np.where(turning, _REST[1], _REST[0])
-        goes_on = ~slipping & arrived & rests & (past.stage < DONE)
-        ready = free & aligned & (past.stage < DONE)
-        return np.where(goes_on, past.stage + 1, past.stage), ~arrived & (slipping | ready)
 
     def _pitch(self, off: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """Pitch rate that turns the wrist by `off` and then rests [rad/s]."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from pydantic import Field
 
 from policies.controllers import leaps
 from policies.controllers.base import Columns, State
+from policies.controllers.gains import Gain
 from policies.controllers.leaps import LeapGains, LeapState, Slip
 from policies.controllers.planar_plan import (
     Motion,
@@ -28,12 +28,9 @@ from slipgym.config.base import NonNegative, Positive
 class Choice(NamedTuple):
     """Kind of slip of the object, (n,) each; all 0 at the start."""
 
-    continuous: np.ndarray
-    """1 in continuous slips, 0 in leaps."""
-    waited: np.ndarray
-    """Control steps since the first leap began, until the velocity shows it."""
-    delay: np.ndarray
-    """As many as it took; 0 before."""
+    continuous: np.ndarray  # 1 in continuous slips, 0 in leaps
+    waited: np.ndarray  # control steps since the first leap began, until the velocity shows it
+    delay: np.ndarray  # as many as it took; 0 before
 
 
 _PLAN, _LEAPS, _SLIPS, _CHOICE = (len(each._fields) for each in (PlanState, LeapState, SlipState, Choice))
@@ -42,25 +39,17 @@ _PLAN, _LEAPS, _SLIPS, _CHOICE = (len(each._fields) for each in (PlanState, Leap
 class PlanarSlipGains(PlanGains, LeapGains):
     """Gains of `PlanarSlipPolicy`, those of the leaps among them; pairs are of slide and turn."""
 
-    least: Pair = Field(
-        default=(0.0009, 0.02), description="Least slide [m] and turn [rad] to begin; it stops at half"
+    least: Pair = Gain((0.0009, 0.02), "Least slide [m] and turn [rad] to begin; it stops at half")
+    creep: NonNegative = Gain(
+        4.8e-5, "Creep of the pads per radian of a turn, times the lever of the centre of mass [m^2]"
     )
-    creep: NonNegative = Field(
-        default=4.8e-5,
-        description="Creep of the pads per radian of a turn, times the lever of the centre of mass [m^2]",
+    pace: PositivePair = Gain((0.006, 0.12), "Mean slide speed [m/s] and turn rate [rad/s] in leaps")
+    reserve: NonNegative = Gain(1.5, "Time that the wrist and the rest between the stages take [s]")
+    prompt: NonNegative = Gain(
+        0.026,
+        "Time from the fall of the force until the velocity shows it, up to which slips may go on [s]",
     )
-    pace: PositivePair = Field(
-        default=(0.006, 0.12), description="Mean speed of a slide [m/s] and rate of a turn [rad/s] in leaps"
-    )
-    reserve: NonNegative = Field(
-        default=1.5, description="Time that the wrist and the rest between the stages take [s]"
-    )
-    prompt: NonNegative = Field(
-        default=0.026,
-        description="Time from the fall of the force until the velocity shows it, up to which slips may be "
-        "continuous [s]",
-    )
-    seen: Positive = Field(default=0.004, description="Scaled slip speed that shows a leap [m/s]")
+    seen: Positive = Gain(0.004, "Scaled slip speed that shows a leap [m/s]")
 
 
 class PlanarSlipPolicy(PlanarPlanPolicy[PlanarSlipGains]):
@@ -78,14 +67,6 @@ class PlanarSlipPolicy(PlanarPlanPolicy[PlanarSlipGains]):
 
     The creep of a turn is larger in leaps than r^2 per radian over |b|, as in steady slip; `creep` is the
     mean of what was found in simulation with contact radii of 4 to 5 mm.
-
-    Args:
-        gains: See `PlanarSlipGains`; each is a keyword argument of its own, too.
-        prior: Friction assumed until the estimate has confidence.
-        config: Overrides of the environment's configuration.
-
-    Raises:
-        ValueError: A parameter or the configuration is not valid.
     """
 
     Gains = PlanarSlipGains

@@ -5,11 +5,16 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from pydantic import Field
 
 from policies.controllers.base import Columns
-from policies.controllers.gains import Fraction
-from policies.controllers.planar_plan import Motion, Pair, PlanarPlanPolicy, PlanGains, PlanState
+from policies.controllers.gains import Fraction, Gain
+from policies.controllers.planar_plan import (
+    Motion,
+    Pair,
+    PlanarPlanPolicy,
+    PlanGains,
+    PlanState,
+)
 from policies.controllers.sensing import scaled_load
 from slipgym.config.base import NonNegative
 
@@ -17,35 +22,22 @@ from slipgym.config.base import NonNegative
 class SlipState(NamedTuple):
     """Memory of the slips, (n,) each; all 0 at the start."""
 
-    moving: np.ndarray
-    """1 while it moves."""
-    error: np.ndarray
-    """Integral of the missing speed [m or rad]."""
-    broken: np.ndarray
-    """The integral at the last break-away [m or rad]."""
-    leaps: np.ndarray
-    """Break-aways in this slip so far."""
+    moving: np.ndarray  # 1 while it moves
+    error: np.ndarray  # integral of the missing speed [m or rad]
+    broken: np.ndarray  # the integral at the last break-away [m or rad]
+    leaps: np.ndarray  # break-aways in this slip so far
 
 
 class ContinuousPlanarSlipGains(PlanGains):
     """Gains of `ContinuousPlanarSlipPolicy`; pairs are of slide and turn."""
 
-    speeds: Pair = Field(
-        default=(0.006, 0.2), description="Largest speed of a slide [m/s] and rate of a turn [rad/s]"
-    )
-    gain: NonNegative = Field(
-        default=2.0, description="Speed wanted per distance left, down to a quarter of the largest [1/s]"
-    )
-    k_e: Pair = Field(default=(150.0, 10.0), description="Gains on the integral, over f_slip [1/m, 1/rad]")
-    k_v: Pair = Field(default=(50.0, 0.5), description="Gains on the speed, over f_slip [s/m, s/rad]")
-    k_m: NonNegative = Field(
-        default=0.15, description="Rate of the integral while the object moves, over that while it sticks [-]"
-    )
-    keep: Fraction = Field(
-        default=0.6,
-        description="Fraction of the integral at a break-away with which the next is looked for [-]",
-    )
-    leaps: int = Field(default=8, ge=0, description="Break-aways after which a slip is braked less [-]")
+    speeds: Pair = Gain((0.006, 0.2), "Largest speed of a slide [m/s] and rate of a turn [rad/s]")
+    gain: NonNegative = Gain(2.0, "Speed wanted per distance left, down to a quarter of the largest [1/s]")
+    k_e: Pair = Gain((150.0, 10.0), "Gains on the integral, over f_slip [1/m, 1/rad]")
+    k_v: Pair = Gain((50.0, 0.5), "Gains on the speed, over f_slip [s/m, s/rad]")
+    k_m: NonNegative = Gain(0.15, "Rate of the integral while moving, over that while sticking [-]")
+    keep: Fraction = Gain(0.6, "Fraction of the integral at a break-away with which the next is sought [-]")
+    leaps: int = Gain(8, "Break-aways after which a slip is braked less [-]", ge=0)
 
 
 class ContinuousPlanarSlipPolicy(PlanarPlanPolicy[ContinuousPlanarSlipGains]):
@@ -62,14 +54,6 @@ class ContinuousPlanarSlipPolicy(PlanarPlanPolicy[ContinuousPlanarSlipGains]):
     e begins at 0 at a break-away. When the object sticks again, it begins at a fraction of its value there.
     After `leaps` break-aways in a slip, which then must be small ones, e keeps more at each. A slip that
     static friction has held back leaps; what is less than half a leap is left as it is.
-
-    Args:
-        gains: See `ContinuousPlanarSlipGains`; each is a keyword argument of its own, too.
-        prior: Friction assumed until the estimate has confidence.
-        config: Overrides of the environment's configuration.
-
-    Raises:
-        ValueError: A parameter or the configuration is not valid.
     """
 
     Gains = ContinuousPlanarSlipGains

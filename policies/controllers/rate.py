@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from slipgym.config.load import merge
+
 
 def at_rate(rate: float, config: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Configuration of a controller that acts at another rate than the environment's control steps.
@@ -16,8 +18,5 @@ def at_rate(rate: float, config: Mapping[str, Any] | None = None) -> dict[str, A
     Returns:
         The overrides with that rate as the control rate and as the rate of the slip sensor.
     """
-    given = dict(config or {})
-    sensors = dict(given.get("sensors", {}))
-    given["physics"] = {**given.get("physics", {}), "control_rate": round(rate)}
-    given["sensors"] = {**sensors, "slip": {**sensors.get("slip", {}), "rate": round(rate)}}
-    return given
+    each = round(rate)
+    return merge(config or {}, {"physics": {"control_rate": each}, "sensors": {"slip": {"rate": each}}})

@@ -100,7 +100,7 @@ class ConservativePrior:
 
     def _lever(self, columns: Columns, value: np.ndarray) -> np.ndarray:
         weight, least = self.confidence_weight(columns, "r"), self.mu_c * self.r
-        if columns.has("sd_lever"):
+        if "sd_lever" in columns:
             square = relative(columns, "lever", columns["mu_c"] * columns["r"]) ** 2
             known = np.minimum(1.0, confidence_of(square) / self.confidence)
             weight = np.maximum(weight, np.where(columns["confidence_mu_c"] > 0.0, known, 0.0))
@@ -115,7 +115,7 @@ class ConservativePrior:
 
 def relative(columns: Columns, name: str, value: np.ndarray) -> np.ndarray:
     """Deviation of a value over the value, (n,); 0 if the environment does not show it."""
-    if not columns.has(f"sd_{name}"):
+    if f"sd_{name}" not in columns:
         return np.zeros(len(columns))
     return columns[f"sd_{name}"] / np.maximum(value, 1e-9)
 

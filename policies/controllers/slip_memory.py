@@ -1,27 +1,73 @@
-"""Runs a controller without friction information that remembers load over normal force of the last slip."""
+"""A memory of load over normal force in the last slip, and a controller that has no other friction."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import Field
 
 from policies.controllers import table as controllers
 from policies.controllers.base import Columns
-from policies.controllers.gains import GainPolicy
-from policies.controllers.last_slip import SlipGains, SlipState, remembered
-from policies.registry import modes
+from policies.controllers.gains import Gain, GainPolicy
+from policies.controllers.sensing import both, scaled_load, scaled_speed
 from slipgym.config import Overrides
-from slipgym.config.base import Positive
+from slipgym.config.base import Frozen, NonNegative, Positive
 from slipgym.config.yaml_model import validate
 from slipgym.envs.observation import FRICTION_COLUMNS
+
+
+class SlipGains(Frozen):
+    """Gains of noticing a slip."""
+
+    speed: Positive = Gain(0.003, "Scaled slip speed that is a slip [m/s]")
+    rest: NonNegative = Gain(12, "Control steps after a slip without another one [-]")
+
+
+class SlipState(NamedTuple):
+    """Memory of the slips, (n,) each; all 0 at the start."""
+
+    mu_c: np.ndarray  # load over normal force in the last slip; 0 before the first [-]
+    rest: np.ndarray  # control steps left without another slip
+
+
+def remembered(columns: Columns, past: SlipState, r: np.ndarray | float, gains: SlipGains) -> SlipState:
+    """The memory after the present observation.
+
+    Args:
+        columns: n observations.
+        past: The memory before.
+        r: Contact radius that scales torque and rate, (n,) or one for all [m]. In a turn without a slide
+            `mu_c` times r is the torque per normal force, whatever r is.
+        gains: When a slip is noticed.
+    """
+    slips = (scaled_speed(columns, r) > gains.speed) & (past.rest <= 0.0)
+    shown = scaled_load(columns, r) / np.maximum(both(columns, "f_n"), 1e-3)
+    return SlipState(
+        mu_c=np.where(slips, shown, past.mu_c), rest=np.where(slips, gains.rest, past.rest - 1.0)
+    )
+
+
+def weight_of(shown: np.ndarray, deviation: np.ndarray, own: float) -> np.ndarray:
+    """Weight of what the last slip showed against an estimate: that of the least variance, (n,) in [0, 1].
+
+    Args:
+        shown: What the last slip showed, (n,); 0 before the first.
+        deviation: Relative standard deviation of the estimate, (n,) [-]; 0 for friction that is known.
+        own: That of what a slip shows [-].
+    """
+    square = deviation**2
+    return np.where(shown > 0.0, square / np.maximum(square + own**2, 1e-30), 0.0)
+
+
+def combined(estimate: np.ndarray, shown: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Weighted geometric mean of an estimate and what the last slip showed, (n,)."""
+    return np.where(weight > 0.0, estimate ** (1.0 - weight) * np.maximum(shown, 1e-12) ** weight, estimate)
 
 
 class SlipMemoryGains(SlipGains):
     """Gains of `SlipMemory`."""
 
-    ratio: Positive = Field(default=1.45, description="mu_s over mu_c, as of the materials at hand [-]")
+    ratio: Positive = Gain(1.45, "mu_s over mu_c, as of the materials at hand [-]")
 
 
 class SlipMemory:
@@ -47,7 +93,7 @@ class SlipMemory:
             raise ValueError(f"controller = {controller!r} reads no friction: it has no prior")
         self._controller = made
         self._gains = validate(parameters, SlipMemoryGains, "SlipMemory")
-        self.modes = {"action_mode": modes(self._controller)["action_mode"]}
+        self.modes = {"action_mode": made.action_mode}
 
     def predict(
         self,

@@ -75,7 +75,7 @@ def parameters_of(policy: type[Any]) -> list[str]:
     """Names of the parameters that a policy's class is made with; single gains are among them."""
     own = inspect.signature(policy).parameters.values()
     names = [each.name for each in own if each.kind is not inspect.Parameter.VAR_KEYWORD]
-    return [*policy.parameters(), *names] if issubclass(policy, GainPolicy) else names
+    return [*policy.Gains.model_fields, *names] if issubclass(policy, GainPolicy) else names
 
 
 def refuse(name: str, parameters: Mapping[str, Any], valid: Sequence[str]) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import urllib.parse
 import urllib.request
-from collections.abc import Callable
+from functools import partial
 from http.client import HTTPException
 from pathlib import Path
 
@@ -21,12 +21,7 @@ PATIENCE = 30.0
 
 
 def read(public: PublicSet, folder: Path, path: str) -> bytes:
-    """A file of a set in a folder, if it is the known one.
-
-    Args:
-        public: The set.
-        folder: Of a clone, or of what `store` made.
-        path: A key of the set's `files`.
+    """The file of a set at a path in a clone or in what `store` made, if it is the known one.
 
     Raises:
         ValueError: It is missing, cannot be read, or is another file.
@@ -61,15 +56,12 @@ def download(public: PublicSet, path: str) -> bytes:
 
 
 def store(public: PublicSet, target: Path, clone: Path | None = None) -> bool:
-    """Puts a set into a folder, whole or not at all.
+    """Puts a set into a folder, whole or not at all; returns whether it did, and not found all of it there.
 
     Args:
         public: The set.
         target: Folder to make; one that holds the whole set already stays as it is.
         clone: Folder to take the files from; the network if None.
-
-    Returns:
-        Whether it was put there; False if it was there.
 
     Raises:
         ValueError: A file is missing, cannot be fetched or is another one; or there is something else at
@@ -80,13 +72,11 @@ def store(public: PublicSet, target: Path, clone: Path | None = None) -> bool:
         for path in public.files:
             read(public, target, path)
         return False
-    get: Callable[[str], bytes] = (
-        (lambda path: download(public, path)) if clone is None else (lambda path: read(public, clone, path))
-    )
+    get = partial(download, public) if clone is None else partial(read, public, clone)
     atomic_io.check_folder(target.parent)
-    with atomic_io.new_folder(target) as partial:
+    with atomic_io.new_folder(target) as part:
         for path in public.files:
-            file = partial / path
+            file = part / path
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(get(path))
     return True

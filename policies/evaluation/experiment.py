@@ -1,9 +1,13 @@
-"""The model of an experiment: task, policies, friction sources, trials."""
+"""The model of an experiment: task, policies, friction sources, trials.
+
+Policies are compared at the same rate of action only: in some tasks a controller collects more at 60 than at
+120 actions a second. So all policies of a comparison act every `frame_skip` control steps.
+"""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Self
 
@@ -11,7 +15,8 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 import estimator as estimators
 import policies
-from policies.evaluation.rate import common_frame_skip
+from policies.learned import read_description
+from policies.learned.pretrained import locate
 from policies.task_names import canonical
 from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen, as_tuple
@@ -23,6 +28,39 @@ from slipgym.envs.arguments import DEFAULT_ESTIMATOR, ENGINES, FRICTION_SOURCES,
 from slipgym.envs.engines import resolved
 from slipgym.tasks import configure, find
 from slipgym.tasks.configure import recorded
+
+
+def frame_skip_of(name: str) -> int | None:
+    """Control steps per action that a policy was trained with; None for a controller, which takes any.
+
+    Raises:
+        FileNotFoundError: There is no policy at the path.
+        ValueError: What lies there is no policy.
+    """
+    if policies.is_controller(name):
+        return None
+    return int(read_description(locate(name)).environment.arguments.get("frame_skip", 1))  # type: ignore[arg-type]
+
+
+def common_frame_skip(names: Iterable[str], asked: int | None = None) -> int:
+    """Control steps per action at which policies can be compared.
+
+    Args:
+        names: Of the policies, as `policies.load` takes them.
+        asked: What the comparison asks for; None: what the learned policies need, 1 without any.
+
+    Raises:
+        ValueError: Two policies need different ones, or one needs another than asked for.
+    """
+    needed = {name: skip for name in names if (skip := frame_skip_of(name)) is not None}
+    found = {*needed.values(), *([] if asked is None else [asked])}
+    if len(found) > 1:
+        each = ", ".join(f"{name} {skip}" for name, skip in needed.items())
+        raise ValueError(
+            f"policies are compared at the same rate of action only; frame_skip of the training: {each}"
+            + ("" if asked is None else f"; asked for: {asked}")
+        )
+    return found.pop() if found else 1
 
 
 class PolicyChoice(Frozen):
@@ -190,11 +228,14 @@ class Experiment(Frozen):
         """The environment's configuration with this experiment's overrides, without the task's settings."""
         return configure(find(self.task), self.config, self.sensors)[0]
 
+    def configured(self) -> tuple[configuration.Config, Any]:
+        """Configuration and settings of the environment."""
+        task = find(self.task)
+        return configure(task, self.config, self.sensors, level=load_level(self.level, task.key))
+
     def recorded(self) -> dict[str, Any]:
         """Configuration and settings of the environment as plain data, in the shape of overrides."""
-        task = find(self.task)
-        level = load_level(self.level, task.key)
-        return recorded(*configure(task, self.config, self.sensors, level=level), task.key)
+        return recorded(*self.configured(), find(self.task).key)
 
     def combinations(self) -> list[dict[str, Any]]:
         """Options of reset of each cell."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,12 @@ def records(frame: pd.DataFrame) -> list[dict[str, Any]]:
 def groups(frame: pd.DataFrame, columns: Sequence[str]) -> Iterator[tuple[tuple[Any, ...], pd.DataFrame]]:
     """The rows by what stands in some columns, in order of appearance."""
     yield from frame.groupby(list(columns), sort=False)  # type: ignore[misc]
+
+
+def read_table(path: Path, words: Sequence[str]) -> pd.DataFrame:
+    """Reads a CSV table; some columns stay text, where nothing but "true" would turn into booleans."""
+    types: Any = dict.fromkeys(words, str)
+    return pd.read_csv(path, dtype=types, keep_default_na=False, na_values=[""])
 
 
 def text(interval: Sequence[float], heading: str) -> str:

@@ -7,8 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from policies.evaluation.by_motion import final_error, largest_slip, measures_by_motion, tracking
-from policies.evaluation.columns import FORCE, OUTCOME, ROTATION, SLIP, Measures, Metric, Tolerance
+from policies.evaluation.columns import (
+    FORCE,
+    OUTCOME,
+    ROTATION,
+    SLIP,
+    Measures,
+    Metric,
+    Tolerance,
+    final_error,
+    largest_slip,
+    measures_by_motion,
+    tracking,
+)
 from policies.evaluation.recording import Recording
 from slipgym.tasks import find
 

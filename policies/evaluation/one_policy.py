@@ -1,13 +1,15 @@
-"""Runs episodes of one policy in the environment that it is for: `slipgym evaluate --policy`."""
+"""Runs episodes of one policy in the environment that it is for, and stores them as a Minari dataset."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
+from importlib import import_module
 from typing import Any, NamedTuple
 
 import gymnasium as gym
+from tqdm import tqdm
 
 import policies
 from estimator.reference import is_reference
@@ -22,16 +24,12 @@ FRESH = 1_000_000
 
 
 class Outcome(NamedTuple):
-    """Outcome of an episode."""
+    """Outcome of an episode, with the sum of its rewards and the time of its end [s]."""
 
     success: bool
-    """Whether the task succeeded."""
     dropped: bool
-    """Whether the object was lost."""
     reward: float
-    """Sum over the episode."""
     time: float
-    """When it ended [s]."""
 
 
 def environment_of(which: str, policy: Policy, task: str | None) -> tuple[str, dict[str, Any]]:
@@ -122,3 +120,55 @@ def _check_estimator(choice: Any) -> None:
             f"the estimator {name!r} of its policy.json is not imported unasked; give an estimator as an "
             "argument of the environment"
         )
+
+
+class Stored(NamedTuple):
+    """Content of a dataset."""
+
+    episodes: int
+    steps: int
+    solved: int
+
+
+def demonstrate(
+    which: str | os.PathLike[str],
+    dataset: str,
+    count: int,
+    first: int = 0,
+    task: str | None = None,
+    changes: Mapping[str, Any] | None = None,
+) -> Stored:
+    """Plays episodes of a policy and stores them as a dataset; nothing is stored before the last one is over.
+
+    Policy, task and changes are as for `policies.evaluation.one_policy.episodes`; the dataset has a name
+    such as "hold/controller-v0"; of the `count` episodes, at least 1, number i has the seed `first` + i.
+
+    Raises:
+        ModuleNotFoundError: Minari is not installed.
+        FileExistsError: There is a dataset of that name.
+        FileNotFoundError, ValueError: As for `episodes`.
+    """
+    minari: Any = import_module("minari")
+    import_module("minari.dataset.minari_dataset").parse_dataset_id(dataset)
+    if dataset in minari.list_local_datasets():
+        raise FileExistsError(f"there is a dataset {dataset!r}: minari delete {dataset} removes it")
+    solved, collector = 0, minari.DataCollector
+    with (
+        opened(which, task, changes) as (policy, inner),
+        closing(collector(inner, record_infos=False)) as env,
+    ):
+        for seed in tqdm(range(first, first + count), disable=None, leave=False):
+            observation, info = env.reset(seed=seed)
+            for step in steps(env, policy, observation):
+                info = step.info
+            solved += bool(info["is_success"])
+        made = env.create_dataset(
+            dataset,
+            eval_env=inner.spec,
+            algorithm_name=os.fspath(which),
+            author="slipgym",
+            author_email="none",
+            code_permalink="none",
+            description=f"{solved} of {count} episodes solved, seeds from {first} on",
+        )
+    return Stored(int(made.total_episodes), int(made.total_steps), solved)

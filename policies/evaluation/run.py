@@ -10,13 +10,13 @@ from pathlib import Path
 import pandas as pd
 
 from policies.evaluation.experiment import Experiment
-from policies.evaluation.folder import INCOMPLETE, stamped, write_origin
 from policies.evaluation.frames import markdown as grid
 from policies.evaluation.gain import compare
 from policies.evaluation.plan import plan
 from policies.evaluation.plots import draw, draw_gain
 from policies.evaluation.tables import claims, markdown, summarise
 from policies.evaluation.trial import Result, recordings, run_trials
+from policies.versions import INCOMPLETE, stamped, write_origin
 from slipgym.atomic_io import check_folder, new_files, new_folder
 
 TRIALS = "trials.parquet"

@@ -9,12 +9,12 @@ import pandas as pd
 import yaml
 
 from policies.evaluation.columns import Metric
-from policies.evaluation.folder import INCOMPLETE
-from policies.evaluation.frames import aligned, distinct, groups, text, values, where
+from policies.evaluation.frames import aligned, distinct, groups, read_table, text, values, where
 from policies.evaluation.frames import markdown as grid
 from policies.evaluation.gain import TRUTH, against_truth, compare
 from policies.evaluation.metrics import measures
 from policies.evaluation.statistics import mean_interval, share
+from policies.versions import INCOMPLETE
 
 KEYS = ["policy", "friction"]
 PAIR = ["policy", "material", "options", "trial"]
@@ -78,12 +78,8 @@ def report(folder: Path) -> str:
     if (folder / INCOMPLETE).exists():
         raise FileNotFoundError(f"{folder} is not complete: the run was broken off, or goes on")
     task = yaml.safe_load((folder / "experiment.yaml").read_text(encoding="utf-8"))["task"]
-    # as text: a column of nothing but "true" would turn into booleans
-    names = dict.fromkeys((*KEYS, "friction_source", "material", "metric"), str)
-    summary, trials = (
-        pd.read_csv(folder / f"{name}.csv", dtype=names, keep_default_na=False, na_values=[""])  # type: ignore[arg-type]
-        for name in ("summary", "trials")
-    )
+    words = [*KEYS, "friction_source", "material", "metric"]
+    summary, trials = (read_table(folder / f"{name}.csv", words) for name in ("summary", "trials"))
     parts = [line for part in claims(trials) for line in (part, "")]
     headings = {m.column: m.heading for m in measures(task).summary if m.brief}
     parts.append(aligned(shown(where(summary, material="all"), headings)))

@@ -1,31 +1,32 @@
-"""Runs trials, one or many."""
+"""Runs trials: each alone, or on the planar engine as rows of a vector environment."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
+from typing import Any, NamedTuple
 
+import gymnasium as gym
 import numpy as np
 from tqdm import tqdm
 
 import policies
 from policies import parallel
+from policies.controllers.base import ForcePolicy
+from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.controllers.rate import at_rate
-from policies.evaluation.batch import acts_on_batches, blocks, present, record_block
+from policies.controllers.slip_memory import SlipMemory
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.metrics import measure, measures
-from policies.evaluation.plan import Trial
+from policies.evaluation.plan import Trial, pieces
 from policies.evaluation.recording import INFOS, Recorder, Recording
-from policies.stepping import environment_for, steps
-from slipgym.config.level import load_level
-from slipgym.tasks import configure, find
+from policies.learned import LearnedPolicy
+from policies.stepping import batch_steps, environment_for, steps
+from slipgym.tasks import find
 
 
-@dataclass(frozen=True)
-class Result:
+class Result(NamedTuple):
     """Outcome of a trial."""
 
     row: dict[str, Any]
@@ -44,8 +45,9 @@ def run_trials(
 ) -> list[Result]:
     """Runs trials in parallel; the results do not depend on how many run at once.
 
-    On the planar engine, trials of one policy run as rows of a vector environment
-    (`policies.evaluation.batch`), unless the policy is one of your own.
+    On the planar engine, trials of one policy run as rows of a vector environment, unless the policy is one
+    of your own. Each episode is that of a single environment with the trial's seed and options, bit for bit
+    if the policy's actions are; those of a learned policy differ by rounding.
 
     Args:
         experiment: What they are part of.
@@ -69,11 +71,6 @@ def run_trials(
     return results
 
 
-def pieces(experiment: Experiment, trials: Sequence[Trial]) -> list[tuple[Trial, ...]]:
-    """Trials that run together: on the planar engine `policies.evaluation.batch.blocks`, else each alone."""
-    return blocks(trials) if experiment.engine == "planar" else [(trial,) for trial in trials]
-
-
 def run_block(experiment: Experiment, trials: Sequence[Trial]) -> list[Result]:
     """Runs trials of one policy and friction choice, one of `pieces`.
 
@@ -93,8 +90,9 @@ def recordings(experiment: Experiment, trials: Sequence[Trial]) -> list[Recordin
     """Runs trials as `run_block` does, and keeps their steps."""
     with _named(trials[0]):
         policy = make_policy(experiment, trials[0])
-        if experiment.engine == "planar" and acts_on_batches(policy):
-            return record_block(experiment, trials, policy, environment(experiment, trials[0]))
+        keeps_all_in_its_state = isinstance(policy, ForcePolicy | NoFrictionInfo | SlipMemory | LearnedPolicy)
+        if experiment.engine == "planar" and keeps_all_in_its_state:
+            return _record_block(experiment, trials, policy)
     return [record(experiment, trial) for trial in trials]
 
 
@@ -110,10 +108,8 @@ def _named(trial: Trial) -> Iterator[None]:
 
 def _result(experiment: Experiment, trial: Trial, recording: Recording) -> Result:
     """The row of a trial in the table, and its steps."""
-    task = find(experiment.task)
-    level = load_level(experiment.level, task.key)
-    settings = configure(task, experiment.config, experiment.sensors, level=level)[1]
-    settings = task.options.parse(trial.options).applied_to(settings)
+    settings = experiment.configured()[1]
+    settings = find(experiment.task).options.parse(trial.options).applied_to(settings)
     limits = {
         limit.column: limit.scale * getattr(settings, limit.option)
         for limit in measures(experiment.task).tolerances
@@ -121,6 +117,44 @@ def _result(experiment: Experiment, trial: Trial, recording: Recording) -> Resul
     drawn = {f"drawn_{name}": value for name, value in recording.drawn.items()}
     row = {**trial.keys, **limits, **measure(recording, experiment.task), **drawn}
     return Result(row, recording.series() if trial.number == 0 else None)
+
+
+def _record_block(
+    experiment: Experiment, trials: Sequence[Trial], policy: policies.Policy
+) -> list[Recording]:
+    """Runs trials of one policy and friction choice side by side, and keeps their steps."""
+    arguments = {**environment(experiment, trials[0]), **policies.modes(policy)}
+    given = {name: value for name, value in arguments.items() if name not in ("engine", "material")}
+    env_id = f"slipgym:{find(experiment.task).id}"
+    made: Any = gym.make_vec(env_id, len(trials), "vector_entry_point", **given)
+    with closing(made.unwrapped) as envs:
+        if isinstance(policy, LearnedPolicy):
+            policy.check(envs)
+        materials = ({} if each.material == "random" else {"material": each.material} for each in trials)
+        rows = [{**trial.options, **material} for trial, material in zip(trials, materials, strict=True)]
+        observations, infos = envs.reset(seed=[trial.seed for trial in trials], options={"rows": rows})
+        recorder = Recorder([column.name for column in envs.columns], _drawn(infos, len(trials)))
+        for step in batch_steps(envs, policy, observations):
+            newest = _present(step.observations, len(envs.columns))
+            recorder.add(newest, step.rewards, step.infos, step.running)
+    return recorder.finish()
+
+
+def _present(observations: Any, columns: int) -> np.ndarray:
+    """The newest of the observations that a policy saw, (..., columns), without privileged ones."""
+    seen = observations["policy"] if isinstance(observations, Mapping) else observations
+    return seen[..., -columns:]
+
+
+def _drawn(infos: Mapping[str, Any], n: int) -> list[dict[str, Any]]:
+    """Values that the randomization drew for each of n environments, as in the info of a single one."""
+    found = infos.get("drawn", {})
+    names = [name for name in found if not name.startswith("_")]
+    values = [{name: found[name][i] for name in names if found[f"_{name}"][i]} for i in range(n)]
+    return [
+        {name: one.item() if isinstance(one, np.generic) else one for name, one in row.items()}
+        for row in values
+    ]
 
 
 def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None = None) -> Recording:
@@ -134,7 +168,7 @@ def record(experiment: Experiment, trial: Trial, policy: policies.Policy | None 
             columns = env.unwrapped.columns  # type: ignore[attr-defined]
             recorder = Recorder([column.name for column in columns], [info.get("drawn", {})])
             for step in steps(env, policy, observation):
-                newest = present(step.observation, len(columns))[np.newaxis]
+                newest = _present(step.observation, len(columns))[np.newaxis]
                 infos = {name: np.asarray(step.info[name])[np.newaxis] for name in INFOS if name in step.info}
                 recorder.add(newest, np.array([step.reward]), infos, np.ones(1, dtype=bool))
     return recorder.finish()[0]

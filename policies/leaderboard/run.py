@@ -11,24 +11,20 @@ import pandas as pd
 from tqdm import tqdm
 
 import estimator
-from policies.evaluation.folder import stamped
 from policies.evaluation.frames import markdown, values
 from policies.evaluation.plots.style import STYLE, styled
-from policies.leaderboard import imperfect, rubber, scenarios
-from policies.leaderboard.picture import plot_leaderboard
-from policies.leaderboard.ranking import ranked, winners
-from policies.leaderboard.replay import replay
-from policies.leaderboard.scenario import FIELDS, Scenario
+from policies.leaderboard import imperfect, scenarios
+from policies.leaderboard.ranking import plot_leaderboard, ranked, winners
+from policies.leaderboard.scenario import FIELDS, FIGURES, Scenario, replay, score
 from policies.leaderboard.scenarios import Effort, effort_of
-from policies.leaderboard.score import FIGURES, score
-from policies.versions import write_versions
+from policies.versions import stamped, write_versions
 from slipgym.atomic_io import new_folder
 
 GROUPS: tuple[Callable[[Effort], Iterator[Scenario]], ...] = (
     *(scenarios.profiles, scenarios.stick_slip, scenarios.planar, scenarios.start_values),
     *(scenarios.spin_first, scenarios.noise, scenarios.pressure, scenarios.latency),
     *(imperfect.unknown_delay, imperfect.sensor_errors, imperfect.jumps),
-    *(rubber.drifts, rubber.load_dependent, rubber.anisotropic),
+    *(imperfect.drifts, imperfect.load_dependent, imperfect.anisotropic),
 )
 """The groups of scenarios; another one is one more function."""
 Entrants = dict[str, tuple[str, dict[str, object]]]

@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
+import policies
 from policies.leaderboard.profile_course import STEADY, STOP, disc, profile, slip
 from policies.leaderboard.scenario import Run, Scenario, after, ends, in_slip, single
-from policies.leaderboard.stick_slip import linear_slip_trace
+from policies.stepping import environment_for, steps
 from slipgym.contact import DistributedContact
 from slipgym.synthetic import Course, Record, Trace, integrate, sense
 
@@ -185,3 +186,35 @@ def closed_loop(material: str, trials: tuple[tuple[float, float], ...]) -> tuple
 def late(trace: Trace, samples: int, effort: Effort) -> Run:
     """A closed-loop trial with velocities of an age [samples]."""
     return in_slip(effort.sense(trace, {"sensors": {"slip": {"latency_samples": samples}}}))
+
+
+def linear_slip_trace(material: str, distance: float, duration: float, seed: int) -> Trace:
+    """A trial of slipgym/LinearSlip-v0 under its controller, which knows the true friction.
+
+    So the motion is the same whatever an estimator says. The contact is the distributed one: a
+    uniform disc, as everywhere in the leaderboard. The distance is in [m], the duration in [s].
+
+    Returns:
+        What finger 1 truly felt and saw, at 120 Hz; the phase is "slip" where a sample moved on average
+        faster than 1 mm/s, and "stick" elsewhere.
+    """
+    controller = policies.make("linear_slip_continuous")
+    arguments = {"friction_source": "true", "contact": "distributed", "material": material}
+    with environment_for(controller, "slipgym/LinearSlip-v0", **arguments) as env:
+        observation, first = env.reset(seed=seed, options={"distance": distance, "duration": duration})
+        infos = [step.info for step in steps(env, controller, observation)]
+    t = np.array([info["time"] for info in infos])
+    motion = np.diff([info["slip"] for info in [first, *infos]], axis=0)
+    speed = np.hypot(*motion[:, :2].T) / np.diff(t, prepend=0.0)
+    mu_s, mu_c, r = (np.full(len(t), value) for value in first["true"])
+    return Trace(
+        t=t,
+        wrench=np.array([info["contact_wrench"][0] for info in infos]),
+        normal=np.array([info["grip_force"][0] for info in infos]),
+        twist=np.array([info["slip_twist"] for info in infos]),
+        motion=motion,
+        mu_s=mu_s,
+        mu_c=mu_c,
+        r=r,
+        phase=np.where(speed > 1e-3, "slip", "stick"),
+    )

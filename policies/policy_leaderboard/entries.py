@@ -6,23 +6,25 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from policies import registry
 from policies.controllers.constant_force import ConstantForcePolicy
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.controllers.rate import at_rate
 from policies.controllers.slip_memory import SlipMemory
 from policies.controllers.table import CLASSES
-from policies.evaluation.constant_grip import MODES, candidates
-from policies.evaluation.one_policy import environment_of
 from policies.evaluation.play import play_episodes
 from policies.learned import LearnedPolicy, pretrained
-from policies.policy_leaderboard import oracle
 from policies.registry import Policy
-from slipgym.config import load
+from slipgym.config import GripperConfig, Overrides, load
+from slipgym.envs.privileged import PRIVILEGED
 from slipgym.tasks import find
 
 CANDIDATES = 16
 """Constant forces that are tried, spaced geometrically over the gripper's range."""
+MODES = {"friction_source": "none", "action_mode": "grip_force"}
+"""Arguments of the environments of a constant grip."""
 SKIPS = 1, 2, 4
 """Control steps of an action that are tried for a memory of slips."""
 LEARNED = {
@@ -43,9 +45,15 @@ class Member(NamedTuple):
     arguments: Mapping[str, Any]
 
 
-def constant(force: float) -> Member:
-    """A constant grip force [N]."""
-    return Member(f"constant {force:g} N", ConstantForcePolicy(force), MODES)
+def constant(force: float, config: Overrides | None = None) -> Member:
+    """A constant grip force [N]: an opponent that reacts to nothing."""
+    return Member(f"constant {force:g} N", ConstantForcePolicy(force, config), MODES)
+
+
+def constants(gripper: GripperConfig, number: int, config: Overrides | None = None) -> list[Member]:
+    """A number of constant forces, rounded to 0.01 N, spaced geometrically over a gripper's range."""
+    forces = np.geomspace(gripper.force_min, gripper.force_max, number).round(2).tolist()
+    return [constant(force, config) for force in forces]
 
 
 def member(name: str, policy: Policy, source: str) -> Member:
@@ -73,7 +81,7 @@ def remembering(task: str, arguments: Mapping[str, Any], episodes: int) -> Membe
         made = SlipMemory(find(task).key, config=at_rate(rate / skip) if skip > 1 else None)
         one = member(f"controller, memory of slips ({rate // skip} Hz)", made, "none")
         members.append(one._replace(arguments={**one.arguments, "frame_skip": skip}))
-    return _strongest(task, members, arguments, episodes)
+    return strongest(task, members, arguments, _selection(episodes))
 
 
 def learned(key: str) -> list[Member]:
@@ -89,7 +97,7 @@ def learned(key: str) -> list[Member]:
 
 def bounds(key: str) -> list[Member]:
     """The policy that knows the right grip, for the tasks that have one."""
-    return [Member("oracle, privileged", oracle.Oracle(), oracle.MODES)] if key in oracle.TASKS else []
+    return [Member("oracle, privileged", Oracle(), ORACLE_MODES)] if key in ONE_GRIP else []
 
 
 def best_constant(task: str, arguments: Mapping[str, Any], episodes: int) -> Member:
@@ -97,14 +105,19 @@ def best_constant(task: str, arguments: Mapping[str, Any], episodes: int) -> Mem
 
     It is chosen on a number of other episodes of the same distribution, on the planar engine.
     """
-    members = [constant(force) for force in candidates(load().gripper, CANDIDATES)]
-    best = _strongest(task, members, arguments, episodes)
+    best = strongest(task, constants(load().gripper, CANDIDATES), arguments, _selection(episodes))
     return best._replace(name=f"best constant ({best.name.removeprefix('constant ')})")
 
 
-def _strongest(task: str, members: Sequence[Member], arguments: Mapping[str, Any], episodes: int) -> Member:
-    """The member that solves most, among equals with the largest mean return, on episodes of its own."""
-    seeds = range(_SELECTION_SEED, _SELECTION_SEED + episodes)
+def _selection(episodes: int) -> range:
+    """Seeds of a number of episodes on which a policy is chosen, and nothing else."""
+    return range(_SELECTION_SEED, _SELECTION_SEED + episodes)
+
+
+def strongest(
+    task: str, members: Sequence[Member], arguments: Mapping[str, Any], seeds: Sequence[int]
+) -> Member:
+    """The member that solves most, among equals with the largest mean return, on episodes of these seeds."""
     played = (play_episodes(task, each.policy, {**arguments, **each.arguments}, seeds) for each in members)
     strength = [found.strength for found in played]
     return members[strength.index(max(strength))]
@@ -143,25 +156,45 @@ def entered(names: Sequence[str], source: str) -> list[Member]:
     return members
 
 
-def check_task(members: Sequence[Member], task: str) -> None:
-    """Raise ValueError if a policy is for another task, whose observations may be as long."""
-    for each in members:
-        environment_of(each.name, each.policy, task)
-
-
 def opponents(
     task: str, arguments: Mapping[str, Any], episodes: int, folder: Path | None = None
 ) -> list[Member]:
-    """The policies that everyone is compared with.
+    """The policies that everyone is compared with, those of `slipgym imitate` in a folder among them.
 
-    Args:
-        task: As `slipgym.tasks.find` takes it.
-        arguments: Of the environments: level, randomization, sensors.
-        episodes: On which the constant grip and the rate of the memory are chosen, for each.
-        folder: Of the runs of `slipgym imitate`; None: none.
+    A constant grip and the rate of the memory are chosen on a number of episodes, for each. The arguments are
+    those of the environments: level, randomization, sensors.
     """
     key = find(task).key
     found = [best_constant(task, arguments, episodes), remembering(task, arguments, episodes)]
-    found += [*controllers(key), *further(task), *learned(key)]
-    found += bounds(key)
+    found += [*controllers(key), *further(task), *learned(key), *bounds(key)]
     return found if folder is None else [*found, *imitated(task, folder)]
+
+
+ONE_GRIP = ("hold", "fragile_hold")
+"""Keys of the tasks that a constant grip solves, if it is the right one of the episode."""
+ORACLE_MODES = {"observation_mode": "dict", "action_mode": "grip_force"}
+_LEAST, _LIMIT = (
+    [reading.name for reading in PRIVILEGED].index(name) for name in ("least_grip", "grip_limit")
+)
+
+
+class Oracle:
+    """Grips with the geometric mean of the episode's least grip and its limit, firmly if it has none.
+
+    Its observations are dicts.
+    """
+
+    def predict(
+        self,
+        observation: Any,
+        state: None = None,
+        episode_start: np.ndarray | None = None,
+        deterministic: bool = True,
+    ) -> tuple[np.ndarray, None]:
+        """Actions (n, 1) for observations with the group "privileged", (n, m); the rest has no effect."""
+        gripper = load().gripper
+        least, limit = observation["privileged"][:, [_LEAST, _LIMIT]].T
+        force = np.where(limit > 0.0, np.sqrt(least * limit), gripper.force_max)
+        force = np.clip(force, gripper.force_min, gripper.force_max)
+        share = (force - gripper.force_min) / (gripper.force_max - gripper.force_min)
+        return (2.0 * share - 1.0)[:, None].astype(np.float32), None

@@ -12,12 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from policies.evaluation.folder import stamped
 from policies.evaluation.frames import distinct
-from policies.evaluation.plots.heat import heat, places
-from policies.evaluation.plots.style import STYLE, styled
+from policies.evaluation.plots.style import STYLE, heat, places, styled
 from policies.policy_leaderboard.run import kinds
-from policies.versions import versions, write_versions
+from policies.versions import stamped, versions, write_versions
 from slipgym import atomic_io
 from slipgym.atomic_io import new_folder
 

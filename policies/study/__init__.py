@@ -1,7 +1,6 @@
 """The benefit of knowing friction: policies x friction information, on both engines."""
 
-from policies.study.config import Study
-from policies.study.files import load_study, narrowed, study_names
+from policies.study.config import Study, load_study, narrowed, study_names
 from policies.study.run import run_study
 from policies.study.terminal import words
 

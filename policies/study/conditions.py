@@ -1,4 +1,4 @@
-"""The conditions of a study: one policy, friction source, world and block of episodes."""
+"""The conditions of a study: one policy, friction source, world, block and preset, perhaps worse."""
 
 from __future__ import annotations
 
@@ -6,23 +6,129 @@ import itertools
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from policies.evaluation.experiment import Experiment, PolicyChoice
-from policies.evaluation.rate import common_frame_skip
+from policies.evaluation.experiment import Experiment, PolicyChoice, common_frame_skip
 from policies.learned import pretrained
-from policies.study.changes import UNCHANGED, Change, changes
-from policies.study.config import BLOCKS_MAX, Study, World
-from policies.study.learned import TRAINED_WITH, Shelf
+from policies.learned.files import DESCRIPTION
+from policies.study.config import BLOCKS_MAX, SOURCES, Study, World
 from policies.task_names import own_policy
+from slipgym.config import load_randomization
 from slipgym.config.yaml_model import validate
 from slipgym.tasks import find
+
+TRAINED_WITH: dict[str, str] = {source: source for source in SOURCES} | {"nominal": "true"}
+"""Friction source of an evaluation -> that of the training; nobody trains on wrong values on purpose."""
+
+Shelf = dict[tuple[str, str, str], dict[int, Path]]
+"""(kind, task, source) -> seed -> folder."""
+
+
+def policies_of(study: Study) -> Shelf:
+    """The learned policies of a study, by kind, task and friction source of the training; by seed within.
+
+    A policy lies in a folder <task>_<source> or <task>_<source>_<seed>, as in "linear_slip_true_2"; without a
+    number it is seed 0. Or it is one of those that `slipgym train` or `slipgym imitate` left in the folder.
+    Of those that come with slipgym, <task>_scratch is for the source "true", and for "none" <task>_memory, or
+    <task>_lab if the study has the sensors "lab".
+
+    Raises:
+        ValueError: Two folders stand for the same seed.
+    """
+    endings: dict[str, str] = {source: source for source in SOURCES}
+    endings |= {"scratch": "true", "lab" if study.sensors == "lab" else "memory": "none"}
+    found: Shelf = {}
+    for kind, where in folders(study).items():
+        for folder, name in _named(where):
+            for task, (ending, source) in itertools.product(study.tasks, endings.items()):
+                match = re.fullmatch(rf"{find(task).key}_{ending}(?:_+(\d+))?", name)
+                if match is None:
+                    continue
+                seeds, seed = found.setdefault((kind, task, source), {}), int(match[1] or 0)
+                if seed in seeds:
+                    raise ValueError(f"{folder} and {seeds[seed]} are both seed {seed}")
+                seeds[seed] = folder
+    return found
+
+
+def folders(study: Study) -> dict[str, Path]:
+    """Kind of learned policy -> folder of its policies, of the kinds that have one."""
+    given = {"learned": study.learned or str(pretrained.FOLDER), "imitation": study.imitation}
+    return {kind: Path(folder) for kind, folder in given.items() if folder and kind in study.kinds}
+
+
+def _named(top: Path) -> list[tuple[Path, str]]:
+    """Folders of policies, and what they are called."""
+    named = {path.parent: path.parent.name for path in top.glob(f"*/{DESCRIPTION}")}
+    for path in top.glob(f"*/policy/{DESCRIPTION}"):
+        named[path.parent] = path.parents[1].name
+    for path in top.glob(f"*__*/*__*/policy/{DESCRIPTION}"):
+        key, _, _ = path.parents[2].name.partition("__")
+        named[path.parent] = f"{key}_{path.parents[1].name}"
+    return sorted(named.items())
+
+
+def missing(study: Study, found: Shelf) -> list[str]:
+    """In words, the policies that a study would need and that are not there.
+
+    Of imitations it needs those that see sensors alone.
+    """
+    lacking = []
+    for kind, place in folders(study).items():
+        wanted = ("none",) if kind == "imitation" else SOURCES
+        for task in study.tasks:
+            sources = [source for source in wanted if (kind, task, TRAINED_WITH[source]) not in found]
+            if sources:
+                where = "the policies that come with slipgym" if place == pretrained.FOLDER else place
+                looked = f"looked for {find(task).key}_<source> in {where}"
+                lacking.append(f"{task}: no policy of kind {kind} for {', '.join(sources)}; {looked}")
+    return lacking
+
+
+TITLES = {
+    "noise_scale": "sensor noise, times the configured",
+    "slip_latency": "age of the slip velocity [samples of 1/120 s]",
+    "friction_jump": "friction after over before a jump in mid-episode",
+}
+"""Change -> what its levels are, in words."""
 
 _WITHOUT_FRICTION = {
     "classic": "policies.controllers.no_friction_info:NoFrictionInfo",
     "memory": "policies.controllers.slip_memory:SlipMemory",
 }
 """Kind -> how a controller acts without friction in its observation."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One field of a preset, held at one value."""
+
+    name: str
+    """One of `TITLES`, or nothing."""
+    level: float
+    """Of what `TITLES` says."""
+    time: tuple[float, float] = (0.0, 0.0)
+    """When a jump happens [s]."""
+
+    def of(self, preset: str, task: str) -> str | Mapping[str, Any]:
+        """The preset with this change, for one task: what an environment takes as `randomization`."""
+        if not self.name:
+            return preset
+        ranges = load_randomization(preset).of(find(task).key).model_dump(mode="json", exclude_defaults=True)
+        if self.name == "friction_jump":
+            jump = {
+                "kind": "friction_jump",
+                "probability": 1.0,
+                "time": {"uniform": list(self.time)},
+                "factor": {"choices": [self.level]},
+            }
+            others = [each for each in ranges.get("disturbances", []) if each["kind"] != "friction_jump"]
+            return {**ranges, "disturbances": [*others, jump]}
+        return {**ranges, self.name: {"choices": [self.level]}}
+
+
+UNCHANGED = Change("", 0.0)
 
 
 @dataclass(frozen=True)
@@ -119,8 +225,9 @@ def _places(study: Study) -> Iterator[tuple]:
             yield world, task, preset, UNCHANGED, world.sources, estimators, study.episodes
     worse = study.degradation
     if worse is not None:
-        for task, change in itertools.product(study.tasks, changes(worse)):
-            world = study.world(worse.world)
+        world = next(world for world in study.worlds if world.label == worse.world)
+        changes = [Change(name, level, worse.jump_time) for name in TITLES for level in getattr(worse, name)]
+        for task, change in itertools.product(study.tasks, changes):
             yield world, task, worse.preset, change, worse.sources, study.estimators[:1], worse.episodes
 
 

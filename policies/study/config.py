@@ -1,7 +1,8 @@
-"""Defines the content of a study's file."""
+"""Defines the content of a study's file, and reads it."""
 
 from __future__ import annotations
 
+import os
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
@@ -15,6 +16,7 @@ from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
 from slipgym.config.level import load_level
 from slipgym.config.load import Content
 from slipgym.config.physics import ContactModel
+from slipgym.config.yaml_model import names, read_model, validate
 from slipgym.tasks import find
 
 Kind: TypeAlias = Literal["classic", "memory", "recurrent", "learned", "imitation"]
@@ -109,10 +111,6 @@ class Study(Frozen):
             _among("world", [self.degradation.world], [world.label for world in self.worlds])
         return self
 
-    def world(self, label: str) -> World:
-        """The world of a label."""
-        return next(world for world in self.worlds if world.label == label)
-
 
 def _distinct(what: str, names: Any) -> None:
     if len(set(names)) < len(names):
@@ -123,3 +121,37 @@ def _among(what: str, names: Any, valid: Any) -> None:
     for name in names:
         if name not in valid:
             raise ValueError(unknown(what, name, valid))
+
+
+_FOLDER = "studies"
+
+
+def study_names() -> list[str]:
+    """Names of the studies that come with slipgym."""
+    return names(_FOLDER)
+
+
+def load_study(which: str | os.PathLike[str]) -> Study:
+    """Reads a study: one of `study_names()`, or the YAML file at a path.
+
+    Raises:
+        FileNotFoundError: It looks like a path, but there is no such file.
+        ValueError: The name is unknown, or the file holds a wrong key or value.
+    """
+    return read_model(which, Study, _FOLDER, "study")
+
+
+def narrowed(study: Study, **changes: Any) -> Study:
+    """The study with other values; what is None or empty stays. The degradation has no more episodes.
+
+    Raises:
+        ValueError: A value is not allowed.
+    """
+    given = {key: value for key, value in changes.items() if value not in (None, "", (), [])}
+    if "tasks" in given:
+        given["tasks"] = [find(task).name for task in given["tasks"]]
+        given["videos"] = [task for task in study.videos if task in given["tasks"]]
+    if "episodes" in given and study.degradation is not None:
+        fewer = {"episodes": min(given["episodes"], study.degradation.episodes)}
+        given["degradation"] = study.degradation.model_copy(update=fewer)
+    return validate({**dict(study), **given}, Study, study.name)

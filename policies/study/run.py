@@ -1,20 +1,29 @@
-"""Runs a study and writes its folder."""
+"""Runs a study and writes its folder, with the best constant grip of each task: it reacts to nothing."""
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
 
-from policies.evaluation.folder import write_origin
+import pandas as pd
+from tqdm import tqdm
+
+from policies.evaluation.plan import plan
+from policies.evaluation.play import play_episodes
+from policies.evaluation.statistics import mean_interval, share, spread
+from policies.policy_leaderboard.entries import MODES, constants, strongest
 from policies.study import tables
-from policies.study.benefit import benefits
-from policies.study.conditions import conditions
+from policies.study.conditions import conditions, experiment_of, missing, policies_of
 from policies.study.config import Study
-from policies.study.constant_grip import constant_grips
-from policies.study.episodes import episodes
-from policies.study.learned import missing, policies_of
-from policies.study.store import Store
+from policies.study.store import Store, episodes, mark
+from policies.versions import write_origin
 from slipgym import atomic_io
+
+CANDIDATES = 24
+"""Constant forces that are tried, spaced geometrically over the gripper's range."""
+_SELECTION_SEED = 1000
+"""Added to the seed of a study: a force is chosen on other episodes than those it is evaluated on."""
 
 
 def run_study(
@@ -47,7 +56,7 @@ def run_study(
     made = {
         "outcomes": tables.outcomes(done),
         "shares": tables.shares(done, study.estimators[0]),
-        "benefits": benefits(done),
+        "benefits": tables.benefits(done),
         "transfer": tables.transfer(done, study),
         "constant_grip": constant_grips(study, folder / "constant_grip", progress=progress),
     }
@@ -56,3 +65,51 @@ def run_study(
     for name, table in made.items():
         atomic_io.write(folder / f"{name}.csv", table.to_csv(index=False).encode())
     return folder
+
+
+def constant_grips(
+    study: Study, folder: Path, candidates: int = CANDIDATES, progress: bool = True
+) -> pd.DataFrame:
+    """Success, drops and return of the best constant grip of each task of a study.
+
+    The episodes are those of the first preset, on the planar engine, as many as a condition has. The force is
+    tuned to their distribution, which nobody could do for a single new object. The folder keeps finished
+    tasks, which are not run again.
+
+    Returns:
+        A row for each task: `task`, `force_N` [N], `n`, and with intervals `success`, `dropped`, `return`.
+    """
+    rows = []
+    contacts = [world.contact for world in study.worlds if world.engine == "planar"]
+    for task in tqdm(study.tasks, desc="constant grips", unit="task", disable=not progress):
+        values = {
+            "name": f"constant_{task.rpartition(':')[2]}",
+            "task": task,
+            "seed": study.seed,
+            "trials": study.blocks * study.episodes,
+            "policies": [{"name": "constant_force"}],
+            "friction": [{"source": "none"}],
+            "engine": "planar",
+            "randomization": study.presets[0],
+        }
+        experiment = experiment_of(study, contacts[0] if contacts else "ellipsoid", values)
+        path = folder / f"{experiment.name}__{mark(experiment, str(candidates))}.json"
+        if not path.exists():
+            chosen = experiment.model_copy(update={"seed": study.seed + _SELECTION_SEED})
+            seeds, selection = ([trial.seed for trial in plan(each)] for each in (experiment, chosen))
+            gripper, arguments = experiment.environment_config().gripper, experiment.arguments
+            members = constants(gripper, candidates, experiment.config)
+            policy = strongest(task, members, arguments, selection).policy
+            found = play_episodes(task, policy, {**arguments, **MODES}, seeds)
+            shares = {"success": share(found.success), "dropped": share(found.dropped)}
+            figures = spread({**shares, "return": mean_interval(found.reward)})
+            row = {
+                "task": task,
+                "force_N": policy.force,  # type: ignore[attr-defined]
+                "n": len(seeds),
+                **figures,
+            }
+            with atomic_io.new_file(path) as partial:
+                partial.write_text(json.dumps(row), encoding="utf-8")
+        rows.append(json.loads(path.read_text(encoding="utf-8")))
+    return pd.DataFrame(rows)

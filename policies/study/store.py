@@ -1,17 +1,22 @@
-"""Keeps finished conditions on disk: each runs once, until something that decides its result changes."""
+"""Runs conditions and keeps them on disk: each once, until something that decides its result changes."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
+from tqdm import tqdm
 
 import policies
+from policies import parallel
 from policies.evaluation.experiment import Experiment
+from policies.evaluation.plan import pieces, plan
+from policies.evaluation.trial import run_block
 from policies.study.conditions import Condition
 from policies.study.config import Study
 from slipgym.atomic_io import new_folder
@@ -23,7 +28,6 @@ _SOURCES = (
     *("policies/evaluation/*.py", "policies/learned/*.py"),
 )
 _CONFIGS = ("*.yaml", "sensors/*.yaml", "randomization/*.yaml", "levels/*.yaml")
-_TABLE = "episodes.parquet"
 
 
 class Store:
@@ -32,21 +36,14 @@ class Store:
     def __init__(self, path: Path, study: Study) -> None:
         self._path, self._study = path, study
 
-    def _place(self, condition: Condition) -> Path:
-        return self._path / f"{condition.name}__{fingerprint(condition, self._study)}"
+    def table(self, condition: Condition) -> Path:
+        """The file of a condition's episodes, a row each; it exists if the condition is finished."""
+        return self._path / f"{condition.name}__{fingerprint(condition, self._study)}" / "episodes.parquet"
 
-    def has(self, condition: Condition) -> bool:
-        """Whether a condition is finished."""
-        return (self._place(condition) / _TABLE).exists()
-
-    def read(self, condition: Condition) -> pd.DataFrame:
-        """The episodes of a finished condition, a row each."""
-        return pd.read_parquet(self._place(condition) / _TABLE)
-
-    def write(self, condition: Condition, episodes: pd.DataFrame) -> None:
+    def write(self, condition: Condition, rows: pd.DataFrame) -> None:
         """Keeps a condition, whole or not at all."""
-        with new_folder(self._place(condition)) as folder:
-            episodes.to_parquet(folder / _TABLE, index=False)
+        with new_folder(self.table(condition).parent) as folder:
+            rows.to_parquet(folder / self.table(condition).name, index=False)
 
 
 def fingerprint(condition: Condition, study: Study) -> str:
@@ -78,3 +75,36 @@ def _digest(paths: Iterable[Path]) -> str:
     for path in sorted(paths):
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()
+
+
+COLUMNS = ["seed", "success", "dropped", "return", "steps", "mean_force_N", "final_mu_c", "true_mu_c"]
+"""What is kept of an episode of any task, besides the keys of its condition and its number."""
+
+
+def episodes(
+    study: Study, conditions: Sequence[Condition], store: Store, jobs: int = 1, progress: bool = True
+) -> pd.DataFrame:
+    """The episodes of all conditions; those that are not in the store are run and kept there, one by one.
+
+    The results do not depend on the number of processes, -1 for one per core.
+
+    Raises:
+        ValueError: A policy refuses the observations.
+        OSError: The store cannot be written.
+    """
+    pending = [condition for condition in conditions if not store.table(condition).exists()]
+    experiments = [condition.experiment(study) for condition in pending]
+    planned = [(condition, each, plan(each)) for condition, each in zip(pending, experiments, strict=True)]
+    work = [(each, piece) for _, each, trials in planned for piece in pieces(each, trials)]
+    results = parallel.results(run_block, work, jobs)
+    total = sum(len(trials) for _, _, trials in planned)
+    with tqdm(total=total, desc=study.name, unit="episode", disable=not progress) as bar:
+        for condition, _, trials in planned:
+            rows: list[dict[str, Any]] = []
+            while len(rows) < len(trials):
+                for result in next(results):
+                    kept = {name: result.row[name] for name in COLUMNS}
+                    rows.append({**condition.keys, "episode": len(rows), **kept})
+                    bar.update()
+            store.write(condition, pd.DataFrame(rows))
+    return pd.concat([pd.read_parquet(store.table(each)) for each in conditions], ignore_index=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from policies.evaluation.frames import aligned, groups, records, text, values, where
+from policies.evaluation.frames import aligned, groups, read_table, records, text, values, where
 from policies.evaluation.gain import sentence
 from policies.evaluation.statistics import Interval
 from policies.study.config import Study
@@ -35,13 +35,9 @@ _BENEFITS = {
 
 def words(study: Study, folder: Path) -> str:
     """Gain, success of every condition in the first world, the shares, and where to look next."""
-    # as text: a column of nothing but "true" would turn into booleans
-    names = dict.fromkeys([*PLACE, *FRICTION], str)
-    names.pop("level")
-    outcomes, shares, benefits = (
-        pd.read_csv(folder / f"{name}.csv", dtype=names, keep_default_na=False, na_values=[""])  # type: ignore[arg-type]
-        for name in ("outcomes", "shares", "benefits")
-    )
+    names = [name for name in (*PLACE, *FRICTION) if name != "level"]
+    made = (read_table(folder / f"{name}.csv", names) for name in ("outcomes", "shares", "benefits"))
+    outcomes, shares, benefits = made
     first = study.worlds[0].label
     shares, benefits, outcomes = (where(table, world=first) for table in (shares, benefits, outcomes))
     outcomes = outcomes.loc[outcomes["change"].isna()]

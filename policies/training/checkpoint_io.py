@@ -21,8 +21,7 @@ from estimator.plain_files import check_regular
 from slipgym import atomic_io
 from slipgym.envs.states import EnvState, SimulationState, VectorState
 from slipgym.world.plant import Plant
-from slipgym.world.scene import Box
-from slipgym.world.snapshot import EngineState
+from slipgym.world.scene import Box, EngineState
 
 _RECORDS = {
     record.__name__: record for record in (EnvState, VectorState, SimulationState, EngineState, Box, Plant)

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 from policies import parallel
-from policies.evaluation.folder import stamped
 from policies.evaluation.plots.style import STYLE, styled
 from policies.training import curve, folder
 from policies.training import seeds as numbers
 from policies.training.config import Training
 from policies.training.files import changed
 from policies.training.run import train
+from policies.versions import stamped
 from slipgym.tasks import find
 
 

@@ -12,11 +12,11 @@ from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
 
 from policies import parallel
-from policies.evaluation.folder import stamped
 from policies.training import files, folder
 from policies.training.config import Dimension, Training
 from policies.training.curve import Row
 from policies.training.run import train
+from policies.versions import stamped
 from slipgym import atomic_io
 from slipgym.tasks import find
 

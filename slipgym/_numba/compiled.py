@@ -1,38 +1,55 @@
 """`compiled`: numba with a cache that notices a change in anything that a function uses.
 
+The environment variable SLIPGYM_NUMBA_DISABLE switches optimisations of this package off: it holds names of
+`OPTIMISATIONS`, separated by commas, and is read once, at import. Each set of switches has its own programs.
+
 A division by zero gives an infinity or a NaN, as in numpy, and not an exception: the check would keep
 loops from running on several elements at once. Functions are compiled into their callers.
 """
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
-from typing import Any, ParamSpec, Protocol, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from estimator._numba.caching import compiler
 from estimator._numba.folders import why_compiling
 from estimator._numba.linking import Pointed, resting
-from slipgym._numba.switches import DISABLED
 
 P = ParamSpec("P")
 R = TypeVar("R")
+VARIABLE = "SLIPGYM_NUMBA_DISABLE"
+OPTIMISATIONS = ("pointers", "prefetch")
+"""What can be switched off: a module of this package each. Results are the same bit for bit."""
 
 
-class Decorator(Protocol):
-    """Compiles a function; type checkers see its own signature."""
+def read_disabled(value: str) -> frozenset[str]:
+    """Names in a value of the environment variable.
 
-    def __call__(self, function: Callable[P, R], /) -> Callable[P, R]:
-        """The compiled function."""
-        ...
+    Raises:
+        ValueError: A name is not one of `OPTIMISATIONS`.
+    """
+    names = frozenset(name.strip() for name in value.split(",") if name.strip())
+    for name in sorted(names - set(OPTIMISATIONS)):
+        raise ValueError(f"{VARIABLE}: {name!r} must be one of {', '.join(OPTIMISATIONS)}")
+    return names
 
 
-def _decorator(**options: Any) -> Decorator:
-    """`estimator._numba.caching.compiler` with programs of their own for each set of switches."""
+DISABLED = read_disabled(os.environ.get(VARIABLE, ""))
+"""The optimisations that are switched off in this process."""
+
+
+def _decorator(**options: Any) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """`estimator._numba.caching.compiler` with programs of their own for each set of switches.
+
+    Type checkers see the function's own signature.
+    """
     return compiler(tuple(sorted(DISABLED)), error_model="numpy", **options)
 
 
@@ -66,17 +83,9 @@ def _explain() -> None:
 
 @contextmanager
 def patience(what: str, programs: int = 1, after: float = 2.0) -> Iterator[Callable[[], None]]:
-    """Say on stderr why it takes so long, if it does: what is not stored has to be compiled.
+    """Say on stderr, after some time [s], why it takes so long: what is not stored has to be compiled.
 
-    A terminal shows how far it is, too.
-
-    Args:
-        what: What is compiled.
-        programs: Number of its programs.
-        after: Time until the message [s].
-
-    Yields:
-        What to call after each program.
+    A terminal shows how many of the programs are done, too. Yields what to call after each program.
     """
     begun, done, over = time.perf_counter(), [0], threading.Event()
 

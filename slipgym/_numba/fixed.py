@@ -1,13 +1,15 @@
-"""Arguments of compiled functions that stay the same between calls.
+"""Arguments of compiled functions that stay the same between calls, and calls without numba's dispatch.
 
 At each call from Python, numba takes every array apart and allocates a record of its owner. PyBullet's
 environment passes sixty small arrays a control step. Here this is done once: the compiled function finds
-what it needs at an address.
+what it needs at an address. The dispatch looks at the type of every argument at every call, which takes
+microseconds for arrays of records.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,11 +22,7 @@ from slipgym._numba.pointers import Pointer
 
 
 class FixedType(types.Type):
-    """Numba type of a `Fixed`.
-
-    Args:
-        kind: Numba type of its value.
-    """
+    """Numba type of a `Fixed`, by that of its value."""
 
     def __init__(self, kind: Any) -> None:
         super().__init__(name=f"Fixed({kind})")
@@ -79,6 +77,17 @@ def _words(value: Any) -> Iterator[int]:
         yield from (0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
     else:
         raise TypeError(f"{type(value).__name__} cannot be fixed; it must be None, a pointer or an array")
+
+
+def entry_point(function: Any, kinds: Sequence[Any]) -> Callable[..., Any]:
+    """The machine code of a compiled function for arguments of some types, which it does not check."""
+    function.compile(tuple(kinds))
+    return function.overloads[tuple(kinds)].entry_point
+
+
+def direct_call(function: Any, first: Sequence[Any], *kinds: Any) -> Callable[..., Any]:
+    """A compiled function with its first arguments, arrays or None, to be called with more of some types."""
+    return partial(entry_point(function, (*map(typeof, first), *kinds)), *first)
 
 
 def _opening(_: Any, fixed: Any) -> Any:

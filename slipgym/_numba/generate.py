@@ -30,12 +30,9 @@ def generate(
         arguments: Names of its arguments.
         body: Lines of its body, indented relative to each other.
         namespace: Globals of the function: constants, modules and compiled functions that the body uses.
-        decorator: Compiles it: `slipgym._numba.compiled.compiled` or `unlocked`.
+        decorator: Compiles it; what it returns is returned.
         file: `__file__` of the module that declares the table; the compiled code is cached beside it.
         doc: Docstring.
-
-    Returns:
-        What the decorator returns.
 
     Raises:
         SyntaxError: The body is not Python; the message holds the line.

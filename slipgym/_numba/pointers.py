@@ -13,28 +13,20 @@ from numba.core import cgutils
 from numba.experimental.function_type import FunctionModel
 from numba.extending import NativeValue, register_model, unbox
 
-from slipgym._numba.switches import DISABLED
+from slipgym._numba.compiled import DISABLED
 
 _ENABLED = "pointers" not in DISABLED
 
 
 class Known(types.FunctionType):
-    """Numba type of a `Pointer` in the signature of a compiled function.
-
-    Args:
-        signature: Signature of the function pointed to.
-    """
+    """Numba type of a `Pointer` in the signature of a compiled function, with the signature pointed to."""
 
 
 class Pointer:
-    """Address of a compiled function, looked up once; with the optimisation off, at every call.
+    """Address of a function compiled for a signature, looked up once; at every call with `pointers` off.
 
     The `Known` parameter that it is passed to has the function's signature, or one whose arguments are passed
     in the same way: arrays of other records, for example.
-
-    Args:
-        function: The compiled function.
-        signature: Its signature.
     """
 
     def __init__(self, function: Any, signature: Any) -> None:

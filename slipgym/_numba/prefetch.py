@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from estimator._numba.memory import LINE, ask
-from slipgym._numba.compiled import unlocked
-from slipgym._numba.switches import DISABLED
+from slipgym._numba.compiled import DISABLED, unlocked
 
 HEAD = 704
 """Bytes of a record that are prefetched. In longer records, fields that most steps do not need come last."""

@@ -1,10 +1,38 @@
 """Base class of the configuration models: immutable, strictly typed, finite numbers only."""
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
-from slipgym.config.plain import plain
+
+def plain(value: Any, seen: dict[int, Any] | None = None) -> Any:
+    """Return a value without numpy in it: numbers as int or float, arrays as lists, mappings as dicts.
+
+    Other values stay as they are, and so does a container inside itself.
+
+    Args:
+        value: Any value.
+        seen: Containers that were converted, by identity.
+    """
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, np.generic):
+        return float(value) if isinstance(value, np.floating) else value.item()
+    if not isinstance(value, Mapping | list | tuple):
+        return value
+    seen = {} if seen is None else seen
+    if id(value) in seen:
+        return seen[id(value)]
+    seen[id(value)] = value
+    if isinstance(value, Mapping):
+        made: Any = {plain(key, seen): plain(each, seen) for key, each in value.items()}
+    else:
+        made = [plain(each, seen) for each in value]
+        made = tuple(made) if isinstance(value, tuple) else made
+    seen[id(value)] = made
+    return made
 
 
 class Frozen(BaseModel):

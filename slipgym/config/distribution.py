@@ -43,11 +43,7 @@ class Distribution(Frozen):
         return min(values), max(values)
 
     def at(self, share: float) -> float:
-        """The quantile of the distribution: a value below which a fraction of the samples lies.
-
-        Args:
-            share: The fraction, in [0, 1).
-        """
+        """The quantile: a value below which a fraction in [0, 1) of the samples lies."""
         return quantile(*self.parameters, self.choices or (), share)
 
     @property
@@ -66,13 +62,8 @@ def quantile(
 ) -> float:
     """The number of a distribution below which a fraction of the samples lies; it can be compiled.
 
-    Args:
-        kind: EVEN, LOGARITHMIC or CHOICES.
-        low: Smallest value.
-        high: Largest value.
-        span: Length of the range, or its logarithmic length.
-        choices: Values of the same probability.
-        share: The fraction, in [0, 1).
+    `kind` is EVEN, LOGARITHMIC or CHOICES; `span` is the length of the range, or its logarithmic length;
+    `share` is the fraction, in [0, 1).
     """
     if kind == CHOICES:
         return choices[int(share * len(choices))]

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from pydantic import Field
 
-from estimator.suggestions import yaml_beside
 from slipgym.config import files
 from slipgym.config.base import Frozen
-from slipgym.config.errors import unknown
 from slipgym.config.randomization import Randomization, Ranges
-from slipgym.config.yaml_model import Choice, validate
+from slipgym.config.yaml_model import Choice, chosen, validate
 
 DEFAULT = "easy"
 """The level that changes nothing."""
@@ -28,14 +25,10 @@ class Level(Frozen):
     randomization: Ranges = Field(default=Ranges(), description="Distributions of the task that differ")
 
     def applied_to(self, randomization: Randomization, task: str) -> Randomization:
-        """A randomization with the level's distributions in place of its own of the same name.
+        """The randomization of a task, given by its key, with the level's distributions in place of its own.
 
         The level's disturbances are added. A disturbance of a kind that can happen only once in an episode,
         that is, any but a push, replaces the one of its kind.
-
-        Args:
-            randomization: The randomization.
-            task: Key of the task.
 
         Raises:
             ValueError: The distributions contradict each other.
@@ -71,11 +64,7 @@ class Chosen(NamedTuple):
 
 
 def level_names(task: str) -> list[str]:
-    """Names of the levels of a task: those of its file in `configs/levels`, or DEFAULT alone.
-
-    Args:
-        task: Key of the task.
-    """
+    """Names of the levels of a task: those of its file in `configs/levels`, or DEFAULT alone."""
     return list(_levels(task))
 
 
@@ -91,22 +80,12 @@ def load_level(choice: Choice, task: str) -> Chosen:
         FileNotFoundError: The file does not exist.
         ValueError: The name or a key is unknown, or a value is not allowed.
     """
-    source, name, prefix = "level argument", None, ()
-    if isinstance(choice, Mapping):
-        files.check_size(choice, source)
-        values = choice
-    elif not isinstance(choice, str | os.PathLike):
-        known = ", ".join(level_names(task))
-        raise ValueError(f"level = {choice!r} must be a name, a path or a mapping; names: {known}")
-    elif (path := Path(choice)).suffix in (".yaml", ".yml"):
-        source, values = os.fspath(path), files.read(path)
-    else:
-        known = _levels(task)
-        if choice not in known:
-            raise ValueError(unknown(f"level of {task}", str(choice), known, yaml_beside(path)))
-        source, name = os.fspath(files.folder() / _FOLDER / f"{task}.yaml"), str(choice)
-        values, prefix = known[name], (name,)
-    return Chosen(validate(values, Level, source, prefix=prefix), source, name)
+    known = _levels(task)
+    values, source, name = chosen(choice, "level", known, f" of {task}")
+    if not name:
+        return Chosen(validate(values, Level, source), source)
+    source = os.fspath(files.folder() / _FOLDER / f"{task}.yaml")
+    return Chosen(validate(known[name], Level, source, prefix=(name,)), source, name)
 
 
 def _levels(task: str) -> Mapping[str, Mapping[str, Any]]:

@@ -24,16 +24,12 @@ class Option:
     bounds: Mapping[str, Any] | None = None
     """Bounds in pydantic's words: gt, ge, lt, le."""
 
-
-@dataclass(frozen=True)
-class Reset:
-    """Metadata of a setting that `reset(options=...)` can fix."""
-
-    option: Option | None
-    """The option, where it is not of the setting's own type."""
-
     def __call__(self, schema: dict[str, Any]) -> None:
         """Pydantic calls this for a JSON schema, to which it adds nothing."""
+
+
+SAME = Option(None, "")
+"""Metadata of a setting that `reset(options=...)` can fix with a value of its own type."""
 
 
 def setting(meaning: str, unit: str = "", *, reset: bool | Option = False, **bounds: Any) -> Any:
@@ -48,8 +44,7 @@ def setting(meaning: str, unit: str = "", *, reset: bool | Option = False, **bou
             another type than the setting.
         **bounds: Bounds in pydantic's words: gt, ge, lt, le.
     """
-    option = reset if isinstance(reset, Option) else None
-    extra = Reset(option) if reset else None
+    extra = SAME if reset is True else reset or None
     return Field(description=f"{meaning} [{unit}]" if unit else meaning, json_schema_extra=extra, **bounds)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -40,18 +40,35 @@ def read_model(
         ValueError: The name is unknown, or a key or value is wrong; a line for each fault names its place and
             the valid values.
     """
+    values, source, name = chosen(choice, kind, names(folder))
+    if name:
+        path = files.folder() / folder / f"{name}.yaml"
+        values, source = files.read(path), os.fspath(path)
+    return validate(values, model, source, context)
+
+
+def chosen(
+    choice: Choice, kind: str, valid: Collection[str], of: str = ""
+) -> tuple[Mapping[str, Any], str, str]:
+    """The values of a choice and their origin, for error messages; or its name, one of the valid ones.
+
+    Raises:
+        FileNotFoundError: It looks like a path, but there is no such file.
+        ValueError: It is of another type, or the name is unknown, that of a `kind` and `of` what.
+    """
     if isinstance(choice, Mapping):
         files.check_size(choice, f"{kind} argument")
-        return validate(choice, model, f"{kind} argument", context)
+        return choice, f"{kind} argument", ""
     if not isinstance(choice, str | os.PathLike):
-        known = ", ".join(names(folder))
-        raise ValueError(f"{kind} = {choice!r} must be a name, a path or a mapping; names: {known}")
+        raise ValueError(
+            f"{kind} = {choice!r} must be a name, a path or a mapping; names: {', '.join(valid)}"
+        )
     path = Path(choice)
-    if path.suffix not in (".yaml", ".yml"):
-        if str(choice) not in names(folder):
-            raise ValueError(unknown(kind, str(choice), names(folder), yaml_beside(path)))
-        path = files.folder() / folder / f"{choice}.yaml"
-    return validate(files.read(path), model, os.fspath(path), context)
+    if path.suffix in (".yaml", ".yml"):
+        return files.read(path), os.fspath(path), ""
+    if str(choice) not in valid:
+        raise ValueError(unknown(f"{kind}{of}", str(choice), valid, yaml_beside(path)))
+    return {}, "", str(choice)
 
 
 def validate(

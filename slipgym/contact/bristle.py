@@ -85,17 +85,11 @@ def friction_and_jacobian(
     h: float,
     elastic_limit: float,
 ) -> tuple[Vector, float, float, Vector, float, Vector]:
-    """Friction of one bristle after a scaled displacement over time h, and its derivative.
+    """Friction of one bristle after a scaled displacement (x, y, r theta) over time h, and its derivative.
 
-    Args:
-        pad: PAD record with the parameters.
-        give: Compliance of the rubber behind it in this sub-step, 0 for none [m/N].
-        rear: What the rubber remembers of its shear [m].
-        z: Deflection, not longer than `elastic_limit`, scaled components [m].
-        normal: Normal force that the bristle carries [N].
-        delta: Scaled displacement (x, y, r theta) of the sub-step [m].
-        h: Sub-step [s].
-        elastic_limit: Longest deflection g / sigma_0 in this sub-step [m].
+    Rubber behind the bristle has the compliance `give` in this sub-step, 0 for none [m/N], and remembers
+    `rear` of its shear [m]. The deflection z, not longer than `elastic_limit` = g / sigma_0, and `delta` are
+    in scaled components [m]; `normal` is the force that the bristle carries [N].
 
     Returns:
         force: Friction opposing `delta`, scaled components [N].

@@ -79,13 +79,7 @@ def write_levels(pad: Pad, cells: Cells, exponent: float) -> None:
 def set_friction_levels(pad: Pad, cells: Cells, twist: Vector) -> float:
     """Set every cell's friction level and shorten its bristle to it; a second call replaces the first.
 
-    Args:
-        pad: PAD record with the parameters.
-        cells: Patch (CELL_FIELDS, n); updated.
-        twist: Scaled slip twist of the coming sub-step [m/s].
-
-    Returns:
-        Friction level, mean over the load [-].
+    Returns their mean over the load at a scaled slip twist of the coming sub-step [m/s].
     """
     load, z_x, z_y = cells[LOAD], cells[Z_X], cells[Z_Y]
     limit, kept = cells[ELASTIC_LIMIT], cells[RETENTION]
@@ -111,17 +105,9 @@ def set_friction_levels(pad: Pad, cells: Cells, twist: Vector) -> float:
 
 @compiled
 def update_friction_levels(pad: Pad, cells: Cells, delta: Vector, h: float, level: float) -> float:
-    """Set the friction levels anew if the solved slip displacement gives others.
+    """Set the friction levels anew if the slip displacement solved for with them gives others.
 
-    Args:
-        pad: PAD record.
-        cells: Patch (CELL_FIELDS, n) from `set_friction_levels`; updated.
-        delta: Scaled slip displacement solved for with these levels [m].
-        h: Sub-step [s].
-        level: Their mean over the load [-].
-
-    Returns:
-        The mean; `level` itself if the two differ by less than `stribeck.LEVEL_TOLERANCE`.
+    Returns their mean over the load; `level`, the one so far, if they differ by less than LEVEL_TOLERANCE.
     """
     expected, found = expected_twist(pad, h), (delta[0] / h, delta[1] / h, delta[2] / h)
     away = length((found[0] - expected[0], found[1] - expected[1], found[2] - expected[2]))

@@ -145,22 +145,7 @@ def iterate(
                 return motion, error
             step = solve_symmetric(jacobian, residual)
             part, start, before, steps, halvings = 1.0, motion, error, steps + 1, 0
-        motion = (
-            start[0] - part * step[0],
-            start[1] - part * step[1],
-            start[2] - part * step[2],
-        )
-
-
-@compiled
-def displacements(
-    pads: Pads, cells: np.ndarray | None, centre: Pair, motion: Vector
-) -> tuple[Vector, Vector]:
-    """Scaled slip displacements of the first and the last pad."""
-    return (
-        scaled_displacement(pads[0], cells, lever(pads[0], centre), motion),
-        scaled_displacement(pads[-1], cells, lever(pads[-1], centre), motion),
-    )
+        motion = (start[0] - part * step[0], start[1] - part * step[1], start[2] - part * step[2])
 
 
 @compiled
@@ -197,7 +182,10 @@ def step_pads(
     motion, anew = guess, False
     while True:  # at most twice; what is written once is compiled once
         motion = solve_motion(pads, cells, levels, inertia, centre, free, motion, h) if held else free
-        slips = displacements(pads, cells, centre, motion)
+        slips = (
+            scaled_displacement(pads[0], cells, lever(pads[0], centre), motion),
+            scaled_displacement(pads[-1], cells, lever(pads[-1], centre), motion),
+        )
         if anew or not held:
             break
         first = update_friction_level(pads[0], cells, 0, levels[0], before[0], slips[0], h)

@@ -95,13 +95,10 @@ _GUESSES = _guesses()
 
 @compiled
 def closest(t: float, m: float, size: float, s: float) -> tuple[float, float, float, float]:
-    """Closest point of the surface of a size to a point (t, m) with t, m >= 0 outside or on it.
+    """Closest point of a surface of a size to a point (t, m) outside or on it, tangential and torque over r.
 
-    Args:
-        t: Tangential component.
-        m: Component of torque over r.
-        size: Scale of the surface, > 0.
-        s: First guess, for instance that of the last point; in [0, 1].
+    Both components are >= 0, the size is > 0; s is a first guess in [0, 1], for instance that of the last
+    point.
 
     Returns:
         Its s; the point's two components; radius of curvature of the surface over that plus the distance to
@@ -133,16 +130,11 @@ def closest(t: float, m: float, size: float, s: float) -> tuple[float, float, fl
 
 @compiled
 def project(y: Vector, size: float, guess: float) -> tuple[Vector, Symmetric, float]:
-    """Closest point of the disc of a size to a scaled vector, and its derivative by the vector.
-
-    Args:
-        y: The vector.
-        size: Scale of the disc, > 0.
-        guess: First guess of the position on the curve, in [0, 1].
+    """Closest point of the disc of a size > 0 to a scaled vector, from a guess of its place on the curve.
 
     Returns:
-        The point; the derivative (xx, yy, tt, xy, xt, yt); the position on the curve, negative if the vector
-        lies within the disc.
+        The point; its derivative by the vector (xx, yy, tt, xy, xt, yt); the place on the curve, in [0, 1],
+        negative if the vector lies within the disc.
     """
     planar = math.sqrt(y[0] * y[0] + y[1] * y[1])
     spin = abs(y[2])

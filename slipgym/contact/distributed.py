@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import ArrayLike
 
-from slipgym.contact.anisotropy import friction_axes, stretch
 from slipgym.contact.distributed_kernel import prescribed_step
-from slipgym.contact.pressure import MAX_CELLS, patch_cells
-from slipgym.contact.records import LOAD, Z_X, Z_Y, X, Y, pads, patch, rest, rest_cells
-from slipgym.contact.validation import check_friction, finite_vector, positive
+from slipgym.contact.ellipsoid import PrescribedContact
+from slipgym.contact.pressure import MAX_CELLS, friction_axes, patch_cells, stretch
+from slipgym.contact.records import LOAD, Z_X, Z_Y, Vector, X, Y, pads, patch, rest_cells
+from slipgym.contact.validation import check_friction, positive
 
 
-class DistributedContact:
+class DistributedContact(PrescribedContact):
     """Friction of a patch of cells, each a bristle with Stribeck effect and true stick.
 
     The limit surface is the pressure's own, not an ellipsoid; see `slipgym.contact.distributed_kernel`
@@ -76,7 +73,6 @@ class DistributedContact:
             sigma_1=sigma_1,
             sigma_2=sigma_2,
         )
-        self._radius = float(radius)
         self._cells = patch(*patch_cells(pressure, int(cells)))
         if anisotropy:
             self._pads["axes"] = friction_axes(float(anisotropy))
@@ -90,7 +86,7 @@ class DistributedContact:
     @property
     def positions(self) -> np.ndarray:
         """Copy of the loaded cells' positions from the centre of pressure, shape (n, 2) [m]."""
-        return self._radius * self._cells[[X, Y]].T / self._pads["axes"][0, ::-1]
+        return self._pads["r"][0] * self._cells[[X, Y]].T / self._pads["axes"][0, ::-1]
 
     @property
     def shares(self) -> np.ndarray:
@@ -102,54 +98,13 @@ class DistributedContact:
         """Copy of the loaded cells' bristle states z, shape (n, 2) [m]."""
         return self._cells[[Z_X, Z_Y]].T
 
-    def step(self, twist: Sequence[float], normal_force: float, dt: float) -> tuple[float, float, float]:
-        """Advance by dt at a prescribed slip twist.
-
-        Args:
-            twist: Slip twist (v_x, v_y, omega) of the object relative to the pad at the
-                centre of pressure, mean over the step [m/s, m/s, rad/s].
-            normal_force: Normal force [N], >= 0.
-            dt: Time step [s], > 0.
-
-        Returns:
-            Friction (f_x, f_y, tau) on the object at the step's end [N, N, N m].
-
-        Raises:
-            ValueError: A value is not finite or outside its range.
-        """
-        v_x, v_y, omega = twist if len(twist) == 3 else finite_vector("twist", twist, 3)
-        if not (math.isfinite(v_x + v_y + omega) and 0.0 <= normal_force < math.inf and 0.0 < dt < math.inf):
-            finite_vector("twist", twist, 3)
-            positive(allow_zero=True, normal_force=normal_force)
-            positive(dt=dt)
-        if normal_force == 0.0:
-            self.reset()
-            return 0.0, 0.0, 0.0
-        return prescribed_step(
-            self._pads, self._cells, float(v_x), float(v_y), float(omega), float(normal_force), float(dt)
-        )
-
-    def change(self, mu_c: float, mu_s: float, effective_radius: float) -> None:
-        """Change the friction and the size of the patch; its pressure profile and its bristles stay.
-
-        Args:
-            mu_c: Coulomb friction [-], > 0.
-            mu_s: Static friction [-], >= mu_c.
-            effective_radius: Radius of the equivalent rim contact [m], > 0.
-
-        Raises:
-            ValueError: A value is outside its range, or the patch is a single cell, which has no radius.
-        """
-        check_friction(mu_c, mu_s)
-        positive(effective_radius=effective_radius)
-        present = self.effective_radius
-        if present == 0.0:
-            raise ValueError("a patch of one cell has no radius to change")
-        self._pads["mu_c"], self._pads["mu_s"] = mu_c, mu_s
-        self._radius *= effective_radius / present
-        self._pads["r"] = self._radius
-
     def reset(self) -> None:
         """Forget the bristle states, as after a loss of contact."""
-        rest(self._pads)
+        super().reset()
         rest_cells(self._cells)
+
+    def _advance(self, v_x: float, v_y: float, omega: float, normal: float, dt: float) -> Vector:
+        return prescribed_step(self._pads, self._cells, v_x, v_y, omega, normal, dt)
+
+    def _resize(self, effective_radius: float, present: float) -> None:
+        self._pads["r"] *= effective_radius / present

@@ -106,17 +106,9 @@ def friction_sum(
 
 @compiled_sum
 def friction_and_jacobian(pad: Pad, cells: Cells, delta: Vector, h: float) -> tuple[Vector, Symmetric]:
-    """Friction of all cells after a scaled displacement over time h, and its derivative.
+    """Friction of all cells opposing a scaled displacement over time h [N], and its derivative by it [N/m].
 
-    Args:
-        pad: PAD record with the parameters and the normal force.
-        cells: Patch (CELL_FIELDS, n) from `set_friction_levels`; read only.
-        delta: Scaled displacement (x, y, r theta) of the sub-step [m].
-        h: Sub-step [s].
-
-    Returns:
-        force: Friction opposing `delta`, scaled components [N].
-        derivative: Of `force` by `delta`, symmetric (xx, yy, tt, xy, xt, yt) [N/m].
+    The cells are read only; `set_friction_levels` has prepared them.
     """
     if pad.give > 0.0:
         return friction_sum(pad, cells, delta, h, pad.give, (pad.recall[0], pad.recall[1]))
@@ -201,16 +193,9 @@ def detach(pad: Pad, cells: Cells, twist: Vector) -> None:
 def prescribed_step(
     pads: np.ndarray, cells: Cells, v_x: float, v_y: float, omega: float, normal: float, h: float
 ) -> Vector:
-    """Advance a patch by a prescribed slip twist at its centre of pressure.
+    """Advance a patch over h [s] by a prescribed slip twist at its centre of pressure [m/s, m/s, rad/s].
 
-    Args:
-        pads: PAD (1,); updated. An array: numba converts a single record ten times as slowly.
-        cells: Patch (CELL_FIELDS, n); updated.
-        v_x: Slip twist, with `v_y` and `omega` [m/s, m/s, rad/s].
-        v_y: See `v_x`.
-        omega: See `v_x`.
-        normal: Normal force, > 0 [N].
-        h: Time step [s].
+    `pads` is PAD (1,), an array: numba converts a single record ten times as slowly. `normal` is > 0 [N].
 
     Returns:
         Friction (f_x, f_y, tau) on the object [N, N, N m].

@@ -2,16 +2,84 @@
 
 from __future__ import annotations
 
+import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 import numpy as np
 
-from slipgym.contact.records import DISC, ELLIPSOID, pads, rest
+from slipgym.contact.records import DISC, ELLIPSOID, Vector, pads, rest
 from slipgym.contact.soft_kernel import prescribed_step
 from slipgym.contact.validation import check_friction, finite_vector, positive
 
 
-class EllipsoidContact:
+class PrescribedContact(ABC):
+    """Friction of one pad, the first record of `_pads`, for a prescribed slip twist."""
+
+    _pads: np.ndarray
+
+    @property
+    def effective_radius(self) -> float:
+        """Radius r of the equivalent rim contact, torque in steady pure spin over mu_c f_n [m]."""
+        return float(self._pads["r"][0])
+
+    def step(self, twist: Sequence[float], normal_force: float, dt: float) -> tuple[float, float, float]:
+        """Advance by dt at a prescribed slip twist.
+
+        Args:
+            twist: Slip twist (v_x, v_y, omega) of the object relative to the pad at the
+                centre of pressure, mean over the step [m/s, m/s, rad/s].
+            normal_force: Normal force [N], >= 0.
+            dt: Time step [s], > 0.
+
+        Returns:
+            Friction (f_x, f_y, tau) on the object at the step's end [N, N, N m].
+
+        Raises:
+            ValueError: A value is not finite or outside its range.
+        """
+        v_x, v_y, omega = twist if len(twist) == 3 else finite_vector("twist", twist, 3)
+        if not (math.isfinite(v_x + v_y + omega) and 0.0 <= normal_force < math.inf and 0.0 < dt < math.inf):
+            finite_vector("twist", twist, 3)
+            positive(allow_zero=True, normal_force=normal_force)
+            positive(dt=dt)
+        if normal_force == 0.0:
+            self.reset()
+            return 0.0, 0.0, 0.0
+        return self._advance(float(v_x), float(v_y), float(omega), float(normal_force), float(dt))
+
+    def change(self, mu_c: float, mu_s: float, effective_radius: float) -> None:
+        """Change the friction and the size of the contact; its pressure profile and its bristles stay.
+
+        Args:
+            mu_c: Coulomb friction [-], > 0.
+            mu_s: Static friction [-], >= mu_c.
+            effective_radius: Radius of the equivalent rim contact [m], > 0.
+
+        Raises:
+            ValueError: A value is outside its range, or the contact is a single cell, which has no radius.
+        """
+        check_friction(mu_c, mu_s)
+        positive(effective_radius=effective_radius)
+        present = self.effective_radius
+        if present == 0.0:
+            raise ValueError("a patch of one cell has no radius to change")
+        self._pads["mu_c"], self._pads["mu_s"] = mu_c, mu_s
+        self._resize(effective_radius, present)
+
+    def reset(self) -> None:
+        """Forget the bristle states, as after a loss of contact."""
+        rest(self._pads)
+
+    @abstractmethod
+    def _advance(self, v_x: float, v_y: float, omega: float, normal: float, dt: float) -> Vector:
+        """Friction after a step that `step` has checked."""
+
+    def _resize(self, effective_radius: float, present: float) -> None:
+        self._pads["r"] = effective_radius
+
+
+class EllipsoidContact(PrescribedContact):
     """Friction of one pad with an ellipsoidal limit surface, Stribeck effect and true stick.
 
     The scaled twist (v_x, v_y, r omega) drives three bristle states; see
@@ -63,60 +131,15 @@ class EllipsoidContact:
         )
 
     @property
-    def effective_radius(self) -> float:
-        """Radius r of the equivalent rim contact [m]."""
-        return float(self._pads["r"][0])
-
-    @property
     def bristles(self) -> np.ndarray:
         """Copy of the bristle state z in scaled displacement (x, y, r theta), shape (3,) [m]."""
         return self._pads["z"][0].copy()
 
-    def step(self, twist: Sequence[float], normal_force: float, dt: float) -> tuple[float, float, float]:
-        """Advance by dt at a prescribed slip twist.
-
-        Args:
-            twist: Slip twist (v_x, v_y, omega) of the object relative to the pad at the
-                centre of pressure [m/s, m/s, rad/s].
-            normal_force: Normal force [N], >= 0.
-            dt: Time step [s], > 0.
-
-        Returns:
-            Friction (f_x, f_y, tau) on the object [N, N, N m].
-
-        Raises:
-            ValueError: A value is not finite or outside its range.
-        """
-        velocity = finite_vector("twist", twist, 3)
-        positive(allow_zero=True, normal_force=normal_force)
-        positive(dt=dt)
-        self._pads["normal"] = normal_force
-        if normal_force == 0.0:
-            self.reset()
-        else:
-            prescribed_step(self._pads[0], velocity, dt)
-        f_x, f_y, tau = self._pads["wrench"][0]
-        return float(f_x), float(f_y), float(tau)
-
-    def change(self, mu_c: float, mu_s: float, effective_radius: float) -> None:
-        """Change the friction and the radius r; the bristle state stays.
-
-        Args:
-            mu_c: Coulomb friction [-], > 0.
-            mu_s: Static friction [-], >= mu_c.
-            effective_radius: Radius of the equivalent rim contact [m], > 0.
-
-        Raises:
-            ValueError: A value is outside its range.
-        """
-        check_friction(mu_c, mu_s)
-        positive(effective_radius=effective_radius)
-        for field, value in (("mu_c", mu_c), ("mu_s", mu_s), ("r", effective_radius)):
-            self._pads[field] = value
-
-    def reset(self) -> None:
-        """Forget the bristle state, as after a loss of contact."""
-        rest(self._pads)
+    def _advance(self, v_x: float, v_y: float, omega: float, normal: float, dt: float) -> Vector:
+        self._pads["normal"] = normal
+        prescribed_step(self._pads[0], np.array((v_x, v_y, omega)), dt)
+        f_x, f_y, tau = self._pads["wrench"][0].tolist()
+        return f_x, f_y, tau
 
 
 class DiscContact(EllipsoidContact):

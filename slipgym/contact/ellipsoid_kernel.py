@@ -42,12 +42,6 @@ NONE: Vector = (0.0, 0.0, 0.0)
 
 
 @compiled
-def expected_level(pad: Pad, h: float) -> float:
-    """Friction level g at the slip speed expected in the middle of a sub-step of h [-]."""
-    return level_at(pad, expected_speed(pad, h))
-
-
-@compiled
 def expected_speed(pad: Pad, h: float) -> float:
     """Slip speed expected in the middle of a sub-step of h [m/s]."""
     return max(0.0, pad.slip_speed + (pad.half_step + 0.5 * h) * pad.slip_rate)
@@ -63,7 +57,7 @@ def friction_and_jacobian(pad: Pad, delta: Vector, h: float, level: float) -> tu
 @compiled
 def set_friction_level(pad: Pad, h: float) -> float:
     """Set the friction level of a sub-step and shorten the bristles to it; returns the level [-]."""
-    level = expected_level(pad, h)
+    level = level_at(pad, expected_speed(pad, h))
     shorten_bristles(pad, level)
     return level
 
@@ -79,17 +73,10 @@ def shorten_bristles(pad: Pad, level: float) -> None:
 
 @compiled
 def found_level(pad: Pad, slip: Vector, stuck: bool, h: float, level: float) -> float:
-    """Friction level at the slip speed of a solved sub-step [-].
+    """Friction level at the slip speed of a sub-step that was solved with `level` [-].
 
-    Args:
-        pad: PAD record.
-        slip: Scaled slip displacement solved for with `level` [m].
-        stuck: Whether the bristles stick after it.
-        h: Sub-step [s].
-        level: The level so far [-].
-
-    Returns:
-        The level; `level` itself if the two differ by less than LEVEL_TOLERANCE.
+    `slip` is the scaled slip displacement [m], `stuck` whether the bristles stick after it. Returns `level`
+    itself if the two differ by less than LEVEL_TOLERANCE.
     """
     expected = expected_speed(pad, h)
     if stuck and level_unchanged(pad, max(expected, pad.slip_speed)):

@@ -33,11 +33,8 @@ def elements(*parts: np.dtype) -> list[str]:
 def comparison(name: str, parts: tuple[np.dtype, ...], file: str, doc: str) -> Any:
     """Generate a compiled function (first, second) -> bool: whether two records agree in all bits of parts.
 
-    Args:
-        name: Name of the function.
-        parts: Parts of 8-byte numbers that the records begin with.
-        file: `__file__` of the module that declares them.
-        doc: Docstring.
+    The parts hold 8-byte numbers, and the records begin with them. `file` is `__file__` of the module that
+    declares them.
     """
     count = len(elements(*parts))
     body = [
@@ -50,27 +47,15 @@ def comparison(name: str, parts: tuple[np.dtype, ...], file: str, doc: str) -> A
 
 
 def transfer(name: str, parts: tuple[np.dtype, ...], file: str, doc: str) -> Any:
-    """Generate a compiled function (source, target) that copies all fields of parts.
-
-    Args:
-        name: As in `comparison`, like the others.
-        parts: See there.
-        file: See there.
-        doc: See there.
-    """
+    """Generate a compiled function (source, target) that copies all fields of parts, see `comparison`."""
     body = [f"target.{each} = source.{each}" for each in elements(*parts)]
     return generate(name, ("source", "target"), body, {}, compiled, file, doc)
 
 
 def reset(name: str, parts: tuple[np.dtype, ...], starts: Mapping[str, str], file: str, doc: str) -> Any:
-    """Generate a compiled function (record) that sets all fields of parts, to 0 unless given.
+    """Generate a compiled function (record) that sets all fields of parts, see `comparison`.
 
-    Args:
-        name: As in `comparison`, like the others.
-        parts: See there.
-        starts: Element, as in `elements` -> expression of `record`.
-        file: See there.
-        doc: See there.
+    `starts` maps an element, as in `elements`, to an expression of `record`; the others become 0.
     """
     body = [f"record.{each} = {starts.get(each, '0')}" for each in elements(*parts)]
     return generate(name, ("record",), body, {}, compiled, file, doc)

@@ -24,12 +24,8 @@ def press(
 ) -> Vector:
     """Normal force of a pad and its moment about the pad's centre, per stiffness; the pad does not pull.
 
-    Args:
-        depth: Compression at the pad's centre; negative is a gap [m].
-        slope: Change of the depth per length along the pad's two axes [-].
-        rates: Rate of the depth and of the slope [m/s, 1/s, 1/s].
-        radius: Of the pad [m].
-        relaxation: Damping over stiffness [s].
+    The compression at the pad's centre is `depth`, negative for a gap [m], and changes by `slope` along the
+    pad's two axes [-]; `rates` are theirs [m/s, 1/s, 1/s]. `relaxation` is damping over stiffness [s].
 
     Returns:
         Normal force [m], and the integral of pressure times position along both axes [m^2]; the stiffness

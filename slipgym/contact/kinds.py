@@ -38,14 +38,8 @@ def scaled_displacement(pad: Pad, cells: np.ndarray | None, arm: Pair, motion: V
 
 
 @compiled
-def generalised_force(pad: Pad, arm: Pair, vector: Vector) -> Vector:
-    """Generalised force S^T f of a scaled friction vector f about the centre of mass."""
-    return even_force(pad, arm, (pad.axes[0] * vector[0], pad.axes[1] * vector[1], vector[2]))
-
-
-@compiled
 def even_force(pad: Pad, arm: Pair, vector: Vector) -> Vector:
-    """`generalised_force` of a pad that is the same in all directions."""
+    """Generalised force S^T f about the centre of mass, of a pad that is the same in all directions."""
     return vector[0], vector[1], arm[0] * vector[1] - arm[1] * vector[0] + pad.radius * vector[2]
 
 
@@ -94,7 +88,8 @@ def friction_and_jacobian(
             force, derivative = distributed_kernel.friction_and_jacobian(pad, cells[i], delta, h)
         else:
             force, derivative = soft_kernel.friction_and_jacobian(pad, delta, level)
-        return generalised_force(pad, arm, force), generalised_stiffness(pad, arm, derivative)
+        force = pad.axes[0] * force[0], pad.axes[1] * force[1], force[2]
+        return even_force(pad, arm, force), generalised_stiffness(pad, arm, derivative)
     force, isotropic, radial, direction, _, _ = ellipsoid_kernel.friction_and_jacobian(pad, delta, h, level)
     nx, ny, nt = even_force(pad, arm, direction)
     return even_force(pad, arm, force), (

@@ -20,6 +20,9 @@ from typing import Literal, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from slipgym._numba.compiled import compiled
+from slipgym.contact.records import Cells, X, Y
+
 RINGS = 400
 SECTORS = 2000  # a multiple of 8: points have the symmetry of the grid
 MAX_CELLS = 201
@@ -111,3 +114,20 @@ def _given(loads: np.ndarray, cells: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _names() -> str:
     return ", ".join(map(repr, PRESSURES))
+
+
+@compiled
+def stretch(cells: Cells, axes: np.ndarray) -> None:
+    """Stretch the cells (CELL_FIELDS, m) of an anisotropic pad by its `axes` (2,).
+
+    A scaled displacement along x changes with the position along y, and the other way round.
+    """
+    for i in range(cells.shape[1]):
+        cells[X, i] *= axes[1]
+        cells[Y, i] *= axes[0]
+
+
+@compiled
+def friction_axes(anisotropy: float) -> tuple[float, float]:
+    """Friction along a pad's x and y over its mean [-]."""
+    return 1.0 + anisotropy, 1.0 - anisotropy

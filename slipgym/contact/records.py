@@ -166,12 +166,7 @@ def pads(shape: int | tuple[int, ...], **parameters: float) -> np.ndarray:
 
 
 def patch(positions: np.ndarray, loads: np.ndarray) -> np.ndarray:
-    """Return cells at rest, shape (CELL_FIELDS, n).
-
-    Args:
-        positions: From the centre of pressure, over the pad's r, shape (n, 2) [-].
-        loads: Fractions of the normal force, shape (n,), sum 1.
-    """
+    """Cells at rest, (CELL_FIELDS, n), of positions (n, 2) over the pad's r and loads (n,), sum 1 [-]."""
     cells = np.zeros((CELL_FIELDS, len(loads)))
     cells[X], cells[Y] = positions.T
     cells[LOAD] = loads

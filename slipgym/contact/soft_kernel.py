@@ -14,9 +14,10 @@ import numpy as np
 from slipgym._numba.compiled import compiled, compiled_call
 from slipgym.contact import bristle
 from slipgym.contact.disc_surface import project
-from slipgym.contact.ellipsoid_kernel import expected_level, found_level
+from slipgym.contact.ellipsoid_kernel import expected_speed, found_level
 from slipgym.contact.records import DISC, Pad, Symmetric, Vector
 from slipgym.contact.soft_pad import advance_age, advance_shear, load_pad, prepare_shear
+from slipgym.contact.stribeck import level_at
 
 
 @compiled
@@ -96,7 +97,7 @@ def set_friction_level(pad: Pad, h: float) -> float:
         for a in range(3):
             pad.stiffness[a] = stiffness[a]
         pad.softer[0], pad.softer[1] = bristle.softening(stiffness, pad.give)
-    level = expected_level(pad, h)
+    level = level_at(pad, expected_speed(pad, h))
     shorten_bristles(pad, level)
     return level
 

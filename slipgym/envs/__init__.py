@@ -38,7 +38,7 @@ from slipgym.envs.docstring import docstring
 from slipgym.envs.slip_env import SlipEnv
 from slipgym.registration import ENVIRONMENTS, register_id
 from slipgym.tasks import TASKS, Task
-from slipgym.tasks.table import add
+from slipgym.tasks.configure import add
 
 if TYPE_CHECKING:
     from slipgym.envs.vector_env import SlipVectorEnv

@@ -16,10 +16,10 @@ from typing import Annotated, Any, Literal, TypeAlias, TypedDict, get_args, get_
 from gymnasium.vector import AutoresetMode
 
 import estimator as estimators
+from slipgym.config.base import plain
 from slipgym.config.errors import unknown
 from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
 from slipgym.config.physics import ContactModel
-from slipgym.config.plain import plain
 
 FrictionSource: TypeAlias = Literal["estimated", "true", "nominal", "none"]
 ActionMode: TypeAlias = Literal[

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from numba import types
 
-from slipgym._numba.calls import entry_point
 from slipgym._numba.compiled import compiled, patience
-from slipgym._numba.fixed import Fixed, FixedType, opened
+from slipgym._numba.fixed import Fixed, FixedType, entry_point, opened
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMPONENT
+from slipgym.envs.control_step import F2, F3, array
 from slipgym.envs.nan_guard import Guard
 from slipgym.envs.observation import SENSORS, ObservationBuffers
 from slipgym.envs.reset_kernels import HARDWARE, START, WARM_UP_STEPS
@@ -24,14 +24,11 @@ from slipgym.envs.simulation import Simulation
 from slipgym.envs.stages import (
     ACTION,
     BUFFERS,
-    F2,
-    F3,
     FRESH,
     INFOS,
     STATE,
     VALUES_TYPE,
     WHOLE,
-    array,
     cells_type,
     compiled_stages,
 )
@@ -71,14 +68,11 @@ def _finish(fixed, pose, wrist, normals, at):
 
     Args:
         fixed: As in `_begin`.
-        pose: As in `slipgym.world.bullet_rows.read_engine`, like the next two.
+        pose: As in `slipgym.world.bullet_rows.read_engine`, like `wrist` and `normals`.
         wrist: Positions of the joints.
         normals: Normal forces.
-        at: Row of the guard's table that `slipgym.envs.nan_guard.note` writes; -1: a step of a world that
+        at: Row that `slipgym.envs.nan_guard.note` writes, whose value is returned; -1: a step of a world that
             settles, which is only measured.
-
-    Returns:
-        As `slipgym.envs.nan_guard.note`.
     """
     stages, state, force_torque, buffers, infos, kept, cells = opened(fixed)
     read_engine(state.worlds, state.fingers, pose, wrist, normals)
@@ -188,8 +182,7 @@ class BulletSimulation(Simulation):
     def keep_samples(self, count: int) -> None:
         """Have the force/torque sensors keep their newest samples for the caller to read; they keep none yet.
 
-        Args:
-            count: How many, at most `slipgym.sensors.force_torque.HISTORY`.
+        At most `slipgym.sensors.force_torque.HISTORY` of them.
         """
         self.plant.force_torque = roomier(self.plant.force_torque, count)
         self._choose_programs()
@@ -254,12 +247,7 @@ class BulletSimulation(Simulation):
         self._calls = SimpleNamespace(**{name: partial(each, fixed) for name, each in programs.items()})
 
     def _control_step(self, action: Fixed, fresh: bool) -> None:
-        """The stages of `slipgym.envs.control_step`; PyBullet moves the bodies.
-
-        Args:
-            action: As in `_begin`.
-            fresh: Whether the reward terms start at 0.
-        """
+        """The stages of `slipgym.envs.control_step`; PyBullet moves the bodies. Arguments as of `_begin`."""
         world, calls = self.world, self._calls
         mass = calls.begin(action, fresh)
         if self.plant.tilt is not None:

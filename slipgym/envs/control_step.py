@@ -11,61 +11,76 @@ the task, `update` of the estimator.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+from numba import from_dtype, types
 
 from estimator._numba.memory import lent
+from estimator.estimate import ESTIMATE
 from slipgym._numba.compiled import compiled, pointed, unlocked
 from slipgym._numba.fixed import opened
+from slipgym.contact.records import PAD
 from slipgym.envs.actions import interpret
 from slipgym.envs.infos import write_infos
 from slipgym.envs.observation import combine, guess, observe
+from slipgym.sensors.markers import MARKERS
 from slipgym.sensors.measure import measure
-from slipgym.sensors.owned import measure_owned
+from slipgym.sensors.owned import GRIPPER, measure_owned
+from slipgym.sensors.slip_velocity import SLIP_SENSOR
 from slipgym.tasks.disturbance import disturb
-from slipgym.tasks.episode import begin_step
+from slipgym.tasks.episode import EPISODE, begin_step
+from slipgym.world.records import FINGER, WORLD
+
+
+def array(dtype: Any, ndim: int = 1, layout: str = "C") -> Any:
+    """Type of an array of numbers or records."""
+    return types.Array(from_dtype(dtype) if isinstance(dtype, np.dtype) else dtype, ndim, layout)
+
+
+F1, F2, F3 = (array(types.float64, ndim) for ndim in (1, 2, 3))
+BYTES = array(types.uint8, 2)
 
 
 class BatchState(NamedTuple):
-    """The arrays of n environments that a control step reads and writes, of the same types in all of them.
+    """The arrays of n environments that a control step reads and writes, with their types, the same in all.
 
     Two that are not, the patches of the contacts and the force/torque sensors, are passed apart.
     """
 
-    worlds: np.ndarray
+    worlds: Annotated[np.ndarray, array(WORLD)]
     """WORLD (n,): bodies and wrist."""
-    pads: np.ndarray
+    pads: Annotated[np.ndarray, array(PAD, 2)]
     """PAD (n, 2): friction state."""
-    fingers: np.ndarray
+    fingers: Annotated[np.ndarray, array(FINGER, 2)]
     """FINGER (n, 2): actuators."""
-    slip_sensors: np.ndarray
+    slip_sensors: Annotated[np.ndarray, array(SLIP_SENSOR, 2)]
     """SLIP_SENSOR (n, 2): sensors."""
-    grippers: np.ndarray
+    grippers: Annotated[np.ndarray, array(GRIPPER)]
     """GRIPPER (n,): where sensors are, and the motor."""
-    markers: np.ndarray
+    markers: Annotated[np.ndarray, array(MARKERS, 2)]
     """MARKERS (n, 2), or (0, 2) for none."""
-    parameters: np.ndarray
+    parameters: Annotated[np.ndarray, BYTES]
     """Bytes of the estimators' parameters, (2 n, p), or (1, p) for all."""
-    estimator_states: np.ndarray
+    estimator_states: Annotated[np.ndarray, BYTES]
     """Bytes of the estimators' states, (2 n, q)."""
-    estimates: np.ndarray
+    estimates: Annotated[np.ndarray, array(ESTIMATE)]
     """ESTIMATE (2 n,), finger by finger."""
-    episodes: np.ndarray
+    episodes: Annotated[np.ndarray, array(EPISODE)]
     """EPISODE (n,): task."""
-    commands: np.ndarray
+    commands: Annotated[np.ndarray, F2]
     """Commanded grip force and wrist velocity, (n, 4), see `slipgym.envs.actions.COMMANDS`."""
-    wrenches: np.ndarray
+    wrenches: Annotated[np.ndarray, F3]
     """Measured wrenches at the centre of pressure, (n, 2, 4) [N, N, N, N m]."""
-    twists: np.ndarray
+    twists: Annotated[np.ndarray, F3]
     """Measured slip twists at the centre of pressure, (n, 2, 3) [m/s, m/s, rad/s]."""
-    per_finger: np.ndarray
+    per_finger: Annotated[np.ndarray, F3]
     """Estimated mu_s, mu_c, r (n, 2, 3)."""
-    estimated: np.ndarray
+    estimated: Annotated[np.ndarray, F2]
     """Both fingers' estimates merged: `FRICTION_COLUMNS` and `DEVIATION_COLUMNS` (n, 11)."""
-    task_part: np.ndarray
+    task_part: Annotated[np.ndarray, F2]
     """The task's part of the observation, (n, k)."""
-    ground_truth: np.ndarray
+    ground_truth: Annotated[np.ndarray, F2]
     """True friction now, columns as `estimated`, (n, 11)."""
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from slipgym.config import TaskConfig
-from slipgym.config.plain import plain
+from slipgym.config.base import plain
 from slipgym.envs.arguments import Field, fields
 from slipgym.tasks import Task
 
@@ -80,14 +80,7 @@ def rebuilt(base: Any, kind: Any, arguments: Mapping[str, Any], state: Any) -> A
 
 
 def horizon(task: Task, settings: TaskConfig, blank: np.ndarray, frame_skip: int) -> int | None:
-    """Steps of an episode without reset options; None if episodes differ.
-
-    Args:
-        task: The task.
-        settings: Its settings.
-        blank: The values that all episodes begin with, EPISODE (1,).
-        frame_skip: Control steps per step.
-    """
+    """Steps of an episode without reset options; None if episodes differ. `blank` is EPISODE (1,)."""
     lengths = set()
     for seed in range(2):
         episode = blank.copy()

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, fields
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,7 @@ import numpy as np
 import estimator as estimators
 from estimator._numba.entry_point import entry_point
 from estimator.estimate import COMMON_STATE
-from estimator.parameters import Parameters, parameter
-from estimator.registry import Specification, specification
+from estimator.registry import specification
 from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.sensors import SensorsConfig
@@ -43,16 +42,6 @@ def chosen_estimator(choice: str | Mapping[str, Any] | None) -> dict[str, Any] |
     return {"name": name, **{key: parameters[key] for key in parameters if key in given or key not in STATED}}
 
 
-def informed(choice: dict[str, Any], config: Config) -> dict[str, Any]:
-    """The choice with what an estimator knows of the sensors: the latency that the preset states.
-
-    Of grippers as labs own them it knows the data sheet, too. It does not know what an episode samples.
-    """
-    known = {field.name for field in fields(specification(choice["name"]).parameters)}
-    stated = {LATENCY: config.sensors.slip.latency_samples, **_data_sheet(config.sensors)}
-    return {**{name: value for name, value in stated.items() if name in known}, **choice}
-
-
 def _data_sheet(sensors: SensorsConfig) -> dict[str, float]:
     """What is not measured, and deviations, of sensors other than those in each finger."""
     force, motor, markers = sensors.force_torque, sensors.motor, sensors.markers
@@ -75,51 +64,30 @@ def _data_sheet(sensors: SensorsConfig) -> dict[str, float]:
     return stated
 
 
-NO_ESTIMATOR = "slipgym.envs.estimates:SPECIFICATION"
-"""Name, for `estimator.make_batch`, of what stands in for the estimators with `estimator=None`."""
+_ANY = np.dtype(COMMON_STATE, align=True)
 
 
-@dataclass(frozen=True)
-class NoEstimatorParameters(Parameters):
-    """Friction that it states all the time, without confidence."""
-
-    mu_s0: float = parameter(0.9, "Stated mu_s.", "(0, inf)")
-    mu_c0: float = parameter(0.7, "Stated mu_c.", "(0, inf)")
-    r0: float = parameter(0.01, "Stated r.", "(0, inf)", "m")
-
-
-_STATE = np.dtype(COMMON_STATE, align=True)
-
-
-def _initial_states(parameters: np.ndarray) -> np.ndarray:
-    """States before the first sample, (m,) from parameters (m,)."""
-    states = np.zeros(len(parameters), _STATE)
-    for name in ("mu_s", "mu_c", "r"):
-        states[name] = parameters[f"{name}0"]
-    return states
-
-
-@entry_point(_STATE, NoEstimatorParameters.dtype())
-def _update_batch(states, parameters, t, wrenches, twists, estimates):
-    """Changes nothing."""
-
-
-SPECIFICATION = Specification(NO_ESTIMATOR, NoEstimatorParameters, _initial_states, _update_batch)
+@entry_point(_ANY, _ANY)
+def leave(states, parameters, t, wrenches, twists, estimates):
+    """Changes nothing: the update of estimators with `estimator=None`."""
 
 
 def make_estimators(choice: dict[str, Any] | None, config: Config, n: int) -> estimators.BatchEstimator:
-    """The estimators of n fingers; without a choice they state the default's start values all the time.
+    """The estimators of n fingers, from `chosen_estimator`, with what they know of the sensors.
 
-    Args:
-        choice: From `chosen_estimator`.
-        config: Configuration.
-        n: Number of fingers.
+    That is the latency that the preset states and, of grippers as labs own them, the data sheet; not what an
+    episode samples.
+
+    Without a choice they state the default's start values all the time: `leave` updates them.
     """
     if choice is not None:
-        return estimators.make_batch(n=n, **informed(choice, config))
+        known = {field.name for field in fields(specification(choice["name"]).parameters)}
+        stated = {LATENCY: config.sensors.slip.latency_samples, **_data_sheet(config.sensors)}
+        own = {name: value for name, value in stated.items() if name in known}
+        return estimators.make_batch(n=n, **{**own, **choice})
     start = estimators.make_batch(estimators.DEFAULT, 1).estimates[0]
     stated = {f"{name}0": start[name] for name in ("mu_s", "mu_c", "r")}
-    return estimators.make_batch(NO_ESTIMATOR, n, **stated)
+    return estimators.make_batch("rls", n, **stated)
 
 
 @compiled

@@ -16,7 +16,7 @@ import numpy as np
 
 from slipgym._numba.compiled import compiled
 from slipgym._numba.generate import generate
-from slipgym.envs.readings import row_writer
+from slipgym.envs.readings import of_state, row_writer
 
 
 class Info(NamedTuple):
@@ -136,13 +136,7 @@ class InfoBuffer(NamedTuple):
         return _with_masks({**infos, "reward_terms": _with_masks(scaled, left)}, left)
 
     def some(self, rows: np.ndarray, terms: Sequence[str], estimating: bool) -> dict[str, Any]:
-        """Copies of the infos of some environments (m,), zero elsewhere, with masks; empty for no rows.
-
-        Args:
-            rows: Indices of the environments.
-            terms: Names of the reward terms.
-            estimating: Whether there are estimates.
-        """
+        """Copies of the infos of some environments (m,), zero elsewhere, with masks; empty for no rows."""
         if not rows.size:
             return {}
         n = len(self.flags)
@@ -158,30 +152,30 @@ def _with_masks(infos: dict[str, Any], left: Iterator[np.ndarray]) -> dict[str, 
     return {**infos, **{f"_{name}": next(left) for name in infos}}
 
 
-_ARRAYS = "worlds", "pads", "fingers", "episodes", "ground_truth", "estimated", "per_finger"
+_BEFORE = of_state("worlds", "pads", "fingers", "episodes", "ground_truth", "estimated", "per_finger")
 _write_numbers = row_writer(
     "_write_numbers",
     [read for info in _LAYOUT for read in info.reads],
-    _ARRAYS,
+    ("state",),
     __file__,
     "Write `NUMBERS` of environment i, as they are in a row.",
+    _BEFORE,
 )
 _write_flags = row_writer(
     "_write_flags",
     [*(info.read for info in FLAGS), _EARLY],
-    _ARRAYS,
+    ("state",),
     __file__,
     "Write `FLAGS` of environment i, and whether its episode has ended.",
+    _BEFORE,
 )
 
 
 @compiled
 def write_infos(state, numbers, flags, i):
     """Write the infos of environment i of a `BatchState` but the reward terms to arrays of `InfoBuffer`."""
-    worlds, pads, fingers, episodes = state.worlds, state.pads, state.fingers, state.episodes
-    truth, estimated, per_finger = state.ground_truth, state.estimated, state.per_finger
-    _write_numbers(numbers[i], i, worlds, pads, fingers, episodes, truth, estimated, per_finger)
-    _write_flags(flags[i], i, worlds, pads, fingers, episodes, truth, estimated, per_finger)
+    _write_numbers(numbers[i], i, state)
+    _write_flags(flags[i], i, state)
 
 
 InfoReader: TypeAlias = Callable[[], tuple[dict[str, Any], float, bool, bool]]
@@ -194,15 +188,11 @@ Returns:
 
 
 def info_reader(buffer: InfoBuffer, terms: Sequence[str], estimating: bool) -> InfoReader:
-    """Return the `InfoReader` of a buffer. The arrays of an info share memory that only they use.
+    """Return the `InfoReader` of a buffer, whose arrays must stay the same.
 
-    PyBullet's step leaves nothing in the processor's cache: few calls matter more here than short ones. The
-    reader's source is therefore generated, without a loop.
-
-    Args:
-        buffer: The buffer; its arrays must stay the same.
-        terms: Names of the reward terms.
-        estimating: Whether there are estimates.
+    The arrays of an info share memory that only they use. PyBullet's step leaves nothing in the processor's
+    cache: few calls matter more here than short ones. The reader's source is therefore generated, without a
+    loop.
     """
     numbers, (flags, *_), (values, *_) = buffer.numbers, buffer.flags, buffer.terms
     made = _reader(tuple(terms), estimating)

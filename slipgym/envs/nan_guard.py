@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import io
 import math
+import os
+import uuid
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from estimator.own_folder import own_temporary_folder
+from slipgym import atomic_io
 from slipgym._numba.compiled import compiled, pointed
 from slipgym._numba.generate import generate
-from slipgym.envs.dumps import write_dump
-from slipgym.envs.readings import row_writer
+from slipgym.envs.readings import of_state, row_writer
 
 KEPT = 120
 """Number of control steps whose quantities are kept: one second."""
+VARIABLE = "SLIPGYM_DUMPS"
+"""Environment variable with their folder; without it, one of the user among the temporary files."""
+FILES = 20
+"""Newest files that the folder keeps."""
 
 
 class Quantity(NamedTuple):
@@ -78,19 +86,20 @@ QUANTITIES = (
 """Quantities that are checked, causes before effects: the error names the first one that is not finite."""
 
 _NAMES = tuple(quantity.name for quantity in QUANTITIES)
-_ARRAYS = "worlds", "pads", "fingers", "wrenches", "twists", "per_finger", "episodes"
+_BEFORE = of_state("worlds", "pads", "fingers", "wrenches", "twists", "per_finger", "episodes")
 _write_quantities = row_writer(
     "_write_quantities",
     [quantity.read for quantity in QUANTITIES],
-    _ARRAYS,
+    ("state",),
     __file__,
     "Write `QUANTITIES` of environment i.",
+    _BEFORE,
 )
 _SUM = [f"total += {quantity.read}" for quantity in QUANTITIES if not quantity.measured]
 sound = generate(
     "sound",
-    ("i", "worlds", "pads", "fingers", "per_finger", "episodes"),
-    ["total = 0.0", *_SUM, "return isfinite(total)"],
+    ("i", "state"),
+    [*_BEFORE, "total = 0.0", *_SUM, "return isfinite(total)"],
     {"isfinite": math.isfinite},
     compiled,
     __file__,
@@ -100,23 +109,14 @@ sound = generate(
 
 @pointed
 def note(rows, at, state, i):
-    """Write the time and the quantities of environment i.
-
-    Args:
-        rows: Output (m, 1 + len(QUANTITIES)).
-        at: Row that is written.
-        state: `slipgym.envs.control_step.BatchState`.
-        i: Index of the environment.
+    """Write the time and the quantities of environment i of a `BatchState` to a row of `Guard.rows`.
 
     Returns:
         Place in the row of the first quantity that is not finite; 0 if there is none.
     """
     row, episode = rows[at], state.episodes[i]
     row[0] = episode.step * episode.step_time
-    _write_quantities(
-        row[1:], i, state.worlds, state.pads, state.fingers, state.wrenches, state.twists, state.per_finger,
-        state.episodes,
-    )  # fmt: skip
+    _write_quantities(row[1:], i, state)
     for k in range(1, row.shape[0]):
         if not math.isfinite(row[k]):
             return k
@@ -143,11 +143,12 @@ class Guard:
         self._count += 1
         return (self._count - 1) % KEPT
 
-    def check(self, bad: int) -> None:
+    def check(self, bad: int, where: str = "") -> None:
         """Write the kept control steps to a file if a quantity of the last one is not finite.
 
         Args:
             bad: What `note` returned for the last one.
+            where: Begins the message.
 
         Raises:
             FloatingPointError: The message names the quantity, and the file.
@@ -161,6 +162,25 @@ class Guard:
         table = self.rows[order]
         text = io.StringIO()
         np.savetxt(text, table, delimiter=",", header="time," + ",".join(_NAMES), comments="")
-        csv = write_dump(text.getvalue().encode())
+        csv = _write_dump(text.getvalue().encode())
         samples = f"the last {kept} samples " + (f"are in {csv}" if csv else "could not be written")
-        raise FloatingPointError(f"{name} is {value} at t = {time:g} s; {samples}; reset() starts afresh")
+        said = f"{where}{name} is {value} at t = {time:g} s"
+        raise FloatingPointError(f"{said}; {samples}; reset() starts afresh")
+
+
+def _write_dump(content: bytes) -> Path | None:
+    """Write a file, and remove the oldest beyond `FILES`; None if it cannot be written."""
+    chosen = os.environ.get(VARIABLE)
+    folder = Path(chosen) if chosen else own_temporary_folder("slipgym_dumps")
+    if folder is None:
+        return None
+    path = folder / f"not-finite-{uuid.uuid4().hex}.csv"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        atomic_io.write(path, content)
+        files = sorted(folder.glob("not-finite-*.csv"), key=lambda each: each.stat().st_mtime_ns)
+        for old in files[:-FILES]:
+            old.unlink(missing_ok=True)
+    except OSError:
+        return path if path.is_file() else None
+    return path

@@ -21,22 +21,14 @@ Observation: TypeAlias = np.ndarray | dict[str, np.ndarray]
 
 
 class Observer:
-    """Assembles the observations of a simulation.
-
-    Args:
-        simulation: The simulation.
-        friction_source: Source of the friction part: "estimated", "true", "nominal" or "none".
-        action_mode: One of `ACTION_MODES`; it decides which wrist columns are observed.
-        mode: "flat", "deviations", "sensor" or "dict".
-        history: Number of earlier observations in each observation.
-        load_columns: Whether an observation has the load part.
+    """Assembles the observations of a simulation, in the layout of the environments' arguments.
 
     Attributes:
         columns: Columns of one observation, or of its group "policy".
         privileged: Columns of the group "privileged"; empty unless the mode is "dict".
         space: The observation space of one environment.
         buffers: Buffers that the simulation writes the observations to.
-        history: As given.
+        history: Number of earlier observations in each observation.
     """
 
     def __init__(
@@ -122,10 +114,7 @@ class Observer:
     def _look_behind(self, rows: np.ndarray) -> None:
         """Write the group "privileged" of some environments."""
         plant, (low, high) = self._simulation.plant, self._privileged_bounds
-        write_privileged(
-            rows, plant.world, plant.pads, plant.fingers, self._simulation.ground_truth,
-            self._simulation.episode, plant.slip_sensors, plant.force_torque, low, high, self._ground_truth,
-        )  # fmt: skip
+        write_privileged(rows, self._state, plant.force_torque, low, high, self._ground_truth)
 
 
 def _friction_part(simulation: Simulation, source: str) -> np.ndarray:

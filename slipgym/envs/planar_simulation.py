@@ -10,11 +10,11 @@ import numpy as np
 from numba import types
 
 from estimator._numba.memory import lent
-from slipgym._numba.calls import entry_point
 from slipgym._numba.compiled import patience, pointed, unlocked
-from slipgym._numba.fixed import Fixed, FixedType, opened
+from slipgym._numba.fixed import Fixed, FixedType, entry_point, opened
 from slipgym._numba.prefetch import fetch
 from slipgym.config import Config, Randomization, TaskConfig
+from slipgym.envs.control_step import F1, F3, array
 from slipgym.envs.nan_guard import Guard, sound
 from slipgym.envs.observation import ObservationBuffers
 from slipgym.envs.reset_kernels import HARDWARE, START, WARM_UP_STEPS, grip
@@ -22,8 +22,6 @@ from slipgym.envs.simulation import Simulation
 from slipgym.envs.stages import (
     ACTION,
     BUFFERS,
-    F1,
-    F3,
     FLAGS,
     FRESH,
     INFOS,
@@ -31,7 +29,6 @@ from slipgym.envs.stages import (
     VALUES_TYPE,
     WHOLE,
     Program,
-    array,
     cells_type,
     compiled_stages,
 )
@@ -46,15 +43,7 @@ to prefetch each array."""
 
 @pointed
 def _move(state, cells, force_torque, lo, hi):
-    """Move the bodies of rows lo to hi with the planar engine, and prefetch those of the next block.
-
-    Args:
-        state: `BatchState`.
-        cells: As `slipgym.world.plant.Plant.cells`.
-        force_torque: FORCE_TORQUE (n, 2).
-        lo: First row.
-        hi: Row after the last.
-    """
+    """Move the bodies of rows lo to hi with the planar engine, and prefetch those of the next block."""
     state, cells, force_torque = lent((state, cells, force_torque))
     for i in range(lo, hi):
         ahead = i + hi - lo  # the same row of the next block
@@ -121,9 +110,7 @@ def _drive(fixed, buffers, action, results, skip, lo, hi):
                 fetch(episodes, ahead, ahead + 1)
                 for k in range(terms.shape[1]):
                     terms[i, k] += episodes[i].terms[k]
-                if bad < 0 and not sound(
-                    i, state.worlds, state.pads, state.fingers, state.per_finger, episodes
-                ):
+                if bad < 0 and not sound(i, state):
                     bad = i
                 over = episodes[i].dropped or episodes[i].ended or episodes[i].step >= episodes[i].steps
             if over:  # a block of several rows has a single control step anyway
@@ -142,15 +129,9 @@ def _drive(fixed, buffers, action, results, skip, lo, hi):
 
 @unlocked
 def _start(fixed, starts, values, begun, infos):
-    """Begin episodes.
+    """Begin episodes of START (m,) and VALUES (m,), and write their infos; `fixed` as in `_drive`.
 
-    Args:
-        fixed: As in `_drive`.
-        starts: START (m,).
-        values: VALUES (m,).
-        begun: Hardware and patches of `equip`, and of both fingers the initial states of the estimators, as
-            bytes, and estimates.
-        infos: Output, see `InfoBuffer`.
+    `begun` holds hardware and patches of `equip_rows`, and `fresh` of `open_episodes`.
     """
     stages, move, state, cells, force_torque = opened(fixed)
     hardware, patches, fresh = begun
@@ -268,10 +249,5 @@ class PlanarSimulation(Simulation):
 
     def _explain(self, bad: int) -> None:
         """Raise FloatingPointError that names the first quantity of an environment that is not finite."""
-        guard = Guard()
-        found = self.stages.note(guard.rows, guard.next(), self.state, bad)
-        try:
-            guard.check(found)
-        except FloatingPointError as error:
-            where = f"environment {bad}: " if self.n > 1 else ""
-            raise FloatingPointError(f"{where}{error}") from None
+        guard, where = Guard(), f"environment {bad}: " if self.n > 1 else ""
+        guard.check(self.stages.note(guard.rows, guard.next(), self.state, bad), where)

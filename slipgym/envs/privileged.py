@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from slipgym._numba.compiled import compiled
+from slipgym._numba.fixed import opened
 from slipgym.config import Config
 from slipgym.envs.observation import FRICTION, FRICTION_COLUMNS
-from slipgym.envs.readings import Reading, row_writer
+from slipgym.envs.readings import Reading, of_state, row_writer
 from slipgym.envs.sensor_part import either_way, grip_force
 from slipgym.tasks.task import Column
 
@@ -62,7 +63,7 @@ def _own(f: int) -> tuple[Reading, ...]:
 
 
 PRIVILEGED = (
-    *(row._replace(read=f"friction[i, {k}]") for k, row in enumerate(FRICTION[:3])),
+    *(row._replace(read=f"ground_truth[i, {k}]") for k, row in enumerate(FRICTION[:3])),
     Reading("slip_x", (-1.0, 1.0), "m", "slip displacement since the grasp, pad frame", "worlds[i].slip[0]"),
     Reading("slip_y", (-1.0, 1.0), "m", "the same along the pad's y axis", "worlds[i].slip[1]"),
     Reading("slip_theta", (-10.0, 10.0), "rad", "the same about the grip axis", "worlds[i].slip[2]"),
@@ -116,9 +117,10 @@ PRIVILEGED = (
 _write_privileged_row = row_writer(
     "_write_privileged_row",
     [reading.read for reading in PRIVILEGED],
-    ("worlds", "pads", "fingers", "friction", "episodes", "slip_sensors", "force_torque"),
+    ("state", "force_torque"),
     __file__,
     "Write `PRIVILEGED` of environment i.",
+    before=of_state("worlds", "pads", "fingers", "episodes", "slip_sensors", "ground_truth"),
 )
 
 
@@ -128,17 +130,13 @@ def privileged_columns(config: Config) -> tuple[Column, ...]:
 
 
 @compiled
-def write_privileged(
-    rows, worlds, pads, fingers, friction, episodes, slip_sensors, force_torque, low, high, out
-):  # fmt: skip
-    """Write the privileged group, clipped to its bounds.
+def write_privileged(rows, fixed, force_torque, low, high, out):
+    """Write the privileged group of some rows (k,), clipped to its bounds (m,), to `out` (n, m), float32.
 
-    It takes which rows (k,), arrays of the simulation (the first three columns of `friction` are the true
-    mu_s, mu_c and r), the bounds (m,), and the output (n, m), float32.
+    `fixed` is a `Fixed` `BatchState`, `force_torque` FORCE_TORQUE (n, 2).
     """
+    state = opened(fixed)
     for i in rows:
-        _write_privileged_row(
-            out[i], i, worlds, pads, fingers, friction, episodes, slip_sensors, force_torque
-        )
+        _write_privileged_row(out[i], i, state, force_torque)
         for k in range(out.shape[1]):
             out[i, k] = min(max(out[i, k], low[k]), high[k])

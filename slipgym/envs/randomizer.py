@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import lru_cache
 from itertools import compress
 from typing import Any
 
@@ -34,13 +33,7 @@ UNIFORMS = 8
 
 
 class Randomizer:
-    """Samples the randomized values of a task's episodes.
-
-    Args:
-        config: The environment's configuration.
-        settings: The task's settings.
-        task: The task's key.
-        randomization: Distributions that an episode is sampled from.
+    """Samples the randomized values of the episodes of a task, given by its key.
 
     Attributes:
         active: Whether anything is sampled.
@@ -113,13 +106,9 @@ class Randomizer:
     def schedule(
         self, shares: np.ndarray, scale: float, rows: np.ndarray, episodes: np.ndarray
     ) -> np.ndarray:
-        """Write disturbances into episodes that tasks have started.
+        """Write disturbances into some rows (m,) of EPISODE (n,), which tasks have started.
 
-        Args:
-            shares: As in `sample`.
-            scale: As in `sample`.
-            rows: Which episodes, (m,).
-            episodes: EPISODE (n,).
+        Shares and scale are those of `sample`.
 
         Returns:
             Whether each disturbance happens, (m, d) bool.
@@ -187,104 +176,68 @@ TEXTS = ("pressure", "disturbances")
 
 
 class Drawn:
-    """Values sampled for the episodes of n environments, without those that an option fixes.
-
-    Args:
-        randomizer: Samples it.
-        n: Number of environments.
-    """
+    """Values sampled for the episodes of n environments, without those that an option fixes."""
 
     def __init__(self, randomizer: Randomizer, n: int) -> None:
         self._randomizer, self._n = randomizer, n
         self._pressures = list(randomizer.variants)
-        self._numbers = np.zeros((n, len(FIRST) + SIZE))
-        self._happened = np.zeros((n, len(randomizer.kinds)), dtype=bool)
-        self._known: list[tuple[str, ...]] = [()] * n
+        fields = [name for name in randomizer.drawn if name not in FRICTION + NAMES]
+        own = [(name, label) for name in fields for label in labels(name)]
+        self._names = [*FIRST, *(label for _, label in own)]
+        self._fixed_by = [*(None for _ in FIRST), *(FIXED_BY.get(name) for name, _ in own)]
+        self._places = [place for name in fields for place in range(SIZE)[PLACES[name]]]
+        self._numbers = np.zeros((n, len(self._names)))
+        self._known = np.zeros((n, len(self._names)), dtype=bool)
+        self._texts = np.full((len(TEXTS), n), None, dtype=object)
 
-    def reported(self, options: EpisodeOptions) -> tuple[str, ...]:
-        """Reported values of episodes with some reset options: `FIRST`, and fields of `VALUES`."""
-        drawn = (name for name in self._randomizer.drawn if name not in FRICTION + NAMES)
-        return *FIRST, *(
-            name for name in drawn if name not in FIXED_BY or getattr(options, FIXED_BY[name]) is None
-        )
+    def reported(self, options: EpisodeOptions) -> list[bool]:
+        """Whether each number is reported for episodes with some reset options."""
+        return [fixed is None or getattr(options, fixed) is None for fixed in self._fixed_by]
 
     def keep(
         self,
         rows: np.ndarray,
-        known: tuple[str, ...],
+        known: list[bool],
         starts: np.ndarray,
         values: np.ndarray,
         happened: np.ndarray,
     ) -> None:
-        """Keep what was sampled for episodes that begin.
+        """Keep what was sampled for episodes (m,) that begin, unless nothing is randomized.
 
-        Args:
-            rows: Their environments, (m,).
-            known: From `reported`, of the options of all of them.
-            starts: START (m,).
-            values: VALUES (m,).
-            happened: Whether each disturbance happens, (m, d).
+        `known` is from `reported`, of the options of all of them; `happened` says whether each disturbance
+        happens, (m, d).
         """
         if not self._randomizer.active:
             return
-        self._numbers[rows, :2], self._numbers[rows, 2] = starts["friction"][:, :2], starts["mass"]
-        self._numbers[rows, len(FIRST) :] = flat(values)
-        self._happened[rows] = happened
-        for i in rows.tolist():
-            self._known[i] = known
+        first = starts["friction"][:, :2], starts["mass"]
+        self._numbers[rows] = np.column_stack((*first, flat(values)[:, self._places]))
+        self._known[rows] = known
+        self._texts[0, rows] = [self._pressures[place] for place in starts["pressure"].tolist()]
+        kinds = self._randomizer.kinds
+        self._texts[1, rows] = [", ".join(compress(kinds, flags)) for flags in happened.tolist()]
 
     def one(self, i: int) -> dict[str, Any]:
         """Values sampled for environment i, JSON-like; empty without randomization."""
-        if not self._known[i]:
+        numbers = dict(compress(zip(self._names, self._numbers[i].tolist(), strict=True), self._known[i]))
+        if not numbers:
             return {}
-        names, columns = _columns(self._known[i])
-        numbers = dict(zip(names, self._numbers[i, columns].tolist(), strict=True))
         numbers |= {name: round(numbers[name]) for name in WHOLE if name in numbers}
-        return numbers | {name: texts[0] for name, texts in zip(TEXTS, self._texts([i]), strict=True)}
+        return numbers | dict(zip(TEXTS, self._texts[:, i].tolist(), strict=True))
 
     def some(self, rows: np.ndarray) -> dict[str, Any]:
         """Infos of some environments (m,) as `gymnasium.vector.VectorEnv` returns them; may be empty."""
-        groups: dict[tuple[str, ...], list[int]] = {}
-        for i in rows.tolist():
-            groups.setdefault(self._known[i], []).append(i)
-        groups.pop((), None)
-        if not groups:
+        columns = np.flatnonzero(self._known[rows].any(axis=0))
+        if not columns.size:
             return {}
-        names = list(dict.fromkeys(name for known in groups for name in _columns(known)[0]))
-        numbers = np.zeros((self._n, len(names)))
-        masks = np.zeros((self._n, len(names) + len(TEXTS) + 1), dtype=bool)
-        for known, own in groups.items():
-            mine, columns = _columns(known)
-            cells: Any = own  # whole rows, but where other environments have other names
-            if mine != names:
-                cells = np.array(own)[:, np.newaxis], [names.index(name) for name in mine]
-            numbers[cells], masks[cells] = self._numbers[own][:, columns], True
-        masks[rows, len(names) :] = True
-        infos: dict[str, Any] = {}
-        for name, values, mask in zip(names, numbers.T, masks.T, strict=False):
-            infos[name], infos[f"_{name}"] = values, mask
-        for name in infos.keys() & set(WHOLE):
-            infos[name] = np.zeros(self._n, dtype=np.int64)
-            infos[name][rows] = numbers[rows, names.index(name)]
-        for k, texts in enumerate(self._texts(rows.tolist())):
-            infos[TEXTS[k]], infos[f"_{TEXTS[k]}"] = np.empty(self._n, dtype=object), masks[:, len(names) + k]
-            infos[TEXTS[k]][rows] = texts
-        return {"drawn": infos, "_drawn": masks[:, -1]}
-
-    def _texts(self, rows: list[int]) -> tuple[list[str], list[str]]:
-        """`TEXTS` of environments."""
-        places_of = self._numbers[rows, len(FIRST) + PLACES["pressure"].start].tolist()
-        happened, kinds = self._happened[rows].tolist(), self._randomizer.kinds
-        pressures = [self._pressures[round(place)] for place in places_of]
-        return pressures, [", ".join(compress(kinds, flags)) for flags in happened]
-
-
-@lru_cache
-def _columns(known: tuple[str, ...]) -> tuple[list[str], list[int]]:
-    """Names and places of the numbers of FIRST and of some fields of VALUES in a row."""
-    names, columns = list[str](FIRST), list(range(len(FIRST)))
-    for name in known[len(FIRST) :]:
-        own = PLACES[name]
-        names += labels(name)
-        columns += range(len(FIRST) + own.start, len(FIRST) + own.stop)
-    return names, columns
+        masks = np.zeros((len(columns) + len(TEXTS) + 1, self._n), dtype=bool)
+        masks[: len(columns), rows] = self._known[np.ix_(rows, columns)].T
+        masks[len(columns) :, rows] = True
+        numbers = np.where(masks[: len(columns)], self._numbers.T[columns], 0.0)
+        texts = np.full_like(self._texts, None)
+        texts[:, rows] = self._texts[:, rows]
+        infos: dict[str, Any] = dict(
+            zip([*(self._names[k] for k in columns), *TEXTS], [*numbers, *texts], strict=True)
+        )
+        infos |= {name: infos[name].astype(np.int64) for name in WHOLE if name in infos}
+        infos |= {f"_{name}": mask for name, mask in zip(list(infos), masks, strict=False)}
+        return {"drawn": infos, "_drawn": masks[-1]}

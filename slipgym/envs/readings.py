@@ -62,6 +62,11 @@ def row_writer(
     return generate(name, ("row", "i", *arrays), body, functions or {}, compiled, file, doc)
 
 
+def of_state(*arrays: str) -> tuple[str]:
+    """Statement before expressions that read arrays of `state`, a `slipgym.envs.control_step.BatchState`."""
+    return (f"{', '.join(arrays)} = {', '.join(f'state.{name}' for name in arrays)}",)
+
+
 def choice_reader(name: str, reads: Sequence[str], arrays: Sequence[str], file: str, doc: str) -> Any:
     """Generate a compiled function (k, i, *arrays) that returns `reads[k]`, see `row_writer`."""
     body = []

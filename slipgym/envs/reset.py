@@ -10,7 +10,7 @@ import numpy as np
 from slipgym.config import Config
 from slipgym.config.errors import NEEDS_TILT, unknown
 from slipgym.config.task import TaskConfig
-from slipgym.contact.anisotropy import stretch
+from slipgym.contact.pressure import stretch
 from slipgym.contact.records import CELL_FIELDS
 from slipgym.envs.randomizer import Drawn, Randomizer
 from slipgym.envs.reset_kernels import HARDWARE, START
@@ -45,25 +45,14 @@ class _Chosen(NamedTuple):
     """Radius r by pressure profile [m]."""
     fixed: Mapping[str, object]
     """Fields of VALUES, and what stands in place of sampled values."""
-    reported: tuple[str, ...]
+    reported: list[bool]
     """See `Drawn.reported`."""
 
 
 class EpisodeSampler:
-    """Samples the episodes of n environments.
+    """Samples the episodes of n environments, whose rows of EPISODE (n,) it fills in.
 
-    Args:
-        config: Configuration.
-        settings: The task's settings.
-        task: The task.
-        randomizer: Samples the randomized parameters.
-        episode: EPISODE (n,); rows are filled in.
-
-    Attributes:
-        materials: Name of every episode's material.
-        boxes: Every episode's object; None before the first reset.
-        drawn: Values that the randomization sampled for every episode.
-        blank: The values that all episodes begin with, EPISODE (1,).
+    Its attributes are those of the same names of a `Simulation`.
     """
 
     def __init__(
@@ -89,16 +78,13 @@ class EpisodeSampler:
         options: EpisodeOptions,
         material: str,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Sample episodes; the draws of an environment do not depend on the others.
+        """Sample START (m,) and VALUES (m,) of episodes; an environment's draws do not depend on the others.
 
         Args:
             rows: Environments to reset, (m,).
             generators: Random generator of each.
             options: Parameters to fix for all of them.
             material: Name of a material, or "random".
-
-        Returns:
-            START (m,) and VALUES (m,).
 
         Raises:
             ValueError: The options contradict each other or the configuration.
@@ -233,12 +219,7 @@ def _check_inside(name: str, point: list[float], size: tuple[float, ...], margin
 
 
 def prepare_hardware(config: Config, plant: Plant, randomizer: Randomizer) -> tuple[np.ndarray, np.ndarray]:
-    """Check that a plant can hold what is sampled, and make room for it.
-
-    Args:
-        config: Configuration of the plant.
-        plant: The plant as it was built; its patches are enlarged to the size of the largest one.
-        randomizer: Samples the parameters.
+    """Check that a plant, as it was built, can hold what is sampled, and make room for it.
 
     Returns:
         HARDWARE (1,), and the patch of each pressure profile (p, CELL_FIELDS, m), not stretched.

@@ -1,4 +1,9 @@
-"""Applies sampled initial conditions to many environments, in compiled code."""
+"""Applies sampled initial conditions to many environments, in compiled code.
+
+`starts` are START (m,), `values` VALUES (m,) of the episodes that begin; `state` is a `BatchState` of n
+environments, `episodes` EPISODE (n,), `worlds` WORLD (n,), `pads` PAD (n, 2), `fingers` FINGER (n, 2),
+`force_torque` FORCE_TORQUE (n, 2), `cells` patches (n, 2, CELL_FIELDS, q), None for ellipsoids.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +12,7 @@ import numpy as np
 from slipgym._numba.compiled import compiled, pointed
 from slipgym._numba.generate import generate
 from slipgym.config.pad import EFFECTS
-from slipgym.contact.anisotropy import friction_axes, stretch
+from slipgym.contact.pressure import friction_axes, stretch
 from slipgym.contact.records import CONFIGURED
 from slipgym.envs.control_step import learn
 from slipgym.sensors.markers import start_markers
@@ -16,8 +21,8 @@ from slipgym.sensors.slip_velocity import AXES
 from slipgym.sensors.starting import KEYS, start_sensors
 from slipgym.sensors.unloaded import READINGS, read_unloaded
 from slipgym.tasks.disturbance import bear
-from slipgym.world.fingertip import weigh_tip
 from slipgym.world.placing import PATCHES_OF_WORLDS, place_world
+from slipgym.world.substep import weigh_tip
 
 WARM_UP_STEPS = 6
 """Control steps before time 0 in which grip and sensors settle."""
@@ -56,16 +61,7 @@ HARDWARE = np.dtype(
 
 @compiled
 def grip(starts, episodes, worlds, pads, cells, fingers):
-    """Bring worlds to rest, with the object in the grip.
-
-    Args:
-        starts: START (m,).
-        episodes: EPISODE (n,), for the wrist.
-        worlds: WORLD (n,).
-        pads: PAD (n, 2).
-        cells: Patches (n, 2, CELL_FIELDS, m); None for ellipsoids.
-        fingers: FINGER (n, 2).
-    """
+    """Bring worlds to rest, with the object in the grip; the wrist is that of the episodes."""
     for k in range(starts.shape[0]):
         start = starts[k]
         i = start.row
@@ -121,14 +117,8 @@ def note_pads(episode, pads):
 def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
     """Set the parameters of pads, force loops and sensors; reset the sensors. `grip` comes later.
 
-    Args:
-        starts: START (m,).
-        values: VALUES (m,).
-        hardware: HARDWARE (1,).
-        patches: Patch of each pressure profile, (p, CELL_FIELDS, q).
-        state: `BatchState`; of `ground_truth` mu_s, mu_c, r are set, mean of both pads.
-        cells: Patches (n, 2, CELL_FIELDS, q); None for ellipsoids.
-        force_torque: FORCE_TORQUE (n, 2).
+    `hardware` is HARDWARE (1,), `patches` has the patch of each pressure profile, (p, CELL_FIELDS, q). Of
+    `ground_truth` mu_s, mu_c, r are set, mean of both pads.
     """
     own, pads, fingers, slip_sensors = hardware[0], state.pads, state.fingers, state.slip_sensors
     for k in range(starts.shape[0]):
@@ -169,12 +159,6 @@ def show_open_gripper(update, state, force_torque, i):
     """Update the estimators of environment i with the readings of its sensors before the grasp.
 
     The gripper is open: no slip sensor has a surface to see.
-
-    Args:
-        update: Function of the estimator.
-        state: `BatchState`.
-        force_torque: FORCE_TORQUE (n, 2).
-        i: Which environment.
     """
     readings, twists = np.empty((2, READINGS, 4)), np.zeros((2, 3))
     wrenches = np.empty((2, 4))
@@ -194,16 +178,9 @@ def show_open_gripper(update, state, force_torque, i):
 def open_episodes(update, starts, fresh, state, force_torque, terms):
     """Reset measured slip, estimators, commands and reward terms, after grip and sensors have settled.
 
-    The estimators then see the sensors without load, as they were before the grasp.
-
-    Args:
-        update: Function of the estimator.
-        starts: START (m,).
-        fresh: Of both fingers: initial states of the estimators, as bytes (2, q), and ESTIMATE (2,); whether
-            there are estimators.
-        state: `BatchState` of n environments.
-        force_torque: FORCE_TORQUE (n, 2).
-        terms: (n, k).
+    The estimators then see the sensors without load, as they were before the grasp. `fresh` holds, of both
+    fingers, the initial states of the estimators as bytes (2, q) and ESTIMATE (2,), and whether there are
+    estimators.
     """
     states, estimates, estimating = fresh
     for k in range(starts.shape[0]):

@@ -87,17 +87,10 @@ def sample_values(shares, numbers, choices, scale, values):
 
 @compiled
 def schedule(shares, disturbances, numbers, choices, scale, rows, episodes, happens):
-    """Write the disturbances of the randomization into episodes.
+    """Write the disturbances of the randomization, DISTURBANCE (d,), into some rows (m,) of EPISODE (n,).
 
-    Args:
-        shares: (m, k).
-        disturbances: DISTURBANCE (d,).
-        numbers: Their distributions (d, p), in the order of `KINDS`.
-        choices: (c,).
-        scale: Factor of the probabilities.
-        rows: Which episodes, (m,).
-        episodes: EPISODE (n,); step_time and the pushes of the task must be set.
-        happens: Output, whether each disturbance happens, (m, d).
+    Their distributions are `numbers` (d, p), in the order of `KINDS`. step_time and the pushes of the task
+    must be set. `happens` is output: whether each disturbance happens, (m, d).
     """
     for k in range(rows.shape[0]):
         for j in range(disturbances.shape[0]):

@@ -7,14 +7,16 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
-from slipgym.config import Config, Randomization, TaskConfig, load, load_randomization
+from slipgym.config import Config, Overrides, Randomization, Ranges, TaskConfig, load, load_randomization
 from slipgym.config.level import load_level
+from slipgym.config.load import read_overrides
+from slipgym.config.pad import EFFECTS
 from slipgym.envs.actions import ACTION_MODES, GUESS, Actions
 from slipgym.envs.arguments import CommonArguments, fields, friction_part, one_of
-from slipgym.envs.drawn_over import warn_of_drawn
 from slipgym.envs.observer import Observer
 from slipgym.envs.sensor_part import LOADED, layout_of
 from slipgym.envs.simulation import Simulation
+from slipgym.envs.values import DIFFERENCES
 from slipgym.tasks import TASKS, Task, configure
 from slipgym.tasks.configure import recorded
 
@@ -22,21 +24,11 @@ MakeSimulation = Callable[[Config, TaskConfig, Task, Any, Randomization], Simula
 
 
 class Setup:
-    """Builds configuration, actions, simulation and observer from keyword arguments.
-
-    Args:
-        task: The task.
-        arguments: `CommonArguments`, all of them.
-        make_simulation: Makes the simulation from configuration, settings, task, estimator and randomization.
+    """Builds configuration, actions, simulation and observer from all of `CommonArguments`.
 
     Attributes:
-        config: The configuration.
-        settings: The task's settings.
         randomization: Distributions that an episode is sampled from, those of the level in place.
         material: Name of the material, or "random".
-        actions: Action space and the meaning of actions.
-        simulation: The simulation.
-        observer: Assembles its observations.
         arguments: JSON-able arguments that make the same environment.
 
     Raises:
@@ -129,3 +121,38 @@ def warn_if_slow(config: Config, frame_skip: int) -> None:
 @cache
 def _default_work(model: str) -> float:
     return work(load(contact=model))
+
+
+_PLACES = {
+    **{name: f"{own.group}.{name}" for name, own in DIFFERENCES.items()},
+    **{name: f"contact.pad.{name}" for name in EFFECTS},
+    **{name: f"contact.{name}" for name in ("stribeck_velocity", "speed_slope", "sigma_0", "pressure")},
+    **{name: f"gripper.{name}" for name in ("lag", "dead_time", "stiction")},
+    "slip_latency": "sensors.slip.latency_samples",
+}
+"""Field of the randomization -> key of the configuration that it takes the place of."""
+
+
+def warn_of_drawn(
+    overrides: Overrides | None, ranges: Ranges, settings: TaskConfig, task: str, material: str
+) -> None:
+    """Warn of keys that are drawn in a configuration given in part; nobody wrote each key of a whole one."""
+    source, values = ("", {}) if overrides is None else read_overrides(overrides)
+    if values.keys() >= Config.model_fields.keys():
+        return
+    places = {**_PLACES, "mu_c": f"tasks.{task}.friction_range"}
+    drawn = {places[name]: f"the randomization or the level draws {name}" for name in places
+             if getattr(ranges, name) is not None}  # fmt: skip
+    if ranges.friction_by_area:
+        drawn[places["load_exponent"]] = "friction_by_area takes it from the radius_exponent that is drawn"
+    if material == "random" and (ranges.mu_c is not None or settings.friction_range is not None):
+        for name in values.get("materials", {}):
+            drawn[f"materials.{name}"] = f"its friction is drawn, unless material={name!r} is given"
+    for key, why in drawn.items():
+        if _has(values, key):
+            warnings.warn(f"{source}: {key} has no effect: {why}", stacklevel=2)
+
+
+def _has(values: Mapping[str, Any], key: str) -> bool:
+    group, _, rest = key.partition(".")
+    return group in values and (not rest or _has(values[group], rest))

@@ -14,7 +14,7 @@ from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
 from slipgym.envs.control_step import BatchState
-from slipgym.envs.estimates import chosen_estimator, make_estimators
+from slipgym.envs.estimates import chosen_estimator, leave, make_estimators
 from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
@@ -30,15 +30,8 @@ from slipgym.world.plant import build
 class Simulation(ABC):
     """Simulation of n environments that advances by control steps, independent of Gymnasium.
 
-    Arrays have a leading batch axis. A subclass for each engine moves the bodies.
-
-    Args:
-        config: Configuration.
-        settings: The task's settings.
-        task: The task.
-        estimator: Name of an estimator, or a mapping with its `name` and parameters; None: nothing estimates.
-        randomization: Distributions that an episode is sampled from; None: no randomization.
-        n: Number of environments.
+    Arrays have a leading batch axis. A subclass for each engine moves the bodies. With an estimator of None
+    nothing estimates, with a randomization of None nothing is randomized.
 
     Attributes:
         plant: State of worlds, pads, fingers and sensors.
@@ -47,14 +40,13 @@ class Simulation(ABC):
             (with full confidence), which are attributes, too.
         episode: EPISODE (n,).
         materials: Name of every episode's material.
-        boxes: Every episode's object.
+        boxes: Every episode's object; None before the first reset.
         drawn: Values that the randomization sampled for every episode.
         blank: The values that all episodes begin with, EPISODE (1,).
         infos: Infos of all environments, including the last step's reward terms.
         estimator_choice: Name and parameters of the estimators, None for none; `velocity_delay` only if the
             user gave it.
         step_time: Length of a control step [s].
-        stages: Compiled stages of a control step.
     """
 
     def __init__(
@@ -87,22 +79,12 @@ class Simulation(ABC):
         plant, learned = self.plant, self._estimators
         self.state = BatchState(
             worlds=plant.world,
-            pads=plant.pads,
-            fingers=plant.fingers,
-            slip_sensors=plant.slip_sensors,
-            grippers=plant.grippers,
-            markers=plant.markers,
             parameters=_bytes(learned.parameters_array),
             estimator_states=_bytes(learned.states),
             estimates=learned.estimates,
             episodes=self.episode,
-            commands=self.commands,
-            wrenches=self.wrenches,
-            twists=self.twists,
-            per_finger=self.per_finger,
-            estimated=self.estimated,
-            task_part=self.task_part,
-            ground_truth=self.ground_truth,
+            **{name: getattr(plant, name) for name in _PLANTS},
+            **{name: getattr(self, name) for name in _OWN},
         )
         self._hardware = hardware
         states = self.state.estimator_states[:2].copy()
@@ -116,7 +98,7 @@ class Simulation(ABC):
         """Find the compiled programs for the kinds of arrays that the plant has."""
         plant = self.plant
         cells = 0 if plant.cells is None else plant.cells.ndim
-        update = specification(self._estimators.name).update_batch
+        update = specification(self._estimators.name).update_batch if self.estimating else leave
         self._kinds = self.task, update, plant.force_torque.dtype, cells
         self.stages = compiled_stages(*self._kinds)
 
@@ -169,14 +151,9 @@ class Simulation(ABC):
     ) -> None:
         """Start episodes of some environments: sample them, close the grip, let grip and sensors settle.
 
-        Args:
-            rows: Their indices, (m,).
-            generators: Random generator of each.
-            options: Parameters to fix for all these episodes.
-            material: Name of a material, or "random".
+        Args and errors are those of `slipgym.envs.reset.EpisodeSampler.sample`.
 
         Raises:
-            ValueError: The options contradict each other or the configuration.
             RuntimeError: The world is closed.
         """
         self.check_open()
@@ -242,11 +219,7 @@ class Simulation(ABC):
         check_layout(state, own, ready)
 
     def set_state(self, state: SimulationState, ready: np.ndarray) -> None:
-        """Restore a state that `check_state` has accepted.
-
-        Args:
-            state: The state.
-            ready: Environments that have an episode in it, (n,) bool; the others stay as they are.
+        """Restore a state that `check_state` has accepted, in the environments that are `ready` in it.
 
         Raises:
             RuntimeError: The world is closed.
@@ -279,10 +252,11 @@ class Simulation(ABC):
 
 
 _FIRST = np.zeros(1, dtype=np.int64)
-_KEPT = (
-    *("estimates", "commands", "wrenches", "twists"),
-    *("task_part", "ground_truth", "per_finger", "estimated"),
-)
+_PLANTS = "pads", "fingers", "slip_sensors", "grippers", "markers"
+"""Arrays of `BatchState` that are those of the plant."""
+_OWN = "commands", "wrenches", "twists", "task_part", "ground_truth", "per_finger", "estimated"
+"""Arrays of `BatchState` that are attributes of a `Simulation`."""
+_KEPT = ("estimates", *_OWN)
 """Arrays of `BatchState` that states of environments hold by these names."""
 
 

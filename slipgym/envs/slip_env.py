@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Unpack
 import gymnasium as gym
 import numpy as np
 
-from slipgym.config.plain import plain
+from slipgym.config.base import plain
 from slipgym.envs.arguments import ScalarArguments, complete
 from slipgym.envs.conventions import Conventions, documented, horizon, rebuilt
 from slipgym.envs.engines import resolved, simulation_of

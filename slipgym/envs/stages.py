@@ -5,62 +5,29 @@ from __future__ import annotations
 from collections import namedtuple
 from collections.abc import Callable
 from functools import cache, cached_property, partial
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import numpy as np
-from numba import from_dtype, types
+from numba import types
 
-from estimator.estimate import ESTIMATE
-from slipgym._numba.calls import entry_point
 from slipgym._numba.compiled import patience, unlocked
-from slipgym._numba.fixed import FixedType
+from slipgym._numba.fixed import FixedType, entry_point
 from slipgym._numba.generate import generate
 from slipgym._numba.pointers import Known, Pointer
-from slipgym.contact.records import PAD
 from slipgym.envs import control_step
 from slipgym.envs.actions import COMPONENT
-from slipgym.envs.control_step import BatchState
+from slipgym.envs.control_step import BYTES, F2, F3, BatchState, array
 from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.nan_guard import note
 from slipgym.envs.observation import ObservationBuffers
 from slipgym.envs.reset_kernels import HARDWARE, START, equip_rows, open_episodes
 from slipgym.envs.values import VALUES
-from slipgym.sensors.markers import MARKERS
-from slipgym.sensors.owned import GRIPPER
-from slipgym.sensors.slip_velocity import SLIP_SENSOR
-from slipgym.tasks.episode import EPISODE
-from slipgym.tasks.functions import explained
-from slipgym.world.records import FINGER, WORLD
+from slipgym.tasks.compile import explained
 
-
-def array(dtype: Any, ndim: int = 1, layout: str = "C") -> Any:
-    """Type of an array of numbers or records."""
-    return types.Array(from_dtype(dtype) if isinstance(dtype, np.dtype) else dtype, ndim, layout)
-
-
-WHOLE, WHOLES, FLAGS, BYTES = types.int64, array(types.int64), array(types.boolean), array(types.uint8, 2)
-F1, F2, F3 = (array(types.float64, ndim) for ndim in (1, 2, 3))
+WHOLE, WHOLES, FLAGS = types.int64, array(types.int64), array(types.boolean)
 _SINGLE = array(types.float32)
-_TYPES: Any = BatchState(
-    worlds=array(WORLD),
-    pads=array(PAD, 2),
-    fingers=array(FINGER, 2),
-    slip_sensors=array(SLIP_SENSOR, 2),
-    grippers=array(GRIPPER),
-    markers=array(MARKERS, 2),
-    parameters=BYTES,
-    estimator_states=BYTES,
-    estimates=array(ESTIMATE),
-    episodes=array(EPISODE),
-    commands=F2,
-    wrenches=F3,
-    twists=F3,
-    per_finger=F3,
-    estimated=F2,
-    task_part=F2,
-    ground_truth=F2,
-)
-STATE = types.NamedTuple([*_TYPES], BatchState)
+_TYPES = {name: get_args(hint)[1] for name, hint in get_type_hints(BatchState, include_extras=True).items()}
+STATE = types.NamedTuple([*_TYPES.values()], BatchState)
 """Type of a `BatchState`."""
 ACTION = types.Tuple([F2, array(COMPONENT), FLAGS])
 """Type of actions, their meaning, and which rows are active."""
@@ -71,12 +38,12 @@ INFOS = types.NamedTuple([F2, array(types.boolean, 2), F2], InfoBuffer)
 """Type of an `InfoBuffer`."""
 VALUES_TYPE = array(VALUES)
 """Type of VALUES (m,)."""
-FRESH = types.Tuple([BYTES, _TYPES.estimates, types.boolean])
+FRESH = types.Tuple([BYTES, _TYPES["estimates"], types.boolean])
 """Type of initial states of the estimators, as bytes, estimates, and whether there are estimators."""
 _HEADS = array(types.uint8, 1, "A")
-SCRIPT_WRIST = types.void(_TYPES.episodes, _TYPES.worlds)
-EVALUATE_STEP = types.void(_TYPES.episodes, _TYPES.worlds, _TYPES.fingers, F2)
-UPDATE = types.void(_HEADS, _HEADS, types.float64, F2, F2, _TYPES.estimates)
+SCRIPT_WRIST = types.void(_TYPES["episodes"], _TYPES["worlds"])
+EVALUATE_STEP = types.void(_TYPES["episodes"], _TYPES["worlds"], _TYPES["fingers"], F2)
+UPDATE = types.void(_HEADS, _HEADS, types.float64, F2, F2, _TYPES["estimates"])
 """Signature of an estimator's update, the same for all: its records are given by their first bytes."""
 
 
@@ -90,10 +57,6 @@ def _forward(count: int) -> Any:
 
 class Program:
     """A `pointed` function compiled for one signature.
-
-    Args:
-        function: The function.
-        signature: Its signature.
 
     Attributes:
         known: Type of the pointer.
@@ -129,19 +92,14 @@ estimator, those of `control_step`, `nan_guard.note`, `equip_rows` and `open_epi
 class Stages:
     """The stages that both engines have in common, compiled for a task, an estimator, sensors and contacts.
 
-    Args:
-        task: The task.
-        update: The estimator's compiled `update_batch`.
-        force_torque: Dtype of the force/torque sensors.
-        cells: Dimensions of `slipgym.world.plant.Plant.cells`, 0 for None.
+    `update` is the estimator's compiled `update_batch`, `force_torque` the dtype of the sensors; `cells` has
+    the dimensions of `slipgym.world.plant.Plant.cells`, 0 for None.
 
     Attributes:
         linked: Pointers to them, for programs.
         kind: Type of `linked`.
         calls: The programs by name, called from Python with all their arguments.
         look_at: `slipgym.envs.control_step.look_at` without its first argument.
-        report: `slipgym.envs.control_step.report`.
-        note: `slipgym.envs.nan_guard.note`.
     """
 
     def __init__(self, task: Any, update: Any, force_torque: np.dtype, cells: int) -> None:

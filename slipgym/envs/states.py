@@ -13,8 +13,7 @@ import numpy as np
 from slipgym.config.errors import unknown
 from slipgym.version import __version__
 from slipgym.world.plant import Plant
-from slipgym.world.scene import Box
-from slipgym.world.snapshot import EngineState
+from slipgym.world.scene import Box, EngineState
 
 
 @dataclass(frozen=True)

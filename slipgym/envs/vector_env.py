@@ -13,7 +13,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from slipgym.config.plain import plain
+from slipgym.config.base import plain
 from slipgym.envs.arguments import VectorArguments, complete, one_of
 from slipgym.envs.conventions import Conventions, documented, horizon, rebuilt
 from slipgym.envs.observer import Observer

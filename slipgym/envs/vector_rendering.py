@@ -14,13 +14,7 @@ SHOWN = 16
 
 
 class Pictures:
-    """Renders the chosen environments.
-
-    Args:
-        simulation: The environments' simulation.
-        mode: None, "rgb_array" or "depth_array".
-        rows: Environments to show; None: all, or only the first if there are more than `SHOWN`.
-        size: Width and height of a picture [pixels]; None: the usual one.
+    """Renders the chosen environments; without rows all, or only the first if there are more than `SHOWN`.
 
     Raises:
         ValueError: `rows` is not a list of indices of environments.

@@ -13,13 +13,4 @@ from slipgym.identification.fit import Result, identify
 from slipgym.identification.log import Log, read_log
 from slipgym.identification.report import overrides, table, verdict, write
 
-__all__ = [
-    "Log",
-    "Result",
-    "identify",
-    "overrides",
-    "read_log",
-    "table",
-    "verdict",
-    "write",
-]
+__all__ = ["Log", "Result", "identify", "overrides", "read_log", "table", "verdict", "write"]

@@ -3,7 +3,7 @@
 The estimate is the most probable point under the priors, with Huber's weights on the residuals over the noise
 that they show themselves. Its covariance is the sandwich over blocks of time: residuals that
 correlate within a block widen it as far as they do. An error of the model that each block repeats would not:
-the shift of the estimate under each of `ALTERNATIVES`, to first order, is added to the variance.
+the shift of the estimate under other models, to first order, is added to the variance.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from slipgym._numba.compiled import patience
 from slipgym.config.errors import unknown
 from slipgym.identification.log import Log
 from slipgym.identification.parameters import DEVIATION, START, values_of
-from slipgym.identification.rollout import CHANNELS, SUBSTEP, SURFACES, roll
+from slipgym.identification.rollout import CELLS, CHANNELS, FINE_CELLS, SUBSTEP, SURFACES, roll
 
 HUBER = 2.0
 """Residual over the noise from which its weight falls [-]."""
@@ -35,8 +35,8 @@ STEP = 1e-3
 """Of the finite differences, over the prior's deviation [-]."""
 ITERATIONS = 15
 """Most steps of a fit."""
-ALTERNATIVES = ({"pressure": "hertz"}, {"substep": 0.5 * SUBSTEP}, {"contact": "disc"})
-"""Models that a log may as well come from: the pressure of the patch and the sub-step are choices."""
+PRESSURES = "uniform", "hertz"
+"""Pressures over a patch with cells; the fit takes the one that explains the log better."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,8 @@ class Result:
     log: Log
     contact: str
     """Friction model of the fit."""
+    pressure: str
+    """Over a patch with cells."""
     point: np.ndarray
     """Transformed estimate, (p,); the prior's where the log does not show it."""
     deviation: np.ndarray
@@ -80,15 +82,22 @@ class _Problem:
     contact: str
     fitted: np.ndarray  # (n,) rows that the fit uses
     present: np.ndarray  # (7,)
+    pressure: str = PRESSURES[0]
+    cells: int = CELLS
 
     @cached_property
     def used(self) -> np.ndarray:
         """Readings that the fit uses, (n, present channels)."""
         return self.fitted[:, None] & np.isfinite(self.log.readings[:, self.present])
 
+    @property
+    def model(self) -> dict[str, Any]:
+        """The model of the rollouts."""
+        return {"contact": self.contact, "pressure": self.pressure, "cells": self.cells}
+
     def predict(self, points: np.ndarray, **other: Any) -> np.ndarray:
         """Readings of transformed points (m, p), of another model if given: (m, n, present channels)."""
-        log, model = self.log, {"contact": self.contact, **other}
+        log, model = self.log, {**self.model, **other}
         all_of = roll(values_of(points), log.rate, log.command, log.motion, **model)
         return all_of[:, :, self.present]
 
@@ -104,15 +113,15 @@ class _Problem:
     def slopes(self, point: np.ndarray) -> np.ndarray:
         """Derivative of the readings by the transformed parameters, (p, n, present channels)."""
         log = self.log
-        return slopes(point, self.contact, log.rate, log.command, log.motion)[:, :, self.present]
+        return slopes(point, log.rate, log.command, log.motion, **self.model)[:, :, self.present]
 
 
 def slopes(
-    point: np.ndarray, contact: str, rate: float, command: np.ndarray, motion: np.ndarray
+    point: np.ndarray, rate: float, command: np.ndarray, motion: np.ndarray, **model: Any
 ) -> np.ndarray:
     """Derivative of the readings by the transformed parameters, (p, n, 7), in one batch of rollouts."""
     points = np.vstack([point + np.diag(STEP * DEVIATION), point])
-    ends = roll(values_of(points), rate, command, motion, contact)
+    ends = roll(values_of(points), rate, command, motion, **model)
     return (ends[:-1] - ends[-1]) / (STEP * DEVIATION)[:, None, None]
 
 
@@ -137,10 +146,12 @@ def identify(log: Log, contact: str = "distributed", seed: int = 0) -> Result:
     there = np.array([np.isfinite(each).any() for each in log.readings.T])
     problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, there)
     point = _start(problem, np.random.default_rng(seed))
-    for _ in range(2):
-        scale = problem.noise(problem.residuals(problem.predict(point[None])[0]))
-        point = _minimised(problem, point, scale)
-    return _result(problem, point, scale, block)
+    if contact == "distributed":
+        problem, point = _finer(problem, point)
+    else:
+        point = _refined(problem, point)
+    scale = problem.noise(problem.residuals(problem.predict(point[None])[0]))
+    return _result(problem, _minimised(problem, point, scale), scale, block)
 
 
 def _start(problem: _Problem, rng: np.random.Generator) -> np.ndarray:
@@ -156,6 +167,21 @@ def _start(problem: _Problem, rng: np.random.Generator) -> np.ndarray:
     fits = np.array([_minimised(problem, fit, scale) for fit in fits])
     residuals = problem.residuals(problem.predict(fits))
     return fits[np.argmin([_cost(problem, *each, scale) for each in zip(fits, residuals, strict=True)])]
+
+
+def _refined(problem: _Problem, point: np.ndarray) -> np.ndarray:
+    """The fit that begins at a point, with the scale of the residuals there."""
+    return _minimised(problem, point, problem.noise(problem.residuals(problem.predict(point[None])[0])))
+
+
+def _finer(problem: _Problem, point: np.ndarray) -> tuple[_Problem, np.ndarray]:
+    """More cells, with the pressure that explains the log better, from the fit of few cells with either."""
+    fits = [_refined(replace(problem, pressure=each), point) for each in PRESSURES]
+    fine = [replace(problem, pressure=each, cells=FINE_CELLS) for each in PRESSURES]
+    residuals = [each.residuals(each.predict(fit[None])[0]) for each, fit in zip(fine, fits, strict=True)]
+    scale = np.min([problem.noise(each) for each in residuals], axis=0)
+    best = np.argmin([_cost(problem, *each, scale) for each in zip(fits, residuals, strict=True)])
+    return fine[best], fits[best]
 
 
 def _cost(problem: _Problem, point: np.ndarray, residual: np.ndarray, scale: np.ndarray) -> float:
@@ -199,13 +225,19 @@ def _minimised(problem: _Problem, point: np.ndarray, scale: np.ndarray) -> np.nd
                 break
             continue
         gain, cost, point, damping, residual = cost - costs[k], costs[k], trials[k], dampings[k], residuals[k]
-        if gain < 1e-3:
+        if gain < 1e-2:  # of the log-likelihood: a seventh of a standard deviation
             break
     return point
 
 
 def _result(problem: _Problem, point: np.ndarray, scale: np.ndarray, block: np.ndarray) -> Result:
-    models: tuple[dict[str, Any], ...] = ({}, *ALTERNATIVES)
+    other = next(each for each in PRESSURES if each != problem.pressure)
+    models: tuple[dict[str, Any], ...] = (
+        {},
+        {"pressure": other},
+        {"substep": 0.5 * SUBSTEP},
+        {"contact": "disc"},
+    )
     residuals = [problem.residuals(problem.predict(point[None], **model)[0]) for model in models]
     slopes = problem.slopes(point)
     (information, rows), *others = [_normal_equations(problem, slopes, each, scale) for each in residuals]
@@ -219,13 +251,13 @@ def _result(problem: _Problem, point: np.ndarray, scale: np.ndarray, block: np.n
     deviation = np.sqrt(variance + (shifts**2).sum(axis=0))
     shown = deviation < SHOWN * DEVIATION
     log, written = problem.log, np.where(shown, point, START)
-    before, after = roll(
-        values_of(np.stack([START, written])), log.rate, log.command, log.motion, problem.contact
-    )
+    points = values_of(np.stack([START, written]))
+    before, after = roll(points, log.rate, log.command, log.motion, **problem.model)
     left = np.ma.masked_invalid((log.readings - after)[~problem.fitted])
     return Result(
         log=log,
         contact=problem.contact,
+        pressure=problem.pressure,
         point=written,
         deviation=np.where(shown, deviation, DEVIATION),
         shown=shown,

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
+from estimator.records.alignment import held
 from estimator.records.checks import OPPOSITE, correlation
 from estimator.records.columns import Columns
 from estimator.records.extras import extra
-from estimator.records.holding import held
 from estimator.records.sources import read_sources
 from estimator.records.streams import of_one_finger, read_tables, stream
 from estimator.records.table import Table
@@ -111,27 +111,21 @@ def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Lo
                 f"{path.name}: column {column.column} is missing; a log has {', '.join(needed)}; a mapping "
                 "(--columns) gives them other names, units and signs"
             )
-    t = _seconds(table)
+    t = table.seconds("t")[0]
+    if (bad := ~np.isfinite(t)).any():
+        raise ValueError(f"{table.name}: row {int(np.argmax(bad)) + 1}: t must be a finite number")
     rate = _rate(path.name, t)
     values = np.stack([_numbers(table, name) for name in needed[1:]], axis=1)
     readings = np.full((len(t), len(CHANNELS)), np.nan)
     readings[:, : len(needed) - 5] = values[:, 4:]
-    if (
-        slip and (kept := held(t, readings[:, 4:])) is not None
-    ):  # each sample once, not as often as it is repeated
+    # each sample once, not as often as it is repeated
+    if slip and (kept := held(t, readings[:, 4:])) is not None:
         readings[np.setdiff1d(np.arange(len(t)), kept[0]), 4:] = np.nan
     _check_signs(path.name, values[:, 1:4], readings)
     try:
         return Log(rate, values[:, 0], values[:, 1:4], readings)
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from None
-
-
-def _seconds(table: Table) -> np.ndarray:
-    t = table.seconds("t")[0]
-    if (bad := ~np.isfinite(t)).any():
-        raise ValueError(f"{table.name}: row {int(np.argmax(bad)) + 1}: t must be a finite number")
-    return t
 
 
 def _numbers(table: Table, name: str) -> np.ndarray:

@@ -1,10 +1,13 @@
-"""Describes the six motions of a session on the bench, ten seconds each."""
+"""Describes the six motions of a session on the bench, and ranks them by what more of each would show."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import numpy as np
+
+from slipgym.identification.fit import Result, slopes
+from slipgym.identification.parameters import DEVIATION, PARAMETERS
 
 Motion = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Time (n,) [s] -> grip command (n,) [N], twist (n, 3) [m/s, m/s, rad/s]."""
@@ -35,4 +38,30 @@ MOTIONS: dict[str, Motion] = {
         _twist(t, _sway(t, 0.02, 2.2), _sway(t, 0.01, 3.1), _sway(t, 0.8, 1.7)),
     ),
 }
-"""The motions, in the order of a session; each begins at rest."""
+"""The motions of ten seconds, in the order of a session; each begins at rest."""
+LENGTH = 20.0
+"""Of a motion that is recorded next [s]."""
+
+
+def gains(result: Result) -> list[tuple[str, float, str]]:
+    """(motion, sum over the parameters of the relative fall of the deviation, what falls most), best first.
+
+    The information of the log is scaled such that it gives the deviations found, which are wider than those
+    of white noise; the new motion's is scaled by the same factor.
+    """
+    present = ~np.isnan(result.noise)
+    noise = result.noise / np.sqrt(np.isfinite(result.log.readings).mean(axis=0))  # of rows, some without
+    before = np.sqrt(np.diag(np.linalg.inv(result.information)))
+    widened = np.median((result.deviation / before)[result.shown]) if result.shown.any() else 1.0
+    prior = np.diag(DEVIATION**-2.0)
+    data = (result.information - prior) / widened**2
+    before = np.sqrt(np.diag(np.linalg.inv(data + prior)))
+    rate, ranked = result.log.rate, []
+    for name, motion in MOTIONS.items():
+        moves = motion(np.arange(round(LENGTH * rate)) / rate)
+        of = slopes(result.point, rate, *moves, contact=result.contact, pressure=result.pressure)
+        of = (of[:, :, present] / noise[present] / widened).reshape(len(of), -1)
+        after = np.sqrt(np.diag(np.linalg.inv(data + prior + of @ of.T)))
+        fall = 1.0 - after / before
+        ranked.append((name, float(fall.sum()), PARAMETERS[int(np.argmax(fall))].name))
+    return sorted(ranked, key=lambda each: -each[1])

@@ -9,14 +9,15 @@ from typing import Any
 import numpy as np
 
 from slipgym.config import load
+from slipgym.contact.pressure import OUTER_RADII
 from slipgym.identification.fit import FAR, Result
-from slipgym.identification.next_motion import gains
+from slipgym.identification.motions import gains
 from slipgym.identification.parameters import NAMES, PARAMETERS, values_of
-from slipgym.identification.picture import draw
 from slipgym.identification.rollout import CHANNELS
 
 MATERIAL = "identified"
 """Name of the material in gripper.yaml."""
+UNITS = ("N", "N", "N", "N m", "m/s", "m/s", "rad/s")
 
 
 def overrides(result: Result) -> dict[str, Any]:
@@ -32,8 +33,10 @@ def overrides(result: Result) -> dict[str, Any]:
             place[last] = of[each.name]
     defaults = load()
     values["gripper"]["force_gain"] = [of["force gain"]] * 2
-    values["gripper"]["pad_radius"] = max(defaults.gripper.pad_radius, 1.5 * of["r"])
+    values["gripper"]["pad_radius"] = max(defaults.gripper.pad_radius, OUTER_RADII[result.pressure] * of["r"])
     values["contact"]["model"] = result.contact
+    if result.contact == "distributed":
+        values["contact"]["pressure"] = result.pressure
     values["contact"]["cop_offset"] = [[of["cop x"], of["cop y"]]] * 2
     mu_s = of["mu_c"] * (1.0 + of["static excess"])
     values["materials"] = {MATERIAL: {"mu_c": of["mu_c"], "mu_s": min(mu_s, 10.0)}}
@@ -83,12 +86,14 @@ def summary(result: Result) -> str:
     for name, noise, held in zip(CHANNELS, result.noise, result.held_out, strict=True):
         if not np.isnan(noise):
             fit.append(f"| {name} | {noise:.3g} | {held:.3g} | {held / noise:.2f} |")
+    pressed = f" with {result.pressure} pressure" if result.contact == "distributed" else ""
     ranked = gains(result)
     motions = ["| motion, 20 s | sum of what deviations shrink by [%] | most for |", "|---|---|---|"]
     motions += [f"| {name} | {100 * total:.0f} | {most} |" for name, total, most in ranked]
     return (
         f"# Identified gripper\n\n**{verdict(result)}**\n\n{table(result)}\n\n"
-        f"Friction model: {result.contact}. A deviation above half of the prior's counts as not shown.\n\n"
+        f"Friction model: {result.contact}{pressed}. "
+        "A deviation above half of the prior's counts as not shown.\n\n"
         f"## Held-out part\n\nEvery fourth second, which the fit has not seen.\n\n" + "\n".join(fit) + "\n\n"
         "![log and simulation](report.png)\n\n"
         f"## Record next\n\n20 s of **{ranked[0][0]}**.\n\n" + "\n".join(motions) + "\n"
@@ -106,3 +111,24 @@ def write(result: Result, folder: Path) -> None:
     (folder / "gripper.yaml").write_text(text + yaml.safe_dump(values, sort_keys=False), encoding="utf-8")
     (folder / "report.md").write_text(summary(result), encoding="utf-8")
     draw(result, folder / "report.png")
+
+
+def draw(result: Result, path: Path) -> None:
+    """Writes the picture, a row per reading."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    present = np.flatnonzero(~np.isnan(result.noise))
+    t = np.arange(len(result.log.command)) / result.log.rate
+    figure = Figure(figsize=(11, 1.7 * len(present)), layout="constrained")
+    FigureCanvasAgg(figure)
+    rows = figure.subplots(len(present), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, k in zip(rows, present, strict=True):
+        there = np.isfinite(result.log.readings[:, k])
+        axes.plot(t[there], result.log.readings[there, k], color="0.6", lw=2.0, label="log")
+        axes.plot(t, result.before[:, k], color="tab:blue", lw=0.7, label="before")
+        axes.plot(t, result.after[:, k], color="tab:red", lw=0.7, label="after")
+        axes.set_ylabel(f"{CHANNELS[k]} [{UNITS[k]}]")
+    rows[0].legend(ncols=3, loc="upper right")
+    rows[-1].set_xlabel("time [s]")
+    figure.savefig(path, dpi=90)

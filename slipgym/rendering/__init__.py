@@ -1,7 +1,8 @@
 """Renders the environments."""
 
-from slipgym.rendering.layout import HEIGHT, WIDTH
+from slipgym.rendering.camera import PICTURE_HEIGHT as HEIGHT
+from slipgym.rendering.camera import PICTURE_WIDTH as WIDTH
 from slipgym.rendering.renderer import WINDOW_RATE, Renderer
-from slipgym.rendering.window import Window
+from slipgym.screen import Window
 
 __all__ = ["HEIGHT", "WIDTH", "WINDOW_RATE", "Renderer", "Window"]

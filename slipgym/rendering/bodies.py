@@ -1,4 +1,4 @@
-"""Draws the object as what it stands for: a box, a bottle, a tool, of a material with a colour and a print.
+"""Builds shapes from triangles, and the object as what it stands for: a box, a bottle, a tool.
 
 The drawn body lies within the box that is simulated, and has its thickness along the grip axis. Pads and
 friction know nothing of it.
@@ -10,12 +10,16 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from slipgym.rendering import solids
 from slipgym.world.scene import Box
 
+Triangles = NDArray[np.float64]
+"""(n, 3, 3): triangle, corner, coordinate (x, y, z) [m]."""
 Shade = tuple[float, float, float]
-Part = tuple[solids.Triangles, Shade]
+Part = tuple[Triangles, Shade]
+
+_SIDES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
 
 class Section(NamedTuple):
@@ -70,7 +74,7 @@ def draw_body(name: str, box: Box, material: str, face: float) -> list[Part]:
     sections, parts = BODIES[name], []
     for section in sections:
         along, across = 0.5 * length * np.array(section.ends), 0.5 * width * np.array(section.widths)
-        shape = solids.frustum(along, across, 0.5 * box.size[1])
+        shape = frustum(along, across, 0.5 * box.size[1])
         red, green, blue = (base * section.shade if section.shade else np.array(_METAL)).tolist()
         parts.append((_placed(shape, lying, turned), (red, green, blue)))
     main = max(sections, key=lambda section: section.ends[1] - section.ends[0])
@@ -83,7 +87,7 @@ def draw_body(name: str, box: Box, material: str, face: float) -> list[Part]:
     return parts
 
 
-def _placed(shape: solids.Triangles, lying: bool, turned: bool) -> solids.Triangles:
+def _placed(shape: Triangles, lying: bool, turned: bool) -> Triangles:
     """A shape along z as the body lies in the box: turned about the grip axis, so it still faces outside."""
     if turned:
         shape = shape * (-1.0, 1.0, -1.0)
@@ -110,10 +114,10 @@ def _wood(half: tuple[float, float], face: float) -> list[Part]:
 def _cardboard(half: tuple[float, float], face: float) -> list[Part]:
     """Flutes across, and a tape along the middle."""
     flutes = [
-        solids.patch((-half[0], half[0]), (z - 3e-4, z + 3e-4), face)
+        patch((-half[0], half[0]), (z - 3e-4, z + 3e-4), face)
         for z in np.arange(-half[1] + 0.004, half[1], 0.004)
     ]
-    tape = solids.patch((-0.3 * half[0], 0.3 * half[0]), (-half[1], half[1]), face - 5e-5)
+    tape = patch((-0.3 * half[0], 0.3 * half[0]), (-half[1], half[1]), face - 5e-5)
     return [(np.concatenate(flutes), _darker("cardboard", 0.95)), (tape, (0.92, 0.86, 0.73))]
 
 
@@ -130,15 +134,57 @@ def _case(half: tuple[float, float], face: float) -> list[Part]:
     """A recessed rim."""
     edge, line = 0.12 * min(half), 0.02 * min(half)
     (x, z), (across, along) = (half[0] - edge, half[1] - edge), (half[0] - edge - line, half[1] - edge - line)
-    field = solids.patch((-across, across), (-along, along), face - 5e-5)
-    return [(solids.patch((-x, x), (-z, z), face), _darker("case", 0.72)), (field, (0.43, 0.55, 0.66))]
+    field = patch((-across, across), (-along, along), face - 5e-5)
+    return [(patch((-x, x), (-z, z), face), _darker("case", 0.72)), (field, (0.43, 0.55, 0.66))]
 
 
-def _band(x: np.ndarray, z: np.ndarray, thick: float, y: float) -> solids.Triangles:
+def _band(x: np.ndarray, z: np.ndarray, thick: float, y: float) -> Triangles:
     """A band around a line x(z) in the plane of that y, seen from -y."""
     left, right = (np.column_stack([x + d, np.full_like(z, y), z]) for d in (-thick, thick))
     corners = zip(left, right, right[1:], left[1:], strict=False)
-    return np.concatenate([solids.quad(np.array(each)) for each in corners])
+    return np.concatenate([quad(np.array(each)) for each in corners])
 
 
 _PRINTS = {"wood": _wood, "case": _case, "plastic": _plastic, "cardboard": _cardboard}
+
+
+def quad(corners: np.ndarray) -> Triangles:
+    """A flat four-sided face, corners (4, 3)."""
+    return np.stack([corners[[0, 1, 2]], corners[[0, 2, 3]]])
+
+
+def box(half: tuple[float, float, float], centre: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Triangles:
+    """An upright box by its half extents."""
+    x, y, z = half
+    return frustum(np.array([-z, z]), np.array([x, x]), y) + np.asarray(centre)
+
+
+def frustum(along: np.ndarray, across: np.ndarray, thick: float) -> Triangles:
+    """A solid along z, symmetric in x: two ends, lower first, and half widths there (2,), half depth [m]."""
+    ends = list(zip(across, along, strict=True))
+    corners = np.array([(sign * x, y, z) for sign in (-1, 1) for y in (-thick, thick) for x, z in ends])
+    return np.concatenate([quad(corners[list(side)]) for side in _SIDES])
+
+
+def disc(radius: float, y: float, sides: int = 24) -> Triangles:
+    """A disc in the plane of that y, seen from -y."""
+    angles = 2.0 * math.pi * np.arange(sides) / sides
+    rim = np.column_stack([radius * np.cos(angles), np.full(sides, y), radius * np.sin(angles)])
+    centre = np.broadcast_to([0.0, y, 0.0], rim.shape)
+    return np.stack([centre, rim, np.roll(rim, -1, axis=0)], axis=1)
+
+
+def cylinder(radius: float, length: float, sides: int = 24) -> Triangles:
+    """A cylinder around the y axis, its middle at the origin."""
+    front = disc(radius, -length / 2, sides)
+    back = disc(radius, length / 2, sides)[:, ::-1]
+    here, there = front[:, 1], front[:, 2]
+    along = np.array([0.0, length, 0.0])
+    left = np.stack([there, here, here + along], axis=1)
+    right = np.stack([there, here + along, there + along], axis=1)
+    return np.concatenate([front, back, left, right])
+
+
+def patch(x: tuple[float, float], z: tuple[float, float], y: float) -> Triangles:
+    """A rectangle in the plane of that y, seen from -y."""
+    return quad(np.array([(x[0], y, z[0]), (x[1], y, z[0]), (x[1], y, z[1]), (x[0], y, z[1])]))

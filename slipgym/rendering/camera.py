@@ -1,19 +1,21 @@
-"""Projects world points into the view of a camera that looks roughly along the grip axis."""
+"""Lays a picture out, and projects world points into its view by a camera roughly along the grip axis."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from slipgym.rendering.layout import Layout, arrange
-
+PICTURE_WIDTH, PICTURE_HEIGHT = 720, 480
+"""Size of a picture, unless another one is asked for [pixels]."""
+STRIP = 272
+"""Width of the plots in it [pixels]."""
+_READABLE = 2.0 / 3.0  # least scale with words
+_VISIBLE = 0.4  # least scale of marks
 FINE = 2
-"""Samples per pixel in each direction, see `raster.fill`."""
-DEFAULT = arrange("rgb_array", None)
-WIDTH, HEIGHT = DEFAULT.width, DEFAULT.height
-"""Size of the view in a picture of the usual size [pixels]."""
+"""Samples per pixel in each direction, see `scene.fill`."""
 _WORDS = 54, 76  # heights of the words above and below the view [pixels, in a picture of the usual size]
 _MARGIN = 0.08  # of the view's width and height
 _STILL = 0.1  # how far the gripper moves in the view before the camera follows it [half widths of the view]
@@ -29,6 +31,38 @@ _AXES = np.column_stack([_RIGHT, np.cross(_RIGHT, _FORWARD), _FORWARD])
 
 
 @dataclass(frozen=True)
+class Layout:
+    """Sizes of a picture and its parts."""
+
+    width: int
+    """Of the view [pixels]."""
+    height: int
+    """Of view and picture [pixels]."""
+    scale: float = 1.0
+    """Size of words and marks over that in a picture of `PICTURE_WIDTH` by `PICTURE_HEIGHT`."""
+    strip: int = STRIP
+    """Width of the plots beside the view [pixels]; 0: no plots and no words."""
+
+
+def arrange(mode: str, size: Sequence[int] | None) -> Layout:
+    """Lay a picture of a render mode out; its size is width and height [pixels], None for the mode's own.
+
+    The view stands alone in a "depth_array", and where words would be too small to read.
+    """
+    width, height = size or (PICTURE_WIDTH - STRIP * (mode == "depth_array"), PICTURE_HEIGHT)
+    scale = min(width / PICTURE_WIDTH, height / PICTURE_HEIGHT)
+    if mode == "depth_array" or scale < _READABLE:
+        return Layout(width, height, max(scale, _VISIBLE), strip=0)
+    strip = round(scale * STRIP)
+    return Layout(width - strip, height, scale, strip)
+
+
+DEFAULT = arrange("rgb_array", None)
+WIDTH, HEIGHT = DEFAULT.width, DEFAULT.height
+"""Size of the view in a picture of the usual size [pixels]."""
+
+
+@dataclass(frozen=True)
 class Camera:
     """Position and orientation of the camera, and the picture that it takes."""
 
@@ -40,7 +74,7 @@ class Camera:
     """Sizes of the picture."""
 
     def project(self, points: np.ndarray) -> np.ndarray:
-        """World points (..., 3) [m] to x and y [samples] and nearness 1/depth [1/m]; see `raster.fill`."""
+        """World points (..., 3) [m] to x and y [samples] and nearness 1/depth [1/m]; see `scene.fill`."""
         seen = (points - (self.target[0], 0.0, self.target[1])) @ _AXES
         depth = seen[..., 2] + _FOCAL * self.span
         near = np.where(depth > _NEAREST, 1.0 / np.maximum(depth, _NEAREST), 0.0)

@@ -21,10 +21,7 @@ counts the samples and events behind an estimate, of both fingers; `sd_*` is its
 class History:
     """Table with a row for each control step of an episode; NaN for steps that were not recorded.
 
-    Args:
-        simulation: The environment's simulation, just reset.
-        row: Index of the environment.
-        motion: The motion that defines path and reference.
+    The environment with this row of the simulation was just reset; the motion defines path and reference.
     """
 
     def __init__(self, simulation: Simulation, row: int, motion: Motion) -> None:

@@ -1,4 +1,4 @@
-"""Draws a small plot over time into a picture."""
+"""Draws small plots over time beside the view: grip force, slip and its reference, friction."""
 
 from __future__ import annotations
 
@@ -10,12 +10,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from PIL import Image, ImageDraw
 
-from slipgym.rendering.camera import FINE
-from slipgym.rendering.palette import MUTED, RULE, Colour
-from slipgym.rendering.text import write
+from slipgym.rendering.camera import DEFAULT, FINE, PICTURE_HEIGHT, Layout
+from slipgym.rendering.discrepancy import Discrepancy
+from slipgym.rendering.history import History
+from slipgym.rendering.palette import GRIP, GRIP_2, INK, MU_C, MU_S, MUTED, PAPER, RULE, SLIP, Colour
+from slipgym.rendering.text import breadth, write
+from slipgym.tasks.motion import Motion
 
 _TICKS = 4  # intervals at most
 _ABOVE = 4  # how far a curve may be beyond the plot's frame [pixels]
+_LEFT, _RIGHT = 44, 254  # frame of the plots; all in pixels of a picture of the usual size
+_TOP, _TALL, _PITCH = 32, 86, 129
+_NOTES, _LINE = 418, 14  # baseline of the first note and their distance
 
 
 class Curve(NamedTuple):
@@ -89,11 +95,9 @@ class Plot:
 
 
 def pieces(points: np.ndarray, dash: float) -> list[np.ndarray]:
-    """The parts (k, 2) of a line that are drawn; a point that is not finite breaks it.
+    """The parts (k, 2) of a line (n, 2) that are drawn; a point that is not finite breaks it.
 
-    Args:
-        points: (n, 2): x, which grows, and y [samples].
-        dash: Length of dashes and gaps along x [samples]; 0 for none.
+    Dashes and gaps are measured along x, which grows [samples]; 0 for none.
     """
     drawn: Any = np.isfinite(points).all(axis=1)
     if dash and drawn.any():
@@ -120,3 +124,55 @@ def limits(values: list[np.ndarray], least: float) -> tuple[float, float]:
         low = 0.0
     step = spacing(high - low) / 2
     return step * math.floor(low / step + 1e-9), step * math.ceil(high / step - 1e-9)
+
+
+def draw_strip(
+    history: History, motion: Motion, goal: float, off: Sequence[Discrepancy], layout: Layout = DEFAULT
+) -> Image.Image:
+    """Draw the plots of an episode so far and why estimates are off; a higher picture has higher plots.
+
+    The range of the path's plot holds its final target `goal` [mm or degrees].
+    """
+    picture, scale = Image.new("RGB", (layout.strip, layout.height), PAPER), layout.scale
+
+    def curve(name: str, *style: Any) -> Curve:
+        return Curve(history.column(name), *style)
+
+    grips = curve("grip_2", GRIP_2, 3.2), curve("grip_1", GRIP, 1.2)
+    paths = curve("path", SLIP, 2.0), curve("reference", INK, 1.1, 4.0)
+    true = curve("true_mu_s", MU_S, 1.0, 4.0), curve("true_mu_c", MU_C, 1.0, 4.0)
+    frictions = *true, curve("mu_s", MU_S, 1.2), curve("mu_c", MU_C, 2.2)
+    fingers = ("finger 2", GRIP_2), ("finger 1", GRIP)
+    symbols = ("dashed: true", MUTED), ("mu_s", MU_S), ("mu_c", MU_C)
+    panels = (  # the last two: a value that the plot's range holds, and what it holds upwards
+        ("grip force [N]", fingers, grips, 0.0, 5.0),
+        (motion.title, (("dashed: reference", MUTED),), paths, 1.1 * goal, 1.0),
+        ("friction", symbols, frictions, 1.2 * float(true[0].values[-1]), 0.1),
+    )
+    more = (layout.height / scale - PICTURE_HEIGHT) / 3
+    for number, (title, keys, curves, held, least) in enumerate(panels):
+        top = _TOP + number * (_PITCH + more)
+        left, upper, right, lower = (round(scale * at) for at in (_LEFT, top, _RIGHT, top + _TALL + more))
+        low, high = limits([*(each.values for each in curves), np.array([held])], least)
+        plot = Plot(left, upper, right, lower, float(history.times[-1]), low, high, scale)
+        x, y = float(right), upper - 12 * scale
+        write(picture, 12 * scale, y, title, INK, 13 * scale)
+        for words, colour in keys:  # from the right
+            write(picture, x, y, words, colour, 12 * scale, align=1.0)
+            x -= 10.0 * scale + breadth(words, 12 * scale)
+        plot.draw(picture, history.times, curves, clock=number == 2)
+        if number == 2:
+            write(picture, left - 8 * scale, lower + 16 * scale, "t [s]", MUTED, 11 * scale, align=1.0)
+    _write_notes(picture, off, layout)
+    return picture
+
+
+def _write_notes(picture: Image.Image, off: Sequence[Discrepancy], layout: Layout) -> None:
+    """Two lines for each estimate that is off."""
+    scale = layout.scale
+    for k, (name, error, reason) in enumerate(off):
+        y = layout.height - scale * (PICTURE_HEIGHT - _NOTES - 2 * k * _LINE)
+        lines = (f"{name}: {error}", MU_S if name == "mu_s" else MU_C), (reason, MUTED)
+        for line, (words, colour) in enumerate(lines):
+            size = 12 * scale * min(1.0, (layout.strip - 14 * scale) / breadth(words, 12 * scale))
+            write(picture, 12 * scale, y + line * _LINE * scale, words, colour, size)

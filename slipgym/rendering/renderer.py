@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from slipgym.rendering import strip
-from slipgym.rendering.camera import Camera, framing
-from slipgym.rendering.caption import caption
+from slipgym.rendering.camera import Camera, arrange, framing
 from slipgym.rendering.discrepancy import Discrepancy, discrepancies
 from slipgym.rendering.history import History
-from slipgym.rendering.layout import arrange
 from slipgym.rendering.look import View, about, feel, look, moves
+from slipgym.rendering.plot import draw_strip
 from slipgym.rendering.scene import draw_scene, measure_depth
 from slipgym.rendering.stage import footprint
-from slipgym.rendering.window import Window
+from slipgym.rendering.text import caption
+from slipgym.screen import Window
 
 if TYPE_CHECKING:
     from slipgym.envs.simulation import Simulation
@@ -32,7 +31,7 @@ class Renderer:
         mode: "rgb_array", "depth_array" or "human".
         simulation: The environment's simulation.
         row: Index of the environment.
-        size: Width and height of the pictures [pixels]; None: see `slipgym.rendering.layout`.
+        size: Width and height of the pictures [pixels]; None: see `slipgym.rendering.camera.arrange`.
     """
 
     def __init__(
@@ -88,7 +87,7 @@ class Renderer:
         slip = simulation.plant.world["slip"][row]
         caption(view, words, contact, slip, target is not None, self._layout.scale)
         off = self.discrepancies()
-        beside = strip.draw_strip(self._history, self._motion, self._goal, off, self._layout)
+        beside = draw_strip(self._history, self._motion, self._goal, off, self._layout)
         return np.hstack([np.asarray(view), np.asarray(beside)])
 
     def discrepancies(self) -> list[Discrepancy]:

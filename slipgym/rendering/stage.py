@@ -8,8 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from slipgym.rendering import solids
-from slipgym.rendering.bodies import Part, draw_body
+from slipgym.rendering import bodies
 from slipgym.rendering.look import AT_THE_GRASP, Pose, View
 from slipgym.world.scene import PAD_THICKNESS, Box
 
@@ -38,11 +37,8 @@ def assemble(view: View) -> tuple[np.ndarray, np.ndarray]:
 def footprint(view: View, start: Pose, target: Pose | None, turns: Sequence[float]) -> np.ndarray:
     """Points around the object, where it is held and where it is to be, and around the gripper, (n, 3) [m].
 
-    Args:
-        view: Present poses, to which the target belongs.
-        start: Pad centre (x, z) and pitch at the start of the episode [m, m, rad].
-        target: Slip displacement that the task asks for; None: none.
-        turns: Angles by which the wrist is going to pitch [rad].
+    The start is the wrist's, (x, z) and pitch; the target belongs to the present poses; the wrist is going to
+    pitch by the turns [rad].
     """
     asked = [
         view.front((share * x, share * y, share * theta))
@@ -62,14 +58,14 @@ def grid(around: tuple[float, float], reach: float) -> tuple[np.ndarray, np.ndar
     count = min(round(reach / 0.05) + 1, 40)
     y, far, thick = 0.12, 0.05 * count, 5e-4
     x, z = (0.05 * round(at / 0.05) for at in around)
-    parts: list[Part] = []
+    parts: list[bodies.Part] = []
     for at in (0.05 * k for k in range(-count, count + 1)):
-        parts.append((solids.patch((x + at - thick, x + at + thick), (z - far, z + far), y), _GRID))
-        parts.append((solids.patch((x - far, x + far), (z + at - thick, z + at + thick), y), _GRID))
+        parts.append((bodies.patch((x + at - thick, x + at + thick), (z - far, z + far), y), _GRID))
+        parts.append((bodies.patch((x - far, x + far), (z + at - thick, z + at + thick), y), _GRID))
     return _painted(parts)
 
 
-def _painted(parts: list[Part]) -> tuple[np.ndarray, np.ndarray]:
+def _painted(parts: list[bodies.Part]) -> tuple[np.ndarray, np.ndarray]:
     colours = [np.broadcast_to((*colour, 1.0), (len(part), 4)) for part, colour in parts]
     return np.concatenate([part for part, _ in parts]), np.concatenate(colours)
 
@@ -78,16 +74,16 @@ def _painted(parts: list[Part]) -> tuple[np.ndarray, np.ndarray]:
 def object_triangles(box: Box, material: str, body: str = "box") -> tuple[np.ndarray, np.ndarray]:
     """The body, a box with a ruler of 10 mm, and a dot where it was grasped; from its geometric centre."""
     half, depth, height = (length / 2 for length in box.size)
-    parts = draw_body(body, box, material, -depth - _LIFT)
+    parts = bodies.draw_body(body, box, material, -depth - _LIFT)
     face = -depth - _LIFT - _LIFT
     last = int(min(height - 0.005, 0.5) / 0.01) if body == "box" else -1
     for k in range(-last, last + 1):
         length, thick = (0.011, 4e-4) if k % 5 == 0 else (0.006, 2.5e-4)
         z = 0.01 * k
-        parts.append((solids.patch((half - length, half), (z - thick, z + thick), face), _INK))
+        parts.append((bodies.patch((half - length, half), (z - thick, z + thick), face), _INK))
     grasp = np.array([box.grasp_offset[0], 0.0, box.grasp_offset[1]])
-    parts.append((solids.disc(0.005, face) + grasp, _MARK))
-    parts.append((solids.disc(0.0033, face - _LIFT) + grasp, _INK))
+    parts.append((bodies.disc(0.005, face) + grasp, _MARK))
+    parts.append((bodies.disc(0.0033, face - _LIFT) + grasp, _INK))
     return _painted(parts)
 
 
@@ -97,10 +93,10 @@ def gripper_triangles(pad_radius: float, side: float) -> tuple[tuple[np.ndarray,
 
     The gripper reaches in from the left, side -1, or the right, 1.
     """
-    pad = solids.cylinder(pad_radius, PAD_THICKNESS)
-    bar = solids.box((REACH / 2, 0.005, 0.009), (-REACH / 2 + 0.008, PAD_THICKNESS / 2 + 0.005, 0.0))
-    rail = solids.box((0.014, 0.062, 0.016), (-REACH - 0.004, 0.0, 0.0))
-    flange = solids.box((0.03, 0.03, 0.024), (-REACH - 0.048, 0.0, 0.0))
+    pad = bodies.cylinder(pad_radius, PAD_THICKNESS)
+    bar = bodies.box((REACH / 2, 0.005, 0.009), (-REACH / 2 + 0.008, PAD_THICKNESS / 2 + 0.005, 0.0))
+    rail = bodies.box((0.014, 0.062, 0.016), (-REACH - 0.004, 0.0, 0.0))
+    flange = bodies.box((0.03, 0.03, 0.024), (-REACH - 0.048, 0.0, 0.0))
     parts = _painted([(rail, _PALM), (flange, _FINGER)]), _painted([(pad, _PAD), (bar, _FINGER)])
     return parts if side < 0.0 else tuple((mirrored(part, 0), colours) for part, colours in parts)
 

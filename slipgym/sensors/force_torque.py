@@ -77,12 +77,7 @@ def force_torque(kept: int, misaligned: bool = False, swings: bool = False) -> n
 
 
 def roomier(sensors: np.ndarray, kept: int) -> np.ndarray:
-    """The same sensors with room for more loads, none of which there is yet.
-
-    Args:
-        sensors: FORCE_TORQUE.
-        kept: Loads to keep, at most `HISTORY`.
-    """
+    """The same FORCE_TORQUE with room for more loads, at most `HISTORY`, none of which there is yet."""
     misaligned, swings = bool(sensors["misaligned"].any()), bool(sensors["mode"].any())
     larger = np.zeros(sensors.shape, force_torque(kept, misaligned, swings))
     for name in larger.dtype.names or ():
@@ -96,10 +91,7 @@ def roomier(sensors: np.ndarray, kept: int) -> np.ndarray:
 def sample_force_torque(sensor: Any, pad: Pad, tick: int) -> None:
     """Store the load on a finger at a sampling instant; `sensed` applies bias, noise and quantisation.
 
-    Args:
-        sensor: FORCE_TORQUE record.
-        pad: PAD record with the present wrench and normal force.
-        tick: Time, a multiple of the sensor's period.
+    `pad` has the present wrench and normal force; `tick` is a multiple of the sensor's period.
     """
     fx, fy, tau = -pad.wrench[0], -pad.wrench[1], -pad.wrench[2]
     cx, cy = pad.pressure_centre
@@ -130,24 +122,27 @@ def next_sample(sensors: Any, tick: int, control_ticks: int) -> int:
 
 
 @compiled
-def sensed(sensor: Any, number: int, reading: np.ndarray) -> None:
-    """Reading of the load at a sampling instant, with bias, noise, quantisation and saturation.
+def reading_at(sensor: Any, a: int, value: float, index: int) -> float:
+    """Reading of axis a at a load with bias: with the noise of an index, quantisation and saturation."""
+    if sensor.noise[a] > 0.0:
+        value += sensor.noise[a] * standard_normal(sensor.key, index)
+    if sensor.resolution[a] > 0.0:
+        value = sensor.resolution[a] * math.floor(value / sensor.resolution[a] + 0.5)
+    return min(max(value, -sensor.range[a]), sensor.range[a])
 
-    Args:
-        sensor: FORCE_TORQUE record; it keeps the load still.
-        number: Of the sample, 1 the first after reset; 0 before reads as zero.
-        reading: Output (6,) [N, N m].
+
+@compiled
+def sensed(sensor: Any, number: int, reading: np.ndarray) -> None:
+    """Write the reading (6,) of a load that the sensor keeps, with bias, noise, quantisation, saturation.
+
+    `number` is that of the sample, 1 the first after reset; 0 before reads as zero [N, N m].
     """
     load = sensor.history[number % sensor.kept]
     for a in range(6):
-        value = 0.0
+        reading[a] = 0.0
         if number >= 1:
             value = (mixed(sensor, load, a) if sensor.misaligned else load[a]) + sensor.bias[a]
-            if sensor.noise[a] > 0.0:
-                value += sensor.noise[a] * standard_normal(sensor.key, 6 * number + a)
-            if sensor.resolution[a] > 0.0:
-                value = sensor.resolution[a] * math.floor(value / sensor.resolution[a] + 0.5)
-        reading[a] = min(max(value, -sensor.range[a]), sensor.range[a])
+            reading[a] = reading_at(sensor, a, value, 6 * number + a)
 
 
 @compiled

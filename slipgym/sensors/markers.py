@@ -159,10 +159,8 @@ def press(markers: Any, pad: Any, cells: Any, i: int, f: int) -> None:
 def seen_forces(markers: Any, mirror: float, reading: np.ndarray) -> None:
     """Write what the newest delivered frame shows into a reading (6,) of the force/torque sensor.
 
-    Args:
-        markers: MARKERS record.
-        mirror: +1 finger 1, -1 finger 2.
-        reading: Its normal force and the moments that show the centre of pressure stay, but for their scale.
+    Its normal force and the moments that show the centre of pressure stay, but for their scale. `mirror` is
+    +1 for finger 1, -1 for finger 2.
     """
     newest = markers.frames - 1 - markers.latency
     markers.seen[:] = 0.0

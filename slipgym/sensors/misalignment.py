@@ -22,12 +22,7 @@ _START = 1 << 40
 
 @compiled
 def share(key: int, number: int) -> float:
-    """A uniform number in (0, 1) of an episode, which the noise of the same key does not use.
-
-    Args:
-        key: Of a sensor's noise, uint64.
-        number: Which one.
-    """
+    """A uniform number in (0, 1) of an episode, which the noise of the same uint64 key does not use."""
     return uniform(key, _START + number)
 
 
@@ -39,14 +34,11 @@ def about(key: int, number: int, most: float) -> float:
 
 @compiled_call
 def mount(sensor: Any) -> None:
-    """Sample how a sensor is mounted: its `mix`, from its `drift_key`.
+    """Sample how a FORCE_TORQUE record is mounted: its `mix`, from its `drift_key`.
 
     With the pad's centre at e in the sensor's frame the moment of the load gains e x f. Both the forces
     (f_x, f_y, f_n) and the moments then turn with the frame. Cross-talk adds to an axis a part of the load on
     another, each over its range.
-
-    Args:
-        sensor: FORCE_TORQUE record.
     """
     key, mix, mirror = sensor.drift_key, sensor.mix, sensor.mirror
     x, y = about(key, OFF_CENTRE, sensor.off_centre), about(key, OFF_CENTRE + 1, sensor.off_centre)

@@ -26,12 +26,7 @@ TAIL = 16
 
 @compiled
 def uniform(key: int, index: int) -> float:
-    """The index-th number of a key, in (0, 1), a multiple of 2^-53 plus half of one.
-
-    Args:
-        key: uint64.
-        index: Integer >= 0.
-    """
+    """The number of an index >= 0 and a uint64 key, in (0, 1), a multiple of 2^-53 plus half of one."""
     x = key + (np.uint64(index) + _ONE) * _GOLDEN
     x = (x ^ (x >> _S30)) * _MIX_1
     x = (x ^ (x >> _S27)) * _MIX_2

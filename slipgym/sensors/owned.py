@@ -54,12 +54,7 @@ GRIPPER = np.dtype(
 
 @compiled
 def start_gripper(gripper: Any, key: int) -> None:
-    """Begin an episode of a gripper that is open.
-
-    Args:
-        gripper: GRIPPER record.
-        key: Of its noise, uint64.
-    """
+    """Begin an episode of a GRIPPER record that is open, with the uint64 key of its noise."""
     gripper.key = key
     gripper.gain = 1.0 + about(key, _GAIN, gripper.gain_error)
     gripper.steps, gripper.force, gripper.turned, gripper.opening = 0, 0.0, 0.0, 0.0
@@ -109,14 +104,10 @@ def join_open(gripper: Any, number: int, wrenches: np.ndarray) -> None:
 
 @compiled
 def measure_owned(state: Any, cells: Any, force_torque: np.ndarray, lo: int, hi: int) -> None:
-    """Sample the sensors of rows lo to hi, and read those that are due; the last readings stay otherwise.
+    """Sample the sensors of rows lo to hi - 1, and read those that are due; the last readings stay otherwise.
 
-    Args:
-        state: `slipgym.envs.control_step.BatchState`; `wrenches` and `twists` are written.
-        cells: As `slipgym.world.plant.Plant.cells`.
-        force_torque: FORCE_TORQUE (n, 2).
-        lo: First row.
-        hi: Row after the last.
+    `state` is a `slipgym.envs.control_step.BatchState`, whose `wrenches` and `twists` are written, `cells` is
+    that of `slipgym.world.plant.Plant`, `force_torque` FORCE_TORQUE (n, 2).
     """
     reading, cop = np.empty(6), np.empty(2)
     for i in range(lo, hi):

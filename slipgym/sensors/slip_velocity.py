@@ -77,14 +77,9 @@ SLIP_SENSOR = joined(SLIP_SENSOR_FIXED, SLIP_SENSOR_EPISODE)
 
 
 def chip_positions(radius: float, chips: int) -> np.ndarray:
-    """Positions of the chips from the pad centre in the finger's frame; their mean is the pad centre.
+    """Positions (CHIPS_MAX, 2) of 2 or more chips from the pad centre, their mean, in the finger's frame [m].
 
-    Args:
-        radius: Distance of the chips from the pad centre [m].
-        chips: Number of chips, evenly spaced, the first straight up, from 2 to CHIPS_MAX.
-
-    Returns:
-        Array (CHIPS_MAX, 2) [m]; rows of absent chips are zero.
+    They are evenly spaced on a circle, the first straight up; rows of absent chips are zero.
     """
     positions = np.zeros((CHIPS_MAX, 2))
     angles = math.pi / 2 + 2 * math.pi * np.arange(chips) / chips

@@ -30,14 +30,7 @@ def among(key: int, number: int, most: int) -> int:
 def start_sensors(
     force_torque: np.ndarray, slip_sensors: np.ndarray, keys: np.ndarray, shares: np.ndarray
 ) -> None:
-    """Reset the sensors; their histories are empty.
-
-    Args:
-        force_torque: FORCE_TORQUE (n,).
-        slip_sensors: SLIP_SENSOR (n,).
-        keys: Keys of the noise, from `draw_sensors`.
-        shares: Uniform numbers in [0, 1), from `draw_sensors`.
-    """
+    """Reset FORCE_TORQUE (n,) and SLIP_SENSOR (n,), with keys and shares from `draw_sensors`."""
     for i in range(slip_sensors.shape[0]):
         wrench, slip = force_torque[i], slip_sensors[i]
         for k in range(wrench.kept):

@@ -26,10 +26,7 @@ READ, RATE, LOAD = range(3)
 def mode(frequency: float, damping: float, period: float) -> tuple[float, ...]:
     """Returns the coefficients of a sample: the lag, and how d and its change follow from the last ones.
 
-    Args:
-        frequency: omega / 2 pi [Hz].
-        damping: zeta, below 1 [-].
-        period: Of the samples [s].
+    The frequency is omega / 2 pi [Hz], the damping zeta is below 1, the period that of the samples [s].
     """
     omega, decay = math.tau * frequency * period, math.tau * frequency * period * damping
     turn = omega * math.sqrt(1.0 - damping**2)
@@ -40,11 +37,9 @@ def mode(frequency: float, damping: float, period: float) -> tuple[float, ...]:
 
 @compiled
 def vibrate(sensor: Any, load: Any) -> None:
-    """Replace the load (6,) of a sample by what the sensor's spring bears; the first sample is at rest.
+    """Replace the load (6,) of a sample by what the spring of a sensor with a mode bears [N, N m].
 
-    Args:
-        sensor: FORCE_TORQUE record with a mode.
-        load: Of every sample, each once and in turn [N, N m].
+    Every sample comes once and in turn; the first is at rest.
     """
     lag, kept, gained, pulled, slowed = sensor.mode
     swing = sensor.swing

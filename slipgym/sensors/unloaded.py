@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from slipgym._numba.compiled import compiled
-from slipgym.sensors.force_torque import resolve_at_cop
+from slipgym.sensors.force_torque import reading_at, resolve_at_cop
 from slipgym.sensors.measure import CONTACT_THRESHOLD
 from slipgym.sensors.misalignment import mixed, share
 from slipgym.sensors.noise import standard_normal
@@ -54,11 +54,6 @@ def read_unloaded(sensor: Any, wrenches: np.ndarray) -> None:
         lost = k > 0 and sensor.dropout > 0.0 and share(sensor.key, _LOST + k) < sensor.dropout
         for a in range(6):
             if not lost:
-                value = bias[a]
-                if sensor.noise[a] > 0.0:
-                    value += sensor.noise[a] * standard_normal(sensor.key, _BEFORE + 6 * k + a)
-                if sensor.resolution[a] > 0.0:
-                    value = sensor.resolution[a] * np.floor(value / sensor.resolution[a] + 0.5)
-                reading[a] = min(max(value, -sensor.range[a]), sensor.range[a])
+                reading[a] = reading_at(sensor, a, bias[a], _BEFORE + 6 * k + a)
             bias[a] += _step_of_bias(sensor, k, a)
         resolve_at_cop(sensor, reading, CONTACT_THRESHOLD, wrenches[k], cop)

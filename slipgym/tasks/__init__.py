@@ -2,8 +2,7 @@
 
 from slipgym.config.task import Option, TaskConfig, setting
 from slipgym.tasks.check import check
-from slipgym.tasks.configure import configure
-from slipgym.tasks.table import TASKS, find
+from slipgym.tasks.configure import TASKS, configure, find
 from slipgym.tasks.task import Column, Task, Term, event, term
 
 __all__ = [

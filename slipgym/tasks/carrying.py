@@ -89,12 +89,9 @@ def planned_velocity(episode, time):
 
 @compiled
 def planned_acceleration(episode, ahead, axis):
-    """Acceleration of the planned moves along an axis in the control step that begins `ahead` from now.
+    """Acceleration of the planned moves in the control step that begins a time ahead of now [s].
 
-    Args:
-        episode: EPISODE record.
-        ahead: Time from now [s].
-        axis: 0, 1 or 2: x, z or pitch.
+    `axis` is 0, 1 or 2: x, z or pitch.
     """
     time, dt = episode.step * episode.step_time + ahead, episode.step_time
     return (planned_velocity(episode, time + dt)[axis] - planned_velocity(episode, time)[axis]) / dt
@@ -211,12 +208,7 @@ def rehearse(episode, world, every):
     """Least grip that keeps both pads stuck through the episode, as far as its start determines it.
 
     On soft pads the object swings, by how much depends on the grip: the grip is found by repetition, from
-    that without swing on.
-
-    Args:
-        episode: EPISODE record at step 0, with mu_s and r.
-        world: As for `plan_loads`.
-        every: As for `least_through`.
+    that without swing on. The episode is at step 0 and has mu_s and r; `every` is as for `least_through`.
 
     Returns:
         As `least_through`, and as `plan_loads`.
@@ -233,12 +225,7 @@ def rehearse(episode, world, every):
 
 @compiled
 def spend(episode, fingers):
-    """Add the grip of this control step, once, to the sum over the steps so far.
-
-    Args:
-        episode: EPISODE record.
-        fingers: FINGER (2,).
-    """
+    """Add the grip of this control step, once, to the sum over the steps so far."""
     if episode.step > episode.grip_counted:
         episode.grip_counted = episode.step
         episode.grip_sum += mean_force(fingers)

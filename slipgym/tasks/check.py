@@ -13,8 +13,7 @@ from gymnasium.envs.registration import load_env_creator
 
 from estimator._numba.uncompiled import uncompiled
 from slipgym.registration import ENVIRONMENTS
-from slipgym.tasks.compile import inlined
-from slipgym.tasks.functions import RECORDS, THREE, Function, functions, no_field
+from slipgym.tasks.compile import RECORDS, THREE, Function, functions, inlined, no_field
 
 if TYPE_CHECKING:
     from slipgym.tasks.task import Task

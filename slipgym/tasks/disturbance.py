@@ -1,4 +1,8 @@
-"""Stores an episode's disturbances, and applies them to object, wrist and friction."""
+"""Stores an episode's disturbances, and applies them to object, wrist and friction.
+
+`episode` is an EPISODE record, `world` a WORLD record; `episodes`, `worlds` (n,) and `pads` PAD (n, 2) are
+those of n environments.
+"""
 
 from __future__ import annotations
 
@@ -54,12 +58,9 @@ FIELDS = [
 
 @compiled
 def shake_velocity(episode, axis, time):
-    """Wrist velocity of the oscillations along one axis at a time; they rise smoothly from rest.
+    """Wrist velocity of the oscillations along axis 0, 1 or 2 (x, z, pitch) at a time since reset [s].
 
-    Args:
-        episode: EPISODE record.
-        axis: 0, 1 or 2: x, z or pitch.
-        time: Since reset [s].
+    They rise smoothly from rest.
     """
     total = 0.0
     for k in range(episode.shakes.shape[0]):
@@ -75,13 +76,9 @@ def shake_velocity(episode, axis, time):
 
 @compiled
 def shake_tilt(episodes, tilts):
-    """Before a control step, ramp the wrist's roll and its motion along the grip axis to their oscillations.
+    """Before a control step, ramp the wrist's roll and its motion along the grip axis, in TILT (n,).
 
     The gripper's limits of pitch rate and speed apply.
-
-    Args:
-        episodes: EPISODE (n,).
-        tilts: TILT (n,).
     """
     for i in range(episodes.shape[0]):
         episode = episodes[i]
@@ -130,12 +127,7 @@ def bear(episode, world):
 
 @compiled
 def bear_all(episodes, worlds):
-    """`bear` for n environments.
-
-    Args:
-        episodes: EPISODE (n,).
-        worlds: WORLD (n,).
-    """
+    """`bear` for n environments."""
     for i in range(episodes.shape[0]):
         bear(episodes[i], worlds[i])
 
@@ -177,11 +169,7 @@ def load(episode, world):
 def disturb(episodes, worlds, pads, friction):
     """Before a control step, set the load on the object, its mass, and the friction.
 
-    Args:
-        episodes: EPISODE (n,).
-        worlds: WORLD (n,).
-        pads: PAD (n, 2).
-        friction: Output (n, 3): mu_s, mu_c and r now, mean of both pads; r as it is unless a pad is soft.
+    `friction` is output, (n, 3): mu_s, mu_c and r now, mean of both pads; r as it is unless a pad is soft.
     """
     for i in range(episodes.shape[0]):
         episode, world = episodes[i], worlds[i]

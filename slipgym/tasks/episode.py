@@ -118,12 +118,7 @@ def between(ends, share):
 
 @compiled
 def begin_step(episodes, commands):
-    """Take the commands of the coming control step.
-
-    Args:
-        episodes: EPISODE (n,).
-        commands: Grip force and wrist velocity (x, z, pitch), (n, 4) [N, m/s, m/s, rad/s].
-    """
+    """Take the commands of the coming control step, (n, 4): grip force and wrist velocity (x, z, pitch)."""
     for i in range(episodes.shape[0]):
         episode = episodes[i]
         episode.last_command = episode.command
@@ -136,14 +131,8 @@ def begin_step(episodes, commands):
 def drive_wrist(episode, world, x, z, pitch):
     """Bring the wrist to the sum of scripted velocity, oscillation and the agent's command in a step.
 
-    The gripper's limits apply to the sum.
-
-    Args:
-        episode: EPISODE record.
-        world: WORLD record.
-        x: Scripted velocity along world x at the end of the step [m/s].
-        z: Scripted velocity along world z [m/s].
-        pitch: Scripted pitch rate [rad/s].
+    `x` and `z` are the scripted velocity in the world at the end of the step [m/s], `pitch` its pitch rate
+    [rad/s]. The gripper's limits apply to the sum.
     """
     time = (episode.step + 1) * episode.step_time
     x += shake_velocity(episode, 0, time) + episode.wrist_command[0]

@@ -50,7 +50,7 @@ deg). A further slide or tilt is the violation that `violated` reports.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -153,11 +153,6 @@ def upright(episode, world, fingers):
     return math.exp(-((tilt(episode, world) / episode.tilt_tolerance) ** 2))
 
 
-def hanging(episode: Any) -> tuple[float, float, float]:
-    """Slip displacement of an object that hangs as at the start [m, m, rad]."""
-    return 0.0, 0.0, -float(episode["reference"][0])
-
-
 TASK = Task(
     id="slipgym/Hinge-v0",
     settings=Settings,
@@ -177,6 +172,6 @@ TASK = Task(
         VIOLATED,
     ),
     motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), sign=-1.0, goal="wrist_pitch_goal",
-                  body="tool", end=hanging),
+                  body="tool", end=lambda episode: (0.0, 0.0, -float(episode["reference"][0]))),
     page=__doc__,
 )  # fmt: skip

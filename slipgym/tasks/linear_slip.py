@@ -32,7 +32,7 @@ Success (`info["is_success"]`): at the end of the last step the distance slid is
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -85,11 +85,6 @@ def sideways(episode, world, fingers):
     return -away / (10.0 * episode.tolerance)
 
 
-def slid(episode: Any) -> tuple[float, float, float]:
-    """Slip displacement at the end of the slide [m, m, rad]."""
-    return 0.0, -float(episode["goal"]), 0.0
-
-
 TASK = Task(
     id="slipgym/LinearSlip-v0",
     settings=Settings,
@@ -106,6 +101,7 @@ TASK = Task(
         TIME_LEFT,
         VIOLATED,
     ),
-    motion=Motion("slid down", axis=(0.0, -1.0, 0.0), goal="distance", end=slid),
+    motion=Motion("slid down", axis=(0.0, -1.0, 0.0), goal="distance",
+                  end=lambda episode: (0.0, -float(episode["goal"]), 0.0)),
     page=__doc__,
 )  # fmt: skip

@@ -10,7 +10,7 @@ from pydantic import Field, ValidationError, create_model
 
 from slipgym.config.base import Factors, Frozen, Point, Points, Positive, Size
 from slipgym.config.errors import unknown
-from slipgym.config.task import Reset, SettingsT, TaskConfig
+from slipgym.config.task import SAME, Option, SettingsT, TaskConfig
 
 
 def option(meaning: str, **bounds: Any) -> Any:
@@ -83,10 +83,10 @@ def derive_options(name: str, settings: type[TaskConfig]) -> type[EpisodeOptions
     fields: dict[str, Any] = {}
     replaced = set()
     for key, field in settings.model_fields.items():
-        reset = field.json_schema_extra
-        if not isinstance(reset, Reset):
+        own = field.json_schema_extra
+        if not isinstance(own, Option):
             continue
-        if (own := reset.option) is not None:
+        if own is not SAME:
             bounds: dict[str, Any] = dict(own.bounds or {})
             kind: Any = Annotated[own.annotation, Field(**bounds)]
             fields[key] = (kind | None, option(own.meaning))

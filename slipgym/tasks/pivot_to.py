@@ -65,7 +65,7 @@ violations that `violated` reports.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -205,11 +205,6 @@ def distance(episode, world, fingers):
     return -angle_error(episode, world) / math.pi
 
 
-def turned(episode: Any) -> tuple[float, float, float]:
-    """Slip displacement at the end of the turn [m, m, rad]."""
-    return 0.0, 0.0, float(episode["goal"])
-
-
 TASK = Task(
     id="slipgym/PivotTo-v0",
     settings=Settings,
@@ -225,6 +220,7 @@ TASK = Task(
         VIOLATED,
     ),
     action_mode="grip_force_translation",
-    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), goal="goal", end=turned),
+    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), goal="goal",
+                  end=lambda episode: (0.0, 0.0, float(episode["goal"]))),
     page=__doc__,
-)
+)  # fmt: skip

@@ -65,7 +65,7 @@ makes it impossible: `violated` is always 0.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -206,12 +206,6 @@ def wrist(episode, world, fingers):
     return -(speed**2 + rate**2)
 
 
-def at_target(episode: Any) -> tuple[float, float, float]:
-    """Slip displacement to reach [m, m, rad]."""
-    x, y, angle = episode["own"][SCRATCH.target].tolist()
-    return x, y, angle
-
-
 TASK = Task(
     id="slipgym/PlanarSlip-v0",
     settings=Settings,
@@ -228,6 +222,7 @@ TASK = Task(
         VIOLATED,
     ),
     action_mode="grip_force_pitch",
-    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), entry=2, goal="target_theta", end=at_target),
+    motion=Motion("turned in the grip", "rad", (0.0, 0.0, 1.0), entry=2, goal="target_theta",
+                  end=lambda episode: tuple(episode["own"][SCRATCH.target].tolist())),
     page=__doc__,
 )  # fmt: skip

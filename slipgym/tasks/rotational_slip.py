@@ -43,7 +43,7 @@ slide further than that is the violation that `violated` reports.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -115,11 +115,6 @@ def tracking_wide(episode, world, fingers):
     return math.exp(-(((-world.slip[2] - episode.reference[0]) / WIDTH) ** 2))
 
 
-def turned(episode: Any) -> tuple[float, float, float]:
-    """Slip displacement at the end of the turn [m, m, rad]."""
-    return 0.0, 0.0, -float(episode["goal"])
-
-
 TASK = Task(
     id="slipgym/RotationalSlip-v0",
     settings=Settings,
@@ -137,6 +132,7 @@ TASK = Task(
         TIME_LEFT,
         VIOLATED,
     ),
-    motion=Motion("turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle", body="tool", end=turned),
+    motion=Motion("turned by gravity", "rad", (0.0, 0.0, -1.0), goal="angle", body="tool",
+                  end=lambda episode: (0.0, 0.0, -float(episode["goal"]))),
     page=__doc__,
 )  # fmt: skip

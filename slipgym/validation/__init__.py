@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from slipgym.validation.bench import Figure
 from slipgym.validation.breakaway import breakaway
 from slipgym.validation.creep import creep
-from slipgym.validation.energy import energy
-from slipgym.validation.fall import fall
-from slipgym.validation.figure import Figure
+from slipgym.validation.energy import energy, fall
 from slipgym.validation.steady import steady
 
 
@@ -20,14 +19,7 @@ def planar() -> Iterator[Figure]:
             yield replace(figure, name=f"planar: {figure.name}")
 
 
-EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (
-    creep,
-    breakaway,
-    steady,
-    energy,
-    fall,
-    planar,
-)
+EXPERIMENTS: tuple[Callable[[], Iterator[Figure]], ...] = (creep, breakaway, steady, energy, fall, planar)
 """Each yields its figures."""
 
 __all__ = ["EXPERIMENTS", "Figure"]

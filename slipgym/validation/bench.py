@@ -1,7 +1,8 @@
-"""Runs the full world of either engine under prescribed loads, grip forces and wrist motion."""
+"""Runs the full world of either engine under prescribed loads, grip forces and wrist motion, for figures."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
@@ -9,13 +10,33 @@ from typing import Any, Self
 import numpy as np
 
 from slipgym.config import Config, load
-from slipgym.validation.planar_world import PlanarWorld
-from slipgym.world.bullet_engine import BulletWorld
+from slipgym.world.bullet_engine import BulletWorld, DrivenWorld
+from slipgym.world.placing import place
+from slipgym.world.planar_engine import step_world
 from slipgym.world.plant import build
 from slipgym.world.scene import Box
 
 Signal = Callable[[float], Any]
 SETTLE_TIME = 0.25  # [s]; twenty time constants of the force loop
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A measured size that must not exceed a bound."""
+
+    name: str
+    """Name of the figure."""
+    bound: float
+    """Largest value allowed."""
+    measured: float
+    """Value found."""
+    unit: str
+    """Unit of both."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether the bound holds; not so for NaN."""
+        return self.measured <= self.bound
 
 
 @dataclass(frozen=True)
@@ -69,6 +90,43 @@ class Trace:
     def of(cls, rows: Sequence[tuple[Any, ...]]) -> Self:
         """Stack rows that hold the fields in order."""
         return cls(*(np.array(column) for column in zip(*rows, strict=True)))
+
+
+class PlanarWorld(DrivenWorld):
+    """The planar engine with the interface of `BulletWorld`."""
+
+    _force = 0.0
+
+    def reset(self, box: Box, force: float, wrist: tuple[float, float, float]) -> None:
+        """The box held still by both fingers."""
+        self._force = force
+        place(self._plant, 0, box, force, wrist)
+
+    def command(self, force: float) -> None:
+        """Command a grip force per finger [N]."""
+        self._force = force
+
+    def step(self) -> None:
+        """Advance by one control step."""
+        plant = self._plant
+        bodies = plant.world, plant.pads, plant.cells, plant.fingers, plant.force_torque, plant.slip_sensors
+        step_world(*bodies, self._force, 0)
+
+    @property
+    def reading(self) -> tuple[Any, ...]:
+        """Pose, velocity, wrist joints, normal forces, in PyBullet's form."""
+        world, fingers = self._plant.world[0], self._plant.fingers[0]
+        (x, z), angle, (v_x, v_z, omega) = world["com"], float(world["angle"]), world["velocity"]
+        pose = (x, 0.0, z), (0.0, -math.sin(angle / 2), 0.0, math.cos(angle / 2))
+        return (
+            pose,
+            ((v_x, 0.0, v_z), (0.0, -omega, 0.0)),
+            tuple(world["wrist"]),
+            tuple(fingers["contact_force"]),
+        )
+
+    def close(self) -> None:
+        """There is nothing to release."""
 
 
 class Bench:

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.validation.bench import Bench
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Bench, Figure
 
 BOUND = 1.0  # [%]
 RATE = 0.02  # of the limit [1/s]
@@ -30,10 +29,8 @@ def ramp(
 ) -> float:
     """Load at break-away over mu_s sum f_n [-].
 
-    Args:
-        direction: Direction of the scaled load (f_x, f_z, tau / r) at the pad centre.
-        com_offset: Centre of mass (x, z) from the pad centre [m].
-        **options: More arguments of `Bench`.
+    The direction is that of the scaled load (f_x, f_z, tau / r) at the pad centre. The centre of mass (x, z)
+    is `com_offset` from the pad centre [m].
     """
     unit = np.array(direction) / np.linalg.norm(direction)
     with Bench(WITHOUT_GRAVITY, com_offset=com_offset, **options) as bench:
@@ -49,9 +46,7 @@ def ramp(
 def release(eccentricity: float, **options: Any) -> float:
     """Scaled load of a weight on a lever over mu_s sum f_n, when a slowly opening grip releases it [-].
 
-    Args:
-        eccentricity: Distance of the centre of mass from the pads along x [m].
-        **options: More arguments of `Bench`.
+    The eccentricity is the distance of the centre of mass from the pads along x [m].
     """
     with Bench(com_offset=(eccentricity, 0.0), force=30.0, **options) as bench:
         load = bench.box.mass * bench.config.physics.gravity

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.validation.bench import Bench, Friction, Signal
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Bench, Figure, Friction, Signal
 
 LEVEL = 0.8  # of the friction limit
 DURATION = 60.0  # [s]
@@ -34,18 +33,11 @@ def grip_for(level: float, mass: float, eccentricity: float, friction: Friction)
 
 
 def drift(eccentricity: float, wrist: Signal | None = None, **bench: Any) -> tuple[float, float]:
-    """Largest displacement and rotation from where the object was after one second.
+    """Largest distance [mm] and rotation [deg] from where the object was after one second.
 
-    Compared at whole seconds, at which the moving wrist is at rest in its first pose and the
-    load is the same.
-
-    Args:
-        eccentricity: Distance of the centre of mass from the pads along x [m].
-        wrist: Wrist velocity with a period of 1 s.
-        **bench: More arguments of `Bench`.
-
-    Returns:
-        Distance [mm] and angle [deg].
+    Compared at whole seconds, at which the moving wrist, whose velocity has a period of 1 s, is at rest in
+    its first pose and the load is the same. The eccentricity is the distance of the centre of mass from the
+    pads along x [m].
     """
     friction, mass = Friction(), 0.2
     level = LEVEL if wrist is None else LEVEL / (1.0 + SWAY_LOAD)

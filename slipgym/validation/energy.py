@@ -1,4 +1,4 @@
-"""Checks that friction dissipates energy and never adds any."""
+"""Checks that friction dissipates energy and never adds any, and that an object falls freely without grip."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.validation.bench import Bench, Signal, Trace
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Bench, Figure, Signal, Trace
 
 THROWS = 8
 SIZE = 0.3, 0.03, 0.3  # [m]; the pads stay on it
@@ -19,6 +18,8 @@ GRIP = 5.0  # [N]
 GRIP_RANGE = 1.0, 10.0  # [N]
 PUSH_TIME = 0.05  # [s]
 FREE_TIME = 0.5  # [s]
+FALL_BOUND = 0.1  # [%]
+FALL_TIME = 0.5  # [s]
 
 
 def energies(bench: Bench, trace: Trace) -> np.ndarray:
@@ -83,3 +84,18 @@ def energy(**options: Any) -> Iterator[Figure]:
         yield Figure(f"energy gained, {THROWS} random throws, {name}", 1.0, max(rises), "store")
     rises = [slide(seed, **options) for seed in range(THROWS)]
     yield Figure("energy gained, weight, slipping and sticking", 1.0, max(rises), "store")
+
+
+def drop(**options: Any) -> float:
+    """Distance fallen against g t^2 / 2 at every control step, largest difference [%]."""
+    with Bench(force=0.0, **options) as bench:
+        start = float(bench.plant.world["com"][0, 1])
+        trace = bench.run(FALL_TIME, force=lambda _: 0.0)
+        parabola = 0.5 * bench.config.physics.gravity * trace.time**2
+    away = np.abs((start - trace.position[:, 1]) / parabola - 1.0)
+    return 100.0 * away.max()
+
+
+def fall(**options: Any) -> Iterator[Figure]:
+    """An object that nothing holds."""
+    yield Figure("free fall without grip, from 1/120 s to 0.5 s", FALL_BOUND, drop(**options), "%")

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from slipgym.validation.bench import Bench, Trace
-from slipgym.validation.figure import Figure
+from slipgym.validation.bench import Bench, Figure, Trace
 
 BOUND = 1.0  # [%]
 MASS = 0.5  # [kg]
@@ -46,21 +45,12 @@ def ellipsoid(twist: np.ndarray) -> np.ndarray:
 
 
 def deviation(
-    angle: float,
-    sigma_2: float,
-    law: Callable[[np.ndarray], np.ndarray] = ellipsoid,
-    **options: Any,
+    angle: float, sigma_2: float, law: Callable[[np.ndarray], np.ndarray] = ellipsoid, **options: Any
 ) -> tuple[float, np.ndarray]:
-    """Distance of friction from its law while a constant load drags the object.
+    """Largest distance of friction from its law while a constant load drags the object [% of mu_c sum f_n].
 
-    Args:
-        angle: Of the scaled load from translation to torque [rad].
-        sigma_2: Viscous friction [s/m].
-        law: Scaled friction over mu_c f_n at scaled twists, (n, 3) from (n, 3).
-        **options: More arguments of `Bench`.
-
-    Returns:
-        Largest distance in % of mu_c sum f_n; gamma_t of the samples.
+    The angle is that of the scaled load from translation to torque [rad]; `law` gives scaled friction over
+    mu_c f_n at scaled twists, (n, 3) from (n, 3). The gamma_t of the samples are returned as well.
     """
     overrides = {"physics": {"gravity": 0.0}, "contact": {"sigma_2": sigma_2}}
     # inertia m r^2: the scaled mass is the same in all directions, the twist stays with the load

@@ -53,12 +53,6 @@ class Client:
         Raises:
             RuntimeError: It is closed, was disconnected, or its number belongs to another client.
         """
-        number, place = self._number, self._place
-        try:
-            if place is not None and number is not None and p.getUserData(place, number) == self._mark:
-                return number  # of every control step
-        except p.error:
-            pass
         number = self.number
         if not self._owned(number):
             raise RuntimeError(GONE)

@@ -12,35 +12,31 @@ the difference between expected and actual pose, and the planar world takes over
 from __future__ import annotations
 
 import math
-from typing import Any
-
-import numpy as np
+from typing import Any, TypeAlias
 
 from slipgym._numba.compiled import compiled
-from slipgym.contact.records import Pad, Vector
+from slipgym.contact.records import Pad, Pair, Vector
 from slipgym.world.records import Finger, Records, World
 from slipgym.world.substep import advance_engine_step
+
+Pose: TypeAlias = tuple[Vector, tuple[float, float, float, float]]
+"""Position (x, y, z) [m] and quaternion (x, y, z, w)."""
 
 
 @compiled
 def read_engine(
-    world: World,
-    fingers: Records,
-    position: Vector,
-    orientation: tuple[float, float, float, float],
-    wrist: Vector,
-    normals: tuple[float, float],
+    world: World, fingers: Records, pose: Pose, wrist: Vector, normals: tuple[float, float]
 ) -> None:
     """Copy the engine's poses and normal forces. A second call changes nothing.
 
     Args:
         world: WORLD record.
         fingers: FINGER records (2,).
-        position: Object's centre of mass (x, y, z) [m].
-        orientation: Its quaternion (x, y, z, w).
+        pose: Of the object's centre of mass.
         wrist: Wrist joint positions (x, z, pitch) [m, m, rad].
         normals: Normal force of finger 1 and 2, mean over the last engine step [N].
     """
+    position, orientation = pose
     dt = world.engine_ticks * world.tick_length
     angle = -2.0 * math.atan2(orientation[1], orientation[3])
     turn = angle - world.angle
@@ -59,43 +55,31 @@ def read_engine(
 
 @compiled
 def engine_loads(
-    world: World,
-    pads: Records,
-    cells: np.ndarray | None,
-    fingers: Records,
-    force_torque: Records,
-    slip_sensors: Records,
-    position: Vector,
-    orientation: tuple[float, float, float, float],
-    linear: Vector,
-    angular: Vector,
+    bodies: tuple[Any, ...],
+    pose: Pose,
+    velocity: tuple[Vector, Vector],
     wrist: Vector,
     normals: tuple[float, float],
 ) -> tuple[Any, ...]:
     """Advance the planar world by one engine step; returns what the engine must apply.
 
     Args:
-        world: WORLD record.
-        pads: PAD records (2,).
-        cells: Patches (2, CELL_FIELDS, m); None for ellipsoids.
-        fingers: FINGER records (2,).
-        force_torque: FORCE_TORQUE records (2,).
-        slip_sensors: SLIP_SENSOR records (2,).
-        position: As in `read_engine`, like the next one.
-        orientation: Quaternion of the object.
-        linear: Engine velocity of the object [m/s].
-        angular: Engine angular velocity of the object [rad/s].
-        wrist: As in `read_engine`.
-        normals: As in `read_engine`.
+        bodies: The records that `advance_engine_step` takes.
+        pose: As in `read_engine`, like the last two.
+        velocity: Engine velocity [m/s] and angular velocity [rad/s] of the object.
+        wrist: Wrist joint positions.
+        normals: Normal forces.
 
     Returns:
         Force and torque on the object at its centre of mass; for either finger the point,
         force and torque of friction's reaction; finger efforts; wrist joint velocities.
     """
-    read_engine(world, fingers, position, orientation, wrist, normals)
+    world, pads, _, fingers, _, _ = bodies
+    (position, _), (linear, angular) = pose, velocity
+    read_engine(world, fingers, pose, wrist, normals)
     dt = world.engine_ticks * world.tick_length
     x, z, angle = world.com[0], world.com[1], world.angle
-    advance_engine_step(world, pads, cells, fingers, force_torque, slip_sensors)
+    advance_engine_step(*bodies)
     # total in-plane load that gives the engine this step's mean velocity
     fx = world.mass * ((world.com[0] - x) / dt - linear[0]) / dt
     fz = world.mass * ((world.com[1] - z) / dt - linear[2]) / dt + world.mass * world.gravity
@@ -105,14 +89,12 @@ def engine_loads(
     for f in range(2):
         excess_x -= fingers[f].reaction[0]
         excess_z -= fingers[f].reaction[1]
-    cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])
     for f in range(2):
         load = fingers[f].reaction
         load[0] += 0.5 * excess_x
         load[1] += 0.5 * excess_z
-        arm_x = world.wrist[0] + cos * pads[f].pressure_centre[0] - sin * pads[f].pressure_centre[1] - x
-        arm_z = world.wrist[1] + sin * pads[f].pressure_centre[0] + cos * pads[f].pressure_centre[1] - z
-        excess_t -= load[2] + arm_x * load[1] - arm_z * load[0]
+        at_x, at_z = pressure_point(world, pads[f])
+        excess_t -= load[2] + (at_x - x) * load[1] - (at_z - z) * load[0]
     for f in range(2):
         fingers[f].reaction[2] += 0.5 * excess_t
     goal = (
@@ -130,10 +112,16 @@ def engine_loads(
 
 
 @compiled
+def pressure_point(world: World, pad: Pad) -> Pair:
+    """A pad's centre of pressure in the world plane (x, z) [m]."""
+    cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])
+    x, y = pad.pressure_centre
+    return world.wrist[0] + cos * x - sin * y, world.wrist[1] + sin * x + cos * y
+
+
+@compiled
 def reaction(world: World, pad: Pad, finger: Finger, depth: float) -> tuple[Vector, Vector, Vector]:
     """Point, force and torque of friction on a finger, world coordinates."""
-    cos, sin = math.cos(world.wrist[2]), math.sin(world.wrist[2])
-    x = world.wrist[0] + cos * pad.pressure_centre[0] - sin * pad.pressure_centre[1]
-    z = world.wrist[1] + sin * pad.pressure_centre[0] + cos * pad.pressure_centre[1]
+    x, z = pressure_point(world, pad)
     fx, fz, tau = finger.reaction
     return (x, depth, z), (-fx, 0.0, -fz), (0.0, tau, 0.0)

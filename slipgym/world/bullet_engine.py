@@ -11,19 +11,38 @@ from typing import Any, NoReturn
 import numpy as np
 
 from slipgym.config import Config
-from slipgym.world import bullet_tilt, bullet_upright, scene
+from slipgym.world import scene
 from slipgym.world.bullet_client import Client
-from slipgym.world.bullet_rows import BulletRows, read_engine
-from slipgym.world.placing import place
+from slipgym.world.bullet_rows import BulletRows, read_bodies, read_engine, stepper
+from slipgym.world.placing import place, place_tilt
 from slipgym.world.plant import Plant
 from slipgym.world.quiet_pybullet import p
-from slipgym.world.scene import FINGER_LINKS, JOINTS, WRIST_JOINTS, Box
-from slipgym.world.snapshot import EngineState, load_engine, save_engine
-from slipgym.world.tilt_placing import place_tilt
+from slipgym.world.scene import FINGER_LINKS, WRIST_JOINTS, Box, EngineState, load_engine, save_engine
 from slipgym.world.wrist import ramp_wrist
 
 
-class BulletWorld:
+class DrivenWorld:
+    """Drives wrist and object in the planar world of either engine; `plant` has the arrays of one world."""
+
+    def __init__(self, config: Config, plant: Plant) -> None:
+        self._config, self._plant = config, plant
+
+    def command_wrist(self, velocity: np.ndarray, duration: float) -> None:
+        """Ramp the wrist's velocity (x, z, pitch), (3,), to a target [m/s, m/s, rad/s] within a duration [s].
+
+        The gripper's `wrist_speed_max`, direction kept, and `wrist_pitch_rate_max` limit it.
+        """
+        gripper = self._config.gripper
+        x, z, pitch = velocity
+        limits = gripper.wrist_speed_max, gripper.wrist_pitch_rate_max
+        ramp_wrist(self._plant.world[0], x, z, pitch, *limits, duration)
+
+    def disturb(self, wrench: np.ndarray) -> None:
+        """Apply a load (f_x, f_z, torque) to the object's centre of mass until the next call."""
+        self._plant.world["external"] = wrench
+
+
+class BulletWorld(DrivenWorld):
     """One gripper and one box in a physics client of their own.
 
     The scene is built once; an episode starts from a saved state of it, in which the pads
@@ -33,16 +52,21 @@ class BulletWorld:
     Args:
         config: Configuration; gripper, physics and the rates are read.
         plant: Arrays of one world, which sensors and controllers use as well.
+
+    Attributes:
+        body: PyBullet's id of the box.
+        gripper: PyBullet's id of the gripper.
+        reading: Pose and velocity of the box, positions of the wrist's joints, normal forces, and speeds of
+            all joints, after the engine's last step.
     """
 
     def __init__(self, config: Config, plant: Plant) -> None:
-        self._config = config
-        self._plant = plant
+        super().__init__(config, plant)
         self._client = Client()
         self._box: Box | None = None
-        self._gripper = self._body = self._saved = -1
+        self.gripper = self.body = self._saved = -1
         self._mass_set: tuple[float, float] | None = None
-        self._reading: tuple[Any, ...] = ()
+        self.reading: tuple[Any, ...] = ()
 
     @property
     def client(self) -> int:
@@ -69,30 +93,8 @@ class BulletWorld:
             raise RuntimeError("call reset() first: there is no object yet")
         return self._box
 
-    @property
-    def body(self) -> int:
-        """PyBullet's id of the box."""
-        return self._body
-
-    @property
-    def gripper(self) -> int:
-        """PyBullet's id of the gripper."""
-        return self._gripper
-
-    @property
-    def reading(self) -> tuple[Any, ...]:
-        """Readings of the engine after its last step.
-
-        Pose and velocity of the box, positions of the wrist's joints, normal forces, speeds of all joints.
-        """
-        return self._reading
-
     def reset(
-        self,
-        box: Box,
-        force: float,
-        wrist: tuple[float, float, float] = (0.0, 0.0, 0.0),
-        roll: float = 0.0,
+        self, box: Box, force: float, wrist: tuple[float, float, float] = (0.0, 0.0, 0.0), roll: float = 0.0
     ) -> None:
         """Start an episode: the box held still by both fingers.
 
@@ -109,33 +111,16 @@ class BulletWorld:
             place_tilt(self._plant, 0, box, force, roll)
         if any(wrist) or self._plant.tilt is not None:
             self._place(wrist)
-        *bodies, speeds = self._read(client, self._body, self._gripper)
-        self._reading = *bodies, tuple(self._plant.fingers["contact_force"][0].tolist()), speeds
+        *bodies, speeds = read_bodies(client, self.body, self.gripper)
+        self.reading = *bodies, tuple(self._plant.fingers["contact_force"][0].tolist()), speeds
         self._box = box
 
     def command(self, force: float) -> None:
         """Command a grip force per finger [N]; both fingers get the same."""
         self.rows.queue(force)
 
-    def command_wrist(self, velocity: np.ndarray, duration: float) -> None:
-        """Ramp the wrist velocity to a target within `duration`.
-
-        Args:
-            velocity: Along x, along z and in pitch, (3,) [m/s, m/s, rad/s]; brought down to the
-                gripper's `wrist_speed_max`, direction kept, and `wrist_pitch_rate_max`.
-            duration: Length of the ramp [s].
-        """
-        gripper = self._config.gripper
-        limits = gripper.wrist_speed_max, gripper.wrist_pitch_rate_max
-        x, z, pitch = velocity
-        ramp_wrist(self._plant.world[0], x, z, pitch, *limits, duration)
-
     def update_mass(self, mass: float) -> None:
-        """Set mass and inertia of the engine's box to those of the planar world, if the mass has changed.
-
-        Args:
-            mass: That of the planar world [kg].
-        """
+        """Give the engine's box the mass [kg] and inertia of the planar world, if the mass has changed."""
         box = self.box
         if mass != box.mass:
             self._box = None
@@ -143,10 +128,6 @@ class BulletWorld:
             self._set_mass(mass, box.inertia)
             self._place_links(self.client)
             self._box = box
-
-    def disturb(self, wrench: np.ndarray) -> None:
-        """Apply a load (f_x, f_z, torque) to the object's centre of mass until the next call."""
-        self._plant.world["external"] = wrench
 
     def step(self) -> None:
         """Advance by one control step."""
@@ -156,20 +137,16 @@ class BulletWorld:
     def move(self, mass: float | None = None) -> tuple[Any, ...]:
         """Advance the bodies by one control step; the planar world has yet to take over the `reading`.
 
-        Args:
-            mass: As for `update_mass`, which is called first if it has changed; None: unchanged [kg].
-
-        Returns:
-            `reading`.
+        A mass is updated first, see `update_mass`.
 
         Raises:
             RuntimeError: The world is closed, needs a reset, or its physics client is gone.
         """
         client = self._client.checked()
-        if mass is not None and mass != (self._box or self.box).mass:
+        if mass is not None:
             self.update_mass(mass)
-        box, self._box = self._box or self.box, None
-        reading = self._reading = self._advance(self._reading)
+        box, self._box = self.box, None
+        reading = self.reading = self._advance(self.reading)
         self._place_links(client)
         self._box = box
         return reading
@@ -178,10 +155,10 @@ class BulletWorld:
     def _advance(self) -> Callable[[tuple[Any, ...]], tuple[Any, ...]]:
         """Advances the bodies by the engine steps of a control step, for a reading; new for other bodies."""
         physics = self._config.physics
-        given = self._client.number, self._body, self._gripper, self.rows, physics.engine_steps
-        if self._plant.tilt is None:
-            return bullet_upright.stepper(*given, self._config.gripper.finger_mass * physics.engine_rate)
-        return bullet_tilt.stepper(*given, self._read)
+        inertia = (
+            None if self._plant.tilt is not None else self._config.gripper.finger_mass * physics.engine_rate
+        )
+        return stepper(self._client.number, self.body, self.gripper, self.rows, physics.engine_steps, inertia)
 
     @cached_property
     def rows(self) -> BulletRows:
@@ -200,7 +177,7 @@ class BulletWorld:
             RuntimeError: The world is closed, or there was no reset yet.
         """
         client, box = self._client.checked(), self.box
-        return EngineState(save_engine(client), box, self._reading)
+        return EngineState(save_engine(client), box, self.reading)
 
     def set_state(self, state: EngineState) -> None:
         """Restore a state, also one of another world or process; the plant's arrays are not changed.
@@ -210,7 +187,7 @@ class BulletWorld:
         """
         client = self._rebuilt(state.box)
         load_engine(client, state.engine)
-        self._reading = state.reading
+        self.reading = state.reading
         self._place_links(client)
         self._box = state.box
 
@@ -240,23 +217,15 @@ class BulletWorld:
         """
         client, built = self._client.checked(), self._box
         self._box = None
-        if built is None or _geometry(box) != _geometry(built):
+        if built is None or replace(built, mass=box.mass, inertia=box.inertia) != box:
             self._build(box)
         self._set_mass(box.mass, box.inertia)
         return client
 
     def _set_mass(self, mass: float, inertia: float) -> None:
         if (mass, inertia) != self._mass_set:
-            scene.set_mass(self.client, self._body, mass, inertia, self._plant.tilt is not None)
+            scene.set_mass(self.client, self.body, mass, inertia, self._plant.tilt is not None)
             self._mass_set = mass, inertia
-
-    @staticmethod
-    def _read(client: int, body: int, gripper: int) -> tuple[Any, ...]:
-        """Pose and velocity of the box, positions of the wrist's joints, speeds of all."""
-        pose = p.getBasePositionAndOrientation(body, client)
-        velocity = p.getBaseVelocity(body, client)
-        x, z, pitch, first, second = p.getJointStates(gripper, JOINTS, client)
-        return pose, velocity, (x[0], z[0], pitch[0]), (x[1], z[1], pitch[1], first[1], second[1])
 
     def _place_links(self, client: int) -> None:
         """Make the engine compute the poses of the gripper's links from its joints.
@@ -264,8 +233,8 @@ class BulletWorld:
         A step and a restore round these poses differently. Computed by the same function after both, a
         restored world continues bit for bit. Setting any joint to its own value is enough.
         """
-        _, _, positions, _, speeds = self._reading
-        p.resetJointState(self._gripper, WRIST_JOINTS[0], positions[0], speeds[0], client)
+        _, _, positions, _, speeds = self.reading
+        p.resetJointState(self.gripper, WRIST_JOINTS[0], positions[0], speeds[0], client)
 
     def _build(self, box: Box) -> None:
         client = self.client
@@ -273,18 +242,18 @@ class BulletWorld:
         self.__dict__.pop("_advance", None)
         self._client.unmark()
         scene.clear(client, self._config)
-        self._gripper = scene.add_gripper(client, self._config, box.size[1])
-        self._client.mark(self._gripper)
-        self._body = scene.add_box(client, box)
+        self.gripper = scene.add_gripper(client, self._config, box.size[1])
+        self._client.mark(self.gripper)
+        self.body = scene.add_box(client, box)
         if self._plant.tilt is None:
-            self._saved = scene.settle(client, self._config, self._gripper)
+            self._saved = scene.settle(client, self._config, self.gripper)
         else:
-            self._saved = scene.release(client, self._gripper, self._body)
+            self._saved = scene.release(client, self.gripper, self.body)
 
     def _place(self, wrist: tuple[float, float, float]) -> None:
         client = self.client
         for joint, position in zip(WRIST_JOINTS, wrist, strict=True):
-            p.resetJointState(self._gripper, joint, position, 0.0, physicsClientId=client)
+            p.resetJointState(self.gripper, joint, position, 0.0, physicsClientId=client)
         x, z = self._plant.world["com"][0]
         half = -0.5 * wrist[2]
         y, attitude = 0.0, [0.0, math.sin(half), 0.0, math.cos(half)]
@@ -292,9 +261,5 @@ class BulletWorld:
         if tilt is not None:
             y, attitude = tilt["height"].item(), tilt["attitude"][0]
             for joint in FINGER_LINKS:
-                p.resetJointState(self._gripper, joint, tilt["closure"].item(), 0.0, physicsClientId=client)
-        p.resetBasePositionAndOrientation(self._body, [x, y, z], attitude, physicsClientId=client)
-
-
-def _geometry(box: Box) -> tuple[tuple[float, ...], ...]:
-    return box.size, box.com_offset, box.grasp_offset
+                p.resetJointState(self.gripper, joint, tilt["closure"].item(), 0.0, physicsClientId=client)
+        p.resetBasePositionAndOrientation(self.body, [x, y, z], attitude, physicsClientId=client)

@@ -113,14 +113,8 @@ def free_motion_on_pads(world: World, drift: Vector, before: Vector, elastic: bo
     By backward Euler: the accelerations are those of the sub-step's end, and an object at rest on the pads
     gives the friction that its load needs at this time, whatever the sub-steps before. On elastic pads by the
     mean of both ends (trapezoidal rule); loads and pads keep their acceleration within a sub-step, but for a
-    turn.
-
-    Args:
-        world: WORLD record.
-        drift: Motion at the present velocity.
-        before: `force_at_start`, zero for backward Euler.
-        elastic: Which of the two.
-        h: Sub-step [s].
+    turn. `drift` is the motion at the present velocity, `before` is `force_at_start` and counts on elastic
+    pads.
     """
     x, y, turned = acceleration_on_pads(world, drift, h)
     square = (0.5 if elastic else 1.0) * h * h

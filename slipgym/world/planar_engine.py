@@ -21,10 +21,9 @@ from slipgym.world.actuator import (
     queue_command,
     ticks_to_next_command,
 )
-from slipgym.world.fingertip import sample_finger
 from slipgym.world.object_motion import wrench_at_rest
 from slipgym.world.records import Records, World, copy_finger_state, same_fingers
-from slipgym.world.substep import HOLDING, advance_object, resolved_ticks, update_slip
+from slipgym.world.substep import HOLDING, advance_object, resolved_ticks, sample_finger, update_slip
 from slipgym.world.substep_length import longest_common_substep
 
 
@@ -95,22 +94,13 @@ def advance_substeps(
     force_torque: Records,
     slip_sensors: Records,
 ) -> int:
-    """Advance one world by one control step.
+    """Advance one world, whose records these are, by one control step; returns the number of sub-steps.
 
     While the contact is calm, sub-steps are long, and only the force/torque samples that a reading needs are
     taken. Slip, break-away and vibration take the same sub-steps as with PyBullet: friction that falls with
     speed amplifies any difference.
 
-    Args:
-        world: WORLD record.
-        pads: Two PAD records, or one that stands for both, as a tuple (see `step_pads`).
-        cells: Their patches, as in `step_world`.
-        fingers: As many FINGER records.
-        force_torque: Two FORCE_TORQUE records.
-        slip_sensors: As many SLIP_SENSOR records as pads.
-
-    Returns:
-        Number of sub-steps.
+    Pads, fingers and slip sensors are two each, or one that stands for both, as tuples (see `step_pads`).
     """
     done = 0
     end = world.tick + world.control_ticks

@@ -9,8 +9,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from slipgym.config import Config
-from slipgym.contact.anisotropy import friction_axes, stretch
-from slipgym.contact.pressure import OUTER_RADII, patch_cells
+from slipgym.contact.pressure import OUTER_RADII, friction_axes, patch_cells, stretch
 from slipgym.contact.records import CONFIGURED, DISC, ELLIPSOID, pads, patch, rest
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
 from slipgym.sensors.force_torque import force_torque

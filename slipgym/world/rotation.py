@@ -24,12 +24,9 @@ def product(a: Quaternion, b: Quaternion) -> Quaternion:
 
 @compiled
 def turned(q: Quaternion, spin: Vector, time: float) -> Quaternion:
-    """A rotation after some time at an angular velocity; short of the angle by its cube over 12.
+    """The rotation q after some time [s] at an angular velocity on the axes that q turns to [rad/s].
 
-    Args:
-        q: The rotation.
-        spin: Angular velocity on the axes that q turns to [rad/s].
-        time: [s].
+    It is short of the angle by its cube over 12.
     """
     half = 0.5 * time
     x, y, z, w = product((half * spin[0], half * spin[1], half * spin[2], 1.0), q)
@@ -71,12 +68,9 @@ def upright(q: Quaternion) -> Vector:
 
 @compiled
 def inertia_tensor(q: Quaternion, mass: float, gyration: Vector) -> Symmetric:
-    """Inertia (xx, yy, zz, xy, xz, yz) on the outer axes [kg m^2].
+    """Inertia (xx, yy, zz, xy, xz, yz) on the outer axes of an object with a rotation q [kg m^2].
 
-    Args:
-        q: Rotation of the object.
-        mass: [kg].
-        gyration: Squared radii of gyration about its own axes [m^2].
+    `gyration` are the squared radii of gyration about its own axes [m^2].
     """
     x, y, z, w = q
     a = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)

@@ -7,7 +7,10 @@ centre of mass. Nothing is read from files, so an episode can change the box che
 from __future__ import annotations
 
 import math
+import tempfile
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 from slipgym.config import Config
 from slipgym.config.hardware import box_inertia
@@ -23,6 +26,7 @@ _NO_ROTATION = (0.0, 0.0, 0.0, 1.0)
 _WRIST_MASS = 1.0
 _SETTLE_STEPS = 60
 _SETTLE_FORCES = (5.0, 5.0)
+_NAME = "world.bullet"
 _SETTLE_MASS = 0.2  # whichever mass the first episode has, the saved state is the same
 
 
@@ -45,6 +49,18 @@ class Box:
     def grasp_from_com(self) -> tuple[float, float]:
         """Pad centre (x, z) at the grasp from the centre of mass [m]."""
         return self.grasp_offset[0] - self.com_offset[0], self.grasp_offset[1] - self.com_offset[1]
+
+
+@dataclass(frozen=True)
+class EngineState:
+    """Plain data that the engine's next step depends on."""
+
+    engine: bytes
+    """Bullet's own file of its bodies: poses, velocities and contacts, bit for bit."""
+    box: Box
+    """The box of the episode."""
+    reading: tuple[Any, ...]
+    """`BulletWorld.reading` at that time."""
 
 
 def connect() -> int:
@@ -187,6 +203,26 @@ def set_mass(client: int, body: int, mass: float, inertia: float, tilt: bool = F
     p.stepSimulation(physicsClientId=client)
     p.restoreState(stateId=state, physicsClientId=client)
     p.removeState(state, physicsClientId=client)
+
+
+def save_engine(client: int) -> bytes:
+    """State of the bodies of a client, as the content of a file."""
+    with tempfile.TemporaryDirectory(prefix="slipgym-") as folder:
+        path = Path(folder) / _NAME
+        p.saveBullet(str(path), physicsClientId=client)
+        return path.read_bytes()
+
+
+def load_engine(client: int, content: bytes) -> None:
+    """Restore what `save_engine` returned; the client's bodies were created in the same order.
+
+    Bullet checks nothing of what it reads, so that a crafted file may crash the process: the checksums of a
+    state are compared before.
+    """
+    with tempfile.TemporaryDirectory(prefix="slipgym-") as folder:
+        path = Path(folder) / _NAME
+        path.write_bytes(content)
+        p.restoreState(fileName=str(path), physicsClientId=client)
 
 
 def _frictionless(client: int, body: int, link: int) -> None:

@@ -12,6 +12,7 @@ therefore stays where it is in a turning or shaken gripper, to rounding.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -20,9 +21,10 @@ from slipgym.contact.coupled import step_pads
 from slipgym.contact.kinds import set_normal
 from slipgym.contact.records import Pad
 from slipgym.contact.soft_pad import load_pad
+from slipgym.sensors.force_torque import sample_force_torque
 from slipgym.sensors.slip_velocity import accumulate_slip
+from slipgym.sensors.structure import vibrate
 from slipgym.world.actuator import advance_fingers, apply_due_commands, mean_force, ticks_to_next_command
-from slipgym.world.fingertip import sample_finger
 from slipgym.world.object_motion import (
     drift_on_pads,
     follow_pads,
@@ -51,15 +53,9 @@ def advance_engine_step(
     force_torque: Records,
     slip_sensors: Records,
 ) -> None:
-    """Advance one world by one engine step.
+    """Advance one world, whose records these are, two of each finger's, by one engine step.
 
-    Args:
-        world: WORLD record.
-        pads: PAD records (2,).
-        cells: Patches (2, CELL_FIELDS, m); None for ellipsoids.
-        fingers: FINGER records (2,).
-        force_torque: FORCE_TORQUE records (2,).
-        slip_sensors: SLIP_SENSOR records (2,).
+    `cells` are the pads' patches (2, CELL_FIELDS, m), None for ellipsoids.
     """
     start = world.tick
     end = start + world.engine_ticks
@@ -102,16 +98,10 @@ def substep(
     h: float,
     fraction: float,
 ) -> None:
-    """Advance wrist, fingers, friction and object by h, a `fraction` of the engine step.
+    """Advance wrist, fingers, friction and object by h [s].
 
-    Args:
-        world: WORLD record.
-        pads: Two PAD records, as an array or, faster (see `step_pads`), as a tuple.
-        cells: As in `advance_engine_step`.
-        fingers: Two FINGER records, likewise.
-        slip_sensors: Two SLIP_SENSOR records, likewise.
-        h: Time [s].
-        fraction: Of the engine step: weight in its mean force and friction.
+    `fraction` of the engine step is the weight in its mean force and friction. Records of the fingers may be
+    arrays or, faster (see `step_pads`), tuples.
     """
     mean = advance_fingers(fingers, h)
     now = mean_force(fingers)
@@ -138,15 +128,10 @@ def advance_object(
     h: float,
     impulse: float = 1.0,
 ) -> None:
-    """Advance wrist, friction and object by h under the pads' normal forces.
+    """Advance wrist, friction and object by h [s] under the pads' normal forces.
 
-    Args:
-        world: WORLD record.
-        pads: Two PAD records, or one that stands for both, as an array or a tuple.
-        cells: As in `advance_engine_step`.
-        slip_sensors: As many SLIP_SENSOR records, likewise.
-        h: Time [s].
-        impulse: In slip, the mean normal force over the one that the pads have.
+    There may be one pad and slip sensor that stand for both. `impulse` is, in slip, the mean normal force
+    over the one that the pads have.
     """
     # in stick: backward Euler. In slip or without contact: the mean of the velocities at both ends, of second
     # order. Where slip ends within the sub-step that would reverse the velocity: this counts as stick
@@ -250,3 +235,30 @@ def update_slip(world: World) -> None:
     world.slip_twist[0] = vx + omega * world.relative[1]
     world.slip_twist[1] = vy - omega * world.relative[0]
     world.slip_twist[2] = omega
+
+
+@compiled
+def weigh_tip(sensor: Any, world: World) -> None:
+    """Set `tip_load` of a FORCE_TORQUE record to weight and inertia of the fingertip in front of it now.
+
+    Such a sensor reads m (g - a) beside the load on the pad, with m the mass between it and the object, g
+    gravity and a the acceleration of the pad centre, where the mass is taken to be (for tools at a wrist:
+    Shaker & Erden, arXiv 2604.23696). Only the part in the contact plane counts; it turns with the pitch.
+    """
+    cos, sin = pad_axes(world)
+    x, z = -world.wrist_acceleration[0], -world.gravity - world.wrist_acceleration[1]
+    sensor.tip_load[0] = sensor.tip_mass * (cos * x + sin * z)
+    sensor.tip_load[1] = sensor.tip_mass * (cos * z - sin * x)
+
+
+@compiled
+def sample_finger(sensor: Any, pad: Pad, world: World) -> None:
+    """`sample_force_torque` of a finger whose tip has a mass and may vibrate, at the world's time."""
+    sample_force_torque(sensor, pad, world.tick)
+    if sensor.tip_mass > 0.0:
+        weigh_tip(sensor, world)
+        load = sensor.history[(world.tick // sensor.period) % sensor.kept]
+        load[0] += sensor.tip_load[0]
+        load[1] += sensor.tip_load[1]
+    if sensor.mode[0] > 0.0:
+        vibrate(sensor, sensor.history[(world.tick // sensor.period) % sensor.kept])

@@ -36,13 +36,8 @@ def longest_common_substep(
 ) -> int:
     """Ticks of the longest sub-step that resolves the contact of every pad, at most those until `stop`.
 
-    Args:
-        world: WORLD record.
-        pads: Two PAD records, or one that stands for both.
-        cells: Which kind of pad.
-        fingers: The FINGER records of all pads.
-        load: Wrench that both pads are to carry, see `slipgym.world.planar_engine.wrench_at_rest`.
-        stop: End of the longest sub-step [ticks].
+    There are two pads and fingers, or one that stands for both. `load` is the wrench that both pads are to
+    carry, see `slipgym.world.object_motion.wrench_at_rest`.
     """
     asked = ticks = stop - world.tick
     forces = force_bounds(fingers, world.tick + asked)
@@ -57,13 +52,7 @@ def longest_common_substep(
 
 @compiled
 def expected_wrench(pads: Records, f: int, load: Vector) -> Vector:
-    """Wrench that a pad will have at its centre of pressure when all pads carry a load [N, N, N m].
-
-    Args:
-        pads: Two PAD records, or one that stands for both.
-        f: Which of them.
-        load: Wrench that both pads are to carry.
-    """
+    """Wrench that pad f will have at its centre of pressure when all pads carry a load [N, N, N m]."""
     pad = pads[f]
     if len(pads) == 1:
         gx, gy = 0.5 * load[0], 0.5 * load[1]
@@ -91,16 +80,9 @@ def longest_stick(
 
     Possible break-away and vibration need short sub-steps, a vibration on rubber not as short ones. A pad at
     rest below FIRM of the limit is calm; one at rest below FAST of it, or without contact, needs no sub-steps
-    of its own.
+    of its own. A patch breaks away in parts.
 
-    Args:
-        world: WORLD record.
-        pad: PAD record.
-        cells: Which kind of pad; a patch breaks away in parts.
-        fingers: The FINGER records of all pads.
-        forces: Bounds of the force on either pad until then [N].
-        goal: Wrench that the pad is to carry, see `expected_wrench`.
-        asked: Ticks asked for.
+    `forces` are bounds of the force on either pad until then [N], `goal` is its `expected_wrench`.
     """
     if forces[0] <= HOLDING:
         return asked if max(fingers[0].contact_force, forces[1]) <= HOLDING else world.substep_ticks
@@ -185,20 +167,13 @@ def longest_slip(
     load: Vector,
     asked: int,
 ) -> int:
-    """Ticks of the longest sub-step for a pad that slips, at most `asked`.
+    """Ticks of the longest sub-step for pad f, which slips, at most `asked`.
 
     Where friction is flat, the scaled slip twist may change by STEADY of its distance from where it is not.
     Patches and rubber, whose parts move on their own, need the shortest sub-steps.
 
-    Args:
-        world: WORLD record.
-        pads: Two PAD records, or one that stands for both.
-        f: Which pad.
-        cells: Which kind of pad.
-        lag: Time constant of the force [s].
-        forces: Bounds of the force on either pad until then [N].
-        load: Wrench that keeps the object at rest on the pads [N, N, N m].
-        asked: Ticks asked for.
+    `lag` is the time constant of the force [s], `forces` are bounds of the force on either pad until then
+    [N], `load` is the wrench that keeps the object at rest on the pads.
     """
     pad = pads[f]
     if cells is not None and (cells.ndim == PATCHES or pad.compliance > 0.0):

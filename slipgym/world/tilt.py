@@ -42,16 +42,10 @@ _UPRIGHT = 0.5  # cosine of the tilt beyond which the pads have lost the object
 def advance_tilt(
     world: World, tilt: Tilt, pads: Records, fingers: Records, before: Vector, torque: float, dt: float
 ) -> None:
-    """Advance by one engine step, after the planar world.
+    """Advance by an engine step of dt [s], after the planar world, with its mean forces and friction.
 
-    Args:
-        world: WORLD record.
-        tilt: TILT record.
-        pads: PAD records (2,).
-        fingers: FINGER records (2,), with the step's mean actuator forces and friction.
-        before: Centre of mass (x, z) and angle at the step's start [m, m, rad].
-        torque: Load about the grip axis while nothing holds the object [N m].
-        dt: Engine step [s].
+    `before` are centre of mass (x, z) and angle at the step's start [m, m, rad], `torque` is the load about
+    the grip axis while nothing holds the object [N m].
     """
     held = pads[0].normal > 0.0 or pads[1].normal > 0.0
     about_y = (before[2] - world.angle) / dt
@@ -143,16 +137,7 @@ def advance_tilt(
 
 @compiled
 def acceleration_along_y(tilt: Tilt, roll: float, roll_rate: float, y: float, z: float, v_z: float) -> float:
-    """Acceleration of a free object along y in the frame that rolls and sways [m/s^2].
-
-    Args:
-        tilt: TILT record.
-        roll: [rad].
-        roll_rate: [rad/s].
-        y: Position of the centre of mass [m].
-        z: Likewise [m].
-        v_z: Its velocity along z [m/s].
-    """
+    """Acceleration along y of a free object at (y, z) in the frame that rolls and sways [m/s^2]."""
     weight = -tilt.gravity * math.sin(roll) - tilt.sway[2]
     return weight + tilt.roll[2] * z + roll_rate * (roll_rate * y + 2.0 * v_z)
 

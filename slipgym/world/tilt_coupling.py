@@ -11,11 +11,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from slipgym._numba.compiled import compiled
 from slipgym.contact.records import Vector
-from slipgym.world.bullet_coupling import engine_loads
+from slipgym.world.bullet_coupling import Pose, engine_loads
 from slipgym.world.records import Records, Tilt, World
 from slipgym.world.rotation import Quaternion, inertia_tensor, rotation_between, times
 from slipgym.world.tilt import acceleration_along_y, advance_tilt
@@ -68,39 +66,18 @@ def follow_pads_set_outside(tilt: Tilt, pads: Records) -> None:
 
 @compiled
 def tilted_loads(
-    world: World,
-    tilt: Tilt,
-    pads: Records,
-    cells: np.ndarray | None,
-    fingers: Records,
-    force_torque: Records,
-    slip_sensors: Records,
-    position: Vector,
-    orientation: Quaternion,
-    linear: Vector,
-    angular: Vector,
-    wrist: Vector,
+    bodies: tuple[Any, ...], tilt: Tilt, pose: Pose, velocity: tuple[Vector, Vector], wrist: Vector
 ) -> tuple[Any, ...]:
     """Advance the world by one engine step in all freedoms; returns what the engine must apply.
 
-    Args:
-        world: WORLD record.
-        tilt: TILT record.
-        pads: PAD records (2,).
-        cells: Patches (2, CELL_FIELDS, m); None for ellipsoids.
-        fingers: FINGER records (2,).
-        force_torque: FORCE_TORQUE records (2,).
-        slip_sensors: SLIP_SENSOR records (2,).
-        position: Object's centre of mass (x, y, z) [m].
-        orientation: Its quaternion (x, y, z, w).
-        linear: Engine velocity of the object [m/s].
-        angular: Engine angular velocity of the object [rad/s].
-        wrist: Wrist joint positions (x, z, pitch) [m, m, rad].
+    The arguments are those of `slipgym.world.bullet_coupling.engine_loads`, and a TILT record.
 
     Returns:
         Force and torque on the object at its centre of mass; for either finger the point, force and torque of
         its contact's reaction; joint velocities of wrist and fingers; normal forces, mean over the step.
     """
+    world, pads, _, fingers, _, _ = bodies
+    (position, orientation), (linear, angular) = pose, velocity
     dt = world.engine_ticks * world.tick_length
     take_over(world, tilt, position[1], orientation, dt)
     follow_pads_set_outside(tilt, pads)
@@ -108,8 +85,7 @@ def tilted_loads(
     push = world.external[1], world.external[2]
     set_inertial_loads(world, tilt, dt)
     before, closure = (position[0], position[2], world.angle), tilt.closure
-    pose = position, orientation, linear, angular, wrist, normals
-    _, first, second, _, goal = engine_loads(world, pads, cells, fingers, force_torque, slip_sensors, *pose)
+    _, first, second, _, goal = engine_loads(bodies, pose, velocity, wrist, normals)
     world.external[1], world.external[2] = push
     advance_tilt(world, tilt, pads, fingers, before, push[1], dt)
     after = (tilt.attitude[0], tilt.attitude[1], tilt.attitude[2], tilt.attitude[3])

@@ -12,16 +12,9 @@ from slipgym.world.records import Tilt, World
 def ramp_wrist(
     world: World, x: float, z: float, pitch: float, speed_max: float, pitch_rate_max: float, duration: float
 ) -> None:
-    """Ramp the wrist's velocity to a target.
+    """Ramp the wrist's velocity to a target (x, z, pitch) within a duration [m/s, m/s, rad/s, s].
 
-    Args:
-        world: WORLD record.
-        x: Target along world x [m/s].
-        z: Target along world z [m/s].
-        pitch: Target of the pitch rate [rad/s].
-        speed_max: The target (x, z) is brought down to this, direction kept [m/s].
-        pitch_rate_max: The target of the pitch rate is brought down to this [rad/s].
-        duration: Length of the ramp [s].
+    The target is brought down to `speed_max`, direction of (x, z) kept, and to `pitch_rate_max`.
     """
     fraction = 1.0
     if abs(x) + abs(z) > 0.999 * speed_max:  # the length costs more
@@ -36,15 +29,9 @@ def ramp_wrist(
 def ramp_tilt(
     tilt: Tilt, roll_rate: float, sway: float, rate_max: float, speed_max: float, duration: float
 ) -> None:
-    """Ramp the wrist's roll rate and its velocity along the grip axis to a target.
+    """Ramp the wrist's roll rate [rad/s] and its velocity along +y [m/s] to a target within a duration [s].
 
-    Args:
-        tilt: TILT record.
-        roll_rate: Target [rad/s].
-        sway: Target of the velocity along +y, from finger 2 to finger 1 [m/s].
-        rate_max: The roll rate is brought down to this [rad/s].
-        speed_max: The velocity is brought down to this [m/s].
-        duration: Length of the ramp [s].
+    +y is the grip axis from finger 2 to finger 1. The target is brought down to `rate_max` and `speed_max`.
     """
     roll_rate = min(max(roll_rate, -rate_max), rate_max)
     sway = min(max(sway, -speed_max), speed_max)

@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slipgym.envs import dumps
-from slipgym.envs.nan_guard import KEPT, QUANTITIES
+from slipgym.envs.nan_guard import FILES, KEPT, QUANTITIES, VARIABLE
 
 NAMES = [quantity.name for quantity in QUANTITIES]
 
@@ -51,18 +50,18 @@ def test_keeps_the_last_second_only(make):
 
 
 def test_a_folder_keeps_the_newest_files(make, tmp_path, monkeypatch):
-    monkeypatch.setenv(dumps.VARIABLE, str(tmp_path / "dumps"))
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "dumps"))
     env = make(engine="planar")
     messages = []
-    for _ in range(dumps.KEPT + 3):
+    for _ in range(FILES + 3):
         env.reset(seed=0)
         messages.append(stopped(env))
     left = {str(path) for path in (tmp_path / "dumps").iterdir()}
-    assert left == {re.search(r"in (\S+\.csv);", message)[1] for message in messages[-dumps.KEPT :]}
+    assert left == {re.search(r"in (\S+\.csv);", message)[1] for message in messages[-FILES:]}
 
 
 def test_a_folder_of_the_user_alone_is_the_default(make, tmp_path, monkeypatch):
-    monkeypatch.delenv(dumps.VARIABLE, raising=False)
+    monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     env = make(engine="planar")
     env.reset(seed=0)
@@ -73,7 +72,7 @@ def test_a_folder_of_the_user_alone_is_the_default(make, tmp_path, monkeypatch):
 
 def test_a_folder_that_cannot_be_written_hides_nothing(make, tmp_path, monkeypatch):
     (tmp_path / "file").touch()
-    monkeypatch.setenv(dumps.VARIABLE, str(tmp_path / "file"))
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "file"))
     env = make(engine="planar")
     env.reset(seed=0)
     assert "object_x is nan" in stopped(env)

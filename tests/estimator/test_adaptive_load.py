@@ -5,7 +5,7 @@ import pytest
 
 import estimator
 from estimator.window.layout import FALLS, GROWS
-from policies.leaderboard.rubber import LOAD, swinging
+from policies.leaderboard.imperfect import LOAD, swinging
 from policies.leaderboard.scenarios import patch
 from slipgym.synthetic import sense
 from tests.estimator.exact_records import RATE

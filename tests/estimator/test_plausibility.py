@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from estimator import DEFAULT, records
-from estimator.records.plausibility import warnings
+from estimator.records.summary import warnings
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR
 
 GOOD = {"mu_s": 0.5, "mu_c": 0.4, "r": 0.01}

@@ -12,7 +12,7 @@ from estimator.reasons import Doubts
 from estimator.records.alignment import align
 from estimator.records.calibration import Calibration, Found
 from estimator.records.faults import fault_warnings
-from estimator.records.plausibility import warnings
+from estimator.records.summary import warnings
 
 SHIPPED = Path(__file__).parents[2] / "examples" / "linear_slip_wood.csv.gz"
 

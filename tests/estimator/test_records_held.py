@@ -7,8 +7,7 @@ import pandas as pd
 import pytest
 
 from estimator import records
-from estimator.records.alignment import align
-from estimator.records.holding import held
+from estimator.records.alignment import align, held
 from estimator.records.readings import reading_warnings
 
 

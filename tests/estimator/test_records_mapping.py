@@ -38,12 +38,13 @@ def test_the_record_is_that_of_the_right_mapping(table, save, tmp_path, names):
     for name, factor in names.values():
         foreign[name] *= factor
     log = save(foreign.assign(joint_1=0.3, status="ok"), "foreign.csv")
-    found, left = proposal.propose(log)
+    fingers, left = proposal.propose_fingers(log)
+    (found,) = fingers.values()
     assert {each.key: each.column for each in found} == {"t": "t"} | {
         k: name for k, (name, _) in names.items()
     }
     assert left == ["joint_1", "status"]
-    (tmp_path / "proposed.yaml").write_text(proposal.mapping_text(found))
+    (tmp_path / "proposed.yaml").write_text(proposal.text_of_fingers(fingers))
     ours, plain = (
         records.load(log, records.load_columns(tmp_path / "proposed.yaml")),
         records.load(save(table)),

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from estimator import records
-from estimator.records.plausibility import FRICTION, RADIUS
+from estimator.records.summary import FRICTION, RADIUS
 from estimator.records.units import UNITS
 
 ROOT = Path(__file__).parents[2]

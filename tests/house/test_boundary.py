@@ -31,7 +31,7 @@ INNER = {
     "policies/evaluation/sensor_record.py": "keeps raw sensor samples",
     "policies/live.py": "makes observations of the readings of a real gripper",
     "policies/play/watch.py": "makes an environment of a class",
-    "policies/policy_leaderboard/oracle.py": "reads the privileged group by its columns",
+    "policies/policy_leaderboard/entries.py": "reads the privileged group by its columns",
     "policies/training/adapter.py": "wraps the vector environment",
     "policies/training/checkpoint_io.py": "writes the state of environments",
 }

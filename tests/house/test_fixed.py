@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from numba import float64, types
 
-from slipgym._numba.calls import direct_call
 from slipgym._numba.compiled import compiled
-from slipgym._numba.fixed import Fixed, opened
+from slipgym._numba.fixed import Fixed, direct_call, opened
 from slipgym._numba.pointers import Known, Pointer
 
 RECORD = np.dtype([("count", "i8"), ("force", "f8", 3)])

@@ -7,8 +7,8 @@ import sys
 import pytest
 from numba import float64, njit, types
 
+from slipgym._numba.compiled import read_disabled
 from slipgym._numba.pointers import Known, Pointer
-from slipgym._numba.switches import read_disabled
 
 SIGNATURE = types.float64(types.float64)
 

@@ -13,8 +13,7 @@ import pytest
 from numba.core import config
 
 from estimator._numba import caching, folders
-from estimator._numba.folders import program_folder
-from estimator._numba.locking import only_one
+from estimator._numba.folders import only_one, program_folder
 from slipgym._numba.compiled import compiled
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -117,6 +116,21 @@ def test_text_that_is_not_compiled_may_change(folder, file, old, new):
 def test_what_is_compiled_may_not_change(folder, file, old, new, value):
     assert edited(folder, file, old, new) == [value, "0"]
     assert run(folder) == [BEFORE, "1"]
+
+
+def test_a_function_may_move_to_another_module(tmp_path):
+    law, main = tmp_path / "law.py", tmp_path / "main.py"
+    begin = "from slipgym._numba.compiled import compiled\n@compiled\n"
+    law.write_text(begin + "def friction(x):\n    return 0.5 * x\n")
+    main.write_text(f"from law import friction\n{begin}def work(x):\n    return friction(x)\n")
+    with main.open("a") as file:
+        file.write("print(work(1.0), sum(work.stats.cache_hits.values()))\n")
+    assert run(tmp_path) == ["0.5", "0"]
+    law.rename(tmp_path / "laws.py")
+    main.write_text(main.read_text().replace("from law", "from laws"))
+    # a program that names the module that is gone cannot be read, which is a warning
+    assert run(tmp_path, PYTHONWARNINGS="error") == ["0.5", "0"]
+    assert run(tmp_path, PYTHONWARNINGS="error") == ["0.5", "1"]
 
 
 @pytest.mark.slow

@@ -6,12 +6,12 @@ from typer.testing import CliRunner
 from lab import cards
 from lab.commands.cards import app
 from lab.model_cards import solved
-from policies.policy_leaderboard import worlds
-from policies.policy_leaderboard.worlds import WORLDS
+from policies.policy_leaderboard import run
+from policies.policy_leaderboard.run import WORLDS
 
 
 def test_a_card_says_what_a_policy_is_given_and_solves(monkeypatch):
-    monkeypatch.setattr(worlds, "WORLDS", WORLDS[:2])
+    monkeypatch.setattr(run, "WORLDS", WORLDS[:2])
     row = cards.cards(["carry_scratch"], 20, progress=False).iloc[0]
     assert (row["policy"], row["friction"]) == ("carry_scratch", "true")
     assert row["million steps"] > 1.0

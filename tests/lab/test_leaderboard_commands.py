@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from lab.commands.imperfections import one_imperfection
-from policies.leaderboard.one_imperfection import IMPERFECTIONS
+from policies.leaderboard.imperfections import IMPERFECTIONS
 from slipgym.config import load
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -11,7 +11,7 @@ from lab.reproduction.fixed_point import disc_bias
 from policies.evaluation.frames import markdown
 from policies.leaderboard.profile_course import STEADY, disc, slip, start
 from policies.leaderboard.profile_course import profile as profile_course
-from policies.leaderboard.replay import replay
+from policies.leaderboard.scenario import replay
 from slipgym.contact import DistributedContact, EllipsoidContact
 from slipgym.synthetic import Course, ideal, integrate
 

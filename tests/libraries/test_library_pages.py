@@ -101,7 +101,7 @@ def test_a_clone_learns_from_demonstrations(tmp_path):
 def test_a_demonstration_repeats_itself_bit_for_bit(tmp_path, monkeypatch):
     minari = pytest.importorskip("minari")
     pytest.importorskip("h5py")
-    from policies.evaluation.demonstrations import demonstrate
+    from policies.evaluation.one_policy import demonstrate
 
     monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path))
     stored = demonstrate("hold", "hold-v0", 2, first=5, changes={"engine": "planar"})

@@ -119,7 +119,7 @@ def test_a_wrong_option_is_one_clear_error(words, says):
 
 def test_a_log_becomes_mcap(tmp_path):
     reader = pytest.importorskip("mcap.reader")
-    from estimator.live.mcap import convert
+    from estimator.live.log import to_mcap
 
     log = Log(tmp_path / "run.jsonl")
     live = Live("rls", fingers=1, log=log)
@@ -127,7 +127,7 @@ def test_a_log_becomes_mcap(tmp_path):
     live.feed_grip(1.0, 5.0, 1.0)
     log.close()
     lines = list(read(log.path))
-    assert convert(log.path, tmp_path / "run.mcap") == len(lines)
+    assert to_mcap(log.path, tmp_path / "run.mcap") == len(lines)
     with (tmp_path / "run.mcap").open("rb") as file:
         found = [
             (channel.topic, json.loads(message.data))
@@ -142,11 +142,11 @@ def test_a_log_becomes_mcap(tmp_path):
 
 
 def test_without_mcap_the_error_says_what_to_install(tmp_path, monkeypatch):
-    from estimator.live.mcap import convert
+    from estimator.live.log import to_mcap
 
     monkeypatch.setitem(sys.modules, "mcap.writer", None)
     with pytest.raises(ModuleNotFoundError, match="slipgym"):
-        convert(tmp_path / "x", tmp_path / "y")
+        to_mcap(tmp_path / "x", tmp_path / "y")
 
 
 VECTORS = {"force": {"x": 1, "y": 2, "z": 3}, "torque": {"x": 4, "y": 5, "z": 6}}

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from policies.evaluation.batch import ROWS, blocks
-from policies.evaluation.plan import plan
+from policies.evaluation.plan import ROWS, pieces, plan
 from policies.evaluation.trial import run_trial, run_trials
 
 
@@ -32,8 +31,9 @@ def test_rows_are_single_environments_bit_for_bit(small):
 
 
 def test_a_block_has_one_policy_one_friction_choice_and_few_rows(small):
-    trials = plan(planar(small, trials=ROWS // 3))
-    found = blocks(trials)
+    experiment = planar(small, trials=ROWS // 3)
+    trials = plan(experiment)
+    found = pieces(experiment, trials)
     assert [trial for block in found for trial in block] == trials
     for block in found:
         assert len(block) <= ROWS

@@ -73,10 +73,6 @@ def test_friction_does_not_fall_below_what_is_plausible():
     assert bounds.min() == pytest.approx(DEEPEST * 0.4)
 
 
-def test_without_doubt_the_memory_is_that_of_the_exploration():
-    assert HoldPolicy(doubt=0.0).initial_state(2).shape == (2, 5)
-
-
 @pytest.mark.slow
 def test_after_a_fall_of_friction_it_holds_more_often_than_without_doubt(play_batch):
     """In 95 % of the episodes, at no more than 1.15 times the grip of the truth; half as many failures."""

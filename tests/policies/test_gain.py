@@ -12,8 +12,8 @@ from policies.evaluation.play import Played
 from policies.evaluation.statistics import mean_interval
 from policies.evaluation.trial import environment, make_policy, run_trial
 from policies.policy_leaderboard.entries import Member
-from policies.policy_leaderboard.worth import worth
-from policies.study.benefit import benefits
+from policies.policy_leaderboard.run import worth
+from policies.study.tables import benefits
 
 SOLVED = {
     ("controller", "nominal"): 6,

@@ -9,7 +9,7 @@ import pytest
 import policies
 from policies.controllers.lateness import RESTS, SHOWN, Lateness, LatenessGains, watched
 from policies.controllers.leaps import LeapGains
-from policies.leaderboard.one_imperfection import without
+from policies.leaderboard.imperfections import without
 from policies.stepping import batch_steps
 
 LINEAR = "slipgym/LinearSlip-v0"

@@ -12,14 +12,12 @@ import estimator
 from estimator.estimate import ESTIMATE
 from estimator.registry import specification
 from policies.leaderboard import run_leaderboard
-from policies.leaderboard.one_imperfection import IMPERFECTIONS, without
+from policies.leaderboard.imperfect import swinging
+from policies.leaderboard.imperfections import IMPERFECTIONS, without
 from policies.leaderboard.ranking import ranked, winners
-from policies.leaderboard.replay import replay
-from policies.leaderboard.rubber import swinging
 from policies.leaderboard.run import GROUPS, entrants, evaluate
-from policies.leaderboard.scenario import FIELDS, Run, Scenario, ends
+from policies.leaderboard.scenario import FIELDS, Run, Scenario, ends, replay, score
 from policies.leaderboard.scenarios import MU_C, QUICK, R, closed_loop, mixed, patch
-from policies.leaderboard.score import score
 from slipgym.config import load
 from slipgym.synthetic import Record, sense
 

@@ -16,9 +16,8 @@ from policies.evaluation.trial import run_trials
 from policies.learned.description import Environment as Trained
 from policies.learned.fitting import check_environment, column_of
 from policies.play.viewer.controls import status
-from policies.play.viewer.plots import Plots
+from policies.play.viewer.plots import Plots, SurfacePlot
 from policies.play.viewer.session import Session
-from policies.play.viewer.surface import SurfacePlot
 from policies.play.watch import watch
 from policies.training.config import Environment
 from policies.training.imitation import config as imitation

@@ -12,10 +12,11 @@ from policies.commands.policy_leaderboard import app
 from policies.evaluation.play import ROWS, Played
 from policies.evaluation.plots.style import styled
 from policies.learned import pretrained
-from policies.policy_leaderboard import entries, oracle, worlds
+from policies.policy_leaderboard import entries, run
 from policies.policy_leaderboard.entries import (
     Member,
     best_constant,
+    bounds,
     constant,
     entered,
     further,
@@ -23,9 +24,8 @@ from policies.policy_leaderboard.entries import (
     opponents,
 )
 from policies.policy_leaderboard.folder import plot_policies, write
-from policies.policy_leaderboard.run import COLUMNS, by_level, episodes_of, outcomes, play_all
-from policies.policy_leaderboard.worth import table as gains
-from policies.policy_leaderboard.worth import worth
+from policies.policy_leaderboard.run import COLUMNS, by_level, episodes_of, outcomes, play_all, worth
+from policies.policy_leaderboard.run import table as gains
 
 SHORT = {"config": {"tasks": {"hold": {"duration": 0.5}}}}
 
@@ -49,7 +49,7 @@ def test_firm_grips_win_and_the_table_says_how():
 )
 @pytest.mark.parametrize("task", ["hold", "fragile_hold"])
 def test_the_oracle_bounds_what_a_policy_can_solve(task, world):
-    best = Member("oracle, privileged", oracle.Oracle(), oracle.MODES)
+    (best,) = bounds(task)
     played = episodes_of(task, best, 60, {"level": "hard", **world})
     assert played.success.mean() >= 0.9
     assert episodes_of("hold", best, 10, {"level": "easy"}).success.all()
@@ -189,12 +189,10 @@ def test_wrong_arguments_are_named(arguments, said, tmp_path):
 
 
 def test_a_policy_plays_in_other_worlds(monkeypatch):
-    chosen = [world for world in worlds.WORLDS if world.name in ("itself", "train", "bullet")]
-    monkeypatch.setattr(worlds, "WORLDS", tuple(world._replace(share=1.0) for world in chosen))
+    chosen = [world for world in run.WORLDS if world.name in ("itself", "train", "bullet")]
+    monkeypatch.setattr(run, "WORLDS", tuple(world._replace(share=1.0) for world in chosen))
     firm, weak = constant(25.0), constant(0.6)
-    table = worlds.generalisation(
-        "fragile_hold", "easy", [firm, weak], 3, {"estimator": "rls"}, progress=False
-    )
+    table = run.generalisation("fragile_hold", "easy", [firm, weak], 3, {"estimator": "rls"}, progress=False)
     assert list(table.columns) == ["task", "level", "policy", "itself", "train", "bullet"]
     assert list(table["policy"]) == [firm.name, weak.name]
     for world in chosen:
@@ -205,7 +203,7 @@ def test_a_policy_plays_in_other_worlds(monkeypatch):
 
 def test_a_memory_of_slips_is_configured_for_the_rate_at_which_it_acts(monkeypatch):
     seen = []
-    monkeypatch.setattr(entries, "_strongest", lambda task, members, *_: seen.extend(members) or members[0])
+    monkeypatch.setattr(entries, "strongest", lambda task, members, *_: seen.extend(members) or members[0])
     entries.remembering("planar_slip", {}, 2)
     for each in seen:
         rate = each.policy._controller.config.physics.control_rate

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from policies.evaluation import rate
-from policies.evaluation.constant_grip import best_force, run_constant
+from policies.evaluation import experiment as model
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.plan import plan
+from policies.evaluation.play import play_episodes
 from policies.evaluation.trial import environment, make_policy, run_trial
+from policies.policy_leaderboard.entries import constants, strongest
 from slipgym.config.yaml_model import validate
 
 
@@ -40,22 +41,24 @@ def test_a_controller_acts_as_often_as_the_learned_policy_beside_it():
 def test_different_rates_are_refused(monkeypatch):
     with pytest.raises(ValueError, match=r"same rate.*rotational_slip_scratch 2.*asked for: 1"):
         experiment("rotational_slip_scratch", frame_skip=1)
-    assert rate.common_frame_skip(["hold", "constant_force"]) == 1
-    monkeypatch.setattr(rate, "frame_skip_of", {"a": 1, "b": 2}.get)
+    assert model.common_frame_skip(["hold", "constant_force"]) == 1
+    monkeypatch.setattr(model, "frame_skip_of", {"a": 1, "b": 2}.get)
     with pytest.raises(ValueError, match="same rate of action only"):
-        rate.common_frame_skip(["a", "b"])
+        model.common_frame_skip(["a", "b"])
 
 
 def test_constant_grips_run_in_the_episodes_of_the_experiment():
     each = experiment(
         "constant_force", task="Hold", options={"duration": 0.5}, trials=3, randomization="train"
     )
-    (weak, firm) = run_constant(each, [0.6, 20.0], progress=False)
-    assert weak.played.dropped.all()
-    assert firm.played.success.all()
-    force = best_force(each, 4, progress=False)
-    assert 0.6 < force <= 25.0
-    choice = {"name": "constant_force", "parameters": {"force": 20.0}}
+    seeds, options = [trial.seed for trial in plan(each)], [dict(each.options)] * 3
+    members = constants(each.environment_config().gripper, 4)
+    arguments = {**each.arguments, **members[0].arguments}
+    weak, *_, firm = (play_episodes("Hold", one.policy, arguments, seeds, options) for one in members)
+    assert weak.dropped.all()
+    assert firm.success.all()
+    assert strongest("Hold", members, each.arguments, seeds) is not members[0]
+    choice = {"name": "constant_force", "parameters": {"force": members[-1].policy.force}}
     same = validate({**dict(each), "policies": [choice]}, Experiment, "test")
     rewards = [run_trial(same, trial).row["return"] for trial in plan(same)]
-    np.testing.assert_allclose(firm.played.reward, rewards, rtol=1e-6)
+    np.testing.assert_allclose(firm.reward, rewards, rtol=1e-6)

@@ -4,10 +4,9 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from policies.controllers.last_slip import combined, weight_of
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.controllers.rotational_slip import RotationalSlipPolicy
-from policies.controllers.slip_memory import SlipMemory
+from policies.controllers.slip_memory import SlipMemory, combined, weight_of
 from policies.evaluation.play import play
 
 HARD = {"level": "hard", "friction_source": "none"}
@@ -72,7 +71,6 @@ def test_known_friction_is_acted_on_as_it_is():
         found.append(play(envs, policy, range(4)))
         envs.close()
     np.testing.assert_array_equal(found[0].reward, found[1].reward)
-    assert RotationalSlipPolicy(shown=0.0).initial_state(2).shape == (2, 3)
 
 
 @pytest.mark.slow

@@ -10,12 +10,12 @@ from PIL import Image
 from typer.testing import CliRunner
 
 from policies.commands.play import app
+from policies.play.video import Recording
 from policies.play.viewer import Session, open_viewer
 from policies.play.viewer.app import policies_for
 from policies.play.viewer.controls import Controls
 from policies.play.viewer.interventions import POKE_TIME, poke, set_friction, set_mass
 from policies.play.viewer.plots import curves
-from policies.play.viewer.recording import Recording
 from slipgym.tasks import find
 from slipgym.tasks.episode import EPISODE
 

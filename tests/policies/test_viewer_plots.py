@@ -8,9 +8,8 @@ import pytest
 
 from policies.play.viewer import Session
 from policies.play.viewer.controls import status
-from policies.play.viewer.plots import Plots
+from policies.play.viewer.plots import Plots, SurfacePlot, boundary
 from policies.play.viewer.scene import Scene
-from policies.play.viewer.surface import SurfacePlot, boundary
 from slipgym.contact import EllipsoidContact
 
 SHORT = {"material": "wood", "duration": 0.4, "settle": 0.1, "hold": 0.1, "distance": 0.005}

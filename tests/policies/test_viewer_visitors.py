@@ -8,7 +8,7 @@ import pytest
 
 from policies.play.viewer import Session, open_viewer
 from policies.play.viewer.controls import Controls
-from policies.play.viewer.offers import Offer, number, one_of, switch
+from policies.play.viewer.guard import Offer, number, one_of, switch
 from policies.play.viewer.session import Refused
 
 from .test_viewer import DT, SHORT, Gui

@@ -7,7 +7,7 @@ import pytest
 
 import estimator
 from estimator.reasons import NEEDS
-from slipgym.rendering import strip
+from slipgym.rendering import camera, plot
 from slipgym.rendering.discrepancy import Discrepancy, discrepancies
 from slipgym.rendering.history import COLUMNS, History
 from slipgym.rendering.text import breadth
@@ -115,7 +115,7 @@ def test_reasons_fit_beside_the_view():
         "residuals are 10.0 times what noise explains",
         "mu_s not above mu_c: both are their mean",
     ]
-    assert [words for words in reasons if breadth(words, 12) > strip.WIDTH - 14] == []
+    assert [words for words in reasons if breadth(words, 12) > camera.STRIP - 14] == []
 
 
 @pytest.mark.parametrize("confidence", [0.0, 1.0])
@@ -130,4 +130,4 @@ def test_a_picture_has_them_below_the_plots(make, changed, confidence):
     simulation.estimated[0, 1] *= 1.3
     simulation.estimated[0, 4] = confidence
     difference = changed(exact, env.render())
-    assert difference[strip._NOTES - 12 :, 448:].sum() > 300
+    assert difference[plot._NOTES - 12 :, 448:].sum() > 300

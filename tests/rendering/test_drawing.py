@@ -7,7 +7,7 @@ from PIL import Image
 from policies.evaluation.plots.style import STYLE
 from slipgym.rendering import palette
 from slipgym.rendering.plot import Curve, Plot, limits, spacing
-from slipgym.rendering.raster import fill
+from slipgym.rendering.scene import fill
 from slipgym.rendering.text import write
 
 

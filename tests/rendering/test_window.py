@@ -8,7 +8,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 from slipgym.rendering import Window
-from slipgym.rendering.window import obstacle
+from slipgym.screen import obstacle
 
 
 @pytest.fixture

@@ -12,8 +12,7 @@ import pytest
 
 import policies
 from estimator import records
-from policies.evaluation.record_files import save_record
-from policies.evaluation.sensor_record import record_sensors
+from policies.evaluation.sensor_record import record_sensors, save_record
 
 ROOT = Path(__file__).resolve().parents[2]
 SHIPPED = ROOT / "examples" / "linear_slip_wood.csv.gz"

@@ -80,7 +80,7 @@ def test_an_option_may_have_another_type_than_its_setting():
     settings = configure(task)[1]
     assert options.applied_to(settings) is settings
     assert options.slide == 0.012
-    assert isinstance(task.settings.model_fields["slide"].json_schema_extra.option, Option)
+    assert isinstance(task.settings.model_fields["slide"].json_schema_extra, Option)
 
 
 @pytest.mark.parametrize("name", ["linear_slip", "LinearSlip", "slipgym/LinearSlip-v0"])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -24,13 +22,15 @@ _FARTHEST = 4.0
 
 def outcome(task: Task, trials: pd.DataFrame) -> dict[str, Figure]:
     """The task's own figure of one policy's trials by its name; else errors, where there is a tolerance."""
-    if task.name in _OWN:
-        name, plot = _OWN[task.name]
-        return {name: plot(trials)}
+    if task.name == "Hold":
+        return {"grip": plot_grip(trials)}
+    if task.name in _BOXES:
+        return {"outcome": plot_allowed(trials, *_BOXES[task.name])}
     unit = "mm" if task.motion.unit == "m" else "deg"
     if not {f"final_error_{unit}", f"tolerance_{unit}"} <= set(trials):
         return {}
-    return {"errors": plot_errors(trials, unit, f"final error: {task.motion.title}")}
+    sign = "" if task.motion.axis is None else "; negative: too short"
+    return {"errors": plot_errors(trials, unit, f"final error: {task.motion.title}{sign}")}
 
 
 def plot_errors(trials: pd.DataFrame, unit: str, label: str) -> Figure:
@@ -67,14 +67,11 @@ def plot_errors(trials: pd.DataFrame, unit: str, label: str) -> Figure:
 
 
 class Limited(NamedTuple):
-    """A measure that has to stay within what is allowed."""
+    """A column of the table of trials, its label, and what is allowed: a column too, or a number."""
 
     column: str
-    """Its column in the table of trials."""
     label: str
-    """Its label."""
     allowed: str | float
-    """What is allowed: a column, or a number."""
 
     def ends(self, trials: pd.DataFrame) -> tuple[float, float]:
         """Largest allowed value, and the end of an axis: all trials, or `_FARTHEST` times what is allowed."""
@@ -152,20 +149,4 @@ _BOXES = {
     "FragileHold": (_SLIP, Limited("peak_force_ratio", "largest grip / breaking force", 1.0)),
     "PivotTo": (_SLIP, Limited("final_error_abs_deg", "final error of the angle, size [°]", "tolerance_deg")),
 }
-_SHORT = "negative: too short"
-_OWN: dict[str, tuple[str, Callable[[pd.DataFrame], Figure]]] = {
-    "LinearSlip": (
-        "errors",
-        partial(plot_errors, unit="mm", label=f"final error of the slip [mm]; {_SHORT}"),
-    ),
-    "RotationalSlip": (
-        "errors",
-        partial(plot_errors, unit="deg", label=f"final error of the turn [°]; {_SHORT}"),
-    ),
-    "Hold": ("grip", plot_grip),
-    **{
-        task: ("outcome", partial(plot_allowed, across=across, up=up))
-        for task, (across, up) in _BOXES.items()
-    },
-}
-"""Task -> name and figure of how its trials ended, where it is not the final error alone."""
+"""Task -> the two measures of its trials that have limits, where it is not the final error alone."""

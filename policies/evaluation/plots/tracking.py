@@ -58,6 +58,12 @@ def _path(motion: Motion, axes: Axes, steps: pd.DataFrame, trial: Any, first: bo
     if first:
         axes.set_ylabel(motion.title)
     if motion.axis is None:
+        if "tolerance_mm" in trial:
+            axes.axhspan(0.0, trial["tolerance_mm"], color=STYLE.band, linewidth=0)
+            if first:
+                note(axes, 0.0, trial["tolerance_mm"], "tolerance", STYLE.muted, va="bottom")
+            axes.margins(y=0.1)
+            _ended(axes, 0.45, trial, f"largest slip {trial['largest_slip_mm']:.2f} mm")
         return
     reference = motion.target(1.0) * values(steps, "reference")
     axes.plot(time, reference, "--", color=STYLE.ink, linewidth=1.0)
@@ -66,18 +72,6 @@ def _path(motion: Motion, axes: Axes, steps: pd.DataFrame, trial: Any, first: bo
     for column, unit in (("final_error_mm", " mm"), ("final_error_deg", "°")):
         if column in trial:
             _ended(axes, 0.05, trial, f"final error {trial[column]:+.2f}{unit}".replace("-", "−"))
-
-
-def _largest_slip(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
-    slip = 1e3 * np.hypot(values(steps, "slip_x"), values(steps, "slip_y"))
-    tolerance = trial["tolerance_mm"]
-    axes.axhspan(0.0, tolerance, color=STYLE.band, linewidth=0)
-    axes.plot(values(steps, "time"), slip, color=_SLIP)
-    axes.margins(y=0.1)
-    _ended(axes, 0.45, trial, f"largest slip {trial['largest_slip_mm']:.2f} mm")
-    if first:
-        axes.set_ylabel("slip [mm]")
-        note(axes, 0.0, tolerance, "tolerance", STYLE.muted, va="bottom")
 
 
 def _tilt(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
@@ -143,7 +137,7 @@ def _friction(axes: Axes, steps: pd.DataFrame, trial: Any, first: bool) -> None:
         note(axes, 0.98, 0.05, "pale: estimates of both fingers; dashed: true", STYLE.muted, **_CORNER)
 
 
-_MOTION = {"Hinge": _tilt, "PlanarSlip": _away, "Hold": _largest_slip}
+_MOTION = {"Hinge": _tilt, "PlanarSlip": _away}
 """Task -> its panel of the object's motion, where it says more than the path."""
 
 

@@ -13,10 +13,10 @@ from typing import Any
 import policies
 from policies.controllers import table as controllers
 from policies.learned import LearnedPolicy
+from policies.play.video import Recording
 from policies.play.viewer.controls import Controls
 from policies.play.viewer.guard import guard
 from policies.play.viewer.plots import Plots
-from policies.play.viewer.recording import Recording
 from policies.play.viewer.scene import Scene
 from policies.play.viewer.session import Refused, Session
 from slipgym.atomic_io import check_file
@@ -50,7 +50,7 @@ class Viewer:
         gui.main_panel.dock_left()
         gui.main_panel.set_width(300)
         names = dict.fromkeys([session.policy, *policies_for(session.task)])
-        self.controls = Controls(gui, session, [*names], self._ask_to_record)
+        self.controls = Controls(gui, session, [*names], lambda wanted: setattr(self, "_wanted", wanted))
         panel = gui.add_panel()
         with panel.add_tab("plots"):
             self.plots = Plots(gui, session)
@@ -125,10 +125,6 @@ class Viewer:
         self.recording.end()
         self.server.stop()
         self.session.close()
-
-    def _ask_to_record(self, wanted: bool) -> bool:
-        self._wanted = wanted
-        return wanted
 
     def _record(self, seconds: float) -> None:
         """Begin, continue or end a recording, in the thread of the environment."""

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from policies.play.viewer.guard import Offer, number, one_of, switch
 from policies.play.viewer.interventions import PUSHES, TURNS
-from policies.play.viewer.offers import Offer, number, one_of, switch
 from policies.play.viewer.scene import PUSH
 from policies.play.viewer.session import Session
 from slipgym.rendering import palette
@@ -42,11 +42,11 @@ class Controls:
     """The panel with the controls of a session, in the container of `viser.ViserServer.gui` that is open.
 
     The names are those of the policies on offer, the present one among them. `record` is called with True to
-    begin a video, with False to end it; it returns whether one is being made.
+    begin a video, with False to end it.
     """
 
     def __init__(
-        self, gui: Any, session: Session, names: list[str], record: Callable[[bool], bool] | None = None
+        self, gui: Any, session: Session, names: list[str], record: Callable[[bool], None] | None = None
     ) -> None:
         self._session = session
         self.speed, self.paused = 1.0, False
@@ -91,7 +91,7 @@ class Controls:
             offer(box, "pause", switch, lambda on: setattr(self, "paused", on))
             if record is not None:
                 box = gui.add_checkbox("record MP4", False)
-                made = offer(box, "record MP4", switch, lambda on: setattr(made, "value", record(on)))
+                offer(box, "record MP4", switch, record)
         with gui.add_folder("in the picture"):
             gui.add_html(_LEGEND)
         self.begin()

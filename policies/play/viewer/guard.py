@@ -1,7 +1,8 @@
-"""Refuses web pages that are not the viewer's own.
+"""Refuses web pages that are not the viewer's own, and values that its page does not offer.
 
 A browser lets any page open a connection to 127.0.0.1, and a page can give its own name that address (DNS
-rebinding). The headers Origin and Host say which page asks and by which name it reached this machine.
+rebinding). The headers Origin and Host say which page asks and by which name it reached this machine. The
+server of the page hands on whatever a browser sends: any text from a menu, any number from a slider.
 """
 
 from __future__ import annotations
@@ -9,7 +10,9 @@ from __future__ import annotations
 import asyncio
 import ipaddress
 import logging
+import math
 import socket
+from collections.abc import Callable, Sequence
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -17,18 +20,15 @@ MADE_FOR = "1.1.1"
 """Version of viser whose connections the viewer can check."""
 _VIOLATION = 1008  # the close code of RFC 6455 for a policy that is violated
 _MOST_WORDS = 20  # refused origins that are named on the terminal
+_SHORT = 60  # characters of a refused value that a message shows
 
 
 def is_own_page(hosts: list[str], origins: list[str], host: str) -> bool:
     """Whether the headers of a connection are those of a page that this server has sent.
 
-    Its origin must be the address that it connects to, and the name in it must be one that no stranger can
-    point to this machine: a number, localhost, or the name of the server or machine.
-
-    Args:
-        hosts: Values of the header Host.
-        origins: Values of the header Origin, which every browser sends.
-        host: Address that the server was asked to listen on.
+    Its origin, which every browser sends, must be the address that it connects to, and the name in it must be
+    one that no stranger can point to this machine: a number, localhost, the address that the server was asked
+    to listen on, or the name of the machine.
     """
     if len(hosts) != 1 or len(origins) != 1:
         return False
@@ -45,9 +45,7 @@ def is_own_page(hosts: list[str], origins: list[str], host: str) -> bool:
 def guard(server: Any, host: str) -> None:
     """Closes every connection that is not of an own page, before anything that it sends is read.
 
-    Args:
-        server: A `viser.ViserServer` that offers no control yet.
-        host: Address that it was asked to listen on.
+    The `viser.ViserServer` offers no control yet.
 
     Raises:
         RuntimeError: This version of viser does not show the headers of a connection.
@@ -89,3 +87,78 @@ def guard(server: Any, host: str) -> None:
     on_connect(check)
     # the server has run since it was made: who came in before there was a check leaves again
     asyncio.run_coroutine_threadsafe(sweep(), server.get_event_loop()).result()
+
+
+def one_of(names: Sequence[str]) -> Callable[[Any], str]:
+    """Takes a name of a menu; raises ValueError for anything else."""
+    offered = tuple(names)
+
+    def take(value: Any) -> str:
+        if not isinstance(value, str) or value not in offered:
+            raise ValueError(f"is not on offer; there are {', '.join(offered)}")
+        return value
+
+    return take
+
+
+def number(low: float, high: float, whole: bool = False) -> Callable[[Any], float]:
+    """Takes a number of a slider; raises ValueError for what is outside, NaN or no number."""
+
+    def take(value: Any) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
+            raise ValueError(f"must be a number from {low:g} to {high:g}")
+        if whole and value != math.floor(value):
+            raise ValueError(f"must be a whole number from {low:g} to {high:g}")
+        return int(value) if whole else float(value)
+
+    return take
+
+
+def switch(value: Any) -> bool:
+    """Takes the state of a checkbox; raises ValueError for anything else."""
+    if not isinstance(value, bool):
+        raise ValueError("must be on or off")
+    return value
+
+
+class Offer:
+    """A control of the page; viser has the handle, and messages name it by its label.
+
+    `take` gives the value that is taken for one that was sent, see `number`; if that is not on offer,
+    `refuse` is called with a message.
+    """
+
+    def __init__(
+        self, handle: Any, label: str, take: Callable[[Any], Any], refuse: Callable[[str], None]
+    ) -> None:
+        self._handle, self._label, self._take, self._refuse = handle, label, take, refuse
+        self._value = handle.value
+
+    @property
+    def value(self) -> Any:
+        """The last value that was on offer."""
+        return self._value
+
+    @value.setter
+    def value(self, value: Any) -> None:
+        self._value = self._handle.value = value
+
+    def on_change(self, act: Callable[[Any], None]) -> None:
+        """Calls `act` with the value whenever a user, and not the program, changed it."""
+        self._handle.on_update(lambda event: self._changed(event, act))
+
+    def on_click(self, act: Callable[[Any], None]) -> None:
+        """Calls `act` with the value whenever a user clicked."""
+        self._handle.on_click(lambda event: self._changed(event, act))
+
+    def _changed(self, event: Any, act: Callable[[Any], None]) -> None:
+        if event.client_id is None:
+            return
+        sent = self._handle.value
+        try:
+            self._value = self._take(sent)
+        except ValueError as error:
+            self._refuse(f"{self._label} = {repr(sent)[:_SHORT]} {error}")
+            self._handle.value = self._value
+            return
+        act(self._value)

@@ -20,9 +20,9 @@ from slipgym.rendering.history import History
 from slipgym.tasks import find
 
 LIVE = ("grip_force", "mu_c", "mass")
-"""Values that act from the next control step on, and stay set in later episodes."""
+"""Values [N per finger, -, kg] that act from the next control step on, and stay set in later episodes."""
 NEXT_EPISODE = ("policy", "latency")
-"""Values that begin with the next episode."""
+"""Values that begin with the next episode: a policy's name, the latency of the slip sensors [samples]."""
 _GRIPS = "grip_force", "force_increment", "ln_grip_force"
 """Components of an action that command the grip; each action mode has one."""
 _LONGEST = 0.1  # [s] of simulation that one call makes up for
@@ -76,11 +76,6 @@ class Session:
     def submit(self, name: str, value: Any) -> None:
         """Set a value of `LIVE` or `NEXT_EPISODE`; None gives it back to the episode.
 
-        Args:
-            name: Its name.
-            value: Grip force per finger [N], mu_c [-], mass [kg], name of a policy, or latency of the slip
-                sensors [samples].
-
         Raises:
             ValueError: There is no value of this name.
         """
@@ -101,10 +96,7 @@ class Session:
         self._changes.put(self.restart)
 
     def advance(self, seconds: float) -> int:
-        """Apply the changes and make the control steps of a stretch of simulated time.
-
-        Args:
-            seconds: Time that passed, >= 0 [s]; beyond 0.1 s is not made up for.
+        """Apply the changes and make the control steps of a stretch of simulated time, of at most 0.1 s.
 
         Returns:
             Number of steps; fewer than the time asks for if the episode ended.

@@ -11,7 +11,7 @@ import numpy as np
 import policies
 from policies.controllers import table as controllers
 from policies.controllers.rate import at_rate
-from policies.learned.forward import Network
+from policies.learned.policy import Network
 from policies.training.imitation.config import Imitation
 from slipgym.envs.actions import LOGARITHMIC
 from slipgym.envs.load_part import LOAD

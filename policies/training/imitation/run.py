@@ -25,7 +25,7 @@ from policies.learned import files
 from policies.learned.description import Column
 from policies.learned.export import described, origin
 from policies.learned.fitting import column_of
-from policies.learned.forward import Network
+from policies.learned.policy import Network
 from policies.training import seeds
 from policies.training.imitation.config import Imitation
 from policies.training.imitation.episodes import Demonstrations, Scene, arguments, demonstrate
@@ -44,7 +44,7 @@ class Outcome:
     """Result of an imitation.
 
     Attributes:
-        weights: Tensors of the network, see `policies.learned.tensors.expected`.
+        weights: Tensors of the network, see `policies.learned.files.expected`.
         curve: Of each round: its number, episodes so far, share that the network solved, loss at its end.
         solved: Share of the held-out episodes that the network solves; NaN without any.
         steps: Steps of experience.

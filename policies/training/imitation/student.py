@@ -66,7 +66,7 @@ class Student(nn.Module):
         return (error.mean(-1) * running).sum() / running.sum()
 
     def tensors(self) -> dict[str, np.ndarray]:
-        """Tensors by their names in a policy's file, see `policies.learned.tensors.expected`."""
+        """Tensors by their names in a policy's file, see `policies.learned.files.expected`."""
         state = self.state_dict()
         found = {ours: array(state[theirs]) for ours, theirs in places(state, "dense", "memory").items()}
         return {"observation.mean": array(self.mean), "observation.var": array(self.var), **found}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lab.benchmarking import split
-from slipgym.benchmarking.vector_player import VectorPlayer
+from slipgym.benchmarking.run import VectorPlayer
 
 pytestmark = pytest.mark.slow  # they compile a program that only the benchmark runs
 

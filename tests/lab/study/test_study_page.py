@@ -14,8 +14,7 @@ from lab.study_report.page import render, write_report
 from lab.study_report.videos import Clip, Scene
 from policies.play.video import Video
 from policies.study import run as runner
-from policies.study.benefit import benefits
-from policies.study.tables import outcomes, shares, transfer
+from policies.study.tables import benefits, outcomes, shares, transfer
 from slipgym.rendering import HEIGHT, WIDTH
 
 CLEAR = {"none": 0, "nominal": 5, "estimated": 9, "true": 10}

@@ -6,8 +6,8 @@ import pytest
 
 from policies.learned import files
 from policies.learned.description import WEIGHTS, Description
+from policies.learned.files import expected
 from policies.learned.fitting import column_of
-from policies.learned.tensors import expected
 from slipgym.config import load
 from slipgym.envs.actions import components
 from slipgym.envs.observation import columns

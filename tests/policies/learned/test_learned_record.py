@@ -6,8 +6,7 @@ import pytest
 
 import policies
 from estimator import records
-from policies.evaluation.record_files import check_targets, save_record
-from policies.evaluation.sensor_record import TWIST, record_sensors
+from policies.evaluation.sensor_record import TWIST, check_targets, record_sensors, save_record
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR
 
 

@@ -7,9 +7,7 @@ import policies
 from policies.controllers.no_friction_info import NoFrictionInfo
 from policies.evaluation.plan import plan
 from policies.study import load_study, narrowed, study_names
-from policies.study.changes import Change
-from policies.study.conditions import conditions
-from policies.study.learned import missing, policies_of
+from policies.study.conditions import Change, conditions, missing, policies_of
 from slipgym.config import load, load_randomization
 from slipgym.envs.observation import columns
 from slipgym.tasks import find
@@ -17,7 +15,7 @@ from slipgym.tasks import find
 
 @pytest.fixture
 def shelf(tmp_path, monkeypatch):
-    monkeypatch.setattr("policies.evaluation.rate.frame_skip_of", lambda name: 1)
+    monkeypatch.setattr("policies.evaluation.experiment.frame_skip_of", lambda name: 1)
 
     def make(*names):
         for name in names:
@@ -153,7 +151,7 @@ def _learned(**folders):
 
 def test_all_policies_of_a_task_act_at_the_same_rate(small, monkeypatch):
     skips = {"a": 2, "b": 2, "c": 1}
-    monkeypatch.setattr("policies.evaluation.rate.frame_skip_of", skips.get)
+    monkeypatch.setattr("policies.evaluation.experiment.frame_skip_of", skips.get)
     study = small(tasks=["LinearSlip", "Hold"])
     found = conditions(study, _learned(true=["a"], none=["b"]))
     assert {each.kind for each in found if each.task == "LinearSlip"} == {"classic", "learned"}

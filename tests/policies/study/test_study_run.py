@@ -5,7 +5,7 @@ import pytest
 from policies.study import run as runner
 from policies.study import run_study, words
 from policies.study.conditions import conditions
-from policies.study.files import load_study
+from policies.study.config import load_study
 from policies.study.store import Store, fingerprint, sources
 
 FILES = {
@@ -63,7 +63,7 @@ def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
     def fail(*_):
         raise AssertionError("planted")
 
-    monkeypatch.setattr("policies.study.episodes.run_block", fail)
+    monkeypatch.setattr("policies.study.store.run_block", fail)
     assert run_study(small(), output, 1, progress=False) == run
     assert (run / "episodes.parquet").read_bytes() == before
     with pytest.raises(AssertionError, match="planted"):
@@ -72,10 +72,10 @@ def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
 
 @pytest.mark.slow
 def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monkeypatch):
-    from policies.study import episodes
+    from policies.study import store
 
     study, count = small(), [0]
-    actual = episodes.run_block
+    actual = store.run_block
 
     def some(*arguments):
         count[0] += 1
@@ -83,7 +83,7 @@ def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monke
             raise KeyboardInterrupt
         return actual(*arguments)
 
-    monkeypatch.setattr(episodes, "run_block", some)
+    monkeypatch.setattr(store, "run_block", some)
     with pytest.raises(KeyboardInterrupt):
         run_study(study, tmp_path, 1, progress=False)
     kept = list((tmp_path / run.name / "conditions").iterdir())
@@ -109,7 +109,7 @@ def test_a_broken_cell_is_no_cell(small, tmp_path):
     store, (condition, *_) = Store(tmp_path, study), conditions(study, {})
     with pytest.raises(AttributeError):
         store.write(condition, None)  # type: ignore[arg-type]
-    assert not store.has(condition)
+    assert not store.table(condition).exists()
     assert list(tmp_path.iterdir()) == []
 
 

@@ -4,8 +4,7 @@ import pytest
 
 from policies.evaluation.frames import where
 from policies.evaluation.statistics import over_seeds, share_interval
-from policies.study.benefit import benefits
-from policies.study.tables import ALL, outcomes, shares, transfer
+from policies.study.tables import ALL, benefits, outcomes, shares, transfer
 from policies.study.terminal import claims, training_seeds
 
 BULLET, CORE = "PyBullet, ellipsoid", "core"

@@ -12,7 +12,7 @@ from policies.training.imitation.config import Imitation, read
 torch = pytest.importorskip("torch")
 from policies.learned import LearnedPolicy  # noqa: E402
 from policies.learned.description import Column  # noqa: E402
-from policies.learned.forward import Network  # noqa: E402
+from policies.learned.policy import Network  # noqa: E402
 from policies.training.imitation import run  # noqa: E402
 from policies.training.imitation.episodes import Scene, demonstrate  # noqa: E402
 from policies.training.imitation.run import imitate  # noqa: E402
