@@ -63,6 +63,12 @@ class Parameters:
         for field in dataclasses.fields(self):
             object.__setattr__(self, field.name, _checked(field, getattr(self, field.name)))
 
+    def _ordered(self, *names: str) -> None:
+        values = [getattr(self, name) for name in names]
+        if values != sorted(values):
+            given = ", ".join(f"{name} = {value!r}" for name, value in zip(names, values, strict=True))
+            raise ValueError(f"{given}: expected {' <= '.join(names)}")
+
     @classmethod
     def create(cls, **values: Any) -> Self:
         """Like the constructor, but an unknown name is a ValueError that lists the valid ones."""

@@ -76,12 +76,6 @@ class StickSlipParameters(Parameters):
         self._ordered("mu_min", "mu_s0", "mu_max")
         self._ordered("r_min", "r0", "r_max")
 
-    def _ordered(self, *names: str) -> None:
-        values = [getattr(self, name) for name in names]
-        if values != sorted(values):
-            given = ", ".join(f"{name} = {value!r}" for name, value in zip(names, values, strict=True))
-            raise ValueError(f"{given}: expected {' <= '.join(names)}")
-
 
 STICK_SLIP_STATE: list[tuple[Any, ...]] = [
     *COMMON_STATE,

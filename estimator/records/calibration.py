@@ -72,7 +72,7 @@ def calibration(state: np.void, parameters: Any, correlation: float, f_n: Array)
         f_n: Normal forces, (k,) [N].
     """
     from estimator.window.layout import COP, SIGMA, STATES, TILT, TORQUE, ZERO
-    from estimator.window.timing import GATE
+    from estimator.window.sensors import GATE
 
     p, errors = parameters, []
     loaded = f_n[f_n >= p.eps_fn]

@@ -10,16 +10,15 @@ import math
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
-from estimator.window.fit import conclude, descend
+from estimator.window.fit import descend, substitute
 from estimator.window.layout import EMPTY, ENTRIES, MU, OLD, SLIDE, STATES
-from estimator.window.slide import slide
+from estimator.window.residuals import slide
 
-FIRST, STEPS = 3, 4  # First fits, far from their start, and the steps of each
+STEPS = 4  # Of a fit far from its start; as many first fits are
 NEWEST = 0.155  # Slip time of the newest slips [s]: friction that changed is right again after it
-EVIDENT = 6.0  # Squared deviation of their mean from which a change is tried: 2.4 standard deviations
 ODDS = 8.0
-"""Difference of the costs, twice the logarithm of the odds: a change is one in fifty slips beforehand."""
-FORGOTTEN = 1.005  # Slip time after which the slips before a change are forgotten [s]
+"""Difference of the costs, twice the logarithm of the odds: a change is one in fifty slips beforehand. It is
+tried from that squared deviation of the newest mean on."""
 
 
 @njit(error_model="numpy")
@@ -31,10 +30,10 @@ def _newest(state, p, x):
         s = state.entries[i]
         if s.kind != SLIDE or s.end < state.split or s.slides < 0.5:
             continue
-        slide(x, s, state.sign, False, p.law_error * p.law_error, e, h, var)
+        slide(x, s, p, state.sign, False, e, h, var)
         if abs(h[0, MU]) > 1e-6:
             along = e[0] if h[0, MU] > 0.0 else -e[0]
-            total += min(max(along / math.sqrt(var[0]), -EVIDENT), EVIDENT)
+            total += min(max(along / math.sqrt(var[0]), -ODDS), ODDS)
             lacks += min(max(e[0] / h[0, MU], -0.7), 0.7)
             count += 1.0
     return total * total / count, lacks / count
@@ -45,7 +44,7 @@ def fit(state, p):
     """Fits `x` and `covariance` to the window, and finds changes; a fit that fails changes nothing."""
     a, g = matrix(STATES, STATES), matrix(1, STATES)[0]
     x, other = matrix(1, STATES)[0], matrix(1, STATES)[0]
-    if state.changed > 0.0 and state.slip_time > state.changed + FORGOTTEN:
+    if state.changed > 0.0 and state.slip_time > state.changed + p.memory:
         for i in range(ENTRIES):
             if state.entries[i].end < state.changed:
                 state.entries[i].kind = EMPTY
@@ -55,21 +54,29 @@ def fit(state, p):
     x[:] = state.x
     if not changed:
         x[OLD] = 0.0
-    cost, misfit = descend(state, p, x, changed, STEPS if state.fits < FIRST else 1, a, g)
+    cost, misfit = descend(state, p, x, changed, STEPS if state.fits < STEPS else 1, a, g)
     evidence, lacks = 0.0, 0.0
     if not changed and state.slip_time > 2.0 * NEWEST:
         evidence, lacks = _newest(state, p, x)
-    if evidence > EVIDENT:
+    if evidence > ODDS:
         cost, misfit = descend(state, p, x, False, 1, a, g)
         other[:] = x
         other[MU] += lacks
         other[OLD] = -lacks
-        descend(state, p, other, True, 4, a, g)
-        found, off_found = descend(state, p, other, True, 1, a, g)
+        found, off_found = descend(state, p, other, True, STEPS + 1, a, g)
         if found + ODDS < cost:
             state.changed, misfit = state.split, off_found
             x[:] = other
         else:
             cost, misfit = descend(state, p, x, False, 1, a, g)
-    if math.isfinite(cost + misfit):
-        conclude(state, x, misfit, a)
+    if not math.isfinite(cost + misfit):
+        return
+    state.x[:] = x
+    for j in range(STATES):
+        g[:] = 0.0
+        g[j] = max(misfit, 1.0)
+        substitute(a, g)
+        for i in range(j, STATES):
+            state.covariance[i, j] = state.covariance[j, i] = g[i]
+    state.misfit, state.fit_time = misfit, state.t
+    state.fits += 1

@@ -10,16 +10,12 @@ import math
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
-from estimator.window.layout import INTERVALS, SAMPLES
-from estimator.window.spring import stiffen
-from estimator.window.sticks import SETTLED, find_peak, learn_short_slip, learn_tilt
-from estimator.window.window import add_instant, end_stretch, length
+from estimator.window.layout import INTERVALS, LATE, SAMPLES, SHORTEST
+from estimator.window.spring import length, stiffen
+from estimator.window.sticks import find_peak, learn_short_slip, learn_tilt
+from estimator.window.window import add_instant, end_stretch
 
-SHORTEST = 0.007  # Duration of an interval [s]: a sample at 120 Hz, in which 1.5 mm/s are one count of 10 um
-MARGIN = 4  # Intervals in a row that moved: two about an instant, one on either side
-QUANTILE, STEP = 0.2, 0.05
-"""Quantile of the changes of the velocity that is its noise, most being at rest; step of its logarithm."""
-LONG = 6  # Intervals at rest until a late velocity has shown it
+QUANTILE = 0.2  # Of the changes of the velocity, that is its noise, most being at rest
 NOISES = 3.7
 """Speed over the noise that is motion; the quantile of 0.2 is two thirds of a deviation, so 2.5 of them."""
 
@@ -31,7 +27,7 @@ def _learn_noise(state, p, interval, last):
     for j in range(3):
         change[j] = interval.motion[j] / interval.time - last.motion[j] / last.time
     up = length(p, change) > math.sqrt(2.0) * state.noise
-    noise = state.noise * math.exp(STEP * (QUANTILE if up else QUANTILE - 1.0))
+    noise = state.noise * math.exp(0.05 * (QUANTILE if up else QUANTILE - 1.0))
     state.noise = min(max(noise, 1e-4), 5e-3)
 
 
@@ -41,11 +37,11 @@ def _rest(state, p):
     end_stretch(state, p)
     state.quiet = 1 if state.run > 0 else state.quiet + 1
     state.run = 0
-    if state.quiet == SETTLED and not state.learned:
+    if state.quiet == LATE and not state.learned:
         learn_short_slip(state, p)
-    if state.quiet == LONG:
+    if state.quiet == 2 * LATE:
         state.rest[2] = 0.0
-    if state.quiet >= LONG:
+    if state.quiet >= 2 * LATE:
         learn_tilt(state, p, state.intervals[(state.interval - 1) % INTERVALS].wrench)
 
 
@@ -54,21 +50,21 @@ def _move(state, p, again):
     """Takes an interval that moved; a velocity that comes again may be the last one."""
     n = state.interval
     if state.run == 0:
-        if state.quiet >= SETTLED or state.learned:
+        if state.quiet >= LATE or state.learned:
             state.first = n - 1
             state.learned = False
         state.peak[2], state.repeated = 0.0, 0
-        if state.quiet >= SETTLED:
+        if state.quiet >= LATE:
             find_peak(state)
     elif again:
         state.repeated = 1
     state.run += 1
-    if state.run >= MARGIN + state.repeated:
+    if state.run > LATE + state.repeated:
         add_instant(state, p, state.intervals[(n - 3) % INTERVALS], state.intervals[(n - 2) % INTERVALS])
 
 
 @njit(error_model="numpy")
-def empty(interval):
+def _empty(interval):
     """Makes an interval one without samples."""
     interval.time, interval.count = 0.0, 0.0
     interval.motion[:] = 0.0
@@ -84,10 +80,10 @@ def _close(state, p):
     interval.motion[:] = grown.motion
     for j in range(4):
         interval.wrench[j] = grown.wrench[j] / grown.count
-    empty(grown)
+    _empty(grown)
     state.interval = n + 1
     stiffen(state, p)
-    if n > 0 and state.run < MARGIN:
+    if n > 0 and state.run <= LATE:
         _learn_noise(state, p, interval, last)
     if length(p, interval.motion) / interval.time > max(p.eps_v, NOISES * state.noise):
         _move(state, p, (interval.motion == last.motion).all())
@@ -96,16 +92,16 @@ def _close(state, p):
 
 
 @njit(error_model="numpy")
-def add_sample(state, p, elapsed):
+def add_sample(state, p):
     """Adds the newest velocity, and the wrench at the end of its window, to the interval that grows."""
     delay = max(state.delay, 0)
     if state.in_a_row < delay + 3:
         return
     grown, k = state.growing, state.samples
-    grown.time += elapsed
+    grown.time += state.elapsed
     grown.count += 1.0
     for j in range(3):
-        grown.motion[j] += elapsed * state.twists[k % SAMPLES, j]
+        grown.motion[j] += state.elapsed * state.twists[k % SAMPLES, j]
     for j in range(4):
         grown.wrench[j] += state.wrenches[(k - delay) % SAMPLES, j]
     if grown.time >= SHORTEST:
@@ -117,4 +113,4 @@ def lose_contact(state, p):
     """Ends a slip, and forgets the samples before."""
     end_stretch(state, p)
     state.in_a_row, state.run, state.quiet, state.learned = 0, 0, 0, True
-    empty(state.growing)
+    _empty(state.growing)

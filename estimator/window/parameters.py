@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from estimator.parameters import Parameters, parameter
-from estimator.window.timing import EARLIEST, LATEST
+
+EARLIEST, LATEST = -1, 5  # Delays of the velocity [samples]; negative: the force itself is late
 
 
 @dataclass(frozen=True)
@@ -68,12 +69,6 @@ class AdaptiveParameters(Parameters):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for low, name, high in (
-            ("mu_min", "mu_c0", "mu_max"),
-            ("mu_min", "mu_s0", "mu_max"),
-            ("r_min", "r0", "r_max"),
-        ):
-            values = [getattr(self, each) for each in (low, name, high)]
-            if values != sorted(values):
-                given = ", ".join(f"{each} = {getattr(self, each)!r}" for each in (low, name, high))
-                raise ValueError(f"{given}: expected {low} <= {name} <= {high}")
+        self._ordered("mu_min", "mu_c0", "mu_max")
+        self._ordered("mu_min", "mu_s0", "mu_max")
+        self._ordered("r_min", "r0", "r_max")

@@ -5,20 +5,11 @@ import math
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
 from estimator.sample import norm
+from estimator.window import layout as at
 from estimator.window.change import fit
-from estimator.window.layout import FALL, INTERVALS, SAMPLES, TILT, TORQUE, ZERO, R
-from estimator.window.spring import SAFETY
-from estimator.window.window import length, new_entry, store_break
-
-BEFORE = 0.04  # Time before a slip in which the largest load counts [s]
-SETTLED = 3  # Intervals at rest until a slip has ended and the pad has come to rest
-STEP, PASSED = 0.8, 0.1
-"""Change of the normal force that shows a tilt [N]; share of the load that may pass to the other finger."""
-DROP, DROPS = 0.08, 5.0
-"""Fall of the load from one interval to the next that is a break-away: relative, and in deviations of the
-noise."""
-AT_LEAST = 0.5  # Smallest ratio of mu_c and mu_s
-PASSES = 0.9  # Probability that such a fall is a slip
+from estimator.window.layout import AT_LEAST, EVENT, FALL, INTERVALS, LATE, SAMPLES, SIGMAS, TORQUE, ZERO, R
+from estimator.window.spring import SAFETY, length
+from estimator.window.window import DOUBT, new_entry, store_break
 
 
 @njit(error_model="numpy")
@@ -32,7 +23,9 @@ def _size(state, w):
 def find_peak(state):
     """Stores the wrench of the largest load over f_n shortly before the velocity begins to show a slip."""
     k, largest = state.samples - state.delay, 0.0
-    count = min(int(BEFORE / state.elapsed) + 3, min(state.in_a_row, SAMPLES) - state.delay - 2)
+    count = min(
+        int(2 * LATE * at.SHORTEST / state.elapsed) + 3, min(state.in_a_row, SAMPLES) - state.delay - 2
+    )
     for i in range(k - count, min(k + 2, state.samples + 1)):
         w = state.wrenches[i % SAMPLES]
         ratio = _size(state, w) / w[2]
@@ -45,19 +38,20 @@ def find_peak(state):
 def learn_tilt(state, p, wrench):
     """Takes a change of the tangential force that comes with one of f_n in a stick as the tilt of the sensor.
 
-    An object at rest carries its load, whatever the normal force. A change of the load itself is an outlier.
+    An object at rest carries its load, whatever the normal force, but for a tenth that may pass to the other
+    finger. A change of the load itself is an outlier.
     """
     rest, step = state.rest, wrench[2] - state.rest[2]
-    if abs(step) < STEP:
+    if abs(step) < 40.0 * p.sd_force:
         return
     for axis in range(2):
-        at = TILT + axis
-        off = wrench[axis] - rest[axis] - state.mean[at] * step
-        noise = 2.0 * p.sd_force * p.sd_force + (PASSED * norm(wrench[0], wrench[1])) ** 2
-        total = step * step * state.variance[at] + noise
-        if rest[2] > 0.0 and off * off < 9.0 * total:
-            state.mean[at] += state.variance[at] * step * off / total
-            state.variance[at] *= noise / total
+        k = at.TILT + axis
+        off = wrench[axis] - rest[axis] - state.mean[k] * step
+        noise = 2.0 * p.sd_force * p.sd_force + 0.01 * norm(wrench[0], wrench[1]) ** 2
+        total = step * step * state.variance[k] + noise
+        if rest[2] > 0.0 and off * off < SIGMAS * SIGMAS * total:
+            state.mean[k] += state.variance[k] * step * off / total
+            state.variance[k] *= noise / total
     rest[:] = wrench
 
 
@@ -70,9 +64,19 @@ def _fall(state, p, first, last):
         before, after = _size(state, a.wrench), _size(state, b.wrench)
         most = max(most, before / a.wrench[2])
         drop = before - after
-        if drop > max(DROP * before, DROPS * p.sd_force, largest) and after > AT_LEAST * most * b.wrench[2]:
+        if drop > max(EVENT * before, 5.0 * p.sd_force, largest) and after > AT_LEAST * most * b.wrench[2]:
             found, largest = i, drop
     return found
+
+
+@njit(error_model="numpy")
+def _store_fall(state, p, wrench, slow, time):
+    """Stores the load before a slip and the one (4,) after its fall, and fits."""
+    store_break(state)
+    new_entry(state, FALL, 1.0 - DOUBT, slow, wrench)
+    state.slip_time += time
+    fit(state, p)
+    state.updates_mu_c += 1
 
 
 @njit(error_model="numpy")
@@ -93,24 +97,44 @@ def learn_short_slip(state, p):
     ring = state.intervals
     w, before, after = ring[found % INTERVALS], ring[(first - 2) % INTERVALS], ring[last % INTERVALS]
     moved, change, work, fastest = matrix(1, 3)[0], matrix(1, 3)[0], 0.0, 0.0
-    for j in range(3):
-        at = j if j < 2 else 3
-        change[j] = (after.wrench[at] - before.wrench[at]) / (1.0 if j < 2 else rim * rim)
-        moved[j] = 0.0
-        for i in range(first, last + 1):
-            moved[j] += ring[i % INTERVALS].motion[j]
-        work += moved[j] * (w.wrench[at] - state.x[ZERO + j])
     for i in range(first, last + 1):
         fastest = max(fastest, length(p, ring[i % INTERVALS].motion) / ring[i % INTERVALS].time)
+    for j in range(3):
+        axis, moved[j] = j if j < 2 else 3, 0.0
+        for i in range(first, last + 1):
+            moved[j] += ring[i % INTERVALS].motion[j]
+        change[j] = (after.wrench[axis] - before.wrench[axis]) / (1.0 if j < 2 else rim * rim)
+        work += moved[j] * (w.wrench[axis] - state.x[ZERO + j])
     least = SAFETY * state.spring * length(p, change) + 6.0 * state.noise * w.time
     if state.power == 0.0:  # the first motion says which way the wrench is taken
         state.sign = 1.0 if work > 0.0 else -1.0
-    if not (work * state.sign > 0.0 and length(p, moved) > least):
+    if work * state.sign > 0.0 and length(p, moved) > least:
+        state.power += 0.1 * state.sign
+        slow = math.exp(-((fastest / (3.0 * p.stribeck_velocity)) ** 2))
+        _store_fall(state, p, w.wrench, slow, 2.0 * w.time)
+
+
+@njit(error_model="numpy")
+def learn_drop(state, p):
+    """Takes a sudden fall of the load at the newest sample as a slip that begins, without a slip velocity.
+
+    A push that ends looks the same, and so does a sudden stop of the wrist. So a fall counts only if the load
+    over the normal force was about as large as any that held before, if it is no larger than mu_s over mu_c
+    can be, and if the samples that are kept hold no other one. The torque, which is noisy, is left out.
+    """
+    state.quiet -= 1
+    if state.in_a_row < 6 or state.quiet > 0:
         return
-    state.power += 0.1 * state.sign
-    store_break(state, p)
-    s = new_entry(state, p, FALL, PASSES, w.wrench)
-    s.unknown = math.exp(-((fastest / (3.0 * p.stribeck_velocity)) ** 2))
-    state.slip_time += 2.0 * w.time
-    fit(state, p)
-    state.updates_mu_c += 1
+    w = matrix(3, 4)
+    for i, back in enumerate((4, 1, 0)):  # before, while it falls, and when it has fallen
+        for j in range(3):
+            newer = state.wrenches[(state.samples - back) % SAMPLES, j]
+            w[i, j] = 0.5 * (newer + state.wrenches[(state.samples - back - 1) % SAMPLES, j])
+        w[i, 3] = state.x[TORQUE]
+    before, after, noise = _size(state, w[0]), _size(state, w[2]), 5.0 * p.sd_force
+    fell = before - max(_size(state, w[1]), after) > max(EVENT * before, noise)
+    if fell and before > 0.85 * state.held * w[0, 2] and after > max(AT_LEAST * before, noise):
+        state.quiet, state.peak[:] = SAMPLES, w[0]
+        _store_fall(state, p, w[2], 0.0, SAMPLES * state.elapsed)
+    if w[0, 2] > 5.0 * p.eps_fn:
+        state.held = max(state.held, before / w[0, 2])

@@ -18,7 +18,6 @@ WEAK = {
     "test_short_slips_teach_mu_c_whatever_the_delay[0.25-1-0.3]": "one late sample is taken for an exponent",
     "test_short_slips_teach_mu_c_whatever_the_delay[0.25-3-0.3]": "one late sample is taken for an exponent",
     "test_short_slips_teach_mu_c_whatever_the_delay[0.5-3-0.3]": "short slips late and with jitter",
-    "test_slips_that_disagree_do_not": "slips that disagree widen the deviation by 1.1, not by 2",
     "test_mu_s_does_not_follow_a_mu_c_that_a_spring_misleads[0.00025-1.0]": "the softest pad",
     "test_mu_s_does_not_follow_a_mu_c_that_a_spring_misleads[0.00025-2.0]": "the softest pad",
     "test_deviations_fall_when_the_motion_shows_the_errors": "by 0.63, not by 0.5",

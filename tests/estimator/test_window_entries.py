@@ -1,15 +1,13 @@
-"""The window of "adaptive": its reference, its entries at any rate, its memory, its changes of friction."""
+"""The window of "adaptive": its entries at any rate, its memory, its changes of friction."""
 
 import numpy as np
 import pytest
 
 import estimator
-from estimator.window.layout import EMPTY, ENTRIES, FALLS, GROWS, MU, SLIDE, STATES, R
-from estimator.window.slide import slide
-from estimator.window.window import new_entry, refer
+from estimator.window.layout import EMPTY, ENTRIES, SLIDE
+from estimator.window.window import new_entry
 from tests.estimator.rigid_slips import FINE, Pad, Phase, Sensors, contact, planar, sense, steps
 
-P = estimator.AdaptiveParameters().as_array().view(np.recarray)[0]
 PAD, F_N = Pad(0.4, 0.006), 6.0
 OPEN, REST = Phase(0.4, 0.0), Phase(0.3, F_N)
 
@@ -18,33 +16,11 @@ def fresh():
     return estimator.make_batch("adaptive", 1).states.view(np.recarray)[0]
 
 
-def test_another_reference_says_the_same_of_every_load():
-    """Value and covariance at it are those of the line ln mu_c - n ln(f / f_0); no residual changes."""
-    rng, state = np.random.default_rng(0), fresh()
-    new_entry(state, P, SLIDE, 1.0, np.array([1.0, 0.5, 3.0, 0.005]))
-    entry = state.entries.view(np.recarray)[0]
-    entry.motion[:] = 0.01, 0.01, 1.0
-    root = rng.normal(size=(STATES, STATES))
-    state.x[FALLS], state.x[GROWS], state.covariance[:] = 0.2, 0.1, root @ root.T
-    before, covariance, step = state.x.copy(), state.covariance.copy(), np.log(9.0 / 3.0)
-    outputs = [(np.zeros(3), np.zeros((3, STATES)), np.zeros(3)) for _ in range(2)]
-    slide(state.x, entry, 1.0, False, 1e-3, *outputs[0])
-    refer(state, 9.0)
-    slide(state.x, entry, 1.0, False, 1e-3, *outputs[1])
-    assert np.exp(state.x[MU] - before[MU]) == pytest.approx(3.0**-0.2)
-    assert np.exp(state.x[R] - before[R]) == pytest.approx(3.0**0.1)
-    moves = np.eye(STATES)
-    moves[MU, FALLS], moves[R, GROWS] = -step, step
-    np.testing.assert_allclose(state.covariance, moves @ covariance @ moves.T, rtol=1e-9)
-    for one, other in zip(*(outputs[k][::2] for k in (0, 1)), strict=True):
-        np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-12)
-
-
 def test_the_oldest_entry_makes_room():
     state = fresh()
     for k in range(ENTRIES + 5):
         state.slip_time = 0.1 * k
-        new_entry(state, P, SLIDE, 1.0, np.array([1.0, 0.0, 3.0, 0.0]))
+        new_entry(state, SLIDE, 1.0, 0.0, np.array([1.0, 0.0, 3.0, 0.0]))
     assert sorted(state.entries["end"]) == pytest.approx(0.1 * np.arange(5, ENTRIES + 5))
 
 

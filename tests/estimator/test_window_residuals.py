@@ -17,18 +17,17 @@ from estimator.window.layout import (
     SIGMA,
     SLIDE,
     STATES,
-    STRIBECK,
     TILT,
     TORQUE,
     ZERO,
     R,
 )
-from estimator.window.slide import slide
-from estimator.window.stick import stick
+from estimator.window.residuals import slide, stick
 
 SPREADS = {MU: 0.5, RATIO: 0.1, R: 0.3, SHAPE: 0.3, SIGMA: 0.1, ZERO: 0.1, ZERO + 1: 0.1, TORQUE: 5e-4}
 SPREADS |= {TILT: 0.02, TILT + 1: 0.02, COP: 5e-4, COP + 1: 5e-4, FALLS: 0.1, GROWS: 0.1}
-SPREADS |= {OLD: 0.2, STRIBECK: 0.2}
+SPREADS[OLD] = 0.2
+P = estimator.AdaptiveParameters().as_array().view(np.recarray)[0]
 SCALE = np.array([1.0, 1.0, 0.01])
 """Of forces [N] and torque [N m] at a few newtons."""
 
@@ -39,12 +38,7 @@ def drawn(rng, kind):
     x[MU], x[R], x[RATIO], x[SHAPE], x[SIGMA] = np.log(0.5), np.log(0.008), 0.2, 0.5, 0.2
     x += [SPREADS[j] * rng.uniform(-1.0, 1.0) for j in range(STATES)]
     s = estimator.make_batch("adaptive", 1).states.view(np.recarray)[0].entries[0]
-    s.kind, s.load, s.slow, s.unknown = (
-        kind,
-        rng.uniform(-1.0, 1.0),
-        rng.uniform(0.2, 0.8),
-        0.2 * rng.uniform(),
-    )
+    s.kind, s.load, s.slow = kind, rng.uniform(-1.0, 1.0), rng.uniform(0.2, 0.8)
     s.time = 0.1
     s.motion[:] = rng.uniform(-1.0, 1.0, 3) * (0.02, 0.02, 2.0)
     s.wrench[:] = *rng.uniform(-2.0, 2.0, 2), rng.uniform(1.0, 10.0), 0.02 * rng.uniform(-1.0, 1.0)
@@ -59,7 +53,7 @@ def residual(function, *arguments):
 
 
 def differences(of, x, step=1e-6):
-    """Derivatives (3, 16) of what is expected: of the negative residual."""
+    """Derivatives (3, 15) of what is expected: of the negative residual."""
     found = np.empty((3, STATES))
     for j in range(STATES):
         one = step * SPREADS[j] * np.eye(STATES)[j]
@@ -78,7 +72,7 @@ def test_derivatives_of_a_slide(sign, old, beside):
         x[[COP, COP + 1]] *= beside
 
         def of(states, s=s):
-            return residual(slide, states, s, sign, old, 1e-3)
+            return residual(slide, states, s, P, sign, old)
 
         s.wrench[[0, 1, 3]] = 0.0
         without = of(x)[0]
@@ -100,13 +94,13 @@ def test_derivatives_of_the_load_after_a_fall():
     for _ in range(50):
         x, s = drawn(rng, FALL)
         x[[SHAPE, COP, COP + 1]] = 0.0
-        h = residual(stick, x, s, True, 0.01)[1][0]
-        slopes = differences(lambda y, s=s: residual(stick, y, s, True, 0.01), x)[0]
+        h = residual(stick, x, s, P, True, 0.01)[1][0]
+        slopes = differences(lambda y, s=s: residual(stick, y, s, P, True, 0.01), x)[0]
         np.testing.assert_allclose(h[list(states)], slopes[list(states)], rtol=1e-5, atol=1e-7)
 
 
 def test_the_load_before_a_slip_says_nothing_of_mu_c():
     x, s = drawn(np.random.default_rng(3), BREAK)
-    h = residual(stick, x, s, False, 0.01)[1][0]
+    h = residual(stick, x, s, P, False, 0.01)[1][0]
     assert h[RATIO] == 1.0
     assert not np.delete(h, RATIO).any()
