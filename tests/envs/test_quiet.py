@@ -37,8 +37,8 @@ def test_the_first_reset_explains_why_it_takes_long(make, monkeypatch):
         said.append(what)
         return compiled.patience(what, after=60.0)
 
-    monkeypatch.setattr(bullet_simulation, "patience", patience)
     env = make("slipgym/LinearSlip-v0")
+    monkeypatch.setattr(bullet_simulation, "patience", patience)
     env.reset(seed=0)
     assert said == ["the reset of LinearSlip with PyBullet"]
     env.step([0.0])
