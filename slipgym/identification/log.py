@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -10,18 +11,22 @@ from pathlib import Path
 import numpy as np
 
 from estimator.records.alignment import held
-from estimator.records.checks import OPPOSITE, correlation
+from estimator.records.checks import OPPOSITE, check_time, correlation
 from estimator.records.columns import Columns
 from estimator.records.extras import extra
+from estimator.records.reading import velocity_time
 from estimator.records.sources import read_sources
 from estimator.records.streams import of_one_finger, read_tables, stream
 from estimator.records.table import Table
+from estimator.records.units import TIME
 from slipgym.identification.rollout import CHANNELS
 
 COMMAND = "force"
 MOTION = ("motion_x", "motion_y", "motion_omega")
-COLUMNS = ("t", COMMAND, *MOTION, *CHANNELS)
+COLUMNS = (TIME, COMMAND, *MOTION, *CHANNELS)
 """Columns of a log: time [s], grip command [N], motion and readings in SI units."""
+SLIP = CHANNELS[4:]
+"""Readings of the slip sensor, which may have times of their own."""
 LEAST_NOISE = np.array([1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5, 1e-4])
 """Of each reading, in its SI unit: no sensor is more exact, whatever a log shows."""
 SHORTEST, LARGEST = 5.0, 1e4  # [s], in SI units
@@ -83,7 +88,8 @@ def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Lo
     """Reads a file of any type that records have; the columns of the slip twist may be absent.
 
     Args:
-        path: A file with the columns `COLUMNS`, all on one clock.
+        path: A file with the columns `COLUMNS`, all on one clock. Velocities may be in other rows than
+            forces, in another table, or have the time `velocity_t`.
         columns: The mapping of other names, units and signs; None: none.
 
     Raises:
@@ -98,10 +104,15 @@ def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Lo
             f"{path.name}: the mapping is of the fingers {', '.join(columns.fingers)}; a log is of one"
         )
     tables = of_one_finger(read_tables(path.name, columns, partial(read_sources, path)), columns)
-    table = stream(tables, CHANNELS[:4], (COMMAND, *MOTION, *CHANNELS[4:]))[1]
-    there = [name for name in COLUMNS if (of := columns[name]) and of.column in table.frame.columns]
-    slip = set(there) & set(CHANNELS[4:])
-    needed = COLUMNS if slip else COLUMNS[: -len(CHANNELS[4:])]
+    table = stream(tables, CHANNELS[:4], (COMMAND, *MOTION))[1]
+    slow = stream(tables, SLIP)[1]
+    there = [
+        name
+        for name in COLUMNS
+        if (of := columns[name]) and of.column in (slow if name in SLIP else table).frame.columns
+    ]
+    slip = set(there) & set(SLIP)
+    needed = COLUMNS if slip else COLUMNS[: -len(SLIP)]
     for name in needed:
         column = columns[name]
         if column is None or column.position:
@@ -111,21 +122,46 @@ def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Lo
                 f"{path.name}: column {column.column} is missing; a log has {', '.join(needed)}; a mapping "
                 "(--columns) gives them other names, units and signs"
             )
-    t = table.seconds("t")[0]
+    table = _filled(table, CHANNELS[:4])
+    t = table.seconds(TIME)[0]
     if (bad := ~np.isfinite(t)).any():
-        raise ValueError(f"{table.name}: row {int(np.argmax(bad)) + 1}: t must be a finite number")
+        raise ValueError(f"{table.name}: row {table.rows(np.flatnonzero(bad))[0]}: t must be a finite number")
     rate = _rate(path.name, t)
-    values = np.stack([_numbers(table, name) for name in needed[1:]], axis=1)
+    values = np.stack([_numbers(table, name) for name in COLUMNS[1 : -len(SLIP)]], axis=1)
     readings = np.full((len(t), len(CHANNELS)), np.nan)
-    readings[:, : len(needed) - 5] = values[:, 4:]
-    # each sample once, not as often as it is repeated
-    if slip and (kept := held(t, readings[:, 4:])) is not None:
-        readings[np.setdiff1d(np.arange(len(t)), kept[0]), 4:] = np.nan
+    readings[:, :4] = values[:, 4:]
+    if slip:
+        readings[:, 4:] = _slip(slow, t, rate)
     _check_signs(path.name, values[:, 1:4], readings)
     try:
         return Log(rate, values[:, 0], values[:, 1:4], readings)
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from None
+
+
+def _filled(table: Table, keys: Sequence[str]) -> Table:
+    """The rows of a table that have a cell of a stream; all, if none has."""
+    at = table.filled(keys)
+    return table._replace(frame=table.frame.iloc[at]) if len(at) else table
+
+
+def _slip(table: Table, t: np.ndarray, rate: float) -> np.ndarray:
+    """Each sample of the slip sensor once, in the row next to its time, (n, 3); NaN: a row without one."""
+    table, time = _filled(table, SLIP), velocity_time(table)
+    table.require([time])
+    its, twist = table.seconds(time)[0], np.stack([_numbers(table, name) for name in SLIP], axis=1)
+    check_time(table.name, its, table.rows(np.arange(len(its))), "velocity")
+    if (kept := held(its, twist)) is not None:
+        its, twist = its[kept[0]], twist[kept[0]]
+    rows, slip = np.rint((its - t[0]) * rate), np.full((len(t), len(SLIP)), np.nan)
+    inside = (rows >= 0) & (rows < len(t))
+    if not inside.any():
+        raise ValueError(
+            f"{table.name}: the velocities are of {its[0]:g} to {its[-1]:g} s, "
+            f"the forces of {t[0]:g} to {t[-1]:g} s; on one clock?"
+        )
+    slip[rows[inside].astype(int)] = twist[inside]
+    return slip
 
 
 def _numbers(table: Table, name: str) -> np.ndarray:

@@ -9,6 +9,7 @@ import yaml
 from typer.testing import CliRunner
 
 import slipgym  # noqa: F401
+from estimator.records import load_columns
 from lab.simulated_gripper import draw_gripper, simulated_log, write_log
 from policies.commands.front import application
 from slipgym import identification
@@ -151,6 +152,34 @@ def test_velocities_that_are_held_are_read_once(log, tmp_path):
     assert not {"v_x", "v_y", "omega"} & set(result.misfits())
     identification.write(result, tmp_path)
     assert "slip" in identification.overrides(result)["sensors"]
+
+
+@pytest.mark.parametrize("way", ["empty cells", "rows between", "velocity_t"])
+def test_velocities_of_another_rate_go_to_the_row_next_to_their_time(log, tmp_path, way):
+    pandas = pytest.importorskip("pandas")
+    write_log(log, tmp_path / "log.csv")
+    frame, slip = pandas.read_csv(tmp_path / "log.csv"), ["v_x", "v_y", "omega"]
+    at, mapping = np.arange(1, len(frame), 3), tmp_path / "mapping.yaml"
+    own = frame.loc[at, ["t", *slip]].assign(t=frame.t[at] + 0.3 / log.rate)
+    if way == "empty cells":
+        frame.loc[~frame.index.isin(at), slip] = np.nan
+    elif way == "rows between":
+        frame = pandas.concat([frame.drop(columns=slip), own]).sort_values("t")
+    path = tmp_path / ("log.npz" if way == "velocity_t" else "log.csv")
+    if way == "velocity_t":
+        forces = {name: values.to_numpy() for name, values in frame.drop(columns=slip).items()}
+        np.savez(path, stamp=own.t, **forces, **{name: own[name].to_numpy() for name in slip})
+        mapping.write_text("velocity_t: stamp")
+    else:
+        frame.to_csv(path, index=False)
+    read = read_log(path, load_columns(mapping if mapping.exists() else None))
+    there = np.isfinite(read.readings[:, 4:]).all(axis=1)
+    assert np.flatnonzero(there).tolist() == at.tolist()
+    np.testing.assert_allclose(read.readings[:, :4], log.readings[:, :4], atol=1e-8)
+    np.testing.assert_allclose(read.readings[there, 4:], log.readings[there, 4:], atol=1e-8)
+    mapping.write_text(f"velocity_t: {{column: {'stamp' if way == 'velocity_t' else 't'}, offset: 1e4}}")
+    with pytest.raises(ValueError, match="on one clock"):
+        read_log(path, load_columns(mapping))
 
 
 def test_a_log_is_read_as_it_was_written(log, tmp_path):
