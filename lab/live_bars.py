@@ -115,7 +115,7 @@ def by_udp(seconds: float, log: Path) -> list[str]:
         text = json.dumps({"finger": finger, "t": t, kind: values})
         client.sendto(text.encode(), ("127.0.0.1", port))
     time.sleep(0.2)
-    server.send_signal(signal.SIGINT)
+    server.send_signal(signal.SIGTERM)
     printed, _ = server.communicate()
     client.close()
     same = [_same(log, finger) for finger in (1, 2)]

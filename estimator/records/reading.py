@@ -108,7 +108,7 @@ def _record(files: list[list[Table]], columns: Columns) -> Record:
     place, forces = stream(tables[:count], WRENCH, others)
     of_twists = (place, forces) if len(tables) == 1 else stream(tables[count:] or tables, TWIST)
     sparse, velocities = len(files) == 1 and of_twists[0] == place, of_twists[1]
-    time = velocity_time(velocities, TIME if sparse else None)
+    time = _time_of_velocities(velocities, TIME if sparse else None)
     if sparse:
         forces.require(tuple(dict.fromkeys((*REQUIRED, time))))
     forces.require((TIME, *WRENCH))
@@ -128,7 +128,7 @@ def _record(files: list[list[Table]], columns: Columns) -> Record:
     return Record(forces.name, force_t, wrench, cop, twist_t, twist, _truth(forces, at), hold, grip=grip)
 
 
-def velocity_time(table: Table, default: str | None = None) -> str:
+def _time_of_velocities(table: Table, default: str | None) -> str:
     """The key of their time: their own if the mapping has it, or if the table has it and no other."""
     own, there = table.columns[VELOCITY_TIME], table.frame.columns
     if VELOCITY_TIME in table.columns.given and own is not None:

@@ -135,7 +135,8 @@ def _limit(p, x):
     x[at.RATIO] = min(max(x[at.RATIO], 0.0), -math.log(at.AT_LEAST))
     x[at.R] = min(max(x[at.R], math.log(p.r_min)), math.log(1.25 * p.r_max))
     x[at.SHAPE] = min(max(x[at.SHAPE], -0.2), 1.6)
-    x[FALLS] = min(max(x[FALLS], -0.5), 0.5)
+    for k in (FALLS, GROWS):
+        x[k] = min(max(x[k], -0.5), 0.5)
 
 
 @njit(error_model="numpy")

@@ -25,9 +25,12 @@ def main(
     json: Annotated[Path | None, typer.Option(help="File to write the figures to, too.")] = None,
 ) -> None:
     """Print steps per second of single environments and of batches, and their memory."""
+    from slipgym.atomic_io import check_file
     from slipgym.benchmarking.run import benchmark
     from slipgym.tasks import find
 
-    with usage_errors(ValueError):
+    with usage_errors(ValueError, OSError):
         env_id = find(env).id
+        if json is not None:
+            check_file(json)
     benchmark(env_id, pairs, json)

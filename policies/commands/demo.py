@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from policies.commands import evaluate
+from policies.commands.several import Jobs
 
 EPILOG = """
 Examples:\n
@@ -19,7 +20,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 @app.command(epilog=EPILOG)
 def main(
     output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
-    jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
+    jobs: Jobs = -1,
 ) -> None:
     """Show what friction is worth: the gain over the strongest policy without it, and a figure."""
     evaluate.main(demo=True, output=output, jobs=jobs)

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import environment_arguments, taking_several, usage_errors
+from policies.commands.several import Jobs, environment_arguments, taking_several, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -34,7 +34,7 @@ def main(
     ] = None,
     demo: Annotated[bool, typer.Option("--demo", help="Run the experiment 'demo': about a minute.")] = False,
     trials: Annotated[int | None, typer.Option(min=1, help="Trials per cell, not the experiment's.")] = None,
-    jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
+    jobs: Jobs = -1,
     ray: Annotated[str, typer.Option(help="Run on Ray: local, or a cluster's address.")] = "",
     friction_source: Annotated[
         list[str] | None, typer.Option(help="Keep only this source or label of the experiment; repeatable.")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from importlib import import_module
+from importlib.metadata import PackageNotFoundError, requires
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
@@ -61,6 +63,9 @@ slipgym COMMAND --help explains a command and shows examples.
 """
 
 
+_OWN = "slipgym", "estimator", "policies", "lab"
+
+
 class _Front(TyperGroup):
     """The sub-commands; one of the laboratory is refused with what it needs."""
 
@@ -112,7 +117,23 @@ def _add(name: str, line: str) -> None:
         called, arguments = name, ctx.args
         if arguments and f"{name}-{arguments[0]}" in ALL:  # "validate real" is validate-real
             called, arguments = f"{name}-{arguments[0]}", arguments[1:]
-        application(called)(args=arguments, prog_name=f"{parent} {called}")
+        try:
+            application(called)(args=arguments, prog_name=f"{parent} {called}")
+        except ModuleNotFoundError as error:
+            if not error.name or error.name.partition(".")[0] in _OWN:
+                raise
+            ctx.fail(f"{error.name} is not installed: pip install 'slipgym[{_extra_of(error.name)}]'")
+
+
+def _extra_of(module: str) -> str:
+    """The extra of slipgym that a module comes with; "eval", if none says so."""
+    try:
+        lines = requires("slipgym") or []
+    except PackageNotFoundError:
+        lines = []
+    named = re.compile(rf"{re.escape(module.partition('.')[0])}\b.*extra *== *['\"]([\w-]+)", re.IGNORECASE)
+    found = [match[1] for line in lines if (match := named.match(line))]
+    return "eval" if "eval" in found or not found else found[0]
 
 
 def _version(wanted: bool) -> None:

@@ -50,6 +50,8 @@ def main(
         from slipgym.atomic_io import check_folder, new_folder
 
         check_folder(output)
+        if output.exists():
+            raise FileExistsError(f"{output} exists; --output names another folder")
         result = identification.identify(identification.read_log(log, load_columns(columns)), contact, seed)
         with new_folder(output.expanduser().resolve()) as folder:
             identification.write(result, folder)

@@ -41,8 +41,8 @@ def main(
     given = {"friction_source": friction_source, "sensors": sensors, "randomization": randomization}
     with usage_errors(ValueError, FileNotFoundError):
         config = configured(network, task, given, set_ or [])
-    from policies.training.imitation.run import imitated
+    with usage_errors(FloatingPointError, OSError, extra="train"):
+        from policies.training.imitation.run import imitated
 
-    with usage_errors(FloatingPointError, OSError):
         for line in imitated(config, seeds or [0], output):
             typer.echo(line)

@@ -32,7 +32,7 @@ def main(
     """Run all estimators on all scenarios; writes a folder with tables and a picture."""
     from policies.leaderboard import run_leaderboard
 
-    with usage_errors(ValueError):
+    with usage_errors(ValueError, OSError):
         folder = run_leaderboard(output, quick, seed, own=estimator or ())
     typer.echo((folder / "leaderboard.md").read_text(encoding="utf-8").partition("\n## mu_c")[0])
     typer.echo(f"Look at:\n  {folder / 'leaderboard.png'}")

@@ -1,5 +1,8 @@
 """Estimates friction while a gripper runs, and commands its grip."""
 
+import signal
+import threading
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -60,6 +63,7 @@ def main(
     from estimator.live import Live, Log
     from estimator.live.session import Session
     from estimator.records import parse_settings
+    from slipgym.atomic_io import check_file
 
     if door not in ("udp", "ros2", "rosbridge"):
         raise typer.BadParameter(f"{door!r}: expected udp, ros2 or rosbridge", param_hint="--door")
@@ -67,6 +71,10 @@ def main(
         raise typer.BadParameter("--mcap converts the log: give --log")
     book = None
     try:
+        if mcap is not None:
+            if find_spec("mcap") is None:
+                raise ModuleNotFoundError("--mcap: mcap is not installed: pip install 'slipgym[live]'")
+            check_file(mcap)
         columns, pilot = parse_settings(column or (), "--column"), None
         if columns and policy is None:
             raise ValueError("--column is for a --policy")
@@ -78,6 +86,8 @@ def main(
 
             pilot = PolicyPilot(policy, live, task, columns, firm, timeout)
         session = Session(live, pilot, book)
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGTERM, signal.default_int_handler)  # of a service; as Ctrl-C
         _serve(session, door, host, port, fingers, seconds)
     except (ValueError, OSError, ModuleNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error

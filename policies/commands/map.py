@@ -37,12 +37,18 @@ def main(
         from estimator.records.summary import faults
         from estimator.records.table import listed
         from estimator.records.units import BENCH
-        from slipgym.atomic_io import new_file, write
+        from slipgym.atomic_io import check_file, new_file
 
+        if plot is not None and plot.suffix != ".png":
+            raise ValueError(f"--plot {plot}: must end with .png")
+        for path in (output, plot):
+            if path is not None:
+                check_file(path)
         found, left = proposal.propose_fingers(log)
         text = proposal.text_of_fingers(found)
         if output is not None:
-            write(output, text.encode())
+            with new_file(output) as part:
+                part.write_text(text, encoding="utf-8")
         if plot is not None:
             with new_file(plot) as part:
                 proposal.plot([each for own in found.values() for each in own], part)

@@ -32,7 +32,7 @@ def main(
     ] = None,
     video: Annotated[Path | None, typer.Option(help="MP4 or GIF to write instead of a window.")] = None,
     episodes: Annotated[int, typer.Option(help="How many.")] = 1,
-    seed: Annotated[int, typer.Option(help="Seed of the first episode.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the first episode.")] = 0,
     speed: Annotated[float, typer.Option(help="Seconds of simulation per second of watching.")] = 1.0,
     material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
     friction_source: Annotated[str, typer.Option(help="estimated, true, nominal or none.")] = "estimated",

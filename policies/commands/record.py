@@ -35,7 +35,7 @@ def main(
     ] = None,
     velocity: Annotated[Path | None, typer.Option(help="A file of its own for the velocities.")] = None,
     finger: Annotated[int, typer.Option(help="1 or 2.")] = 1,
-    seed: Annotated[int, typer.Option(help="Seed of the environment.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the environment.")] = 0,
     material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
     sensors: Annotated[str, typer.Option(help="realistic, ideal or lab.")] = "realistic",
     option: Annotated[

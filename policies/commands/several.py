@@ -23,6 +23,19 @@ Tasks: TypeAlias = Annotated[
 """Argument of a command that takes several tasks."""
 
 
+def processes(jobs: int) -> int:
+    """Refuses a number of processes that is 0 or below -1."""
+    if jobs < -1 or jobs == 0:
+        raise typer.BadParameter("must be at least 1, or -1 for one per core")
+    return jobs
+
+
+Jobs: TypeAlias = Annotated[
+    int, typer.Option(help="Processes; -1: one per core. Changes no result.", callback=processes)
+]
+"""Option of a command that works in several processes."""
+
+
 def expanded(arguments: Sequence[str], several: Sequence[str]) -> list[str]:
     """The arguments with the name of an option that takes several values, as in `--seeds 0 1 2`, before each.
 

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import usage_errors
+from policies.commands.several import Jobs, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -38,14 +38,14 @@ def main(
     ] = None,
     learned: Annotated[str, typer.Option(help="Folder of learned policies instead of those shipped.")] = "",
     imitation: Annotated[str, typer.Option(help="Folder of the runs of slipgym imitate.")] = "",
-    jobs: Annotated[int, typer.Option(help="Processes; -1: one per core. Changes no result.")] = -1,
+    jobs: Jobs = -1,
     output: Annotated[Path, typer.Option(help="Folder for the study's own folder.")] = Path("runs"),
     seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the study's.")] = None,
 ) -> None:
     """Run a study and write its tables."""
     with usage_errors(extra="eval"):
         from policies import study as studies
-    with usage_errors(ValueError, FileNotFoundError):
+    with usage_errors(ValueError, OSError):
         chosen = studies.narrowed(
             studies.load_study(study),
             episodes=episodes,
@@ -55,5 +55,5 @@ def main(
             imitation=imitation,
             seed=seed,
         )
-    folder = studies.run_study(chosen, output, jobs)
+        folder = studies.run_study(chosen, output, jobs)
     typer.echo("\n" + studies.words(chosen, folder))

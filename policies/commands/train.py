@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from policies.commands.several import taking_several, usage_errors
+from policies.commands.several import processes, taking_several, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -48,7 +48,7 @@ def main(
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="key=value, dotted; one or several.")
     ] = None,
-    jobs: Annotated[int, typer.Option(help="Runs at once; -1: one per core.")] = 1,
+    jobs: Annotated[int, typer.Option(help="Runs at once; -1: one per core.", callback=processes)] = 1,
     ray: Annotated[str, typer.Option(help="Run on Ray: local, or a cluster's address.")] = "",
     sweep: Annotated[int, typer.Option(min=0, help="Search hyperparameters with as many runs.")] = 0,
     resume: Annotated[Path | None, typer.Option(help="Folder of a run or study to go on with.")] = None,
@@ -64,7 +64,7 @@ def main(
         "budget": budget,
     }
     sources, sets = friction_source or [], set_ or []
-    with usage_errors(ValueError, OSError, ModuleNotFoundError):
+    with usage_errors(ValueError, OSError, extra="train"):
         if resume is not None:
             others = {"a configuration": configuration, "--seeds": seeds, "--friction-source": sources}
             others |= {"--set": sets, "--sweep": sweep}

@@ -100,7 +100,7 @@ def _step(env_id: str, options: dict[str, Any]) -> None:
 def _elsewhere(target: str | None, into: Path | None, tasks: list[str], engines: list[str]) -> None:
     """Compile for other processors or into another folder, in a process that numba starts up for that."""
     from estimator._numba.folders import ABOUT, versions
-    from slipgym.atomic_io import write
+    from slipgym.atomic_io import check_folder, write
 
     environment = dict(os.environ)
     if target is not None:
@@ -108,6 +108,8 @@ def _elsewhere(target: str | None, into: Path | None, tasks: list[str], engines:
             raise typer.BadParameter(f"--target: {target!r} must be one of {', '.join(TARGETS)}")
         environment |= {"NUMBA_CPU_NAME": target, "NUMBA_CPU_FEATURES": ""}
     if into is not None:
+        with usage_errors(OSError, hint="--into"):
+            check_folder(into)
         into.mkdir(parents=True, exist_ok=True)
         environment["NUMBA_CACHE_DIR"] = str(into.resolve())
     command = [sys.executable, "-m", "slipgym", "warmup", *(["--variants"] if not tasks else [])]

@@ -185,6 +185,8 @@ def check_targets(path: Path, velocity: Path | None = None) -> None:
         ModuleNotFoundError: The library of a type is not installed.
         OSError: One cannot be written.
     """
+    if velocity is not None and velocity.resolve() == path.resolve():
+        raise ValueError(f"{path}: forces and velocities need a file each")
     for target in (path, *([] if velocity is None else [velocity])):
         if not target.name.endswith(WRITTEN):
             raise ValueError(f"{target.name}: unknown file type; records are {', '.join(WRITTEN)}")

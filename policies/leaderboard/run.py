@@ -18,7 +18,7 @@ from policies.leaderboard.ranking import plot_leaderboard, ranked, winners
 from policies.leaderboard.scenario import FIELDS, FIGURES, Scenario, replay, score
 from policies.leaderboard.scenarios import Effort, effort_of
 from policies.versions import stamped, write_versions
-from slipgym.atomic_io import new_folder
+from slipgym.atomic_io import check_folder, new_folder
 
 GROUPS: tuple[Callable[[Effort], Iterator[Scenario]], ...] = (
     *(scenarios.profiles, scenarios.stick_slip, scenarios.planar, scenarios.start_values),
@@ -64,6 +64,7 @@ def run_leaderboard(
         The run's folder: leaderboard.md, ranking.csv, scenarios.csv, leaderboard.png.
     """
     effort, taking_part = effort_of(quick, seed), entrants(own)
+    check_folder(Path(output))
     rows = []
     with tqdm(GROUPS, desc="leaderboard", unit="group", disable=not progress) as groups:
         for group in groups:

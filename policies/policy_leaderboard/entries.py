@@ -132,6 +132,8 @@ def further(task: str) -> list[Member]:
 
 def imitated(task: str, folder: Path) -> list[Member]:
     """Policies of `slipgym imitate` for a task, in its folder of `<task>_<friction source>_<seed>/policy`."""
+    if not folder.is_dir():
+        raise FileNotFoundError(f"{folder}: no such folder of imitated policies")
     members = []
     for place in sorted(folder.glob(f"{find(task).key}_*/policy")):
         source = place.parent.name.removeprefix(f"{find(task).key}_").rpartition("_")[0]

@@ -48,6 +48,7 @@ def run_study(
         OSError: The output cannot be written.
     """
     folder = Path(output).expanduser().resolve() / f"study__{study.name}__{study.seed}"
+    atomic_io.check_folder(folder.parent)
     learned = policies_of(study)
     chosen = conditions(study, learned)
     if not chosen:

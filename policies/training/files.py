@@ -96,7 +96,7 @@ def assignments(texts: Iterable[str]) -> dict[str, Any]:
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals or not key:
-            raise ValueError(f"--set {text!r} must be key=value, for example ppo.gamma=0.99")
+            raise ValueError(f"--set {text!r} must be key=value")
         found[key] = files.parse(value, f"--set {key}")
     return found
 

@@ -69,8 +69,10 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
     """Makes a study's folder in `output`, with one for each source (none: the configuration's) and seed.
 
     Raises:
-        ValueError: A source is unknown or a seed out of range.
+        ValueError: A source is unknown, or a seed out of range or given twice.
     """
+    if len(set(seeds)) < len(seeds):
+        raise ValueError(f"--seeds {' '.join(map(str, seeds))}: each seed only once")
     for seed in seeds:
         numbers.training(seed)
     conditions = [

@@ -143,8 +143,8 @@ def identify(log: Log, contact: str = "distributed", seed: int = 0) -> Result:
     with patience("the rollouts"):
         roll(values_of(START[None]), log.rate, log.command[:2], log.motion[:2], contact)
     block = (np.arange(len(log.command)) / (BLOCK * log.rate)).astype(int)
-    there = np.array([np.isfinite(each).any() for each in log.readings.T])
-    problem = _Problem(log, contact, block % HELD_OUT != HELD_OUT - 1, there)
+    fitted = block % HELD_OUT != HELD_OUT - 1
+    problem = _Problem(log, contact, fitted, np.asarray(np.isfinite(log.readings[fitted]).any(axis=0)))
     point = _start(problem, np.random.default_rng(seed))
     if contact == "distributed":
         problem, point = _finer(problem, point)

@@ -11,14 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from estimator.records.alignment import held
-from estimator.records.checks import OPPOSITE, check_time, correlation
+from estimator.records.checks import OPPOSITE, check_rate, check_time, correlation
 from estimator.records.columns import Columns
 from estimator.records.extras import extra
-from estimator.records.reading import velocity_time
 from estimator.records.sources import read_sources
 from estimator.records.streams import of_one_finger, read_tables, stream
 from estimator.records.table import Table
-from estimator.records.units import TIME
+from estimator.records.units import TIME, VELOCITY_TIME
 from slipgym.identification.rollout import CHANNELS
 
 COMMAND = "force"
@@ -32,6 +31,8 @@ LEAST_NOISE = np.array([1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5, 1e-4])
 SHORTEST, LARGEST = 5.0, 1e4  # [s], in SI units
 RATES = (20.0, 2000.0)  # [Hz]
 ROWS_MAX = 200_000
+_INSIDE = 0.5
+"""Share of the slip samples that must lie in the time of the forces."""
 
 
 @dataclass(frozen=True)
@@ -68,8 +69,8 @@ class Log:
             raise ValueError(f"{self.rate:g} rows per second; must be {RATES[0]:g} to {RATES[1]:g}")
         if n / self.rate < SHORTEST:
             raise ValueError(f"the log is {n / self.rate:.3g} s long; must be at least {SHORTEST:g} s")
-        if (negative := self.command < 0.0).any():
-            raise ValueError(f"row {int(np.argmax(negative)) + 1}: {COMMAND} must be >= 0 N")
+        if (self.command < 0.0).any():
+            raise ValueError(f"{COMMAND} must be >= 0 N")
 
     def noise(self) -> np.ndarray:
         """Standard deviation of each reading's white noise, whatever moves, (7,); NaN where it is absent.
@@ -104,7 +105,7 @@ def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Lo
             f"{path.name}: the mapping is of the fingers {', '.join(columns.fingers)}; a log is of one"
         )
     tables = of_one_finger(read_tables(path.name, columns, partial(read_sources, path)), columns)
-    table = stream(tables, CHANNELS[:4], (COMMAND, *MOTION))[1]
+    place, table = stream(tables, CHANNELS[:4], (COMMAND, *MOTION))
     slow = stream(tables, SLIP)[1]
     there = [
         name
@@ -123,16 +124,23 @@ def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Lo
                 "(--columns) gives them other names, units and signs"
             )
     table = _filled(table, CHANNELS[:4])
+    own = tables[place].frame.columns
+    if brought := [name for name in (COMMAND, *MOTION) if table.column(name).column not in own]:
+        table = _together(table, brought)
     t = table.seconds(TIME)[0]
     if (bad := ~np.isfinite(t)).any():
         raise ValueError(f"{table.name}: row {table.rows(np.flatnonzero(bad))[0]}: t must be a finite number")
-    rate = _rate(path.name, t)
+    rate = _rate(table, t)
     values = np.stack([_numbers(table, name) for name in COLUMNS[1 : -len(SLIP)]], axis=1)
     readings = np.full((len(t), len(CHANNELS)), np.nan)
     readings[:, :4] = values[:, 4:]
     if slip:
         readings[:, 4:] = _slip(slow, t, rate)
     _check_signs(path.name, values[:, 1:4], readings)
+    if (negative := values[:, 0] < 0.0).any():
+        raise ValueError(
+            f"{path.name}: row {table.rows(np.flatnonzero(negative))[0]}: {COMMAND} must be >= 0 N"
+        )
     try:
         return Log(rate, values[:, 0], values[:, 1:4], readings)
     except ValueError as error:
@@ -145,22 +153,40 @@ def _filled(table: Table, keys: Sequence[str]) -> Table:
     return table._replace(frame=table.frame.iloc[at]) if len(at) else table
 
 
+def _together(table: Table, names: Sequence[str]) -> Table:
+    """The rows from the first to the last one that has a value of each of these columns of another table."""
+    cells = table.frame[[table.column(name).column for name in names]]
+    there = np.flatnonzero(cells.notna().all(axis=1))
+    if not len(there):
+        raise ValueError(f"{table.name}: {', '.join(names)} have no time in common with the forces")
+    return table._replace(frame=table.frame.iloc[there[0] : there[-1] + 1])
+
+
 def _slip(table: Table, t: np.ndarray, rate: float) -> np.ndarray:
-    """Each sample of the slip sensor once, in the row next to its time, (n, 3); NaN: a row without one."""
-    table, time = _filled(table, SLIP), velocity_time(table)
+    """The slip twist at the time of each row that has a sample within half a row, (n, 3); NaN elsewhere."""
+    table, own = _filled(table, SLIP), table.columns[VELOCITY_TIME]
+    apart = own is not None and own.column in table.frame.columns
+    time = VELOCITY_TIME if apart or VELOCITY_TIME in table.columns.given else TIME
+    if time == TIME and table.column(TIME).column not in table.frame.columns:
+        raise ValueError(
+            f"{table.name}: the velocities are not as many as the forces and have no time; "
+            f"`{VELOCITY_TIME}: NAME` in the mapping names its column"
+        )
     table.require([time])
-    its, twist = table.seconds(time)[0], np.stack([_numbers(table, name) for name in SLIP], axis=1)
+    (its, column), twist = table.seconds(time), np.stack([_numbers(table, name) for name in SLIP], axis=1)
     check_time(table.name, its, table.rows(np.arange(len(its))), "velocity")
+    check_rate(table.name, its, "velocity", time, column)
     if (kept := held(its, twist)) is not None:
         its, twist = its[kept[0]], twist[kept[0]]
-    rows, slip = np.rint((its - t[0]) * rate), np.full((len(t), len(SLIP)), np.nan)
+    rows = np.rint((its - t[0]) * rate)
     inside = (rows >= 0) & (rows < len(t))
-    if not inside.any():
+    if inside.mean() < _INSIDE:
         raise ValueError(
             f"{table.name}: the velocities are of {its[0]:g} to {its[-1]:g} s, "
             f"the forces of {t[0]:g} to {t[-1]:g} s; on one clock?"
         )
-    slip[rows[inside].astype(int)] = twist[inside]
+    rows, slip = np.unique(rows[inside].astype(int)), np.full((len(t), len(SLIP)), np.nan)
+    slip[rows] = np.stack([np.interp(t[rows], its, each) for each in twist.T], axis=1)
     return slip
 
 
@@ -194,12 +220,15 @@ def _check_signs(file: str, motion: np.ndarray, readings: np.ndarray) -> None:
                 )
 
 
-def _rate(file: str, t: np.ndarray) -> float:
+def _rate(table: Table, t: np.ndarray) -> float:
     if not 2 <= len(t) <= ROWS_MAX:
-        raise ValueError(f"{file}: has {len(t)} rows; a log has 2 to {ROWS_MAX}")
+        raise ValueError(f"{table.name}: has {len(t)} rows; a log has 2 to {ROWS_MAX}")
     step = (t[-1] - t[0]) / (len(t) - 1)
     off = np.abs(t - t[0] - step * np.arange(len(t))) > 0.5 * step
     if not step > 0.0 or off.any():
-        row = int(np.argmax(off)) + 1
-        raise ValueError(f"{file}: row {row}: t must rise in equal steps; resample onto one clock first")
+        steps = np.diff(t)
+        row = table.rows(np.array([np.argmax(np.abs(steps - np.median(steps))) + 1]))[0]
+        raise ValueError(
+            f"{table.name}: row {row}: t must rise in equal steps; resample onto one clock first"
+        )
     return float(1.0 / step)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import estimator
+from estimator.window.fit import _limit
 from estimator.window.layout import (
     BREAK,
     COP,
@@ -104,3 +105,11 @@ def test_the_load_before_a_slip_says_nothing_of_mu_c():
     h = residual(stick, x, s, P, False, 0.01)[1][0]
     assert h[RATIO] == 1.0
     assert not np.delete(h, RATIO).any()
+
+
+def test_states_stay_where_the_law_is_meant_for():
+    x = np.full(STATES, 400.0)
+    _limit(P, x)
+    assert np.exp(x[[MU, R, FALLS, GROWS]]).max() < 100.0
+    _limit(P, np.negative(x, out=x))
+    assert np.abs(x[[FALLS, GROWS]]).max() <= 0.5

@@ -97,6 +97,18 @@ def test_a_client_runs_until_it_is_stopped_and_says_so(client, opens, number, tm
     assert printed.rstrip().endswith("the gripper is told to open")
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_the_server_reports_when_it_is_stopped(number, tmp_path):
+    log = tmp_path / "log.jsonl"
+    with slipgym("--port", free_port(), "--log", log) as server:
+        server.stderr.readline()
+        server.send_signal(number)
+        printed = server.communicate()[0]
+    assert server.returncode == 0
+    assert "force 1: received nothing" in printed
+    assert log.is_file()
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [

@@ -66,6 +66,55 @@ def test_without_a_clone_the_commands_of_the_laboratory_say_that_they_need_one(m
     assert slip("validate", "--help").exit_code == 0
 
 
+@pytest.mark.parametrize(
+    ("words", "package", "extra"),
+    [
+        (["evaluate", "hold", "--output", "{}"], "scipy", "eval"),
+        (["record", "hold", "{}/r.csv"], "tqdm", "eval"),
+        (["imitate", "hold", "--output", "{}"], "torch", "train"),
+        (["train", "hold_scratch", "--output", "{}"], "torch", "train"),
+    ],
+)
+def test_a_package_that_is_missing_is_one_sentence(tmp_path, words, package, extra):
+    code = (
+        "import sys\n"
+        "class Missing:\n"
+        "    def find_spec(self, name, *_):\n"
+        f"        if name.partition('.')[0] == {package!r}:\n"
+        "            raise ModuleNotFoundError(f'No module named {name!r}', name=name)\n"
+        "sys.meta_path.insert(0, Missing())\n"
+        "from policies.commands import front\n"
+        f"front.main({[word.format(tmp_path) for word in words]!r})\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    said = " ".join(done.stderr.replace("│", " ").split())
+    assert done.returncode == 2, done.stderr
+    assert f"{package} is not installed: pip install 'slipgym[{extra}]'" in said
+    assert "Traceback" not in said
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["play", "hold", "--seed", "-1"], "greater than or equal to 0"),
+        (["record", "hold", "r.csv", "--seed", "-1"], "greater than or equal to 0"),
+        (["record", "hold", "r.csv", "--velocity", "r.csv"], "need a file each"),
+        (["evaluate", "hold", "--jobs", "0"], "at least 1, or -1"),
+        (["study", "quick", "--jobs", "0"], "at least 1, or -1"),
+        (["train", "hold", "--jobs", "0"], "at least 1, or -1"),
+        (["train", "hold", "--seeds", "0", "0"], "each seed only once"),
+        (["map", "log.csv", "--plot", "columns"], "must end with .png"),
+        (["policy-leaderboard", "hold", "--imitation", "nowhere"], "no such folder"),
+    ],
+)
+def test_a_value_out_of_range_is_refused_before_any_work(tmp_path, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    done = slip(*words)
+    assert done.exit_code == 2
+    assert said in " ".join(done.output.replace("│", " ").split())
+    assert not [*tmp_path.iterdir()]
+
+
 def test_one_policy_is_evaluated_where_experiments_are():
     settings = "engine=planar", "friction_source=true"
     done = slip("evaluate", "--policy", "hold", "--trials", 2, "--set", *settings)

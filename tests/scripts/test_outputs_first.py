@@ -7,17 +7,24 @@ from typer.testing import CliRunner
 
 from lab.commands import reproduce
 from policies.commands import (
+    benchmark,
     demo,
     estimate,
     evaluate,
     export_policy,
+    identify,
     imitate,
     import_policy,
+    leaderboard,
+    live,
     play,
     policy_leaderboard,
     record,
+    study,
     train,
+    warmup,
 )
+from policies.commands import map as map_
 
 LOG = "examples/linear_slip_wood.csv.gz"
 COMMANDS = {
@@ -49,6 +56,14 @@ COMMANDS = {
         ["hold", "--output", "{}"],
         "policies.policy_leaderboard.run.outcomes",
     ),
+    "identify": (identify, [LOG, "--output", "{}"], "slipgym.identification.read_log"),
+    "study": (study, ["--output", "{}"], "policies.study.run.episodes"),
+    "leaderboard": (leaderboard, ["--output", "{}"], "policies.leaderboard.run.evaluate"),
+    "benchmark": (benchmark, ["--json", "{}/b.json"], "slipgym.benchmarking.run.benchmark"),
+    "map": (map_, [LOG, "--output", "{}/m.yaml"], "estimator.records.proposal.propose_fingers"),
+    "map a picture": (map_, [LOG, "--plot", "{}/m.png"], "estimator.records.proposal.propose_fingers"),
+    "live": (live, ["--log", "l.jsonl", "--mcap", "{}/l.mcap"], "policies.commands.live._serve"),
+    "warmup": (warmup, ["--into", "{}"], "subprocess.run"),
     "reproduce": (
         reproduce,
         ["coupling", "--output", "{}"],
@@ -62,6 +77,8 @@ COMMANDS = {
 def test_a_command_looks_at_its_output_first(tmp_path, monkeypatch, name, where):
     if name == "export-policy":
         pytest.importorskip("onnx")
+    if name == "live":
+        pytest.importorskip("mcap")
     if name in ("imitate", "train", "sweep"):
         pytest.importorskip("stable_baselines3")
     module, arguments, work = COMMANDS[name]
