@@ -36,13 +36,11 @@ def main(
     output: Annotated[Path, typer.Option(help="Folder for the runs' own folders.")] = Path("runs/imitation"),
 ) -> None:
     """Play rounds of episodes, fit the network, write it as a policy."""
-    from policies.training.imitation.config import configured
+    from policies.training.imitation.command import configured, imitated
 
     given = {"friction_source": friction_source, "sensors": sensors, "randomization": randomization}
     with usage_errors(ValueError, FileNotFoundError):
         config = configured(network, task, given, set_ or [])
     with usage_errors(FloatingPointError, OSError, extra="train"):
-        from policies.training.imitation.run import imitated
-
         for line in imitated(config, seeds or [0], output):
             typer.echo(line)

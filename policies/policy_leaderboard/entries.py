@@ -167,9 +167,9 @@ def opponents(
     those of the environments: level, randomization, sensors.
     """
     key = find(task).key
+    mimics = [] if folder is None else imitated(task, folder)
     found = [best_constant(task, arguments, episodes), remembering(task, arguments, episodes)]
-    found += [*controllers(key), *further(task), *learned(key), *bounds(key)]
-    return found if folder is None else [*found, *imitated(task, folder)]
+    return [*found, *controllers(key), *further(task), *learned(key), *bounds(key), *mimics]
 
 
 ONE_GRIP = ("hold", "fragile_hold")

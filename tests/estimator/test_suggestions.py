@@ -10,7 +10,8 @@ from estimator.suggestions import guess, unknown
 from policies.evaluation import load_experiment
 from policies.study import load_study
 from policies.training import files
-from policies.training.imitation.config import configured, read
+from policies.training.imitation.command import configured
+from policies.training.imitation.config import read
 from slipgym.config import load_randomization
 from slipgym.config.level import load_level
 from slipgym.tasks import find

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from policies.task_names import canonical
 from policies.training import seeds
 from policies.training.config import Environment
-from policies.training.files import assignments, with_values
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
-from slipgym.config.yaml_model import Choice, read_model, validate
+from slipgym.config.yaml_model import Choice, read_model
 from slipgym.envs.actions import LOGARITHMIC
 
 FOLDER = "imitation"
@@ -91,19 +89,3 @@ def read(choice: Choice) -> Imitation:
         ValueError: A key or value is wrong; the message names file, key and what is valid.
     """
     return read_model(choice, Imitation, FOLDER, "imitation")
-
-
-def configured(network: str, task: str, given: Mapping[str, Any], texts: Sequence[str]) -> Imitation:
-    """The imitation that a command line names, with what it sets.
-
-    Assignments as texts win over given arguments of the environment; None leaves one of these as it is.
-
-    Raises:
-        FileNotFoundError: There is no such file.
-        ValueError: A name, key or value is wrong.
-    """
-    base = {"environment": {"friction_source": "none", "frame_skip": 2}}
-    base |= read(network).model_dump(exclude_unset=True)
-    environment = {f"environment.{name}": value for name, value in given.items() if value is not None}
-    values = with_values({**base, "task": task}, {**environment, **assignments(texts)})
-    return validate(values, Imitation, "command line")

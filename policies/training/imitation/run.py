@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import math
 import os
-import shlex
 import shutil
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -54,20 +52,6 @@ class Outcome:
     weights: dict[str, np.ndarray]
     curve: list[dict[str, float]]
     steps: int
-
-
-def imitated(config: Imitation, seeds: Sequence[int], output: Path) -> Iterator[str]:
-    """Carries out an imitation with each seed; says where each is and how good it is.
-
-    Raises:
-        FloatingPointError: A loss is not finite.
-        OSError: The output cannot be written, or a run's folder is there already.
-    """
-    folders = [destination(config, output, seed) for seed in seeds]
-    yield f"If it is interrupted, the last round's policy is in {folders[0].parent / '*' / UNFINISHED}"
-    for seed in seeds:
-        folder, solved = imitate(config, output, seed, shlex.join(sys.argv))
-        yield f"{folder / 'policy'}: solves {solved:.1%} of {config.held_out} held-out episodes"
 
 
 def imitate(

@@ -6,7 +6,8 @@ import pytest
 
 import policies
 from policies.stepping import batch_steps
-from policies.training.imitation.config import Imitation, configured, read
+from policies.training.imitation.command import configured, imitated
+from policies.training.imitation.config import Imitation, read
 
 torch = pytest.importorskip("torch")
 from policies.learned import LearnedPolicy  # noqa: E402
@@ -14,7 +15,7 @@ from policies.learned.description import Column  # noqa: E402
 from policies.learned.policy import Network  # noqa: E402
 from policies.training.imitation import run  # noqa: E402
 from policies.training.imitation.episodes import Scene, demonstrate  # noqa: E402
-from policies.training.imitation.run import imitate, imitated  # noqa: E402
+from policies.training.imitation.run import imitate  # noqa: E402
 from policies.training.imitation.student import NORMALISATION, Student, network_of  # noqa: E402
 
 SHORT = {"tasks": {"linear_slip": {"duration": 0.3, "settle": 0.1, "hold": 0.05}}}
