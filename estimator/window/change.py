@@ -54,6 +54,7 @@ def fit(state, p):
     x[:] = state.x
     if not changed:
         x[OLD] = 0.0
+    springs = state.springs
     cost, misfit = descend(state, p, x, changed, STEPS if state.fits < STEPS else 1, a, g)
     evidence, lacks = 0.0, 0.0
     if not changed and state.slip_time > 2.0 * NEWEST:
@@ -69,7 +70,8 @@ def fit(state, p):
             x[:] = other
         else:
             cost, misfit = descend(state, p, x, False, 1, a, g)
-    if not math.isfinite(cost + misfit):
+    if not math.isfinite(cost + misfit + state.springs):
+        state.springs = springs
         return
     state.x[:] = x
     for j in range(STATES):
