@@ -64,6 +64,8 @@ slipgym COMMAND --help explains a command and shows examples.
 
 
 _OWN = "slipgym", "estimator", "policies", "lab"
+_SMALL = "cli", "eval", "records"
+"""Extras that others contain, the smallest first."""
 
 
 class _Front(TyperGroup):
@@ -126,14 +128,14 @@ def _add(name: str, line: str) -> None:
 
 
 def _extra_of(module: str) -> str:
-    """The extra of slipgym that a module comes with; "eval", if none says so."""
+    """The smallest extra of slipgym that a module comes with; "eval", if none says so."""
     try:
         lines = requires("slipgym") or []
     except PackageNotFoundError:
         lines = []
     named = re.compile(rf"{re.escape(module.partition('.')[0])}\b.*extra *== *['\"]([\w-]+)", re.IGNORECASE)
     found = [match[1] for line in lines if (match := named.match(line))]
-    return "eval" if "eval" in found or not found else found[0]
+    return next((each for each in (*_SMALL, *found) if each in found and each != "dev"), "eval")
 
 
 def _version(wanted: bool) -> None:

@@ -94,6 +94,17 @@ def test_a_package_that_is_missing_is_one_sentence(tmp_path, words, package, ext
 
 
 @pytest.mark.parametrize(
+    ("module", "extra"),
+    [
+        *[("pandas", "cli"), ("scipy.stats", "eval"), ("h5py", "records"), ("onnx", "onnx")],
+        *[("pygame", "window"), ("torch", "train"), ("nothing", "eval")],
+    ],
+)
+def test_the_extra_of_a_missing_package_is_the_smallest(module, extra):
+    assert front._extra_of(module) == extra
+
+
+@pytest.mark.parametrize(
     ("words", "said"),
     [
         (["play", "hold", "--seed", "-1"], "greater than or equal to 0"),
