@@ -37,7 +37,9 @@ def main(
     material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
     friction_source: Annotated[str, typer.Option(help="estimated, true, nominal or none.")] = "estimated",
     estimator: Annotated[str, typer.Option(help="A name of estimator.names(), or none.")] = DEFAULT,
-    sensors: Annotated[str, typer.Option(help="realistic, ideal or lab.")] = "realistic",
+    sensors: Annotated[
+        str, typer.Option(help="ideal, realistic, lab, markers, wrist or motor.")
+    ] = "realistic",
     engine: Annotated[str, typer.Option(help="auto, bullet or planar.")] = "auto",
     viewer: Annotated[
         bool, typer.Option("--viewer", help="Show it in a browser, with sliders; --video is for recordings.")

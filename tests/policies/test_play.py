@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from typer.main import get_command
 from typer.testing import CliRunner
 
 from lab.montage import take_screenshot
@@ -172,3 +173,9 @@ def test_every_environment_has_its_picture_in_the_docs(env_id):
     key = TASKS[env_id.removeprefix("slipgym/").rpartition("-")[0]].key
     with Image.open(ROOT / "docs" / "images" / f"{key}.png") as picture:
         assert picture.size == (720, 480), "run scripts/make_docs.py"
+
+
+def test_the_help_names_all_presets_of_sensors():
+    help = next(each.help for each in get_command(app).params if "--sensors" in each.opts)
+    named = set(help.rstrip(".").replace(" or ", ", ").split(", "))
+    assert named == {each.stem for each in (ROOT / "configs" / "sensors").glob("*.yaml")}
