@@ -9,9 +9,7 @@ from importlib.util import find_spec
 import numpy as np
 
 _DISPLAYS = "DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"
-_OTHERWISE = (
-    "; use render_mode='rgb_array', or write a video: python scripts/play.py linear_slip --video video.mp4"
-)
+_OTHERWISE = "; use render_mode='rgb_array', or write a video: slipgym play linear_slip --video video.mp4"
 
 
 def obstacle() -> str:
