@@ -26,7 +26,7 @@ Algorithm: TypeAlias = Literal["ppo", "recurrent_ppo", "sac", "tqc", "privileged
 _DIFFERENT: dict[str, Any] = {"randomization": "train", "config": {}}
 """Arguments with another default than that of the environment."""
 _TYPES: dict[str, Any] = {
-    "observation_mode": Literal["flat", "sensor"],
+    "observation_mode": Literal["flat", "deviations", "sensor"],
     "randomization": str | Mapping[str, Any],
     "config": Content,
 }

@@ -62,6 +62,14 @@ def test_the_policy_of_a_run_acts_as_its_learner(small, tmp_path, engine):
     envs.close()
 
 
+def test_a_policy_may_read_the_deviations_of_the_estimates(small, tmp_path):
+    environment = {**small().environment.model_dump(), "observation_mode": "deviations"}
+    folder.begin(tmp_path / "run", small(environment=environment, budget=64), 0)
+    run.train(tmp_path / "run", progress=False)
+    described = json.loads((tmp_path / "run" / export.POLICY / "policy.json").read_text())
+    assert "sd_mu_c" in [column["name"] for column in described["environment"]["observation"]]
+
+
 def test_the_environments_are_seeded_apart(small):
     config = small()
     envs, same = vector.make(config, 5), vector.make(config, 5, 3)
