@@ -16,7 +16,7 @@ from estimator.records.columns import Columns
 from estimator.records.extras import extra
 from estimator.records.sources import read_sources
 from estimator.records.streams import of_one_finger, read_tables, stream
-from estimator.records.table import Table
+from estimator.records.table import Table, listed
 from estimator.records.units import TIME, VELOCITY_TIME
 from slipgym.identification.rollout import CHANNELS
 
@@ -119,9 +119,10 @@ def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Lo
         if column is None or column.position:
             raise ValueError(f"{path.name}: {name} must be a column of the log, of its own unit")
         if name not in there:
+            found = listed(list(dict.fromkeys(each for one in tables for each in one.names)))
             raise ValueError(
                 f"{path.name}: column {column.column} is missing; a log has {', '.join(needed)}; a mapping "
-                "(--columns) gives them other names, units and signs"
+                f"(--columns) gives them other names, units and signs; it has: {found}"
             )
     table = _filled(table, CHANNELS[:4])
     own = tables[place].frame.columns

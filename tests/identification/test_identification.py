@@ -174,7 +174,7 @@ def test_a_whole_session_shows_most_parameters():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda f: f.drop(columns="f_n"), "column f_n is missing"),
+        (lambda f: f.rename(columns={"f_n": "Fz"}), "column f_n is missing.* it has: .*Fz"),
         (lambda f: f.drop(columns="omega"), "column omega is missing"),
         (lambda f: f.assign(f_x=np.nan), "row 1: f_x must be a finite number"),
         (lambda f: f.assign(tau="a"), "row 1: tau must be a finite number"),
