@@ -10,6 +10,7 @@ from typing import Any
 
 from policies.training.files import assignments, with_values
 from policies.training.imitation.config import Imitation, read
+from policies.training.imitation.episodes import arguments
 from slipgym.config.yaml_model import validate
 
 
@@ -20,13 +21,15 @@ def configured(network: str, task: str, given: Mapping[str, Any], texts: Sequenc
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: A name, key or value is wrong.
+        ValueError: A name, key or value is wrong, or the controller needs another mode.
     """
     base = {"environment": {"friction_source": "none", "frame_skip": 2}}
     base |= read(network).model_dump(exclude_unset=True)
     environment = {f"environment.{name}": value for name, value in given.items() if value is not None}
     values = with_values({**base, "task": task}, {**environment, **assignments(texts)})
-    return validate(values, Imitation, "command line")
+    config = validate(values, Imitation, "command line")
+    arguments(config)
+    return config
 
 
 def imitated(config: Imitation, seeds: Sequence[int], output: Path) -> Iterator[str]:

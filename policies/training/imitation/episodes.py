@@ -45,7 +45,7 @@ def arguments(config: Imitation) -> dict[str, Any]:
     """Keyword arguments of the environments, with the action mode of the controller or its logarithmic one.
 
     Raises:
-        ValueError: The controller has no logarithmic mode.
+        ValueError: The controller has no logarithmic mode, or needs another mode than the one given.
     """
     given = config.environment.model_dump(mode="json")
     modes = policies.modes(policies.make(find(config.task).key))
@@ -55,6 +55,10 @@ def arguments(config: Imitation) -> dict[str, Any]:
             needs = f"the controller of {config.task} needs {wanted!r}, or null"
             raise ValueError(f"environment.action_mode = {given['action_mode']!r}: {needs}")
         modes["action_mode"] = wanted
+    for name in (config.environment.model_fields_set & modes.keys()) - {"action_mode"}:
+        if given[name] != modes[name]:
+            needs = f"the controller of {config.task} needs {modes[name]!r}"
+            raise ValueError(f"environment.{name} = {given[name]!r}: {needs}")
     return {**given, **modes}
 
 

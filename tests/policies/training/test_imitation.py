@@ -201,3 +201,13 @@ def test_a_logarithmic_network_is_taught_the_same_grip():
     found = low * (high / low) ** (0.5 * (scene.acted(linear) + 1.0))
     np.testing.assert_allclose(found, wanted, rtol=1e-5)
     scene.close()
+
+
+@pytest.mark.parametrize("task", ["hold", "linear_slip"])
+def test_an_observation_mode_that_the_controller_does_not_read_is_refused(task):
+    own = policies.modes(policies.make(task)).get("observation_mode", "flat")
+    other = "flat" if own == "deviations" else "deviations"
+    given = {"friction_source": "estimated"}
+    with pytest.raises(ValueError, match=f"observation_mode = '{other}': .* needs '{own}'"):
+        configured("hard_start", task, given, [f"environment.observation_mode={other}"])
+    assert configured("hard_start", task, given, [f"environment.observation_mode={own}"])
