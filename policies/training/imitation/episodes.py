@@ -55,10 +55,11 @@ def arguments(config: Imitation) -> dict[str, Any]:
             needs = f"the controller of {config.task} needs {wanted!r}, or null"
             raise ValueError(f"environment.action_mode = {given['action_mode']!r}: {needs}")
         modes["action_mode"] = wanted
-    for name in (config.environment.model_fields_set & modes.keys()) - {"action_mode"}:
-        if given[name] != modes[name]:
-            needs = f"the controller of {config.task} needs {modes[name]!r}"
-            raise ValueError(f"environment.{name} = {given[name]!r}: {needs}")
+    mode = modes.get("observation_mode", given["observation_mode"])
+    shown = "observation_mode" in config.environment.model_fields_set and given["friction_source"] != "none"
+    if shown and given["observation_mode"] != mode:
+        needs = f"the controller of {config.task} needs {mode!r}"
+        raise ValueError(f"environment.observation_mode = {given['observation_mode']!r}: {needs}")
     return {**given, **modes}
 
 

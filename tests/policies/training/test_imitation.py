@@ -211,3 +211,4 @@ def test_an_observation_mode_that_the_controller_does_not_read_is_refused(task):
     with pytest.raises(ValueError, match=f"observation_mode = '{other}': .* needs '{own}'"):
         configured("hard_start", task, given, [f"environment.observation_mode={other}"])
     assert configured("hard_start", task, given, [f"environment.observation_mode={own}"])
+    assert configured("hard_start", task, {}, [f"environment.observation_mode={other}"])  # sensors alone
