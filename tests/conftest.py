@@ -1,5 +1,6 @@
 """Compiles what takes longest first, in each process something else, when all tests run in several."""
 
+import signal
 from collections.abc import Generator
 from importlib.util import find_spec
 from typing import Any
@@ -13,6 +14,10 @@ SLOW_TASKS = ("RotationalSlip", "Hinge")
 """Tasks whose cases of tests marked `quick_tasks` are slow: their kinds of motion occur in other tasks."""
 MANY = 1000
 """Tests from which it pays: a few may need none of it."""
+
+# In the background of a shell Ctrl-C is ignored, by children too.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.hookimpl(tryfirst=True)
