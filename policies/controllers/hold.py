@@ -10,7 +10,7 @@ import numpy as np
 from policies.controllers import friction_fall
 from policies.controllers.base import Columns, State
 from policies.controllers.exploration import ActiveExploration, ExplorationState
-from policies.controllers.friction_fall import FallState
+from policies.controllers.friction_fall import PUSH, FallState
 from policies.controllers.gains import Fraction, Gain, GainPolicy, renamed
 from policies.controllers.sensing import ConservativePrior, both, relative, scaled_load, scaled_speed
 from slipgym.config import Overrides
@@ -35,7 +35,7 @@ class HoldGains(Frozen):
         0.95, "Load over grip in a slip, over mu_c, below which friction has fallen; 0: never [-]"
     )
     jolt: NonNegative = Gain(
-        0.08, "Rise of the load in a control step that is a push [N]; without `doubt` none is"
+        0.08, "Rise of the load in a control step that is a push, at least [N]; without `doubt` none is"
     )
     brace: Positive = Gain(6.0, "Grip in the control step after a push, over the usual [-]")
 
@@ -96,7 +96,7 @@ class HoldPolicy(GainPolicy[HoldGains]):
         super().__init__(gains, prior, config, **parameters)
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Last level of the grip [N], 0 at the start, then `ExplorationState` and `FallState`, (n, 14)."""
+        """Last level of the grip [N], 0 at the start, then `ExplorationState` and `FallState`, (n, 17)."""
         return np.column_stack((np.zeros((n, _OWN - 1)), np.ones(n), *friction_fall.begin(n)))
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
@@ -121,6 +121,6 @@ class HoldPolicy(GainPolicy[HoldGains]):
                 seen, level, load, speed, level > 0.0, unknown, limits
             )
             command, force = np.where(probes, lowered, force), np.where(probes, lower, force)
-        pushed = known & (load - past.load > g.jolt)
+        pushed = known & (load - past.load > np.maximum(g.jolt, PUSH * past.swing))
         command = np.where(pushed, g.brace * command, command)
         return np.where(catch, limits[1], command), np.column_stack((force, *seen, *fall))
