@@ -217,9 +217,10 @@ def make_vec_env(
         ValueError: The value of an argument is unknown or not allowed.
         TypeError: An argument is unknown.
     """
-    if keywords.get("observation_mode") == "dict" and not privileged:
+    mode = keywords.get("observation_mode") or ""
+    if mode.endswith("dict") and not privileged:
         raise ValueError(
-            "observation_mode = 'dict' would show the true friction to the actor: Stable-Baselines3 joins "
+            f"observation_mode = {mode!r} would show the true friction to the actor: Stable-Baselines3 joins "
             "all groups. Use 'flat', or algorithm privileged_ppo of `slipgym train`: only its critic reads it"
         )
     batch = gym.make_vec(

@@ -164,8 +164,10 @@ class Training(Frozen):
             raise ValueError("derived needs algorithm 'ppo' or 'privileged_ppo'")
         trained, chosen = [self.environment, self.shaped], self.privileged_ppo
         if self.algorithm == "privileged_ppo":
-            if self.engine != "planar" or self.environment.observation_mode != "flat":
-                raise ValueError("privileged_ppo needs engine 'planar' and observation_mode 'flat'")
+            if self.engine != "planar" or self.environment.observation_mode == "sensor":
+                raise ValueError(
+                    "privileged_ppo needs engine 'planar' and observation_mode 'flat' or 'deviations'"
+                )
             rows = self.num_envs if chosen.memory else self.num_envs * chosen.n_steps
             if chosen.n_minibatches > rows:
                 raise ValueError(

@@ -39,7 +39,8 @@ def make(config: Training, seed: int, num_envs: int | None = None, shaped: bool 
     keywords = (config.shaped if shaped else config.environment).model_dump()
     privileged = config.algorithm == "privileged_ppo"
     if privileged:
-        keywords["observation_mode"] = "dict"
+        shown = config.environment.observation_mode
+        keywords["observation_mode"] = "dict" if shown == "flat" else f"{shown}_dict"
     count = config.num_envs if num_envs is None else num_envs
     combinations = config.combinations()
     envs: VecEnv

@@ -27,7 +27,7 @@ ActionMode: TypeAlias = Literal[
     "force_increment", "log_grip_force", "log_grip_force_pitch", "log_grip_force_translation",
     "log_grip_force_wrist", "log_grip_force_wrist_guess",
 ]  # fmt: skip
-ObservationMode: TypeAlias = Literal["flat", "deviations", "sensor", "dict"]
+ObservationMode: TypeAlias = Literal["flat", "deviations", "sensor", "dict", "deviations_dict"]
 Engine: TypeAlias = Literal["auto", "bullet", "planar"]
 
 FRICTION_SOURCES: tuple[str, ...] = get_args(FrictionSource)

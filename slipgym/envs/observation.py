@@ -56,7 +56,7 @@ DEVIATIONS = (
     Reading("spread_mu_c", (0.0, 10.0), "-", "half the difference of the fingers' mu_c",
             "0.5 * abs(first.mu_c - second.mu_c)"),
 )  # fmt: skip
-"""Follow the friction part with `observation_mode="deviations"`; both fingers err alike."""
+"""Follow the friction part where the observation mode shows deviations; both fingers err alike."""
 FRICTION_COLUMNS = tuple(reading.column() for reading in FRICTION)
 DEVIATION_COLUMNS = tuple(reading.column() for reading in DEVIATIONS)
 
@@ -110,7 +110,7 @@ def columns(
         *task.columns,
         *(WRIST[k].column(config) for k in wrist_part(task, action_mode)),
         *(() if no_friction else FRICTION_COLUMNS),
-        *(DEVIATION_COLUMNS if observation_mode == "deviations" and not no_friction else ()),
+        *(DEVIATION_COLUMNS if observation_mode.startswith("deviations") and not no_friction else ()),
         *((reading.column(config) for reading in LOAD) if load_columns else ()),
     )
 

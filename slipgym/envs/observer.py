@@ -25,7 +25,7 @@ class Observer:
 
     Attributes:
         columns: Columns of one observation, or of its group "policy".
-        privileged: Columns of the group "privileged"; empty unless the mode is "dict".
+        privileged: Columns of the group "privileged"; empty unless the mode has groups.
         space: The observation space of one environment.
         buffers: Buffers that the simulation writes the observations to.
         history: Number of earlier observations in each observation.
@@ -56,7 +56,7 @@ class Observer:
         policy = gym.spaces.Box(np.tile(low, history + 1), np.tile(high, history + 1))
         self.privileged: tuple[Column, ...] = ()
         self.space: gym.Space = policy
-        if mode == "dict":
+        if mode.endswith("dict"):
             self.privileged = privileged_columns(simulation.config)
             self._privileged_bounds = _bounds(self.privileged)
             self._ground_truth = np.zeros((simulation.n, len(self.privileged)), dtype=np.float32)

@@ -150,7 +150,9 @@ def warn_of_drawn(
             drawn[f"materials.{name}"] = f"its friction is drawn, unless material={name!r} is given"
     for key, why in drawn.items():
         if _has(values, key):
-            warnings.warn(f"{source}: {key} has no effect: {why}", stacklevel=2)
+            warnings.warn(
+                f"{source}: {key} has no effect unless randomization_scale is below 1: {why}", stacklevel=2
+            )
 
 
 def _has(values: Mapping[str, Any], key: str) -> bool:

@@ -40,9 +40,10 @@ def test_sensor_is_flat_without_friction(make, env_id, source):
 
 
 @pytest.mark.parametrize("source", ["estimated", "none"])
-def test_the_policy_group_is_flat(make, env_id, source):
-    flat = make(env_id, friction_source=source, **WRIST)
-    env = make(env_id, friction_source=source, observation_mode="dict", **WRIST)
+@pytest.mark.parametrize(("groups", "mode"), [("dict", "flat"), ("deviations_dict", "deviations")])
+def test_the_policy_group_is_flat(make, env_id, source, groups, mode):
+    flat = make(env_id, friction_source=source, observation_mode=mode, **WRIST)
+    env = make(env_id, friction_source=source, observation_mode=groups, **WRIST)
     assert env.observation_space["policy"] == flat.observation_space
     for (observation, info), (expected, told) in zip(played(env), played(flat), strict=True):
         np.testing.assert_array_equal(observation["policy"], expected)

@@ -11,6 +11,7 @@ from policies.training.adapter import make_vec_env
 from policies.training.files import checked
 from policies.training.imitation.config import Imitation
 from policies.training.imitation.run import imitate
+from slipgym.envs.observation import DEVIATION_COLUMNS
 
 
 @pytest.fixture(scope="module", params=[0, 5])
@@ -77,11 +78,13 @@ def test_a_learner_starts_as_the_policy_that_it_is_given(trained):
     learner.get_env().close()
 
 
-def test_a_learner_starts_as_an_imitated_network(small, tmp_path):
+@pytest.mark.parametrize(("source", "mode"), [("none", "flat"), ("estimated", "deviations")])
+def test_a_learner_starts_as_an_imitated_network(small, tmp_path, source, mode):
     """Its columns have scales from micrometres to newtons."""
     environment = {
         **small().environment.model_dump(mode="json"),
-        "friction_source": "none",
+        "friction_source": source,
+        "observation_mode": mode,
         "action_mode": "log_grip_force",
         "load_columns": True,
     }
@@ -131,9 +134,22 @@ def test_the_actor_does_not_read_the_privileged_group(trained):
     learner.get_env().close()
 
 
-def test_a_plain_actor_is_not_shown_the_truth():
-    with pytest.raises(ValueError, match="would show the true friction to the actor"):
-        make_vec_env("Carry", 2, observation_mode="dict")
+@pytest.mark.parametrize("mode", ["dict", "deviations_dict"])
+def test_a_plain_actor_is_not_shown_the_truth(mode):
+    with pytest.raises(ValueError, match=f"'{mode}' would show the true friction to the actor"):
+        make_vec_env("Carry", 2, observation_mode=mode)
+
+
+def test_the_actor_may_read_the_deviations_of_the_estimates(small):
+    """The critic's group stays what it was; the policy's file names the mode that a user makes."""
+    shown, seen = {}, small().environment.model_dump()
+    for mode in ("flat", "deviations"):
+        config = small(algorithm="privileged_ppo", environment={**seen, "observation_mode": mode})
+        envs = model.begin(config, 0).get_env()
+        shown[mode] = envs.observation_space.spaces
+        envs.close()
+    assert shown["deviations"]["policy"].shape[0] == shown["flat"]["policy"].shape[0] + len(DEVIATION_COLUMNS)
+    assert shown["deviations"]["privileged"] == shown["flat"]["privileged"]
 
 
 @pytest.mark.parametrize("name", ["carry", "Carry", "slipgym/Carry-v0"])
@@ -147,6 +163,7 @@ def test_a_task_has_any_spelling(name):
     ("changes", "named"),
     [
         ({"engine": "bullet"}, "needs engine 'planar'"),
+        ({"environment": {"observation_mode": "sensor"}}, "observation_mode 'flat' or 'deviations'"),
         ({"privileged_ppo": {"n_minibatches": 99}}, "must not exceed 64"),
         ({"privileged_ppo": {"curriculum": {"stages": [{"tasks": {"linear_slip": {"tol": 1}}}]}}}, "tol"),
         ({"privileged_ppo": {"memory": -1}}, "whole number >= 0"),
