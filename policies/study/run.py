@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from pathlib import Path
 
 import pandas as pd
@@ -51,8 +52,11 @@ def run_study(
     atomic_io.check_folder(folder.parent)
     learned = policies_of(study)
     chosen = conditions(study, learned)
+    absent = missing(study, learned)
     if not chosen:
-        raise ValueError(f"{study.name}: no condition to run; {'; '.join(missing(study, learned))}")
+        raise ValueError(f"{study.name}: no condition to run; {'; '.join(absent)}")
+    for words in absent:
+        print(f"left out: {words}", file=sys.stderr)
     done = episodes(study, chosen, Store(folder / "conditions", study), jobs, progress)
     made = {
         "outcomes": tables.outcomes(done),

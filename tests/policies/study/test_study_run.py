@@ -56,6 +56,11 @@ def test_the_folder_holds_everything(run, small):
     assert list(by_seed) == [1, 1]
 
 
+def test_policies_that_are_left_out_are_named(run, small, output, capsys):
+    run_study(small(kinds=["classic", "imitation"], imitation="nowhere"), output, 1, progress=False)
+    assert "left out: LinearSlip: no policy of kind imitation for none; looked for" in capsys.readouterr().err
+
+
 @pytest.mark.slow
 def test_what_is_there_is_not_run_again(run, small, output, monkeypatch):
     before = (run / "episodes.parquet").read_bytes()
