@@ -217,7 +217,7 @@ def make_vec_env(
         ValueError: The value of an argument is unknown or not allowed.
         TypeError: An argument is unknown.
     """
-    mode = keywords.get("observation_mode") or ""
+    mode = str(keywords.get("observation_mode"))
     if mode.endswith("dict") and not privileged:
         raise ValueError(
             f"observation_mode = {mode!r} would show the true friction to the actor: Stable-Baselines3 joins "
