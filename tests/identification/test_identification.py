@@ -48,7 +48,8 @@ def test_known_parameters_are_recovered(result):
     assert "The model fits this log" in identification.verdict(result)
 
 
-@pytest.mark.parametrize("pressure", ["uniform", pytest.param("hertz", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("pressure", ["uniform", "hertz"])
 def test_cells_of_the_fit_add_little_to_the_residual(pressure):
     hidden = draw_gripper(1)
     result = identify(simulated_log(hidden, 1, pressure=pressure, names=("slide x", "turn")))

@@ -77,6 +77,9 @@ def test_a_client_is_answered_and_all_that_passed_is_recorded(client, tmp_path):
     assert sum(line.get("status") == "ok" and "command" in line for line in lines) > 50
 
 
+@pytest.mark.quick_cases(
+    f"{int(signal.SIGTERM)}-python_client-opens0", f"{int(signal.SIGINT)}-compiled_client-opens1"
+)
 @pytest.mark.parametrize(
     ("client", "opens"), [(python_client, ["--end", "open"]), (compiled_client, ["open"])]
 )

@@ -78,6 +78,7 @@ def test_a_learner_starts_as_the_policy_that_it_is_given(trained):
     learner.get_env().close()
 
 
+@pytest.mark.quick_cases("none-flat")
 @pytest.mark.parametrize(("source", "mode"), [("none", "flat"), ("estimated", "deviations")])
 def test_a_learner_starts_as_an_imitated_network(small, tmp_path, source, mode):
     """Its columns have scales from micrometres to newtons."""
