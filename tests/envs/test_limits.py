@@ -43,7 +43,7 @@ COMPANIONS = {
     "sensors.slip.rate": "physics.control_rate",
 }
 """Keys that must be equal."""
-DEAR = {"sensors.force_torque.mode_frequency"}
+COMPILED_APART = {"sensors.force_torque.mode_frequency"}
 """Keys whose ends compile programs of their own."""
 
 
@@ -65,7 +65,9 @@ def test_every_number_has_both_ends():
 
 
 @pytest.mark.parametrize("end", [0, 1], ids=["least", "most"])
-@pytest.mark.parametrize("key", [pytest.param(key, marks=[pytest.mark.slow] * (key in DEAR)) for key in ENDS])
+@pytest.mark.parametrize(
+    "key", [pytest.param(key, marks=[pytest.mark.slow] * (key in COMPILED_APART)) for key in ENDS]
+)
 def test_an_end_is_refused_or_finite(make, key, end):
     if "materials" in key:
         pytest.skip("a name is needed")

@@ -62,7 +62,7 @@ def test_what_a_soft_pad_springs_is_forgotten():
 
 @pytest.mark.parametrize(("slip", "again"), [(0.5 * SPRUNG, False), (1.5 * SPRUNG, True)])
 def test_on_pads_that_came_back_only_what_is_faster_is_a_fall(slip, again):
-    """A second event of the same speed, and a third that is faster than soft pads need to be."""
+    """The second event is a little faster than the first, the third more than twice as fast."""
     speeds = [0.0, 0.02, *np.zeros(REST + 2), 0.03, *np.zeros(REST + 2), 1.1 * FASTER * 0.03, 0.0]
     _, catches = noticed([0.3] * len(speeds), speeds, slip=slip)
     begun = np.flatnonzero(catches)[::CATCH].tolist()
@@ -124,6 +124,6 @@ def test_without_a_fall_of_friction_it_costs_little(play_batch):
 @pytest.mark.slow
 @pytest.mark.parametrize("pads", ["none", "lab"])
 def test_a_laboratorys_sensors_and_soft_pads_cost_a_grip_with_known_friction_little(play_batch, pads):
-    """Elastic shear is no slip: of level "standard" 85 % are solved on soft pads, where once 24 % were."""
+    """Elastic shear of the pads is no slip, and a load that rings is no push."""
     keywords = {"level": "standard", "sensors": "lab", "randomization": pads, "friction_source": "true"}
     assert play_batch("slipgym/Hold-v0", HoldPolicy(), 300, 50_000, **keywords).success >= 0.75

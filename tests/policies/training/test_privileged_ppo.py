@@ -142,7 +142,7 @@ def test_a_plain_actor_is_not_shown_the_truth(mode):
 
 
 def test_the_actor_may_read_the_deviations_of_the_estimates(small):
-    """The critic's group stays what it was; the policy's file names the mode that a user makes."""
+    """The group of the critic stays what it was."""
     shown, seen = {}, small().environment.model_dump()
     for mode in ("flat", "deviations"):
         config = small(algorithm="privileged_ppo", environment={**seen, "observation_mode": mode})
