@@ -6,8 +6,9 @@ JOBS ?= 2
 VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) -m pip install --quiet --constraint constraints.txt
-# worksteal: a file mostly stays in one process, so what its tests share is made once.
-PYTEST := OMP_NUM_THREADS=1 $(RUN) -m pytest -n $(JOBS) --dist worksteal
+# worksteal: a file mostly stays in one process, so what its tests share is made once. Byte code is kept:
+# many tests start processes.
+PYTEST := OMP_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(RUN) -m pytest -n $(JOBS) --dist worksteal
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test test-all lint types wheel-smoke check benchmark validate results audit matrix site release wheel clean

@@ -84,3 +84,10 @@ def publish(state, t, f_n, gamma_t, gamma_tau, halted, saw_mu_c, saw_r, estimate
     estimate.sd_lever = norm(state.mu_c * state.sd_r, state.r * state.sd_mu_c)
     estimate.observable_mu_c = saw_mu_c
     estimate.observable_r = saw_r
+
+
+@njit(error_model="numpy")
+def copy(source, target):
+    """Copies an array (n,) into another one. Numba's `target[:] = source` compiles its error message, too."""
+    for i in range(len(target)):
+        target[i] = source[i]

@@ -10,6 +10,7 @@ import math
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
+from estimator.sample import copy
 from estimator.window.fit import descend, substitute
 from estimator.window.layout import EMPTY, ENTRIES, MU, OLD, SLIDE, STATES
 from estimator.window.residuals import slide
@@ -39,7 +40,7 @@ def _newest(state, p, x):
     return total * total / count, lacks / count
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", forceinline=False)  # large, and called from several places
 def fit(state, p):
     """Fits `x` and `covariance` to the window, and finds changes; a fit that fails changes nothing."""
     a, g = matrix(STATES, STATES), matrix(1, STATES)[0]
@@ -51,7 +52,7 @@ def fit(state, p):
         state.changed = 0.0
     changed = state.changed > 0.0
     state.split = state.changed if changed else state.slip_time - NEWEST
-    x[:] = state.x
+    copy(state.x, x)
     if not changed:
         x[OLD] = 0.0
     springs = state.springs
@@ -61,19 +62,19 @@ def fit(state, p):
         evidence, lacks = _newest(state, p, x)
     if evidence > ODDS:
         cost, misfit = descend(state, p, x, False, 1, a, g)
-        other[:] = x
+        copy(x, other)
         other[MU] += lacks
         other[OLD] = -lacks
         found, off_found = descend(state, p, other, True, STEPS + 1, a, g)
         if found + ODDS < cost:
             state.changed, misfit = state.split, off_found
-            x[:] = other
+            copy(other, x)
         else:
             cost, misfit = descend(state, p, x, False, 1, a, g)
     if not math.isfinite(cost + misfit + state.springs):
         state.springs = springs
         return
-    state.x[:] = x
+    copy(x, state.x)
     for j in range(STATES):
         g[:] = 0.0
         g[j] = max(misfit, 1.0)

@@ -10,6 +10,7 @@ import math
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
+from estimator.sample import copy
 from estimator.window.layout import INTERVALS, LATE, SAMPLES, SHORTEST
 from estimator.window.spring import length, stiffen
 from estimator.window.sticks import find_peak, learn_short_slip, learn_tilt
@@ -77,7 +78,7 @@ def _close(state, p):
     grown, n = state.growing, state.interval
     interval, last = state.intervals[n % INTERVALS], state.intervals[(n - 1) % INTERVALS]
     interval.time, interval.count = grown.time, grown.count
-    interval.motion[:] = grown.motion
+    copy(grown.motion, interval.motion)
     for j in range(4):
         interval.wrench[j] = grown.wrench[j] / grown.count
     _empty(grown)

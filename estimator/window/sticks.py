@@ -4,7 +4,7 @@ import math
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
-from estimator.sample import norm
+from estimator.sample import copy, norm
 from estimator.window import layout as at
 from estimator.window.change import fit
 from estimator.window.layout import AT_LEAST, EVENT, FALL, INTERVALS, LATE, SAMPLES, SIGMAS, TORQUE, ZERO, R
@@ -31,7 +31,7 @@ def find_peak(state):
         ratio = _size(state, w) / w[2]
         if ratio > largest:
             largest = ratio
-            state.peak[:] = w
+            copy(w, state.peak)
 
 
 @njit(error_model="numpy")
@@ -52,7 +52,7 @@ def learn_tilt(state, p, wrench):
         if rest[2] > 0.0 and off * off < SIGMAS * SIGMAS * total:
             state.mean[k] += state.variance[k] * step * off / total
             state.variance[k] *= noise / total
-    rest[:] = wrench
+    copy(wrench, rest)
 
 
 @njit(error_model="numpy")
@@ -134,7 +134,8 @@ def learn_drop(state, p):
     before, after, noise = _size(state, w[0]), _size(state, w[2]), 5.0 * p.sd_force
     fell = before - max(_size(state, w[1]), after) > max(EVENT * before, noise)
     if fell and before > 0.85 * state.held * w[0, 2] and after > max(AT_LEAST * before, noise):
-        state.quiet, state.peak[:] = SAMPLES, w[0]
+        state.quiet = SAMPLES
+        copy(w[0], state.peak)
         _store_fall(state, p, w[2], 0.0, SAMPLES * state.elapsed)
     if w[0, 2] > 5.0 * p.eps_fn:
         state.held = max(state.held, before / w[0, 2])

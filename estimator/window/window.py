@@ -9,7 +9,7 @@ import math
 
 from estimator._numba.caching import njit
 from estimator._numba.memory import matrix
-from estimator.sample import norm
+from estimator.sample import copy, norm
 from estimator.window.change import fit
 from estimator.window.layout import BREAK, ENTRIES, SLIDE, ZERO, R
 from estimator.window.spring import is_no_spring, length
@@ -27,7 +27,7 @@ def new_entry(state, kind, slides, slow, wrench):
     s = state.entries[state.entry % ENTRIES]
     state.entry += 1
     s.kind, s.end, s.slides, s.load = kind, state.slip_time, slides, math.log(wrench[2]) - state.reference
-    s.wrench[:] = wrench
+    copy(wrench, s.wrench)
     s.slow, s.noise = slow, 1.0
     return s
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from estimator.sample import copy
 from slipgym._numba.compiled import compiled, pointed
 from slipgym._numba.generate import generate
 from slipgym.config.pad import EFFECTS
@@ -96,7 +97,8 @@ def set_patches(starts, patches, pads, cells):
         for k in range(starts.shape[0]):
             for f in range(2):
                 patch = cells[starts[k].row, f]
-                patch[:] = patches[starts[k].pressure]
+                for field in range(patch.shape[0]):
+                    copy(patches[starts[k].pressure, field], patch[field])
                 stretch(patch, pads[starts[k].row, f].axes)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.envs.readings import Limits, Reading, choice_reader
 from slipgym.sensors.markers import COUNT
@@ -95,25 +96,37 @@ def _field(f: int) -> tuple[Reading, ...]:
     )  # fmt: skip
 
 
+_FIELDS = *_field(1), *_field(2)
 LAYOUTS = {
     "fingers": SENSORS,
     "wrist": (*WRIST_FORCES, *MOTOR),
     "motor": MOTOR,
-    "markers": (*SENSORS, *_field(1), *_field(2)),
+    "markers": (*SENSORS, *_FIELDS),
 }
 """Name -> sensor part; "markers" with the whole field."""
-OWNED = tuple(dict.fromkeys(reading for layout in LAYOUTS.values() for reading in layout))
+_SINGLE = tuple(dict.fromkeys((*SENSORS, *WRIST_FORCES, *MOTOR)))
+OWNED = *_SINGLE, *_FIELDS
 """All readings of all sensor parts, each once."""
 LOADED = ("fingers", "markers")
 """Layouts of which the load part is a part: the others do not measure each finger's force."""
 
-read_owned = choice_reader(
-    "read_owned",
-    [reading.read for reading in OWNED],
-    ("wrenches", "twists", "slip_sensors", "episodes", "grippers", "markers"),
+_read_single = choice_reader(
+    "_read_single",
+    [reading.read for reading in _SINGLE],
+    ("wrenches", "twists", "slip_sensors", "episodes", "grippers"),
     __file__,
-    "Row k of `OWNED`.",
+    "Row k of the readings before the markers.",
 )
+_FIRST = len(_SINGLE)
+
+
+@compiled
+def read_owned(k, i, wrenches, twists, slip_sensors, episodes, grippers, markers):
+    """Row k of `OWNED` of environment i."""
+    m = k - _FIRST
+    if m < 0:
+        return _read_single(k, i, wrenches, twists, slip_sensors, episodes, grippers)
+    return markers[i, m // (2 * COUNT)].seen[m // 2 % COUNT, m % 2]
 
 
 def layout_of(config: Config) -> str:

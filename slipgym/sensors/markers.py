@@ -163,9 +163,9 @@ def seen_forces(markers: Any, mirror: float, reading: np.ndarray) -> None:
     +1 for finger 1, -1 for finger 2.
     """
     newest = markers.frames - 1 - markers.latency
-    markers.seen[:] = 0.0
-    if newest >= 0:
-        markers.seen[:] = markers.field[newest % FRAMES]
+    for k in range(COUNT):
+        for a in range(2):
+            markers.seen[k, a] = markers.field[newest % FRAMES, k, a] if newest >= 0 else 0.0
     fx, fy, tau = forces_of(markers, markers.seen)
     reading[0], reading[1], reading[5] = fx, fy, mirror * tau
     for a in range(2, 5):
