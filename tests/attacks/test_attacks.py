@@ -24,8 +24,9 @@ def outcomes(name: str, first: int, last: int) -> dict[int, str]:
     return {k: each for k, each in found.items() if each not in attack.allowed}
 
 
-CASES = [pytest.param(name, marks=[pytest.mark.slow] * (name == "randomization")) for name in ATTACKS]
-"""Randomization compiles every kind of pad and sensor."""
+COMPILED = "keywords", "randomization"
+"""They compile every kind of pad and sensor."""
+CASES = [pytest.param(name, marks=[pytest.mark.slow] * (name in COMPILED)) for name in ATTACKS]
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -93,7 +93,7 @@ def test_the_numbers_live_in_the_files_alone():
 
 
 @pytest.mark.parametrize("path", list(leaves(config.load().model_dump())), ids=".".join)
-@pytest.mark.parametrize("bad", [float("nan"), float("inf"), "1", None, True, []], ids=repr)
-def test_no_number_takes_what_is_not_a_finite_number(path, bad):
-    with pytest.raises(ValueError, match=re.escape(".".join(path))):
-        config.load(nested(path, bad))
+def test_no_number_takes_what_is_not_a_finite_number(path):
+    for bad in (float("nan"), float("inf"), "1", None, True, []):
+        with pytest.raises(ValueError, match=re.escape(".".join(path))):
+            config.load(nested(path, bad))

@@ -156,6 +156,7 @@ def test_what_was_learned_until_an_interrupt_is_kept(tmp_path, monkeypatch):
     assert not (folder / WEIGHTS).exists()
 
 
+@pytest.mark.slow  # programs of its own
 def test_environments_run_it_and_rows_equal_single_environments():
     many = gym.make_vec(LINEAR, num_envs=3, sensors="lab", estimator=GRU).unwrapped
     many.reset(seed=5)

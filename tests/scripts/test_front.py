@@ -66,6 +66,7 @@ def test_without_a_clone_the_commands_of_the_laboratory_say_that_they_need_one(m
     assert slip("validate", "--help").exit_code == 0
 
 
+@pytest.mark.quick_cases("words0-scipy-eval", "words2-torch-train")
 @pytest.mark.parametrize(
     ("words", "package", "extra"),
     [
