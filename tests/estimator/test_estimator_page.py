@@ -12,7 +12,7 @@ from tests.estimator.exact_records import ellipsoid
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "estimator.md").read_text(encoding="utf-8")
 FIELDS = [
-    pytest.param(field, id=f"{kind.__name__}.{field.name}")
+    field
     for kind in (
         estimator.AdaptiveParameters,
         estimator.RlsParameters,

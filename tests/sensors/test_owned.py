@@ -127,6 +127,8 @@ def test_markers_give_sixty_frames_a_second_and_the_field_on_demand():
         seen = named(envs, envs.step(np.full((2, 1), -0.5, np.float32))[0][0])
     total = sum(seen[f"marker_y_{k}_1"] for k in range(COUNT)) / 1e-3
     assert total == pytest.approx(seen["f_y_1"], abs=1e-3)
+    shown = [[[seen[f"marker_{axis}_{k}_{f}"] for axis in "xy"] for k in range(COUNT)] for f in (1, 2)]
+    np.testing.assert_array_equal(shown, np.float32(envs.unwrapped.simulation.state.markers["seen"][0]))
     envs.close()
 
 
