@@ -26,7 +26,8 @@ class Reading(NamedTuple):
     unit: str
     meaning: str
     read: str
-    """Expression for environment i in terms of the writer's arguments, "worlds[i].angle" for example."""
+    """Expression for environment i in terms of the writer's arguments, "worlds[i].angle" for example;
+    empty for a reading that is found by its number."""
 
     def column(self, config: Config | None = None) -> Column:
         """The column of an observation, with the limits of a configuration if they depend on it."""

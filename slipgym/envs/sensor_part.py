@@ -84,15 +84,15 @@ MOTOR = (
 
 
 def _field(f: int) -> tuple[Reading, ...]:
-    """Displacements of the markers of finger 1 or 2."""
+    """Displacements of the markers of finger 1 or 2; `read_owned` finds them by their number."""
     return tuple(
         Reading(
             f"marker_{axis}_{k}_{f}", (-0.1, 0.1), "m",
             f"displacement of marker {k} of finger {f} along the pad's {axis} axis",
-            f"markers[i, {f - 1}].seen[{k}, {a}]",
+            "",
         )
         for k in range(COUNT)
-        for a, axis in enumerate("xy")
+        for axis in "xy"
     )  # fmt: skip
 
 
@@ -117,13 +117,13 @@ _read_single = choice_reader(
     __file__,
     "Row k of the readings before the markers.",
 )
-_FIRST = len(_SINGLE)
+_MARKERS = len(_SINGLE)
 
 
 @compiled
 def read_owned(k, i, wrenches, twists, slip_sensors, episodes, grippers, markers):
     """Row k of `OWNED` of environment i."""
-    m = k - _FIRST
+    m = k - _MARKERS
     if m < 0:
         return _read_single(k, i, wrenches, twists, slip_sensors, episodes, grippers)
     return markers[i, m // (2 * COUNT)].seen[m // 2 % COUNT, m % 2]

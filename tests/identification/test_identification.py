@@ -80,7 +80,7 @@ def test_the_report_asks_for_a_motion_that_turns(folder):
     assert (folder / "report.png").stat().st_size > 10_000
 
 
-def test_environments_take_the_configuration(result, folder):
+def test_the_configuration_written_holds_what_was_found(result, folder):
     config = load(str(folder / "gripper.yaml"))
     assert config.materials["identified"].mu_c == found(result)["mu_c"]
     assert config.contact.pad.shear_compliance == found(result)["shear compliance"]
