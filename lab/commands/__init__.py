@@ -8,6 +8,7 @@ COMMANDS = {
     "compare-estimators": "Compare the estimators on recorded episodes.",
     "compare-simulators": "Compare the contact with other simulators.",
     "delays": 'Print "adaptive" in stick-slip with late velocities.',
+    "estimate-and-memory": "Print what an estimate adds to a policy with a memory.",
     "estimator-costs": "Print what an update of each estimator costs.",
     "fuzz": "Print errors of estimators in independent worlds.",
     "hidden-grippers": "Print how often the intervals of identify hold.",

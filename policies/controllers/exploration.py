@@ -14,6 +14,9 @@ third.
 lag of 12 ms the force then swings between 0.9 and 1.5 levels and comes back by itself while a slip begins,
 which about halves the slip of a smooth ramp. An estimator learns from a slip that reaches from one window
 of the slip sensor into the next. The shortest do not, so the exploration goes on until it has learnt.
+
+**What it shows by itself.** The largest load over normal force that held is mu_s if the object slipped, and
+less than that if the smallest grip holds a light object. It counts beside the first, uncertain estimates.
 """
 
 from __future__ import annotations
@@ -23,6 +26,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from policies.controllers.base import Columns
+from policies.controllers.friction_fall import LEAST_GRIP
+from policies.controllers.sensing import relative
+from policies.controllers.slip_memory import combined, weight_of
+
+RATIO = 1.3  # mu_s over mu_c, that of the estimators' start values
+DEVIATION = 0.1  # Of load over normal force that held, over RATIO, relative: half the range of the ratio
 _OPEN = {"slips": (0, np.inf), "keep": (0, 1), "low": (0, 1), "high": (1, np.inf), "catch": (1, np.inf)}
 
 
@@ -33,6 +43,26 @@ class ExplorationState(NamedTuple):
     slips: np.ndarray  # slips caught so far
     rest: np.ndarray  # control steps that the grip still rests after a slip
     high: np.ndarray  # whether the last command of an exploration was the high one, 0 or 1
+    held: np.ndarray  # largest load over normal force that held [-]
+
+    def holding(self, load: np.ndarray, normal: np.ndarray, unknown: np.ndarray) -> ExplorationState:
+        """The memory after another observation: load and normal force per finger, (n,) each [N].
+
+        It counts where friction is unknown, from the first grip on, which holds.
+        """
+        counts, ratio = unknown & (normal > LEAST_GRIP), load / np.maximum(normal, LEAST_GRIP)
+        return self._replace(held=np.where(counts, np.maximum(self.held, ratio), self.held))
+
+    def corrected(self, mu_c: np.ndarray, columns: Columns) -> np.ndarray:
+        """Friction by an estimate and by what held, each with the weight of its variance, (n,).
+
+        Args:
+            mu_c: By the estimate, or assumed where there is none, (n,) [-].
+            columns: n observations.
+        """
+        shown, spread = self.held / RATIO, relative(columns, "mu_c", columns["mu_c"])
+        weight = weight_of(shown, spread, DEVIATION)
+        return combined(mu_c, shown, np.where(columns["confidence_mu_c"] > 0.0, weight, np.sign(shown)))
 
 
 @dataclass(frozen=True)
@@ -109,5 +139,6 @@ class ActiveExploration:
         rest = np.where(caught, self.rest, np.maximum(state.rest - 1, 0))
         held = ramp & (self.high * level <= limits[0])
         smooth = smooth + self.smoothing * (load - smooth)
-        memory = ExplorationState(smooth, np.where(held, self.slips, state.slips + caught), rest, high)
+        slips = np.where(held, self.slips, state.slips + caught)
+        memory = ExplorationState(smooth, slips, rest, high, state.held)
         return exploring | resting, np.where(caught, limits[1], command), level, memory

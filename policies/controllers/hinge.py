@@ -63,7 +63,9 @@ class HingePolicy(GainPolicy[HingeGains]):
     object slips a little (`policies.controllers.exploration`), until the estimate has the confidence `known`.
     That suits estimators whose first update gives the answer; with "rls" choose known=0. Where friction is
     unknown, k is k_blind, with the prior's mu_c. If friction still holds at the tilt `release`, it is larger
-    than that, and the grip falls with the tilt from there, so that it lets go in time.
+    than that, and the grip falls with the tilt from there, so that it lets go in time. What the exploration
+    itself shows counts beside the estimate: a slip may be too short for an estimator, and the smallest grip
+    may hold a light object.
 
     Arguments are those of `GainPolicy`. Its own prior counts for as long as friction is explored, and without
     exploration for longer than elsewhere, as the first samples after the break-away of a turn, near static
@@ -71,6 +73,7 @@ class HingePolicy(GainPolicy[HingeGains]):
     """
 
     task = "Hinge"
+    remembers_slips = True
     Gains = HingeGains
     prior_default = ConservativePrior(confidence=0.005)
     without_friction: ClassVar[Mapping[str, Any]] = {"known": 0.0}
@@ -80,33 +83,36 @@ class HingePolicy(GainPolicy[HingeGains]):
             self.prior = ConservativePrior(confidence=0.2)
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Filtered tangential force, level of the exploration [N], `ExplorationState`, (n, 6).
+        """Filtered tangential force, level of the exploration [N], `ExplorationState`, (n, 7).
 
         The first two are < 0 before the first step.
         """
-        return np.tile([-1.0, -1.0, 0.0, 0.0, 0.0, 1.0], (n, 1))
+        return np.tile([-1.0, -1.0, 0.0, 0.0, 0.0, 1.0, 0.0], (n, 1))
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
         g, load = self.gains, tangential(columns)
-        old, level, *rest = np.asarray(state).T
+        old, level, *explored = np.asarray(state).T
+        seen = ExplorationState(*explored)
         smooth = np.where(old < 0.0, load, g.smoothing * old + (1.0 - g.smoothing) * load)
         turned, side = columns["measured_slip_theta"], np.sign(columns["wrist_pitch_goal"])
         tilt = side * (columns["wrist_pitch"] + turned)
         rate = side * (columns["wrist_pitch_rate"] + both(columns, "omega"))
-        k = g.k_slip + g.k_a * (g.target - tilt) - g.k_w * rate
-        k = np.clip(k, g.k_min, g.k_max)
-        weight = self.prior.confidence_weight(columns, "mu_c")
-        blind = g.k_blind * g.release / np.maximum(np.abs(tilt), g.release)
-        start = weight * g.k_stick + (1.0 - weight) * blind
-        k = np.where(np.abs(turned) > g.onset, k, start)
-        force = k * smooth / self.prior.blend(columns, "mu_c")
-        begun, speed = level >= 0.0, scaled_speed(columns, self.prior.blend(columns, "r"))
         rests = np.abs(columns["wrist_pitch_rate"]) < _REST
         rests &= np.abs(columns["wrist_pitch"]) < g.onset
         unknown = rests & (columns["confidence_mu_c"] < g.known)
+        seen = seen.holding(load, both(columns, "f_n"), unknown)
+        k = g.k_slip + g.k_a * (g.target - tilt) - g.k_w * rate
+        k = np.clip(k, g.k_min, g.k_max)
+        weight = self.prior.confidence_weight(columns, "mu_c")
+        blind = np.where(seen.held > 0.0, g.k_stick, g.k_blind)
+        blind *= g.release / np.maximum(np.abs(tilt), g.release)
+        start = weight * g.k_stick + (1.0 - weight) * blind
+        k = np.where(np.abs(turned) > g.onset, k, start)
+        force = k * smooth / seen.corrected(self.prior.blend(columns, "mu_c"), columns)
+        begun, speed = level >= 0.0, scaled_speed(columns, self.prior.blend(columns, "r"))
         limits = self.config.gripper.force_min, self.config.gripper.force_max
         explores, command, level, seen = _EXPLORATION.act(
-            ExplorationState(*rest), np.where(begun, level, force), load, speed, begun, unknown, limits
+            seen, np.where(begun, level, force), load, speed, begun, unknown, limits
         )
         return np.where(explores, command, force), np.column_stack((smooth, level, *seen))

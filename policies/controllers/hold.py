@@ -52,9 +52,9 @@ class HoldPolicy(GainPolicy[HoldGains]):
     2 N); a reserve that is added serves light objects, which a poke upsets more, and spares heavy ones.
 
     While friction is not known it explores: it lowers the grip until the object slips a little
-    (`policies.controllers.exploration`), and then holds with the new estimate. The task does not poke the
-    object at first, and the earlier friction is known, the longer force is saved. With full confidence in the
-    observed friction it never explores.
+    (`policies.controllers.exploration`), and then holds with the new estimate and with what the exploration
+    showed. The task does not poke the object at first, and the earlier friction is known, the longer force is
+    saved. With full confidence in the observed friction it never explores.
     The object may slip in a grip that should hold it, since its friction has fallen. The grip then closes as
     fast as it can, and friction is taken to be no more than was measured in that slip
     (`policies.controllers.friction_fall`), whatever the estimator makes of it. Such slips mostly begin with a
@@ -96,27 +96,30 @@ class HoldPolicy(GainPolicy[HoldGains]):
         super().__init__(gains, prior, config, **parameters)
 
     def initial_state(self, n: int) -> np.ndarray:
-        """Last level of the grip [N], 0 at the start, then `ExplorationState` and `FallState`, (n, 17)."""
-        return np.column_stack((np.zeros((n, _OWN - 1)), np.ones(n), *friction_fall.begin(n)))
+        """Last level of the grip [N], 0 at the start, then `ExplorationState` and `FallState`, (n, 18)."""
+        return np.column_stack((np.zeros((n, _OWN - 2)), np.ones(n), np.zeros(n), *friction_fall.begin(n)))
 
     def control(self, columns: Columns, state: State) -> tuple[np.ndarray, State]:
         """Grip force per finger, (n,) [N]."""
         g, memory = self.gains, np.asarray(state).T
         level, seen, past = memory[0], ExplorationState(*memory[1:_OWN]), FallState(*memory[_OWN:])
-        mu_c, r = self.prior.hold(columns, "mu_c"), self.prior.hold(columns, "r")
+        r, normal = self.prior.hold(columns, "r"), both(columns, "f_n")
         load, speed = scaled_load(columns, r), scaled_speed(columns, r)
+        unknown = columns["confidence_mu_c"] < self.prior.confidence
+        if self.exploration is not None:
+            seen = seen.holding(load, normal, unknown & (level > 0.0))
+        mu_c = seen.corrected(self.prior.hold(columns, "mu_c"), columns)
         settled = (level > 0.0) & (columns["confidence_mu_c"] >= self.prior.confidence)
         known = settled & (seen.rest == 0.0) & (g.doubt > 0.0)
         assumed = g.doubt * mu_c
         slip = columns["measured_slip_x"], columns["measured_slip_y"]
-        catch, fall = friction_fall.notice(past, load, both(columns, "f_n"), speed, slip, assumed, known)
+        catch, fall = friction_fall.notice(past, load, normal, speed, slip, assumed, known)
         mu_c = np.minimum(mu_c, fall.bound)
         margin = np.where(relative(columns, "mu_c", mu_c) > 0.0, g.stale * g.margin, g.margin)
         force = margin * (load + g.reserve) / mu_c + g.k_v * speed
         command = force = np.maximum(force, g.decay * level)
         limits = self.config.gripper.force_min, self.config.gripper.force_max
         if self.exploration is not None:
-            unknown = columns["confidence_mu_c"] < self.prior.confidence
             probes, lowered, lower, seen = self.exploration.act(
                 seen, level, load, speed, level > 0.0, unknown, limits
             )

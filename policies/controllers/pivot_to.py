@@ -49,6 +49,7 @@ class PivotToGains(Frozen):
     """Gains of `PivotToPolicy`."""
 
     k: Positive = Gain(11.0, "2 mu_c f_n over the weight while the object swings [-]")
+    k_probed: Positive = Gain(13.0, "The same after a probe, which has slid already [-]")
     arrive: NonNegative = Gain(2.0, "Rate at the goal for which the stroke goes [rad/s]")
     brake: Positive = Gain(0.8, "Torque at which braking begins, over the largest of friction [-]")
     still: Positive = Gain(0.2, "Rate below which the object is held [rad/s]")
@@ -134,13 +135,14 @@ class PivotToPolicy(GainPolicy[PivotToGains]):
         confidence = columns["confidence_r"]
         r = confidence * columns["r"] + (1.0 - confidence) * self.prior.r
         moment = past.weight * self._depth / self.config.physics.gravity
+        k = np.where(np.isinf(past.probed), self.gains.k, self.gains.k_probed)
         return Motion(
             goal=np.abs(columns["goal"]),
             angle=side * columns["measured_slip_theta"],
             rate=side * both(columns, "omega"),
             speed=-side * columns["wrist_velocity_x"],
             per_force=2.0 * self.prior.blend_lever(columns) / moment,
-            loose=self.gains.k * r * past.weight / moment,
+            loose=k * r * past.weight / moment,
         )
 
     def _ahead(self, motion: Motion, wrist: np.ndarray, columns: Columns, time: float) -> Motion:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from policies.controllers.base import Columns
-from policies.controllers.exploration import ActiveExploration
+from policies.controllers.exploration import DEVIATION, RATIO, ActiveExploration, ExplorationState
 from policies.controllers.hold import HoldPolicy
 from slipgym.envs import HoldEnv
 
@@ -92,13 +92,17 @@ def test_it_gives_up_where_nothing_is_learnt():
 
 
 def test_what_the_smallest_grip_holds_is_probed_no_further():
+    """Nothing slips and no estimator learns; the load that held shows how much friction there is at least."""
     env = HoldEnv(friction_source="estimated")
     policy = HoldPolicy()
     _, seen = play(env, policy, **CALM, mu_c=0.7, mu_s=1.0, object_mass=0.1)
     env.close()
     assert seen.slip.max() < 1e-6
     assert seen.force.min() < 0.7
-    assert seen.force[-1] == pytest.approx((0.05 * 9.81 + policy.gains.reserve) / policy.prior.mu_c, rel=0.06)
+    held = 0.05 * 9.81 / seen.force.min()
+    wanted = (0.05 * 9.81 + policy.gains.reserve) * RATIO / held
+    assert seen.force[-1] == pytest.approx(wanted, rel=0.1)
+    assert seen.force[-1] < 0.6 * (0.05 * 9.81 + policy.gains.reserve) / policy.prior.mu_c
 
 
 def columns(policy, **of_both):
@@ -117,6 +121,30 @@ def test_a_fall_of_the_load_is_a_slip_and_a_rise_is_none():
             _, state = policy.control(columns(policy, f_y=2.0), state)
         command, _ = policy.control(columns(policy, f_y=2.0 * change), state)
         assert (command[0] == policy.config.gripper.force_max) == caught
+
+
+def explored(held, known=True, deviation=0.25):
+    """Friction by an estimate of 0.5 with a deviation, or without an estimate, and by what held."""
+    shown: Any = {"mu_c": 0.5, "sd_mu_c": deviation, "confidence_mu_c": 0.02 * known}
+    shown = {name: np.array([value]) for name, value in shown.items()}
+    state = ExplorationState(*np.zeros((5, 1)))._replace(held=np.array([held]))
+    return state.corrected(np.array([0.5]), shown)[0]
+
+
+def test_what_held_counts_with_the_weight_of_its_variance():
+    weight = 0.5**2 / (0.5**2 + DEVIATION**2)
+    assert explored(0.26) == pytest.approx(0.5 ** (1.0 - weight) * 0.2**weight)
+    assert explored(0.26, known=False) == pytest.approx(0.2)
+    assert explored(0.0) == explored(0.26, deviation=0.0) == 0.5
+
+
+def test_a_grip_that_hardly_touches_shows_nothing():
+    state = ExplorationState(*np.zeros((5, 3)))
+    seen = state.holding(np.ones(3), np.array([0.1, 2.0, 2.0]), np.array([True, True, False]))
+    np.testing.assert_array_equal(seen.held, [0.0, 0.5, 0.0])
+    np.testing.assert_array_equal(
+        seen.holding(np.ones(3), np.full(3, 4.0), np.ones(3, bool)).held, [0.25, 0.5, 0.25]
+    )
 
 
 def test_memory_goes_by_rows():
