@@ -27,7 +27,7 @@ def main(
     jobs: Annotated[int, typer.Option(help="Runs at once; -1: one per core.")] = -1,
     episodes: Annotated[int, typer.Option(min=1, help="Of each policy and world.")] = 400,
 ) -> None:
-    """Train recurrent policies of Hold with and without estimates, print what they solve [%]: an hour."""
+    """Train recurrent policies of Hold with and without estimates, print what they solve [%]: some hours."""
     from lab.estimate_and_memory import table
     from policies.evaluation.frames import markdown
 
