@@ -7,9 +7,11 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
+import policies
 from policies.controllers.base import Columns
 from policies.controllers.exploration import DEVIATION, RATIO, ActiveExploration, ExplorationState
 from policies.controllers.hold import HoldPolicy
+from policies.evaluation.play import play_episodes
 from slipgym.envs import HoldEnv
 
 CALM = {"shake_amplitude": 0.0, "shake_pitch": 0.0, "poke_impulse": [0.0, 0.0], "duration": 1.0}
@@ -192,3 +194,11 @@ def test_the_probe_saves_most_of_the_force_that_the_truth_saves():
 def test_bad_values_are_named(bad):
     with pytest.raises(ValueError, match=next(iter(bad))):
         ActiveExploration(**bad)
+
+
+def test_a_light_object_that_the_smallest_grip_holds_lets_go_in_hinge():
+    """The exploration finds no slip, so no estimator learns: without what held none of these is solved."""
+    policy = policies.make("hinge")
+    options = [{"mu_c": 0.95, "mu_s": 1.2, "object_mass": mass} for mass in np.linspace(0.1, 0.12, 8)]
+    arguments = {**policies.modes(policy), "friction_source": "estimated", "level": "hard"}
+    assert play_episodes("hinge", policy, arguments, range(8), options).success.all()
