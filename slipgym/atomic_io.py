@@ -29,6 +29,7 @@ def write(path: Path, data: bytes) -> None:
     Raises:
         OSError: It cannot be written.
     """
+    _refuse_folder(path)
     with new_files(path.parent) as folder:
         (folder / path.name).write_bytes(data)
 
@@ -46,6 +47,7 @@ def new_file(path: Path) -> Iterator[Path]:
     Raises:
         OSError: It cannot be written.
     """
+    _refuse_folder(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     with new_files(path.parent) as folder:
         yield folder / path.name
@@ -127,9 +129,13 @@ def check_file(path: Path) -> None:
     Raises:
         OSError: It cannot, or the disk is full; the message names the path.
     """
+    _refuse_folder(path)
+    _try(path.parent, path.name)
+
+
+def _refuse_folder(path: Path) -> None:
     if os.path.isdir(path):
         raise IsADirectoryError(f"cannot write to {path}: it is a folder, name a file in it")
-    _try(path.parent, path.name)
 
 
 def _try(folder: Path, name: str) -> None:

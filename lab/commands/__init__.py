@@ -13,6 +13,7 @@ COMMANDS = {
     "fuzz": "Print errors of estimators in independent worlds.",
     "hidden-grippers": "Print how often the intervals of identify hold.",
     "imperfections": "Print what each imperfection of the sensors costs.",
+    "install-sizes": "Print what an installation takes.",
     "jumps": "Print how soon mu_c is right after friction jumps.",
     "live-bars": "Measure slipgym live under faults of its readings.",
     "pushes": "Compare the estimators on real pushes of a block.",

@@ -1,6 +1,7 @@
 """Files and folders are written whole or not at all."""
 
 import os
+import re
 import stat
 from pathlib import Path
 
@@ -135,6 +136,15 @@ def test_a_file_whose_name_has_no_room_or_is_a_folders_is_refused(tmp_path):
         with pytest.raises(OSError, match="cannot write to"):
             atomic_io.check_file(tmp_path / name)
     assert os.listdir(tmp_path) == ["folder"]
+
+
+def test_a_folder_in_place_of_a_file_is_named_as_the_user_did(tmp_path):
+    said = re.escape(f"cannot write to {tmp_path}: it is a folder")
+    with pytest.raises(IsADirectoryError, match=said), atomic_io.new_file(tmp_path) as path:
+        path.write_bytes(b"never")
+    with pytest.raises(IsADirectoryError, match=said):
+        atomic_io.write(tmp_path, b"never")
+    assert os.listdir(tmp_path) == []
 
 
 @pytest.mark.parametrize("error", [PermissionError(13, "Permission denied"), OSError(28, "No space left")])
