@@ -54,7 +54,7 @@ def rounded(text: str) -> float:
 
 def points(mean: str, low: str, high: str) -> str:
     """A gain; bold if its interval leaves 0 out."""
-    shown = f"{rounded(mean):+.0f}".replace("-", "−")
+    shown = f"{rounded(mean):+.0f}".replace("-", "−") if rounded(mean) else "0"
     return f"**{shown}**" if number(low) * number(high) > 0.0 else shown
 
 
