@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from lab.commands.options import application, wrong_arguments
+from policies.commands.several import Jobs
 
 EPILOG = """
 Examples:\n
@@ -31,7 +32,7 @@ def main(
     runs: Annotated[Path, typer.Option(help="Folder of finished runs; what it lacks is trained.")] = Path(
         "runs/seeds"
     ),
-    jobs: Annotated[int, typer.Option(help="Runs at once; -1: one per core.")] = -1,
+    jobs: Jobs = -1,
     episodes: Annotated[int, typer.Option(min=1, help="Of each policy.")] = 400,
 ) -> None:
     """Train with several seeds and print what the policies solve [%]: some hours."""

@@ -15,8 +15,9 @@ lag of 12 ms the force then swings between 0.9 and 1.5 levels and comes back by 
 which about halves the slip of a smooth ramp. An estimator learns from a slip that reaches from one window
 of the slip sensor into the next. The shortest do not, so the exploration goes on until it has learnt.
 
-**What it shows by itself.** The largest load over normal force that held is mu_s if the object slipped, and
-less than that if the smallest grip holds a light object. It counts beside the first, uncertain estimates.
+**What it shows by itself.** The largest load over normal force is about mu_s if the object slipped, and less
+than that if the smallest grip holds a light object. It counts beside uncertain estimates. mu_c follows from
+it by an assumed ratio of mu_s to mu_c; where the true one is far larger, Hinge drops objects.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ from policies.controllers.sensing import relative
 from policies.controllers.slip_memory import combined, weight_of
 
 RATIO = 1.3  # mu_s over mu_c, that of the estimators' start values
-DEVIATION = 0.1  # Of load over normal force that held, over RATIO, relative: half the range of the ratio
+DEVIATION = 0.1  # Of what held over RATIO, as an estimate of mu_c, relative: half of the ratios 1.1 to 1.4
 _OPEN = {"slips": (0, np.inf), "keep": (0, 1), "low": (0, 1), "high": (1, np.inf), "catch": (1, np.inf)}
 
 
@@ -43,18 +44,18 @@ class ExplorationState(NamedTuple):
     slips: np.ndarray  # slips caught so far
     rest: np.ndarray  # control steps that the grip still rests after a slip
     high: np.ndarray  # whether the last command of an exploration was the high one, 0 or 1
-    held: np.ndarray  # largest load over normal force that held [-]
+    held: np.ndarray  # largest load over normal force while friction was unknown [-]
 
     def holding(self, load: np.ndarray, normal: np.ndarray, unknown: np.ndarray) -> ExplorationState:
         """The memory after another observation: load and normal force per finger, (n,) each [N].
 
-        It counts where friction is unknown, from the first grip on, which holds.
+        It counts where friction is unknown.
         """
         counts, ratio = unknown & (normal > LEAST_GRIP), load / np.maximum(normal, LEAST_GRIP)
         return self._replace(held=np.where(counts, np.maximum(self.held, ratio), self.held))
 
     def corrected(self, mu_c: np.ndarray, columns: Columns) -> np.ndarray:
-        """Friction by an estimate and by what held, each with the weight of its variance, (n,).
+        """Friction by an estimate and by what held, the more certain one with more weight, (n,).
 
         Args:
             mu_c: By the estimate, or assumed where there is none, (n,) [-].

@@ -61,11 +61,10 @@ class HingePolicy(GainPolicy[HingeGains]):
 
     So friction has to be known before the turn. While the wrist still rests, the grip is lowered until the
     object slips a little (`policies.controllers.exploration`), until the estimate has the confidence `known`.
-    That suits estimators whose first update gives the answer; with "rls" choose known=0. Where friction is
-    unknown, k is k_blind, with the prior's mu_c. If friction still holds at the tilt `release`, it is larger
-    than that, and the grip falls with the tilt from there, so that it lets go in time. What the exploration
-    itself shows counts beside the estimate: a slip may be too short for an estimator, and the smallest grip
-    may hold a light object.
+    What the exploration itself shows counts beside the estimate: a slip may be too short for an estimator,
+    and the smallest grip may hold a light object. Without exploration k is k_blind, with the prior's mu_c,
+    for as long as friction is unknown. If friction still holds at the tilt `release`, it is larger than that,
+    and the grip falls with the tilt from there, so that it lets go in time.
 
     Arguments are those of `GainPolicy`. Its own prior counts for as long as friction is explored, and without
     exploration for longer than elsewhere, as the first samples after the break-away of a turn, near static

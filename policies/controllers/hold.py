@@ -60,10 +60,6 @@ class HoldPolicy(GainPolicy[HoldGains]):
     (`policies.controllers.friction_fall`), whatever the estimator makes of it. Such slips mostly begin with a
     push; so for one control step after any push, a fast rise of the load, the grip is braced.
 
-    Exploration suits estimators whose first update gives the answer, "adaptive", "disc" and "joint". "rls"
-    and "ukf" converge step by step from a start value; after a slip or two their estimate holds less than the
-    load.
-
     Args:
         gains: See `HoldGains`; each is a keyword argument of its own, too.
         exploration: How to explore; None: not at all, for as long as it does not slip by itself.

@@ -49,7 +49,7 @@ class PivotToGains(Frozen):
     """Gains of `PivotToPolicy`."""
 
     k: Positive = Gain(11.0, "2 mu_c f_n over the weight while the object swings [-]")
-    k_probed: Positive = Gain(13.0, "The same after a probe, which has slid already [-]")
+    k_probed: Positive = Gain(13.0, "The same where friction was unknown and a probe has slid the object [-]")
     arrive: NonNegative = Gain(2.0, "Rate at the goal for which the stroke goes [rad/s]")
     brake: Positive = Gain(0.8, "Torque at which braking begins, over the largest of friction [-]")
     still: Positive = Gain(0.2, "Rate below which the object is held [rad/s]")

@@ -48,19 +48,19 @@ def remembered(columns: Columns, past: SlipState, r: np.ndarray | float, gains: 
 
 
 def weight_of(shown: np.ndarray, deviation: np.ndarray, own: float) -> np.ndarray:
-    """Weight of what the last slip showed against an estimate: that of the least variance, (n,) in [0, 1].
+    """Weight of what forces showed against an estimate, by their variances, (n,) in [0, 1].
 
     Args:
-        shown: What the last slip showed, (n,); 0 before the first.
+        shown: Friction by the forces in a slip or while the object held, (n,); 0: none yet.
         deviation: Relative standard deviation of the estimate, (n,) [-]; 0 for friction that is known.
-        own: That of what a slip shows [-].
+        own: That of `shown` [-].
     """
     square = deviation**2
     return np.where(shown > 0.0, square / np.maximum(square + own**2, 1e-30), 0.0)
 
 
 def combined(estimate: np.ndarray, shown: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Weighted geometric mean of an estimate and what the last slip showed, (n,)."""
+    """Weighted geometric mean of an estimate and what forces showed, (n,)."""
     return np.where(weight > 0.0, estimate ** (1.0 - weight) * np.maximum(shown, 1e-12) ** weight, estimate)
 
 
@@ -76,7 +76,8 @@ class SlipMemory:
     When the slip velocity rises, load over normal force is taken for mu_c, `ratio` times it for mu_s and the
     controller's prior for r, each in full confidence; before the first slip the controller reads friction
     values with confidence 0. It is the simplest policy that sees sensors alone and adapts: an opponent of the
-    estimators. A controller that remembers slips by itself, as those that lift do, always reads confidence 0.
+    estimators. A controller that remembers slips by itself, as those that lift and Hinge do, always reads
+    confidence 0, and no gain has an effect.
 
     Args:
         controller: A name of `policies.names()` or "module:class": a controller with gains and a prior.
