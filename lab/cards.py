@@ -13,11 +13,17 @@ from policies.policy_leaderboard.entries import Member
 from slipgym.tasks import find
 
 
+def columns() -> list[tuple[str, run.World, str | None]]:
+    """Column of the table -> world, level; None: that of a policy's training."""
+    return [("easy", run.WORLDS[0], "easy"), *((world.name, world, None) for world in run.WORLDS)]
+
+
 def cards(names: Sequence[str], episodes: int, progress: bool = True) -> pd.DataFrame:
     """A row for each policy.
 
     Args:
-        names: Of policies that come with slipgym; none: all of them.
+        names: Of policies that come with slipgym; none: all of them. A policy has the sensors of its training
+            in every world; one that was trained with the realistic ones has those of "lab" in that world.
         episodes: In each world; see `policies.policy_leaderboard.run`.
         progress: Whether to show a progress bar.
 
@@ -35,10 +41,12 @@ def cards(names: Sequence[str], episodes: int, progress: bool = True) -> pd.Data
         where, origin = policy.description.environment, policy.description.origin
         task, level = find(where.id).name, str(where.arguments["level"])
         source = str(where.arguments["friction_source"])
-        member = Member(name, policy, {"friction_source": source, **policy.modes})
-        played = {"easy": run.play_in(run.WORLDS[0], task, "easy", member, episodes, {})}
-        for world in run.WORLDS:
-            played[world.name] = run.play_in(world, task, level, member, episodes, {})
+        sensors, own = where.arguments["sensors"], {"randomization": where.arguments["randomization"]}
+        played = {}
+        for column, world, difficulty in columns():
+            read = {} if (sensors, world.name) == ("realistic", "lab") else {"sensors": sensors}
+            member = Member(name, policy, {"friction_source": source, **policy.modes, **read})
+            played[column] = run.play_in(world, task, difficulty or level, member, episodes, own)
         rows.append(
             {
                 "policy": name,

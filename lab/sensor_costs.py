@@ -14,6 +14,7 @@ import typer
 
 from lab.commands.options import wrong_arguments
 from policies.policy_leaderboard.entries import (
+    LEARNED,
     Member,
     best_constant,
     controllers,
@@ -29,6 +30,8 @@ from slipgym.tasks import find
 PRESETS = "realistic", "lab", "markers", "wrist", "motor"
 TASKS = "Hold", "FragileHold", "Carry"
 SHOWN = "controller, estimated", "controller, none"
+KINDS = LEARNED | {"markers": "recurrent, trained on markers", "wrist": "recurrent, trained on wrist"}
+"""Kinds of policies that come with slipgym, as `LEARNED` has them."""
 
 
 def members(task: str, arguments: dict[str, str], episodes: int, names: list[str]) -> list[Member]:
@@ -37,7 +40,7 @@ def members(task: str, arguments: dict[str, str], episodes: int, names: list[str
     own = [each for each in controllers(key) if each.name in SHOWN]
     with contextlib.suppress(ValueError):  # these sensors measure no slip
         own.append(remembering(task, arguments, episodes))
-    own += [each for each in learned(key) if each.arguments["friction_source"] == "none"]
+    own += [each for each in learned(key, KINDS) if each.arguments["friction_source"] == "none"]
     return [best_constant(task, arguments, episodes), *own, *entered(names, "none")]
 
 

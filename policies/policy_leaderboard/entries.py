@@ -84,10 +84,10 @@ def remembering(task: str, arguments: Mapping[str, Any], episodes: int) -> Membe
     return strongest(task, members, arguments, _selection(episodes))
 
 
-def learned(key: str) -> list[Member]:
-    """The policies that come with slipgym for the task of a key."""
+def learned(key: str, kinds: Mapping[str, str] = LEARNED) -> list[Member]:
+    """The policies of some kinds, as `LEARNED` has them, that come with slipgym for the task of a key."""
     members, shipped = [], pretrained.folders()
-    for ending, called in LEARNED.items():
+    for ending, called in kinds.items():
         if (name := f"{key}_{ending}") in shipped:
             policy = LearnedPolicy(shipped[name])
             source = str(policy.description.environment.arguments.get("friction_source", "estimated"))

@@ -3,9 +3,11 @@
 import pytest
 from typer.testing import CliRunner
 
+import policies
 from lab import cards
 from lab.commands.cards import app
 from lab.model_cards import solved
+from policies.evaluation.play import play_episodes
 from policies.policy_leaderboard import run
 from policies.policy_leaderboard.run import WORLDS
 
@@ -18,6 +20,14 @@ def test_a_card_says_what_a_policy_is_given_and_solves(monkeypatch):
     assert row["CPU [s]"] > 10.0
     assert list(row.index)[4:] == ["easy", "itself", "train", "dropped"]
     assert row["itself"] > 80.0 >= row["dropped"]
+
+
+def test_a_policy_has_the_sensors_of_its_training(monkeypatch):
+    monkeypatch.setattr(run, "WORLDS", WORLDS[:1])
+    policy = policies.load("hold_lab")
+    where = {**policy.modes, "friction_source": "none", "sensors": "lab", "level": "hard"}
+    played = play_episodes("Hold", policy, where, range(20))
+    assert cards.cards(["hold_lab"], 20, progress=False)["itself"].item() == 100.0 * played.success.mean()
 
 
 def test_an_unknown_policy_is_named():
