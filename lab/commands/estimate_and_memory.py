@@ -28,7 +28,7 @@ def main(
     jobs: Jobs = -1,
     episodes: Annotated[int, typer.Option(min=1, help="Of each policy and world.")] = 400,
 ) -> None:
-    """Train recurrent policies of Hold with and without estimates, print what they solve [%]: some hours."""
+    """Train policies of Hold with and without estimates, print what they solve [%]: about an hour."""
     from lab.estimate_and_memory import table
     from policies.evaluation.frames import markdown
 
