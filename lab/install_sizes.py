@@ -40,7 +40,8 @@ def table(pythons: Sequence[str], extras: Sequence[str] = EXTRAS) -> pd.DataFram
     for extra in extras:
         row: dict[str, object] = {"extra": extra or "none"}
         for python in pythons:
-            found = installed(python, ["-c", str(ROOT / "constraints.txt"), f"{ROOT}[{extra}]"])
+            package = f"{ROOT}[{extra}]" if extra else str(ROOT)
+            found = installed(python, ["-c", str(ROOT / "constraints.txt"), package])
             row |= {f"{python} [MB]": found.size, f"{python} [s]": found.time}
         rows.append(row)
     return pd.DataFrame(rows)

@@ -46,9 +46,9 @@ def test_a_row_for_each_extra_a_column_for_each_python(monkeypatch):
     found = install_sizes.table(["python1", "python2"], ["", "cli"])
     expected = {
         "extra": ["none", "cli"],
-        "python1 [MB]": [200.0, 500.0],
+        "python1 [MB]": [0.0, 500.0],
         "python1 [s]": [1.0, 1.0],
-        "python2 [MB]": [200.0, 500.0],
+        "python2 [MB]": [0.0, 500.0],
         "python2 [s]": [2.0, 2.0],
     }
     pd.testing.assert_frame_equal(found, pd.DataFrame(expected))
