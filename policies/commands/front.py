@@ -45,9 +45,9 @@ LABORATORY = "lab.commands"
 """Sub-commands that only a clone of the repository has."""
 OF_THE_LABORATORY = {
     "benchmark-parts", "cards", "closed-loop", "compare-engines", "compare-estimators", "compare-simulators",
-    "delays", "estimator-costs", "fuzz", "hidden-grippers", "imperfections", "jumps", "live-bars", "pushes",
-    "rank", "reproduce", "seeds", "sensor-bounds", "sensor-costs", "ship", "study-report", "train-estimator",
-    "validate-parts", "validate-real",
+    "delays", "estimate-and-memory", "estimator-costs", "fuzz", "hidden-grippers", "imperfections",
+    "install-sizes", "jumps", "live-bars", "pushes", "rank", "reproduce", "seeds", "sensor-bounds",
+    "sensor-costs", "ship", "study-report", "train-estimator", "validate-parts", "validate-real",
 }  # fmt: skip
 """Their names, for a message where they are not installed."""
 EPILOG = """
