@@ -13,11 +13,6 @@ from policies.policy_leaderboard.entries import Member
 from slipgym.tasks import find
 
 
-def columns() -> list[tuple[str, run.World, str | None]]:
-    """Column of the table -> world, level; None: that of a policy's training."""
-    return [("easy", run.WORLDS[0], "easy"), *((world.name, world, None) for world in run.WORLDS)]
-
-
 def cards(names: Sequence[str], episodes: int, progress: bool = True) -> pd.DataFrame:
     """A row for each policy.
 
@@ -42,11 +37,12 @@ def cards(names: Sequence[str], episodes: int, progress: bool = True) -> pd.Data
         task, level = find(where.id).name, str(where.arguments["level"])
         source = str(where.arguments["friction_source"])
         sensors, own = where.arguments["sensors"], {"randomization": where.arguments["randomization"]}
+        shown = [("easy", "easy", run.WORLDS[0]), *((world.name, level, world) for world in run.WORLDS)]
         played = {}
-        for column, world, difficulty in columns():
+        for column, difficulty, world in shown:
             read = {} if (sensors, world.name) == ("realistic", "lab") else {"sensors": sensors}
             member = Member(name, policy, {"friction_source": source, **policy.modes, **read})
-            played[column] = run.play_in(world, task, difficulty or level, member, episodes, own)
+            played[column] = run.play_in(world, task, difficulty, member, episodes, own)
         rows.append(
             {
                 "policy": name,

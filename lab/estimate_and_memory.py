@@ -41,7 +41,7 @@ WORLDS: dict[str, dict[str, Any]] = {
 }
 """Where the policies are evaluated, without learning there -> arguments of the environments."""
 AIM = 0.45
-"""Solved share of held-out episodes; the steps to it are counted. Most trainings reach it, no start does."""
+"""Solved share of held-out episodes; the steps to the first evaluation with it are counted."""
 
 
 def table(seeds: Sequence[int], root: Path, jobs: int, episodes: int) -> pd.DataFrame:

@@ -30,7 +30,7 @@ from slipgym.tasks import find
 PRESETS = "realistic", "lab", "markers", "wrist", "motor"
 TASKS = "Hold", "FragileHold", "Carry"
 SHOWN = "controller, estimated", "controller, none"
-KINDS = LEARNED | {"markers": "recurrent, trained on markers", "wrist": "recurrent, trained on wrist"}
+KINDS = LEARNED | {"markers": "recurrent, trained on markers"}
 """Kinds of policies that come with slipgym, as `LEARNED` has them."""
 
 

@@ -29,5 +29,5 @@ def main(
     try:
         found = table(python or ["python3.11", "python3.12", "python3.13"])
     except (OSError, subprocess.CalledProcessError) as error:
-        raise typer.BadParameter(str(error), param_hint="--python") from error
+        raise typer.BadParameter(str(error)) from error
     typer.echo(markdown(found, 0))

@@ -33,7 +33,7 @@ from policies.controllers.sensing import relative
 from policies.controllers.slip_memory import combined, weight_of
 
 RATIO = 1.3  # mu_s over mu_c, that of the estimators' start values
-DEVIATION = 0.1  # Of what held over RATIO, as an estimate of mu_c, relative: half of the ratios 1.1 to 1.4
+DEVIATION = 0.1  # Of held / RATIO as an estimate of mu_c, relative, where mu_s / mu_c is 1.1 to 1.4
 _OPEN = {"slips": (0, np.inf), "keep": (0, 1), "low": (0, 1), "high": (1, np.inf), "catch": (1, np.inf)}
 
 
