@@ -16,8 +16,9 @@ which about halves the slip of a smooth ramp. An estimator learns from a slip th
 of the slip sensor into the next. The shortest do not, so the exploration goes on until it has learnt.
 
 **What it shows by itself.** The largest load over normal force is about mu_s if the object slipped, and less
-than that if the smallest grip holds a light object. It counts beside uncertain estimates. mu_c follows from
-it by an assumed ratio of mu_s to mu_c; where the true one is far larger, Hinge drops objects.
+than that if the smallest grip holds a light object. mu_c follows from it by an assumed ratio of mu_s to mu_c;
+where the true one is far larger, Hinge drops objects. It counts beside uncertain estimates. Without an
+estimate it can only raise the assumed friction: it is a lower bound if nothing slipped.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from policies.controllers.sensing import relative
 from policies.controllers.slip_memory import combined, weight_of
 
 RATIO = 1.3  # mu_s over mu_c, that of the estimators' start values
-DEVIATION = 0.1  # Of held / RATIO as an estimate of mu_c, relative, where mu_s / mu_c is 1.1 to 1.4
+DEVIATION = 0.15  # Of held / RATIO from mu_c, relative: 0.11 by ratios of 1.1 to 1.6, and sensors
 _OPEN = {"slips": (0, np.inf), "keep": (0, 1), "low": (0, 1), "high": (1, np.inf), "catch": (1, np.inf)}
 
 
@@ -57,13 +58,15 @@ class ExplorationState(NamedTuple):
     def corrected(self, mu_c: np.ndarray, columns: Columns) -> np.ndarray:
         """Friction by an estimate and by what held, the more certain one with more weight, (n,).
 
+        Without an estimate it is the larger one of the assumed friction and what held.
+
         Args:
             mu_c: By the estimate, or assumed where there is none, (n,) [-].
             columns: n observations.
         """
         shown, spread = self.held / RATIO, relative(columns, "mu_c", columns["mu_c"])
-        weight = weight_of(shown, spread, DEVIATION)
-        return combined(mu_c, shown, np.where(columns["confidence_mu_c"] > 0.0, weight, np.sign(shown)))
+        both = combined(mu_c, shown, weight_of(shown, spread, DEVIATION))
+        return np.where(columns["confidence_mu_c"] > 0.0, both, np.maximum(mu_c, shown))
 
 
 @dataclass(frozen=True)

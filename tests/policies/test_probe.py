@@ -136,8 +136,13 @@ def explored(held, known=True, deviation=0.25):
 def test_what_held_counts_with_the_weight_of_its_variance():
     weight = 0.5**2 / (0.5**2 + DEVIATION**2)
     assert explored(0.26) == pytest.approx(0.5 ** (1.0 - weight) * 0.2**weight)
-    assert explored(0.26, known=False) == pytest.approx(0.2)
     assert explored(0.0) == explored(0.26, deviation=0.0) == 0.5
+
+
+def test_what_held_only_raises_a_friction_that_is_assumed():
+    """The object may not have slipped, then it is a lower bound."""
+    assert explored(0.26, known=False) == explored(0.0, known=False) == 0.5
+    assert explored(1.3, known=False) == pytest.approx(1.0)
 
 
 def test_a_grip_that_hardly_touches_shows_nothing():
