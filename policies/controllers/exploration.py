@@ -18,7 +18,8 @@ of the slip sensor into the next. The shortest do not, so the exploration goes o
 **What it shows by itself.** The largest load over normal force is about mu_s if the object slipped, and less
 than that if the smallest grip holds a light object. mu_c follows from it by an assumed ratio of mu_s to mu_c;
 where the true one is far larger, Hinge drops objects. It counts beside uncertain estimates. Without an
-estimate it can only raise the assumed friction: it is a lower bound if nothing slipped.
+estimate it takes the place of the assumed friction: in Hinge, which drops by too loose a grip, always; in
+Hold, which fails by too firm a one, only if it is larger.
 """
 
 from __future__ import annotations
@@ -55,18 +56,18 @@ class ExplorationState(NamedTuple):
         counts, ratio = unknown & (normal > LEAST_GRIP), load / np.maximum(normal, LEAST_GRIP)
         return self._replace(held=np.where(counts, np.maximum(self.held, ratio), self.held))
 
-    def corrected(self, mu_c: np.ndarray, columns: Columns) -> np.ndarray:
+    def corrected(self, mu_c: np.ndarray, columns: Columns, least: np.ndarray | float = 0.0) -> np.ndarray:
         """Friction by an estimate and by what held, the more certain one with more weight, (n,).
-
-        Without an estimate it is the larger one of the assumed friction and what held.
 
         Args:
             mu_c: By the estimate, or assumed where there is none, (n,) [-].
             columns: n observations.
+            least: Without an estimate what held counts if it is larger than this [-].
         """
         shown, spread = self.held / RATIO, relative(columns, "mu_c", columns["mu_c"])
         both = combined(mu_c, shown, weight_of(shown, spread, DEVIATION))
-        return np.where(columns["confidence_mu_c"] > 0.0, both, np.maximum(mu_c, shown))
+        alone = np.where(shown > least, shown, mu_c)
+        return np.where(columns["confidence_mu_c"] > 0.0, both, alone)
 
 
 @dataclass(frozen=True)

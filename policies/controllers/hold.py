@@ -104,12 +104,12 @@ class HoldPolicy(GainPolicy[HoldGains]):
         unknown = columns["confidence_mu_c"] < self.prior.confidence
         if self.exploration is not None:
             seen = seen.holding(load, normal, unknown & (level > 0.0))
-        mu_c = seen.corrected(self.prior.hold(columns, "mu_c"), columns)
+        assumed = self.prior.hold(columns, "mu_c")
+        mu_c = seen.corrected(assumed, columns, least=assumed)
         settled = (level > 0.0) & (columns["confidence_mu_c"] >= self.prior.confidence)
         known = settled & (seen.rest == 0.0) & (g.doubt > 0.0)
-        assumed = g.doubt * mu_c
         slip = columns["measured_slip_x"], columns["measured_slip_y"]
-        catch, fall = friction_fall.notice(past, load, normal, speed, slip, assumed, known)
+        catch, fall = friction_fall.notice(past, load, normal, speed, slip, g.doubt * mu_c, known)
         mu_c = np.minimum(mu_c, fall.bound)
         margin = np.where(relative(columns, "mu_c", mu_c) > 0.0, g.stale * g.margin, g.margin)
         force = margin * (load + g.reserve) / mu_c + g.k_v * speed

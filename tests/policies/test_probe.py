@@ -125,12 +125,12 @@ def test_a_fall_of_the_load_is_a_slip_and_a_rise_is_none():
         assert (command[0] == policy.config.gripper.force_max) == caught
 
 
-def explored(held, known=True, deviation=0.25):
+def explored(held, known=True, deviation=0.25, least=0.0):
     """Friction by an estimate of 0.5 with a deviation, or without an estimate, and by what held."""
     shown: Any = {"mu_c": 0.5, "sd_mu_c": deviation, "confidence_mu_c": 0.02 * known}
     shown = {name: np.array([value]) for name, value in shown.items()}
     state = ExplorationState(*np.zeros((5, 1)))._replace(held=np.array([held]))
-    return state.corrected(np.array([0.5]), shown)[0]
+    return state.corrected(np.array([0.5]), shown, least)[0]
 
 
 def test_what_held_counts_with_the_weight_of_its_variance():
@@ -139,10 +139,10 @@ def test_what_held_counts_with_the_weight_of_its_variance():
     assert explored(0.0) == explored(0.26, deviation=0.0) == 0.5
 
 
-def test_what_held_only_raises_a_friction_that_is_assumed():
-    """The object may not have slipped, then it is a lower bound."""
-    assert explored(0.26, known=False) == explored(0.0, known=False) == 0.5
-    assert explored(1.3, known=False) == pytest.approx(1.0)
+def test_without_an_estimate_what_held_counts_from_the_least_on():
+    assert explored(0.26, known=False) == pytest.approx(0.2)
+    assert explored(0.0, known=False) == explored(0.26, known=False, least=0.5) == 0.5
+    assert explored(1.3, known=False, least=0.5) == pytest.approx(1.0)
 
 
 def test_a_grip_that_hardly_touches_shows_nothing():
