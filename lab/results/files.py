@@ -29,9 +29,9 @@ def path(result: Result) -> Path:
 
 
 def commit() -> str:
-    """The commit of the working tree; " + changes" follows if tracked files outside docs/results differ."""
+    """The commit of the working tree; " + changes" follows if tracked files outside docs differ."""
     name = _git("rev-parse", "--short=10", "HEAD")
-    changed = _git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/results")
+    changed = _git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs")
     return f"{name} + changes" if changed else name
 
 

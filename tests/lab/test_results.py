@@ -76,10 +76,12 @@ def test_the_pictures_of_a_run_are_taken(folder, monkeypatch):
         files.write(drawing, ["1 m/s\n"], "0123abcd")
 
 
-def test_a_tree_with_changes_is_marked(folder):
-    (folder / "file").write_text("a")
-    subprocess.run(["git", "add", "file"], cwd=folder, check=True)
-    assert files.commit().endswith(" + changes")
+def test_a_tree_with_changes_is_marked_but_not_for_pages_and_pictures(folder):
+    for name, marked in (("docs/images/table.png", False), ("file", True)):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text("a")
+        subprocess.run(["git", "add", name], cwd=folder, check=True)
+        assert files.commit().endswith(" + changes") == marked
 
 
 def test_a_failure_keeps_the_file_and_goes_on(folder, capfd):
