@@ -35,7 +35,7 @@ from policies.controllers.sensing import relative
 from policies.controllers.slip_memory import combined, weight_of
 
 RATIO = 1.3  # mu_s over mu_c, that of the estimators' start values
-DEVIATION = 0.15  # Of held / RATIO from mu_c, relative: 0.11 by ratios of 1.1 to 1.6, and sensors
+DEVIATION = 0.15  # Of held / RATIO from mu_c, relative: 0.11 by ratios from 1.1 to 1.6, the rest by sensors
 _OPEN = {"slips": (0, np.inf), "keep": (0, 1), "low": (0, 1), "high": (1, np.inf), "catch": (1, np.inf)}
 
 
