@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "results"
 INDEX = FOLDER / "README.md"
 IMAGES = ROOT / "docs" / "images"
-LIBRARIES = ("numpy", "numba", "gymnasium", "pybullet", "torch")
+LIBRARIES = ("numpy", "numba", "gymnasium", "pybullet", "torch", "mujoco", "drake", "newton")
 """Libraries whose versions stand in the head."""
 LAST = "Look at:"
 """Line from which the commands print paths of the machine."""
