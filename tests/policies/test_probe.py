@@ -11,6 +11,7 @@ import policies
 from policies.controllers.base import Columns
 from policies.controllers.exploration import DEVIATION, RATIO, ActiveExploration, ExplorationState
 from policies.controllers.hold import HoldPolicy
+from policies.controllers.slip_memory import SlipMemory
 from policies.evaluation.play import play_episodes
 from slipgym.envs import HoldEnv
 
@@ -207,3 +208,11 @@ def test_a_light_object_that_the_smallest_grip_holds_lets_go_in_hinge():
     options = [{"mu_c": 0.95, "mu_s": 1.2, "object_mass": mass} for mass in np.linspace(0.1, 0.12, 8)]
     arguments = {**policies.modes(policy), "friction_source": "estimated", "level": "hard"}
     assert play_episodes("hinge", policy, arguments, range(8), options).success.all()
+
+
+def test_a_slippery_object_does_not_fall_in_hinge_without_estimates():
+    """The memory of slips acts on what held alone, which is less than the assumed friction here."""
+    policy = SlipMemory("hinge")
+    options = [{"mu_c": mu_c, "mu_s": 1.2 * mu_c} for mu_c in np.linspace(0.15, 0.2, 8)]
+    arguments = {**policies.modes(policy), "friction_source": "none", "level": "standard"}
+    assert not play_episodes("hinge", policy, arguments, range(8), options).dropped.any()
