@@ -24,10 +24,10 @@ def test_a_card_says_what_a_policy_is_given_and_solves(monkeypatch):
 
 def test_a_policy_has_the_sensors_of_its_training(monkeypatch):
     monkeypatch.setattr(run, "WORLDS", WORLDS[:1])
-    policy = policies.load("hold_lab")
+    policy = policies.load("hinge_lab")
     where = {**policy.modes, "friction_source": "none", "sensors": "lab", "level": "hard"}
-    played = play_episodes("Hold", policy, where, range(20))
-    assert cards.cards(["hold_lab"], 20, progress=False)["itself"].item() == 100.0 * played.success.mean()
+    played = play_episodes("Hinge", policy, where, range(20))
+    assert cards.cards(["hinge_lab"], 20, progress=False)["itself"].item() == 100.0 * played.success.mean()
 
 
 def test_an_unknown_policy_is_named():
