@@ -147,7 +147,7 @@ class Condition:
     block: int
     episodes: int
     frame_skip: int = 1
-    """Control steps per action, the same for all policies of a task but the recurrent ones."""
+    """Control steps per action, the same for all policies of a task but the recurrent ones of slipgym."""
 
     @property
     def keys(self) -> dict[str, Any]:
@@ -200,9 +200,19 @@ def conditions(study: Study, learned: Shelf) -> list[Condition]:
     Raises:
         ValueError: Learned policies of a task act at different rates: they cannot be compared.
     """
+    own = {
+        str(path)
+        for (_, _, source), seeds in learned.items()
+        for path in seeds.values()
+        if source == "none" and path.parent == pretrained.FOLDER
+    }  # recurrent ones: they act at the rate of their training, as those of the kind "recurrent" do
     skips = {
         task: common_frame_skip(
-            str(path) for (_, of, _), seeds in learned.items() if of == task for path in seeds.values()
+            str(path)
+            for (_, of, _), seeds in learned.items()
+            if of == task
+            for path in seeds.values()
+            if str(path) not in own
         )
         for task in study.tasks
     }
@@ -213,7 +223,7 @@ def conditions(study: Study, learned: Shelf) -> list[Condition]:
         for estimator in (estimators if source == "estimated" else study.estimators[:1])
         for block in range(study.blocks)
         for policy in _policy(task, kind, source, block, learned)
-        for skip in [common_frame_skip([policy]) if kind == "recurrent" else skips[task]]
+        for skip in [common_frame_skip([policy]) if kind == "recurrent" or policy in own else skips[task]]
     ]
 
 

@@ -99,6 +99,14 @@ def test_learned_policies_that_come_with_slipgym(small, shelf, sensors, untold):
     }
 
 
+def test_a_policy_that_comes_with_slipgym_and_remembers_acts_at_its_own_rate(small):
+    changes = {"kinds": ["classic", "learned"], "sensors": "lab", "learned": "", "config": {}}
+    study = small(tasks=["FragileHold"], **changes)
+    rates = {(one.kind, one.source): one.frame_skip for one in conditions(study, policies_of(study))}
+    assert rates["learned", "none"] == 1  # fragile_hold_lab
+    assert {rates["learned", "true"], rates["classic", "none"]} == {2}
+
+
 def test_learned_policies_as_training_left_them(small, shelf):
     runs = [
         f"linear_slip__ppo__20260101/{source}__{seed}/policy"
