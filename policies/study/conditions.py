@@ -200,19 +200,19 @@ def conditions(study: Study, learned: Shelf) -> list[Condition]:
     Raises:
         ValueError: Learned policies of a task act at different rates: they cannot be compared.
     """
-    own = {
+    remembering = {
         str(path)
         for (_, _, source), seeds in learned.items()
         for path in seeds.values()
         if source == "none" and path.parent == pretrained.FOLDER
-    }  # recurrent ones: they act at the rate of their training, as those of the kind "recurrent" do
+    }  # those that come with slipgym act at the rate of their training, as the kind "recurrent" does
     skips = {
         task: common_frame_skip(
             str(path)
             for (_, of, _), seeds in learned.items()
             if of == task
             for path in seeds.values()
-            if str(path) not in own
+            if str(path) not in remembering
         )
         for task in study.tasks
     }
@@ -223,7 +223,8 @@ def conditions(study: Study, learned: Shelf) -> list[Condition]:
         for estimator in (estimators if source == "estimated" else study.estimators[:1])
         for block in range(study.blocks)
         for policy in _policy(task, kind, source, block, learned)
-        for skip in [common_frame_skip([policy]) if kind == "recurrent" or policy in own else skips[task]]
+        for alone in [kind == "recurrent" or policy in remembering]
+        for skip in [common_frame_skip([policy]) if alone else skips[task]]
     ]
 
 
