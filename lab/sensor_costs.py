@@ -30,7 +30,7 @@ from slipgym.tasks import find
 PRESETS = "realistic", "lab", "markers", "wrist", "motor"
 TASKS = "Hold", "FragileHold", "Carry"
 SHOWN = "controller, estimated", "controller, none"
-KINDS = LEARNED | {"markers": "recurrent, trained on markers"}
+KINDS = LEARNED | {name: f"recurrent, trained on {name}" for name in ("markers", "wrist")}
 """Kinds of policies that come with slipgym, as `LEARNED` has them."""
 
 

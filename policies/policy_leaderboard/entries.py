@@ -31,6 +31,7 @@ LEARNED = {
     "scratch": "learned from nothing",
     "memory": "recurrent",
     "lab": "recurrent, trained on lab",
+    "lab_rigid": "recurrent, trained on lab with rigid pads",
 }
 """What the names of shipped policies have behind the task's key -> what tables call them."""
 _SELECTION_SEED = 10_000_000

@@ -40,7 +40,9 @@ def test_its_name_says_its_task_and_what_it_was_told(name):
         f"{task.key}_scratch": ("true", "realistic"),
         f"{task.key}_memory": ("none", "realistic"),
         f"{task.key}_lab": ("none", "lab"),
+        f"{task.key}_lab_rigid": ("none", "lab"),
         f"{task.key}_markers": ("none", "markers"),
+        f"{task.key}_wrist": ("none", "wrist"),
     }[name]
     assert (where.arguments["friction_source"], where.arguments["sensors"]) == (source, sensors)
     assert (network.memory is None) == name.endswith("_scratch")
@@ -57,7 +59,7 @@ def test_the_example_of_the_page_runs():
 
 def test_every_policy_of_the_page_comes_with_slipgym():
     page = (PAGES.parent / "learned.md").read_text(encoding="utf-8")
-    assert set(re.findall(r"`(\w+_(?:scratch|memory|lab|markers))`", page)) == set(SHIPPED)
+    assert set(re.findall(r"`(\w+_(?:scratch|memory|lab|lab_rigid|markers|wrist))`", page)) == set(SHIPPED)
     assert set(re.findall(r"\(learned/(\w+)\.png\)", page)) == set(SHIPPED)
 
 
