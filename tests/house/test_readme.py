@@ -62,6 +62,13 @@ def test_the_claim_is_what_was_printed():
     assert claim() in README
 
 
+def test_the_first_sentence_of_the_claim_has_the_figures_of_the_table():
+    said = re.search(r"in Hold: (\d+) points .*?, (\d+) with a laboratory's sensors", README)
+    (hold,) = re.findall(r"^\| Hold .*\|$", README, re.MULTILINE)
+    assert said is not None
+    assert list(said.groups()) == re.findall(r"\+(\d+)", hold)
+
+
 def test_there_are_examples():
     assert len(EXAMPLES) == 2
 
