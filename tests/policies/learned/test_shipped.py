@@ -45,6 +45,7 @@ def test_its_name_says_its_task_and_what_it_was_told(name):
         f"{task.key}_wrist": ("none", "wrist"),
     }[name]
     assert (where.arguments["friction_source"], where.arguments["sensors"]) == (source, sensors)
+    assert (where.arguments["randomization"] == "none") or name.endswith("_lab")
     assert (network.memory is None) == name.endswith("_scratch")
     assert name in files.names()
 
