@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -30,19 +30,21 @@ def policies_of(study: Study) -> Shelf:
 
     A policy lies in a folder <task>_<source> or <task>_<source>_<seed>, as in "linear_slip_true_2"; without a
     number it is seed 0. Or it is one of those that `slipgym train` or `slipgym imitate` left in the folder.
-    Of those that come with slipgym, <task>_scratch is for the source "true", and for "none" <task>_memory, or
-    <task>_lab if the study has the sensors "lab".
+    Of those that come with slipgym, <task>_scratch is for the source "true", and `untold` is for "none".
 
     Raises:
         ValueError: Two folders stand for the same seed.
     """
-    endings: dict[str, str] = {source: source for source in SOURCES}
-    endings |= {"scratch": "true", "lab" if study.sensors == "lab" else "memory": "none"}
     found: Shelf = {}
     for kind, where in folders(study).items():
-        for folder, name in _named(where):
-            for task, (ending, source) in itertools.product(study.tasks, endings.items()):
-                match = re.fullmatch(rf"{find(task).key}_{ending}(?:_+(\d+))?", name)
+        named = _named(where)
+        names = [name for _, name in named]
+        for (folder, name), task in itertools.product(named, study.tasks):
+            key = find(task).key
+            endings = {f"{key}_{source}": source for source in SOURCES}
+            endings |= {f"{key}_scratch": "true", untold(study, key, names): "none"}
+            for ending, source in endings.items():
+                match = re.fullmatch(rf"{ending}(?:_+(\d+))?", name)
                 if match is None:
                     continue
                 seeds, seed = found.setdefault((kind, task, source), {}), int(match[1] or 0)
@@ -50,6 +52,18 @@ def policies_of(study: Study) -> Shelf:
                     raise ValueError(f"{folder} and {seeds[seed]} are both seed {seed}")
                 seeds[seed] = folder
     return found
+
+
+def untold(study: Study, key: str, names: Iterable[str]) -> str:
+    """Name of the policy that is given no friction, of those that come with slipgym, for a task's key.
+
+    <task>_memory; with the sensors "lab" <task>_lab, or <task>_lab_rigid if the names have that one and no
+    preset of the study has the pads of a laboratory.
+    """
+    if study.sensors != "lab":
+        return f"{key}_memory"
+    rigid = f"{key}_lab_rigid"
+    return rigid if rigid in names and "lab" not in study.presets else f"{key}_lab"
 
 
 def folders(study: Study) -> dict[str, Path]:
@@ -222,7 +236,7 @@ def conditions(study: Study, learned: Shelf) -> list[Condition]:
         for kind, source in itertools.product(study.kinds, sources)
         for estimator in (estimators if source == "estimated" else study.estimators[:1])
         for block in range(study.blocks)
-        for policy in _policy(task, kind, source, block, learned)
+        for policy in _policy(study, task, kind, source, block, learned)
         for alone in [kind == "recurrent" or policy in remembering]
         for skip in [common_frame_skip([policy]) if alone else skips[task]]
     ]
@@ -242,12 +256,13 @@ def _places(study: Study) -> Iterator[tuple]:
             yield world, task, worse.preset, change, worse.sources, study.estimators[:1], worse.episodes
 
 
-def _policy(task: str, kind: str, source: str, block: int, learned: Shelf) -> list[str]:
+def _policy(study: Study, task: str, kind: str, source: str, block: int, learned: Shelf) -> list[str]:
     """The policy of a block, or none."""
     if kind == "classic" or (kind == "memory" and source == "none"):
         return [own_policy(task)]
     if kind == "recurrent":
-        folder = pretrained.folders().get(f"{find(task).key}_memory")
+        shipped = pretrained.folders()
+        folder = shipped.get(untold(study, find(task).key, shipped))
         return [str(folder)] if folder and source == "none" else []
     seeds = learned.get((kind, task, TRAINED_WITH[source]), {})
     chosen = sorted(seeds)

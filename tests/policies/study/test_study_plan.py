@@ -88,15 +88,27 @@ def test_learned_policies_by_task_source_and_seed(small, shelf):
 
 
 @pytest.mark.parametrize(
-    ("sensors", "untold"), [("realistic", "linear_slip_memory"), ("lab", "linear_slip_lab")]
+    ("shipped", "sensors", "presets", "untold"),
+    [
+        (("memory", "lab", "lab_rigid"), "realistic", ["none"], "hold_memory"),
+        (("memory", "lab"), "lab", ["none"], "hold_lab"),
+        (("memory", "lab", "lab_rigid"), "lab", ["none", "train"], "hold_lab_rigid"),
+        (("memory", "lab", "lab_rigid"), "lab", ["none", "lab"], "hold_lab"),
+    ],
 )
-def test_learned_policies_that_come_with_slipgym(small, shelf, sensors, untold):
-    folder = shelf("linear_slip_scratch", "linear_slip_memory", "linear_slip_lab", "hold_scratch")
-    found = policies_of(small(learned=folder, sensors=sensors))
-    assert {source: [path.name for path in paths.values()] for (_, _, source), paths in found.items()} == {
-        "true": ["linear_slip_scratch"],
+def test_learned_policies_that_come_with_slipgym(small, shelf, shipped, sensors, presets, untold):
+    folder = shelf("linear_slip_scratch", "hold_scratch", *(f"hold_{ending}" for ending in shipped))
+    study = small(tasks=["Hold"], learned=folder, sensors=sensors, presets=presets, degradation=None)
+    assert {key[2]: [path.name for path in paths.values()] for key, paths in policies_of(study).items()} == {
+        "true": ["hold_scratch"],
         "none": [untold],
     }
+
+
+def test_the_kind_recurrent_is_the_policy_for_the_sensors_and_pads(small):
+    changes = {"kinds": ["recurrent"], "sensors": "lab", "presets": ["none"], "degradation": None}
+    study = small(tasks=["Hold"], config={}, **changes)
+    assert {Path(one.policy).name for one in conditions(study, {})} == {"hold_lab_rigid"}
 
 
 def test_a_policy_that_comes_with_slipgym_and_remembers_acts_at_its_own_rate(small):
