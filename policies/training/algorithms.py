@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from slipgym.config.base import Count, Frozen, NonNegative, Positive, as_tuple
 
@@ -82,12 +82,22 @@ class PrivilegedPPO(Frozen):
     net_arch: Layers = Field(default=(64, 64), description="Units of the hidden layers [-]")
     activation: Literal["tanh", "relu", "elu"] = Field(default="tanh", description="Of the hidden layers [-]")
     memory: int = Field(default=0, ge=0, le=1024, description="Units of the actor's LSTM; 0: none [-]")
+    mirrored: Annotated[tuple[str, ...], BeforeValidator(as_tuple)] = Field(
+        default=(),
+        description="Columns that change sign in a mirror: samples count twice, as they are and mirrored [-]",
+    )
     privileged: bool = Field(default=True, description="Whether the critic reads the privileged group [-]")
     start: str | None = Field(default=None, description="Folder of a policy that the actor starts as")
     critic_first: int = Field(
         default=0, ge=0, description="Updates at first that change the critic alone [-]"
     )
     curriculum: Curriculum = Field(default=Curriculum(), description="Easier stages that come first [-]")
+
+    @model_validator(mode="after")
+    def _mirrors_no_memory(self) -> Self:
+        if self.mirrored and self.memory:
+            raise ValueError("mirrored needs memory 0: rsl-rl mirrors no sequences")
+        return self
 
 
 class SAC(_Shared):

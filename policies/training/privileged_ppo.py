@@ -20,6 +20,7 @@ from tensordict import TensorDict
 from policies.training import policy_tensors, vector
 from policies.training.config import Training
 from policies.training.derived import coefficients
+from policies.training.mirror import Mirror
 from policies.training.state_checks import arrays, check_like, moments, set_moments, tensors
 
 _FIRST_OUTPUT = 0.01
@@ -34,6 +35,7 @@ class PrivilegedPPO:
     Attributes:
         num_timesteps: Steps of all environments so far.
         matrix: What turns an observation into its derived columns, (d, k).
+        mirror: What mirrors its samples, if anything does.
         stage: Number of the curriculum's present stage; as many as there are: the task itself.
         envs: The environments of that stage.
     """
@@ -50,7 +52,10 @@ class PrivilegedPPO:
         self._solved: deque[bool] = deque(maxlen=self._chosen.curriculum.episodes)
         self._last: TensorDict | None = None
         columns, width = self.envs.get_attr("columns")[0], spaces["policy"].shape[0]
-        self.matrix = coefficients(config.derived, columns, config.environment.history, width)
+        history = config.environment.history
+        self.matrix = coefficients(config.derived, columns, history, width)
+        mirrored = self._chosen.mirrored
+        self.mirror = Mirror(mirrored, self.envs, config.derived, history) if mirrored else None
         self.ppo = self._ppo()
         self.logger: Any = None
         if (start := self._chosen.start) is not None:
@@ -91,6 +96,8 @@ class PrivilegedPPO:
                 "learning_rate": chosen.learning_rate,
                 "schedule": "fixed",
                 "use_clipped_value_loss": False,
+                "symmetry_cfg": self.mirror
+                and {"data_augmentation_func": self.mirror, "use_data_augmentation": True},
             },
         }
         where: Any = SimpleNamespace(num_envs=self.envs.num_envs, num_actions=self.envs.action_space.shape[0])
@@ -132,6 +139,8 @@ class PrivilegedPPO:
             if chosen.observation:
                 if learn:
                     rms.update(values)
+                    if self.mirror is not None:  # the mean of a mirrored column is 0
+                        rms.update(values * self.mirror.groups[name].numpy()[: values.shape[1]])
                 scaled = (values - rms.mean) / np.sqrt(rms.var + policy_tensors.EPSILON)
                 scaled = np.clip(scaled, -chosen.clip, chosen.clip).astype(np.float32)
             if name == "policy" and len(self.matrix):
