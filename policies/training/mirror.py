@@ -45,13 +45,13 @@ class Mirror:
         self.groups = {"policy": torch.tensor(policy), "privileged": torch.tensor(found["privileged"])}
 
     def __call__(
-        self, env: Any, obs: TensorDict | None = None, actions: torch.Tensor | None = None
+        self, env: Any, obs: Any = None, actions: torch.Tensor | None = None
     ) -> tuple[TensorDict | None, torch.Tensor | None]:
-        """Observations and actions with their mirror images behind them, for rsl-rl."""
+        """Observations and actions, (n, m) and (n, k), with their mirror images behind them, for rsl-rl."""
         both = None
         if obs is not None:
-            images = {name: values * self.groups[name] for name, values in obs.items()}
-            both = torch.cat((obs, TensorDict(images, batch_size=obs.batch_size)))
+            pairs = {name: torch.cat((values, values * self.groups[name])) for name, values in obs.items()}
+            both = TensorDict(pairs, batch_size=[2 * len(obs)])
         return both, None if actions is None else torch.cat((actions, actions * self.action))
 
 
@@ -69,4 +69,4 @@ def _of_derived(name: str, combined: Mapping[str, float], mirrored: Sequence[str
         raise ValueError(
             f"privileged_ppo.mirrored: derived column {name!r} combines mirrored and other columns"
         )
-    return signs.pop()
+    return min(signs, default=1.0)

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 
 pytest.importorskip("rsl_rl")
+import torch
+
 from policies.training import files, model
 
 
@@ -46,6 +48,16 @@ def test_derived_columns_and_actions(config):
     learner = model.begin(config.model_copy(update={"num_envs": 2}), 0)
     assert learner.mirror.groups["policy"][-3:].tolist() == [-1.0, 1.0, -1.0]
     assert learner.mirror.action.tolist() == [1.0, -1.0]
+
+
+def test_mirror_images_stand_behind_the_samples(config):
+    learner = model.begin(config.model_copy(update={"num_envs": 2}), 0)
+    observed = learner._observed(learner.envs.reset(), learn=False)
+    both, actions = learner.mirror(None, observed, torch.tensor([[0.5, 0.25]]))
+    assert actions.tolist() == [[0.5, 0.25], [0.5, -0.25]]
+    for group, signs in learner.mirror.groups.items():
+        assert torch.equal(both[group][:2], observed[group])
+        assert torch.equal(both[group][2:], observed[group] * signs)
 
 
 def test_what_is_mirrored_has_the_mean_zero(config):
