@@ -10,10 +10,11 @@ import numpy as np
 import pandas as pd
 
 from policies.evaluation.statistics import over_seeds
-from policies.learned import LearnedPolicy, pretrained
+from policies.learned import LearnedPolicy
 from policies.policy_leaderboard.entries import Member
 from policies.policy_leaderboard.run import WORLDS, play_in
 from policies.training import curve, export, files, folder, run_set
+from policies.training.config import Training
 from slipgym.tasks import find
 
 
@@ -35,30 +36,23 @@ def trained(name: str, seeds: Sequence[int], root: Path, jobs: int) -> dict[int,
         jobs: Runs at once.
     """
     config = files.load(name)
-    found = _finished(root, config.task)
+    found = _finished(root, config)
     if missing := [seed for seed in seeds if seed not in found]:
         run_set.train_all(run_set.begin(config, missing, [], root), jobs)
-        found = _finished(root, config.task)
+        found = _finished(root, config)
     return {seed: found[seed] for seed in seeds}
 
 
-def _finished(root: Path, task: str) -> dict[int, Trained]:
+def _finished(root: Path, wanted: Training) -> dict[int, Trained]:
+    """Of the runs with just this configuration, by seed."""
     found = {}
     for order in sorted(root.glob("*/*/run.yaml")):
         config, seed = folder.order(order.parent)
         result = folder.result(order.parent)
-        if find(config.task) is find(task) and result is not None:
+        if config == wanted and result is not None:
             best = curve.best(folder.read_curve(order.parent), config.evaluation.episodes)
             found[seed] = Trained(order.parent / export.POLICY, best.steps, result["cpu_seconds"])
     return found
-
-
-def shipped(name: str) -> dict[int, Trained]:
-    """The policy that comes with slipgym and its seed."""
-    origin = LearnedPolicy(pretrained.locate(name)).description.origin
-    return {
-        origin.seeds[0]: Trained(pretrained.locate(name), origin.steps, float(origin.cpu_seconds or np.nan))
-    }
 
 
 def row(name: str, policies: Sequence[Trained], episodes: int) -> dict[str, object]:
@@ -88,14 +82,12 @@ def row(name: str, policies: Sequence[Trained], episodes: int) -> dict[str, obje
 
 
 def table(names: Sequence[str], seeds: Sequence[int], root: Path, jobs: int, episodes: int) -> pd.DataFrame:
-    """A row for each configuration; a seed whose policy comes with slipgym is not trained again.
+    """A row for each configuration; what is a finished run in the folder is not trained again.
 
     Solved is the interquartile mean over the seeds with its interval; steps are those of the checkpoint
     that a run leaves behind, CPU those of the whole run, as medians.
     """
     rows = []
     for name in names:
-        known = shipped(name)
-        rest = trained(name, [seed for seed in seeds if seed not in known], root, jobs)
-        rows.append(row(name, [(known | rest)[seed] for seed in seeds], episodes))
+        rows.append(row(name, list(trained(name, seeds, root, jobs).values()), episodes))
     return pd.DataFrame(rows)
