@@ -39,8 +39,9 @@ def test_a_mirrored_episode_is_the_mirror_image(config):
     np.testing.assert_allclose(rewards, others, atol=1e-6)
     for group, columns in names.items():
         signs = learner.mirror.groups[group].numpy()[: len(columns)]
-        apart = np.abs(left[group] * signs - right[group]).max(axis=0)
-        wrong = apart > 1e-4 * np.abs(left[group]).max(axis=0)
+        scale = np.abs(left[group]).max(axis=0)
+        assert (scale[signs < 0.0] > 0.0).all()
+        wrong = np.abs(left[group] * signs - right[group]).max(axis=0) > 1e-4 * scale
         assert not wrong.any(), [name for name, bad in zip(columns, wrong, strict=True) if bad]
 
 
