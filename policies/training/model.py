@@ -44,6 +44,8 @@ def normalised(config: Training, envs: Any, training: bool = True) -> VecNormali
     )
     if isinstance(envs, DerivedVecEnv) and chosen.observation:
         made.obs_rms = Moments(envs.matrix.shape[1], sum(envs.matrix.shape))
+        ends: Any = np.repeat([chosen.clip, np.inf], envs.matrix.shape[::-1])
+        made.clip_obs = ends  # derived columns keep their size: `fold` is exact
     return made
 
 
