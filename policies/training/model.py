@@ -175,7 +175,7 @@ def check_finite(model: Any) -> None:
         )
 
 
-def renew_noise(model: BaseAlgorithm) -> None:
+def renew_noise(model: Any) -> None:
     """Draw the noise of gSDE anew, as the number of steps says.
 
     Stable-Baselines3 draws it before a run writes its checkpoint; a resumed run draws it once more.

@@ -87,8 +87,9 @@ def randomization_content(choice: Any) -> Any:
         FileNotFoundError, ValueError: As those of `load_randomization`.
     """
     load_randomization(choice)
-    kept = isinstance(choice, Mapping) or choice in names("randomization")
-    return choice if kept else files.read(Path(choice))
+    if isinstance(choice, str | os.PathLike) and choice not in names("randomization"):
+        return files.read(Path(choice))
+    return choice
 
 
 def load_randomization(choice: Overrides = "none", tasks: Iterable[str] | None = None) -> Randomization:
